@@ -1,0 +1,3 @@
+//! The `navwalker` program.
+
+fn main() {}

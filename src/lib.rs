@@ -1,0 +1,8 @@
+//! Design, evaluation, export and validation of low-Earth-orbit Walker
+//! constellations that augment a GNSS.
+//!
+//! The library does the science and talks to nobody: it opens no path, reads no
+//! clock or environment and prints nothing. `ARCHITECTURE.md` has the map of the
+//! modules and the direction of their imports; `docs/models.md` numbers the
+//! equations that the code cites.
+
