@@ -6,3 +6,9 @@
 //! modules and the direction of their imports; `docs/models.md` numbers the
 //! equations that the code cites.
 
+pub mod earth;
+pub mod frames;
+pub mod orbit;
+pub mod stats;
+pub mod time;
+pub mod units;

@@ -1,0 +1,105 @@
+//! The one set of physical constants, and the surface that ground points stand on.
+
+use nalgebra::Vector3;
+
+/// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).
+pub const MU_KM3_S2: f64 = 398_600.441_8;
+
+/// Equatorial radius, km (WGS 84); also the radius of [`Surface::Sphere`].
+pub const RADIUS_KM: f64 = 6_378.137;
+
+/// Second zonal harmonic, unnormalised (EGM96: -√5 C̄₂₀).
+pub const J2: f64 = 1.082_626_68e-3;
+
+/// Flattening of the WGS 84 ellipsoid.
+pub const FLATTENING: f64 = 1.0 / 298.257_223_563;
+
+/// Rate of Greenwich mean sidereal time, rad/s (derivative of the IAU 1982 expression,
+/// Aoki et al., *Astron. Astrophys.* 105 (1982) 359).
+pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
+
+/// Semi-major axis of the geosynchronous satellites of the presets, km.
+pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
+
+/// What ground points, their heights and their verticals refer to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Surface {
+    /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
+    Wgs84,
+    /// A sphere of radius [`RADIUS_KM`]: latitudes are geocentric, the vertical is radial.
+    Sphere,
+}
+
+impl Surface {
+    /// Flattening of the surface.
+    #[must_use]
+    pub fn flattening(self) -> f64 {
+        match self {
+            Self::Wgs84 => FLATTENING,
+            Self::Sphere => 0.0,
+        }
+    }
+
+    /// Earth-fixed position of a point at height 0, km.
+    ///
+    /// Latitude and longitude in radians. Source: Hofmann-Wellenhof et al.,
+    /// *GNSS* (2008), equation 8.8, with h = 0 (M-13).
+    #[must_use]
+    pub fn position_km(self, latitude_rad: f64, longitude_rad: f64) -> Vector3<f64> {
+        let f = self.flattening();
+        let e2 = f * (2.0 - f);
+        let (sin_lat, cos_lat) = latitude_rad.sin_cos();
+        let (sin_lon, cos_lon) = longitude_rad.sin_cos();
+        // N = a / sqrt(1 - e² sin² φ), radius of curvature in the prime vertical
+        let n = RADIUS_KM / (1.0 - e2 * sin_lat * sin_lat).sqrt();
+        Vector3::new(
+            n * cos_lat * cos_lon,
+            n * cos_lat * sin_lon,
+            n * (1.0 - e2) * sin_lat,
+        )
+    }
+
+    /// Earth-fixed unit vector of the local vertical, upwards.
+    ///
+    /// The same expression serves both surfaces, because the latitude of each is the
+    /// angle between its own vertical and the equator.
+    #[must_use]
+    pub fn vertical(self, latitude_rad: f64, longitude_rad: f64) -> Vector3<f64> {
+        let (sin_lat, cos_lat) = latitude_rad.sin_cos();
+        let (sin_lon, cos_lon) = longitude_rad.sin_cos();
+        Vector3::new(cos_lat * cos_lon, cos_lat * sin_lon, sin_lat)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The rate is the one-day difference of the sidereal time that the frames use.
+    #[test]
+    fn validate_gmst_rate_against_the_iau_1982_expression() {
+        let day = sofars::erst::gmst82(2_451_545.0, 1.0) - sofars::erst::gmst82(2_451_545.0, 0.0);
+        let rate = (day + std::f64::consts::TAU) / 86_400.0;
+        // One day of gmst82 in doubles is good to about 1e-15 rad/s; the constant has 11 digits.
+        assert!((rate - GMST_RATE_RAD_S).abs() < 5e-15, "{rate:e}");
+    }
+
+    /// Semi-minor axis of WGS 84: 6356.752 314 245 km (NIMA TR8350.2, table 3.3).
+    #[test]
+    fn validate_polar_radius() {
+        let pole = Surface::Wgs84.position_km(std::f64::consts::FRAC_PI_2, 0.0);
+        assert!((pole.z - 6_356.752_314_245).abs() < 1e-9);
+        assert!(pole.x.abs() < 1e-9);
+        let pole = Surface::Sphere.position_km(std::f64::consts::FRAC_PI_2, 0.0);
+        assert!((pole.z - RADIUS_KM).abs() < 1e-9);
+    }
+
+    /// Geodetic 45°: the geocentric latitude is atan((1 - f)²), 11.5 arcmin less.
+    #[test]
+    fn validate_geocentric_latitude_of_a_geodetic_point() {
+        let point = Surface::Wgs84.position_km(std::f64::consts::FRAC_PI_4, 0.3);
+        let geocentric = (point.z / point.norm()).asin();
+        let expected = ((1.0 - FLATTENING) * (1.0 - FLATTENING)).atan();
+        assert!((geocentric - expected).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,64 @@
+//! Angle and time units, and the two number formats that results depend on.
+
+use std::f64::consts::{PI, TAU};
+
+/// Seconds in a day of 86 400 SI seconds.
+pub const SECONDS_PER_DAY: f64 = 86_400.0;
+
+/// Seconds in an hour.
+pub const SECONDS_PER_HOUR: f64 = 3_600.0;
+
+/// Minutes in a day.
+pub const MINUTES_PER_DAY: f64 = 1_440.0;
+
+/// An angle brought to [0, 2π), in radians.
+#[must_use]
+pub fn wrap_two_pi(angle_rad: f64) -> f64 {
+    let wrapped = angle_rad.rem_euclid(TAU);
+    // rem_euclid of a tiny negative number rounds up to the modulus itself.
+    if wrapped >= TAU { 0.0 } else { wrapped }
+}
+
+/// An angle brought to [-π, π), in radians.
+#[must_use]
+pub fn wrap_pi(angle_rad: f64) -> f64 {
+    wrap_two_pi(angle_rad + PI) - PI
+}
+
+/// An angle brought to [0, 360), in degrees.
+#[must_use]
+pub fn wrap_360(angle_deg: f64) -> f64 {
+    let wrapped = angle_deg.rem_euclid(360.0);
+    if wrapped >= 360.0 { 0.0 } else { wrapped }
+}
+
+/// `value` rounded to a multiple of `10^-digits`, exactly as its decimal text reads.
+///
+/// Going through text keeps the shortest round-trip form short: `0.1 + 0.2`
+/// rounded to three digits is the double nearest 0.3, which prints as `0.3`.
+#[must_use]
+pub fn round_decimal(value: f64, digits: usize) -> f64 {
+    let text = format!("{value:.digits$}");
+    // A formatted finite number always parses; anything else is returned untouched.
+    text.parse().map_or(value, |rounded: f64| rounded + 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapping_stays_below_the_modulus() {
+        assert_eq!(wrap_two_pi(-1e-20), 0.0);
+        assert_eq!(wrap_360(-1e-20), 0.0);
+        assert_eq!(wrap_360(725.0), 5.0);
+        assert!((wrap_pi(1.5 * PI) + 0.5 * PI).abs() < 1e-15);
+    }
+
+    #[test]
+    fn decimal_rounding_gives_short_numbers() {
+        assert_eq!(round_decimal(0.1 + 0.2, 3).to_string(), "0.3");
+        assert_eq!(round_decimal(-1e-9, 4).to_string(), "0");
+        assert_eq!(round_decimal(43.827_364_651, 4).to_string(), "43.8274");
+    }
+}
