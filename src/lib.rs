@@ -6,9 +6,13 @@
 //! modules and the direction of their imports; `docs/models.md` numbers the
 //! equations that the code cites.
 
+pub mod constellation;
+pub mod dop;
 pub mod earth;
 pub mod frames;
+pub mod ground;
 pub mod orbit;
 pub mod stats;
 pub mod time;
 pub mod units;
+pub mod visibility;

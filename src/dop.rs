@@ -1,0 +1,146 @@
+//! Position dilution of precision with one clock state per clock group.
+//!
+//! Unit-weight least squares with three position states and one clock state for each group of
+//! systems that share a clock. A clock drops out by the Schur complement: a group of n visible
+//! satellites with unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix
+//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19). No matrix of the
+//! size of the satellites is built.
+
+use nalgebra::Vector3;
+use std::ops::AddAssign;
+
+/// How many clock states there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Clocks {
+    /// One for each system in view.
+    PerSystem,
+    /// One for all systems.
+    Shared,
+}
+
+/// A symmetric 3x3 matrix: the upper triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Symmetric3 {
+    /// Element (x, x).
+    pub xx: f64,
+    /// Element (y, y).
+    pub yy: f64,
+    /// Element (z, z).
+    pub zz: f64,
+    /// Element (x, y).
+    pub xy: f64,
+    /// Element (x, z).
+    pub xz: f64,
+    /// Element (y, z).
+    pub yz: f64,
+}
+
+impl Symmetric3 {
+    /// `scale` v vᵀ.
+    #[must_use]
+    pub fn outer(v: Vector3<f64>, scale: f64) -> Self {
+        let s = v * scale;
+        Self {
+            xx: s.x * v.x,
+            yy: s.y * v.y,
+            zz: s.z * v.z,
+            xy: s.x * v.y,
+            xz: s.x * v.z,
+            yz: s.y * v.z,
+        }
+    }
+
+    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant (M-19).
+    ///
+    /// `None` when the matrix is not positive definite (Sylvester's criterion).
+    #[must_use]
+    pub fn trace_of_inverse(&self) -> Option<f64> {
+        let minor_zz = self.xx * self.yy - self.xy * self.xy;
+        let minor_yy = self.xx * self.zz - self.xz * self.xz;
+        let minor_xx = self.yy * self.zz - self.yz * self.yz;
+        let determinant = self.xx * minor_xx - self.xy * (self.xy * self.zz - self.yz * self.xz)
+            + self.xz * (self.xy * self.yz - self.yy * self.xz);
+        let definite = self.xx > 0.0 && minor_zz > 0.0 && determinant > 0.0;
+        definite.then(|| (minor_xx + minor_yy + minor_zz) / determinant)
+    }
+}
+
+impl AddAssign for Symmetric3 {
+    fn add_assign(&mut self, other: Self) {
+        self.xx += other.xx;
+        self.yy += other.yy;
+        self.zz += other.zz;
+        self.xy += other.xy;
+        self.xz += other.xz;
+        self.yz += other.yz;
+    }
+}
+
+/// The visible satellites that share one clock.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClockGroup {
+    /// Σ v vᵀ.
+    squares: Symmetric3,
+    /// Σ v.
+    sum: Vector3<f64>,
+    /// Satellites.
+    count: u32,
+}
+
+impl ClockGroup {
+    /// Adds a visible satellite by its unit vector.
+    pub fn add(&mut self, unit: Vector3<f64>) {
+        self.squares += Symmetric3::outer(unit, 1.0);
+        self.sum += unit;
+        self.count += 1;
+    }
+
+    /// Satellites in the group.
+    #[must_use]
+    pub fn count(&self) -> u32 {
+        self.count
+    }
+}
+
+impl AddAssign for ClockGroup {
+    fn add_assign(&mut self, other: Self) {
+        self.squares += other.squares;
+        self.sum += other.sum;
+        self.count += other.count;
+    }
+}
+
+/// The normal matrix of the position, gathered group by group.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Geometry {
+    normal: Symmetric3,
+    satellites: u32,
+    clocks: u32,
+}
+
+impl Geometry {
+    /// Adds the satellites of one clock; an empty group adds nothing, not even a clock state.
+    pub fn add(&mut self, group: &ClockGroup) {
+        if group.count == 0 {
+            return;
+        }
+        self.normal += group.squares;
+        self.normal += Symmetric3::outer(group.sum, -1.0 / f64::from(group.count));
+        self.satellites += group.count;
+        self.clocks += 1;
+    }
+
+    /// PDOP; `None` when unsolved: fewer satellites than states, a position block that is not
+    /// positive definite, or a value above `cap`.
+    #[must_use]
+    pub fn pdop(&self, cap: f64) -> Option<f64> {
+        if self.satellites < 3 + self.clocks {
+            return None;
+        }
+        let pdop = self.normal.trace_of_inverse()?.sqrt();
+        (pdop <= cap).then_some(pdop)
+    }
+}
+
+#[cfg(test)]
+mod tests;

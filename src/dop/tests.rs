@@ -1,0 +1,124 @@
+use super::*;
+use nalgebra::{DMatrix, DVector};
+use proptest::prelude::*;
+
+fn geometry(groups: &[Vec<Vector3<f64>>]) -> Geometry {
+    let mut geometry = Geometry::default();
+    for group in groups {
+        let mut clock = ClockGroup::default();
+        group.iter().for_each(|v| clock.add(*v));
+        geometry.add(&clock);
+    }
+    geometry
+}
+
+/// PDOP by the definition, equation (7) of the paper: the geometry matrix with a column of ones
+/// per clock, inverted whole.
+fn pdop_by_inversion(groups: &[Vec<Vector3<f64>>]) -> Option<f64> {
+    let in_view: Vec<_> = groups.iter().filter(|group| !group.is_empty()).collect();
+    let rows: usize = in_view.iter().map(|group| group.len()).sum();
+    let mut g = DMatrix::zeros(rows, 3 + in_view.len());
+    let lines = in_view
+        .iter()
+        .enumerate()
+        .flat_map(|(c, group)| group.iter().map(move |v| (c, v)));
+    for (row, (clock, v)) in lines.enumerate() {
+        g.fixed_view_mut::<1, 3>(row, 0).copy_from(&v.transpose());
+        g[(row, 3 + clock)] = 1.0;
+    }
+    let inverse = (g.transpose() * &g).try_inverse()?;
+    let diagonal: DVector<f64> = inverse.diagonal();
+    Some((diagonal[0] + diagonal[1] + diagonal[2]).sqrt())
+}
+
+fn direction(elevation_deg: f64, azimuth_deg: f64) -> Vector3<f64> {
+    let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
+    let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
+    Vector3::new(cos_e * sin_a, cos_e * cos_a, sin_e)
+}
+
+/// One satellite at the zenith and three at elevation ε, 120° apart. By symmetry
+/// A = diag(3/2 cos² ε, 3/2 cos² ε, 3/4 (1 - sin ε)²), so
+/// PDOP² = 4 / (3 cos² ε) + 4 / (3 (1 - sin ε)²).
+#[test]
+fn validate_pdop_of_a_symmetric_geometry() {
+    for elevation_deg in [0.0_f64, 5.0, 30.0] {
+        let mut group = vec![direction(90.0, 0.0)];
+        group.extend([0.0, 120.0, 240.0].map(|azimuth| direction(elevation_deg, azimuth)));
+        let (s, c) = elevation_deg.to_radians().sin_cos();
+        let expected = (4.0 / (3.0 * c * c) + 4.0 / (3.0 * (1.0 - s) * (1.0 - s))).sqrt();
+        let pdop = geometry(&[group]).pdop(100.0).unwrap();
+        assert!(
+            (pdop / expected - 1.0).abs() < 1e-13,
+            "{elevation_deg}: {pdop} {expected}"
+        );
+    }
+}
+
+/// Five satellites, four of them at 15° elevation in the four winds and one at the zenith; the
+/// closed form follows from the same symmetry as above.
+#[test]
+fn validate_pdop_of_a_cross() {
+    let (s, c) = 15_f64.to_radians().sin_cos();
+    let mut group = vec![direction(90.0, 0.0)];
+    group.extend([0.0, 90.0, 180.0, 270.0].map(|azimuth| direction(15.0, azimuth)));
+    // Σ v vᵀ = diag(2c², 2c², 1 + 4s²), Σ v = (0, 0, 1 + 4s), n = 5
+    let vertical = 1.0 + 4.0 * s * s - (1.0 + 4.0 * s).powi(2) / 5.0;
+    let expected = (1.0 / (c * c) + 1.0 / vertical).sqrt();
+    assert!((geometry(&[group]).pdop(100.0).unwrap() / expected - 1.0).abs() < 1e-13);
+}
+
+#[test]
+fn unsolved_is_a_value_of_its_own() {
+    let four =
+        [(10.0, 0.0), (40.0, 100.0), (70.0, 200.0), (20.0, 290.0)].map(|(e, a)| direction(e, a));
+    let (first, rest) = four.split_at(1);
+    assert!(geometry(&[four.to_vec()]).pdop(100.0).is_some());
+    // Two clocks make five states.
+    assert_eq!(geometry(&[first.to_vec(), rest.to_vec()]).pdop(100.0), None);
+    assert_eq!(geometry(&[]).pdop(100.0), None);
+    // Four satellites in one direction have no geometry at all.
+    assert_eq!(geometry(&[vec![four[0]; 4]]).pdop(100.0), None);
+    let pdop = geometry(&[four.to_vec()]).pdop(f64::INFINITY).unwrap();
+    assert_eq!(geometry(&[four.to_vec()]).pdop(pdop * 0.999), None);
+}
+
+fn sky(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Vector3<f64>>> {
+    prop::collection::vec(
+        (5.0..89.0_f64, 0.0..360.0_f64).prop_map(|(e, a)| direction(e, a)),
+        n,
+    )
+}
+
+proptest! {
+    #[test]
+    fn validate_schur_complement_against_inversion(a in sky(4..12), b in sky(0..8), c in sky(0..3)) {
+        let groups = [a, b, c];
+        let ours = geometry(&groups).pdop(20.0);
+        // Beyond PDOP 20 the inversion itself loses the digits that are compared.
+        if let (Some(ours), Some(theirs)) = (ours, pdop_by_inversion(&groups)) {
+            prop_assert!((ours / theirs - 1.0).abs() < 1e-9, "{ours} {theirs}");
+        }
+    }
+
+    /// Teng and Wang (2015): the clock of a lone satellite of a new system eats its measurement.
+    #[test]
+    fn validate_a_lone_satellite_with_its_own_clock_changes_nothing(a in sky(5..12), b in sky(1..2)) {
+        let without = geometry(&[a.clone()]).pdop(100.0);
+        let with = geometry(&[a, b]).pdop(100.0);
+        prop_assert_eq!(without.is_some(), with.is_some());
+        if let (Some(x), Some(y)) = (without, with) {
+            prop_assert!((x / y - 1.0).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_further_satellite_of_a_system_in_view_never_hurts(a in sky(5..12), v in sky(1..2)) {
+        let before = geometry(&[a.clone()]).pdop(1e6);
+        let mut more = a;
+        more.extend(v);
+        if let (Some(before), Some(after)) = (before, geometry(&[more]).pdop(1e6)) {
+            prop_assert!(after <= before * (1.0 + 1e-9));
+        }
+    }
+}

@@ -1,0 +1,352 @@
+//! Ground points: the grid of a region, or points one by one, with their verticals and weights.
+
+use crate::earth::Surface;
+use crate::frames::LocalFrame;
+use crate::units::wrap_360;
+use std::io::Read;
+use thiserror::Error;
+
+/// Why a region has no points.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum GroundError {
+    /// Latitudes outside [-90°, 90°] or in the wrong order.
+    #[error("latitudes [{0}, {1}] must run from south to north within -90 to 90 degrees")]
+    Latitudes(f64, f64),
+    /// Longitudes outside [-360°, 360°] or more than a full turn.
+    #[error("longitudes [{0}, {1}] must lie within -360 to 360 degrees and span at most 360")]
+    Longitudes(f64, f64),
+    /// A step that is not a positive number of degrees.
+    #[error("grid step {0} is not a positive number of degrees")]
+    Step(f64),
+    /// More points than [`MAX_POINTS`].
+    #[error("{points} grid points exceed the limit of {MAX_POINTS}")]
+    TooMany {
+        /// Points that the grid would have.
+        points: f64,
+    },
+    /// A point that is not on the Earth.
+    #[error(
+        "latitude {latitude_deg}, longitude {longitude_deg} is no point: latitudes are -90 to 90, longitudes -360 to 360 degrees"
+    )]
+    Point {
+        /// Latitude, degrees.
+        latitude_deg: f64,
+        /// Longitude, degrees.
+        longitude_deg: f64,
+    },
+    /// A weight that is not a positive number.
+    #[error("weight {0} is not a positive number")]
+    Weight(f64),
+    /// A line of a point list that cannot be read.
+    #[error("line {line}: {reason}")]
+    Line {
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// A list without a point.
+    #[error("the list has no point")]
+    Empty,
+}
+
+/// Most points that a region may have: a global grid at 0.1°.
+pub const MAX_POINTS: usize = 6_500_000;
+
+/// How grid points count in means and tails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weighting {
+    /// Every point counts the same.
+    Equal,
+    /// By the cosine of latitude, that is by area.
+    CosLatitude,
+}
+
+/// A ground point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Site {
+    /// Latitude of the surface model (geodetic on WGS 84), degrees.
+    pub latitude_deg: f64,
+    /// East longitude, degrees, as given (not wrapped).
+    pub longitude_deg: f64,
+    /// Weight in means and tails.
+    pub weight: f64,
+    /// Position and local axes, Earth-fixed.
+    pub local: LocalFrame,
+}
+
+impl Site {
+    /// The point of `surface` at a latitude and longitude in degrees.
+    ///
+    /// # Errors
+    /// When the point is not on the Earth or the weight is not positive.
+    pub fn new(
+        surface: Surface,
+        latitude_deg: f64,
+        longitude_deg: f64,
+        weight: f64,
+    ) -> Result<Self, GroundError> {
+        if !((-90.0..=90.0).contains(&latitude_deg) && (-360.0..=360.0).contains(&longitude_deg)) {
+            return Err(GroundError::Point {
+                latitude_deg,
+                longitude_deg,
+            });
+        }
+        if !(weight > 0.0 && weight.is_finite()) {
+            return Err(GroundError::Weight(weight));
+        }
+        let local = LocalFrame::new(
+            surface,
+            latitude_deg.to_radians(),
+            longitude_deg.to_radians(),
+        );
+        Ok(Self {
+            latitude_deg,
+            longitude_deg,
+            weight,
+            local,
+        })
+    }
+}
+
+/// A latitude-longitude grid: values from the south and from the west in equal steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// South and north edge, degrees.
+    pub latitude_deg: [f64; 2],
+    /// West and east edge, degrees; runs eastwards, so that [160, -155] is [160, 205].
+    pub longitude_deg: [f64; 2],
+    /// Steps in latitude and longitude, degrees.
+    pub step_deg: [f64; 2],
+    /// How points count.
+    pub weighting: Weighting,
+}
+
+impl Grid {
+    /// The latitudes of the rows, from the south, degrees.
+    ///
+    /// # Errors
+    /// When the edges or the step are out of range.
+    pub fn latitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
+        let [south, north] = self.latitude_deg;
+        if !(-90.0 <= south && south <= north && north <= 90.0) {
+            return Err(GroundError::Latitudes(south, north));
+        }
+        steps(south, north - south, self.step_deg[0])
+    }
+
+    /// The longitudes of the columns, from the west, degrees, increasing.
+    ///
+    /// # Errors
+    /// When the edges or the step are out of range.
+    pub fn longitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
+        let [west, east] = self.longitude_deg;
+        let error = GroundError::Longitudes(west, east);
+        let in_range = |x: f64| (-360.0..=360.0).contains(&x);
+        if !(in_range(west) && in_range(east)) || east - west > 360.0 {
+            return Err(error);
+        }
+        let span = if east >= west {
+            east - west
+        } else {
+            wrap_360(east - west)
+        };
+        let mut values = steps(west, span, self.step_deg[1])?;
+        // A full turn would count its first meridian twice.
+        if values.len() > 1
+            && values
+                .last()
+                .is_some_and(|last| last - west >= 360.0 - 1e-9)
+        {
+            values.pop();
+        }
+        Ok(values)
+    }
+
+    /// The grid points, row by row from the south, each row from the west.
+    ///
+    /// # Errors
+    /// When the edges or the steps are out of range, or the points are too many.
+    pub fn sites(&self, surface: Surface) -> Result<Vec<Site>, GroundError> {
+        let (latitudes, longitudes) = (self.latitudes_deg()?, self.longitudes_deg()?);
+        let points = latitudes.len() as f64 * longitudes.len() as f64;
+        if points > MAX_POINTS as f64 {
+            return Err(GroundError::TooMany { points });
+        }
+        let mut sites = Vec::with_capacity(points as usize);
+        for &latitude in &latitudes {
+            let weight = match self.weighting {
+                Weighting::Equal => 1.0,
+                // A pole has no area of its own; its points share half a step's cap instead of 0.
+                Weighting::CosLatitude => latitude
+                    .to_radians()
+                    .cos()
+                    .max((self.step_deg[0] / 4.0).to_radians().sin()),
+            };
+            for &longitude in &longitudes {
+                // Eastward grids may reach 540°, which is a longitude less a turn.
+                let on_earth = if longitude > 360.0 {
+                    longitude - 360.0
+                } else {
+                    longitude
+                };
+                let mut site = Site::new(surface, latitude, on_earth, weight)?;
+                site.longitude_deg = longitude;
+                sites.push(site);
+            }
+        }
+        Ok(sites)
+    }
+}
+
+/// floor(span/step + 1e-9) + 1 values from `start` (the 1e-9 keeps a last value that rounding
+/// would lose).
+fn steps(start: f64, span: f64, step: f64) -> Result<Vec<f64>, GroundError> {
+    if !(step > 0.0 && step.is_finite()) {
+        return Err(GroundError::Step(step));
+    }
+    let count = (span / step + 1e-9).floor() + 1.0;
+    if count > MAX_POINTS as f64 {
+        return Err(GroundError::TooMany { points: count });
+    }
+    Ok((0..count as usize)
+        .map(|n| start + n as f64 * step)
+        .collect())
+}
+
+/// Points from CSV with the header `latitude_deg,longitude_deg[,weight]`.
+///
+/// # Errors
+/// Names the line that cannot be read.
+pub fn sites_from_csv(source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
+    #[derive(serde::Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Row {
+        latitude_deg: f64,
+        longitude_deg: f64,
+        weight: Option<f64>,
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(source);
+    let mut sites = Vec::new();
+    for row in reader.deserialize::<Row>() {
+        let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
+        let row = row.map_err(|error| GroundError::Line {
+            line: line_of(error.position()),
+            reason: error.to_string(),
+        })?;
+        let site = Site::new(
+            surface,
+            row.latitude_deg,
+            row.longitude_deg,
+            row.weight.unwrap_or(1.0),
+        )
+        .map_err(|error| GroundError::Line {
+            line: sites.len() as u64 + 2,
+            reason: error.to_string(),
+        })?;
+        if sites.len() == MAX_POINTS {
+            return Err(GroundError::TooMany {
+                points: MAX_POINTS as f64 + 1.0,
+            });
+        }
+        sites.push(site);
+    }
+    if sites.is_empty() {
+        Err(GroundError::Empty)
+    } else {
+        Ok(sites)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(latitude_deg: [f64; 2], longitude_deg: [f64; 2], step: f64) -> Grid {
+        Grid {
+            latitude_deg,
+            longitude_deg,
+            step_deg: [step, step],
+            weighting: Weighting::Equal,
+        }
+    }
+
+    #[test]
+    fn the_region_of_the_paper_has_143_points() {
+        let sites = grid([3.0, 54.0], [73.0, 136.0], 5.0)
+            .sites(Surface::Sphere)
+            .unwrap();
+        assert_eq!(sites.len(), 143);
+        assert_eq!((sites[0].latitude_deg, sites[0].longitude_deg), (3.0, 73.0));
+        assert_eq!(
+            (sites[142].latitude_deg, sites[142].longitude_deg),
+            (53.0, 133.0)
+        );
+    }
+
+    #[test]
+    fn longitudes_run_eastwards() {
+        let across = grid([0.0, 0.0], [160.0, -155.0], 15.0)
+            .longitudes_deg()
+            .unwrap();
+        assert_eq!(across, [160.0, 175.0, 190.0, 205.0]);
+        let globe = grid([-90.0, 90.0], [-180.0, 180.0], 90.0);
+        assert_eq!(globe.longitudes_deg().unwrap(), [-180.0, -90.0, 0.0, 90.0]);
+        // A pole is kept once per longitude.
+        assert_eq!(globe.sites(Surface::Wgs84).unwrap().len(), 12);
+        let far = grid([0.0, 0.0], [350.0, 10.0], 10.0)
+            .sites(Surface::Sphere)
+            .unwrap();
+        assert_eq!(far[2].longitude_deg, 370.0);
+    }
+
+    #[test]
+    fn bad_grids_are_named() {
+        let error = |g: Grid| g.sites(Surface::Wgs84).unwrap_err();
+        assert_eq!(
+            error(grid([54.0, 3.0], [0.0, 1.0], 1.0)),
+            GroundError::Latitudes(54.0, 3.0)
+        );
+        assert_eq!(
+            error(grid([0.0, 1.0], [0.0, 361.0], 1.0)),
+            GroundError::Longitudes(0.0, 361.0)
+        );
+        assert_eq!(
+            error(grid([0.0, 1.0], [0.0, 1.0], 0.0)),
+            GroundError::Step(0.0)
+        );
+        assert!(matches!(
+            error(grid([-90.0, 90.0], [0.0, 360.0], 0.01)),
+            GroundError::TooMany { .. }
+        ));
+        assert!(matches!(
+            error(grid([f64::NAN, 1.0], [0.0, 1.0], 1.0)),
+            GroundError::Latitudes(..)
+        ));
+    }
+
+    #[test]
+    fn points_come_from_csv() {
+        let text = "latitude_deg,longitude_deg,weight\n 40.1, 116.6, 2\n-33.9,151.2,\n";
+        let sites = sites_from_csv(text.as_bytes(), Surface::Wgs84).unwrap();
+        assert_eq!(
+            (sites.len(), sites[0].weight, sites[1].weight),
+            (2, 2.0, 1.0)
+        );
+        let bad = "latitude_deg,longitude_deg\n40,116\n95,0\n";
+        let error = sites_from_csv(bad.as_bytes(), Surface::Wgs84).unwrap_err();
+        assert!(
+            error.to_string().starts_with("line 3: latitude 95"),
+            "{error}"
+        );
+        let bad = "latitude_deg,longitude_deg\n40,x\n";
+        let error = sites_from_csv(bad.as_bytes(), Surface::Wgs84)
+            .unwrap_err()
+            .to_string();
+        assert!(error.starts_with("line 2:"), "{error}");
+        let empty = sites_from_csv("latitude_deg,longitude_deg\n".as_bytes(), Surface::Wgs84);
+        assert_eq!(empty.unwrap_err(), GroundError::Empty);
+    }
+}

@@ -1,0 +1,93 @@
+//! Who sees what: the one definition of visibility.
+
+use crate::frames::LocalFrame;
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// An elevation mask that is not in [0°, 90°).
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[error("mask {0} degrees is outside 0 to 90 (exclusive)")]
+pub struct MaskError(pub f64);
+
+/// An elevation mask: a satellite is visible at this elevation or above.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mask {
+    degrees: f64,
+    sin2: f64,
+}
+
+impl Mask {
+    /// The mask of an elevation in degrees, 0 <= elevation < 90.
+    ///
+    /// # Errors
+    /// When the elevation is outside that range.
+    pub fn from_degrees(degrees: f64) -> Result<Self, MaskError> {
+        if (0.0..90.0).contains(&degrees) {
+            let sin = degrees.to_radians().sin();
+            Ok(Self {
+                degrees,
+                sin2: sin * sin,
+            })
+        } else {
+            Err(MaskError(degrees))
+        }
+    }
+
+    /// The elevation, degrees.
+    #[must_use]
+    pub fn degrees(self) -> f64 {
+        self.degrees
+    }
+
+    /// The unit vector from the site to the satellite (Earth-fixed, km) when the satellite is
+    /// visible: its elevation over the local horizon is at least the mask (M-16).
+    ///
+    /// sin(elevation) = u·d / |d| is compared by squares, so that no root is taken for what is
+    /// not seen; u·d >= 0 keeps the sign, as masks are not negative.
+    #[must_use]
+    pub fn line_of_sight(self, site: &LocalFrame, target_km: Vector3<f64>) -> Option<Vector3<f64>> {
+        let line = target_km - site.origin_km;
+        let height = site.up.dot(&line);
+        if height < 0.0 {
+            return None;
+        }
+        let range2 = line.norm_squared();
+        (height * height >= self.sin2 * range2 && range2 > 0.0).then(|| line / range2.sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::earth::Surface;
+
+    /// The decision follows the elevation from the local frame on both sides of the mask.
+    #[test]
+    fn decisions_follow_the_elevation() {
+        let site = LocalFrame::new(Surface::Wgs84, 0.6, 1.9);
+        for mask_deg in [0.0, 5.0, 10.0, 60.0] {
+            let mask = Mask::from_degrees(mask_deg).unwrap();
+            for azimuth_deg in [0.0_f64, 77.0, 180.0, 300.0] {
+                for (offset_deg, seen) in [(1e-7, true), (-1e-7, false)] {
+                    let (s, c) = (mask_deg + offset_deg).to_radians().sin_cos();
+                    let (sin_az, cos_az) = azimuth_deg.to_radians().sin_cos();
+                    let line = site.up * s + (site.east * sin_az + site.north * cos_az) * c;
+                    let found = mask.line_of_sight(&site, site.origin_km + line * 2000.0);
+                    assert_eq!(
+                        found.is_some(),
+                        seen,
+                        "{mask_deg} {azimuth_deg} {offset_deg}"
+                    );
+                    assert!(found.is_none_or(|v| (v - line).norm() < 1e-12));
+                }
+            }
+            assert!(mask.line_of_sight(&site, -site.origin_km).is_none());
+        }
+    }
+
+    #[test]
+    fn masks_are_checked() {
+        assert_eq!(Mask::from_degrees(95.0), Err(MaskError(95.0)));
+        assert!(Mask::from_degrees(-1.0).is_err() && Mask::from_degrees(f64::NAN).is_err());
+    }
+}
