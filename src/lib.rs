@@ -9,6 +9,8 @@
 pub mod constellation;
 pub mod dop;
 pub mod earth;
+pub mod ephemeris;
+pub mod evaluate;
 pub mod frames;
 pub mod ground;
 pub mod orbit;

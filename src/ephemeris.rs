@@ -1,0 +1,154 @@
+//! Satellites on a time grid: what the evaluator, the file formats and the validators consume.
+
+use crate::constellation::gnss::GnssSatellite;
+use crate::constellation::{Design, Slot};
+use crate::frames::State;
+use crate::orbit::{Model, PropagationError, Propagator};
+use crate::time::TimeGrid;
+use thiserror::Error;
+
+/// A satellite that can be asked for its state.
+pub struct Flown {
+    /// Name, unique in the ephemeris.
+    pub name: String,
+    /// Place in the pattern, for a design.
+    pub slot: Option<Slot>,
+    /// TEME states from the epoch of the grid.
+    pub propagator: Box<dyn Propagator>,
+}
+
+/// A satellite whose propagation fails.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{name}: {source}")]
+pub struct EphemerisError {
+    /// The satellite.
+    pub name: String,
+    /// Why it has no state.
+    pub source: PropagationError,
+}
+
+/// Satellites and the instants at which they are looked at.
+///
+/// States are computed when asked for, so that a product can stream ten thousand satellites.
+pub struct Ephemeris {
+    grid: TimeGrid,
+    satellites: Vec<Flown>,
+}
+
+impl Ephemeris {
+    /// Any satellites on a grid.
+    #[must_use]
+    pub fn new(grid: TimeGrid, satellites: Vec<Flown>) -> Self {
+        Self { grid, satellites }
+    }
+
+    /// A design flown by `model` from the epoch of the grid.
+    ///
+    /// # Errors
+    /// When the model refuses the orbit of a satellite.
+    pub fn of_design(
+        design: &Design,
+        model: Model,
+        grid: TimeGrid,
+    ) -> Result<Self, EphemerisError> {
+        let fly = |satellite: &crate::constellation::Satellite| {
+            let name = object_name(satellite.slot);
+            match model.propagator(&satellite.elements, grid.epoch()) {
+                Ok(propagator) => Ok(Flown {
+                    name,
+                    slot: Some(satellite.slot),
+                    propagator,
+                }),
+                Err(source) => Err(EphemerisError { name, source }),
+            }
+        };
+        let satellites = design
+            .satellites()
+            .iter()
+            .map(fly)
+            .collect::<Result<_, _>>()?;
+        Ok(Self::new(grid, satellites))
+    }
+
+    /// The satellites of a GNSS constellation.
+    #[must_use]
+    pub fn of_gnss(satellites: Vec<GnssSatellite>, grid: TimeGrid) -> Self {
+        let fly = |satellite: GnssSatellite| Flown {
+            name: satellite.name,
+            slot: None,
+            propagator: Box::new(satellite.orbit),
+        };
+        Self::new(grid, satellites.into_iter().map(fly).collect())
+    }
+
+    /// The instants.
+    #[must_use]
+    pub fn grid(&self) -> TimeGrid {
+        self.grid
+    }
+
+    /// The satellites.
+    #[must_use]
+    pub fn satellites(&self) -> &[Flown] {
+        &self.satellites
+    }
+
+    /// The TEME state of a satellite `elapsed_s` after the epoch of the grid.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State, EphemerisError> {
+        satellite
+            .propagator
+            .state_at(elapsed_s)
+            .map_err(|source| EphemerisError {
+                name: satellite.name.clone(),
+                source,
+            })
+    }
+
+    /// The states of one satellite at every instant of the grid, with the seconds since its epoch.
+    pub fn states<'a>(
+        &'a self,
+        satellite: &'a Flown,
+    ) -> impl ExactSizeIterator<Item = Result<(f64, State), EphemerisError>> + use<'a> {
+        self.grid
+            .iter()
+            .map(|elapsed_s| Ok((elapsed_s, self.state(satellite, elapsed_s)?)))
+    }
+}
+
+/// The name of the satellite in a slot of a design: `NW-P01-S01`.
+#[must_use]
+pub fn object_name(slot: Slot) -> String {
+    format!("NW-{slot}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::time::Epoch;
+
+    #[test]
+    fn a_design_flies_on_the_grid() {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
+        let design: Design = "delta:55:4/2/1@925".parse().unwrap();
+        let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
+        let names: Vec<_> = ephemeris
+            .satellites()
+            .iter()
+            .map(|s| s.name.as_str())
+            .collect();
+        assert_eq!(
+            names,
+            ["NW-P01-S01", "NW-P01-S02", "NW-P02-S01", "NW-P02-S02"]
+        );
+        let states: Result<Vec<_>, _> = ephemeris.states(&ephemeris.satellites()[0]).collect();
+        let states = states.unwrap();
+        assert_eq!(states.len(), 10);
+        assert_eq!(states[9].0, 540.0);
+        // First satellite: on the x axis of TEME at the epoch.
+        assert!((states[0].1.position_km.x - 7303.137).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,69 @@
+//! The part of the geometry that no design changes: the GNSS, once per setup.
+
+use super::Setup;
+use crate::dop::{ClockGroup, Clocks, Geometry};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::EarthRotation;
+
+/// What the GNSS contribute at one point and time.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct FixedSample {
+    /// Systems with clocks of their own.
+    pub(super) own_clocks: Geometry,
+    /// Satellites that share their clock with the LEO design.
+    pub(super) shared_clock: ClockGroup,
+}
+
+/// The GNSS geometry of every sample, time by time.
+pub(super) struct FixedGeometry {
+    samples: Vec<FixedSample>,
+    sites: usize,
+}
+
+impl FixedGeometry {
+    pub(super) fn new(setup: &Setup, rotations: &[EarthRotation]) -> Result<Self, EphemerisError> {
+        let mut samples = vec![FixedSample::default(); setup.sample_count()];
+        for preset in &setup.gnss {
+            let system = Ephemeris::of_gnss(preset.satellites(setup.grid.epoch()), setup.grid);
+            add_system(setup, rotations, &system, &mut samples)?;
+        }
+        Ok(Self {
+            samples,
+            sites: setup.sites.len(),
+        })
+    }
+
+    /// The samples of all points at time `k`.
+    pub(super) fn at(&self, k: usize) -> &[FixedSample] {
+        &self.samples[k * self.sites..(k + 1) * self.sites]
+    }
+}
+
+fn add_system(
+    setup: &Setup,
+    rotations: &[EarthRotation],
+    system: &Ephemeris,
+    samples: &mut [FixedSample],
+) -> Result<(), EphemerisError> {
+    let rows = samples.chunks_exact_mut(setup.sites.len());
+    for ((elapsed_s, rotation), row) in setup.grid.iter().zip(rotations).zip(rows) {
+        let mut positions = Vec::with_capacity(system.satellites().len());
+        for satellite in system.satellites() {
+            let state = system.state(satellite, elapsed_s)?;
+            positions.push(rotation.to_earth_fixed(state.position_km));
+        }
+        for (site, sample) in setup.sites.iter().zip(row) {
+            let mut group = ClockGroup::default();
+            for &position in &positions {
+                if let Some(unit) = setup.gnss_mask.line_of_sight(&site.local, position) {
+                    group.add(unit);
+                }
+            }
+            match setup.clocks {
+                Clocks::PerSystem => sample.own_clocks.add(&group),
+                Clocks::Shared => sample.shared_clock += group,
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,113 @@
+use super::*;
+use crate::constellation::Pattern;
+use crate::earth::{RADIUS_KM, Surface};
+use crate::ground::{Grid, Weighting};
+use crate::stats::Level;
+use crate::time::Epoch;
+
+fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let grid = Grid {
+        latitude_deg,
+        longitude_deg: [73.0, 136.0],
+        step_deg: [5.0, 5.0],
+        weighting: Weighting::Equal,
+    };
+    Setup {
+        grid: TimeGrid::new(epoch, 86_400.0, 60.0).unwrap(),
+        sites: grid.sites(surface).unwrap(),
+        mask: Mask::from_degrees(7.0).unwrap(),
+        gnss_mask: Mask::from_degrees(7.0).unwrap(),
+        gnss: vec![Preset::BeiDou3],
+        clocks: Clocks::PerSystem,
+        pdop_cap: 100.0,
+        model: Model::J2,
+        metrics: MetricOptions {
+            cvar_weight: 0.5,
+            cvar_level: Level::new(0.95).unwrap(),
+            availability_pdop: 6.0,
+        },
+    }
+}
+
+/// Time-mean visible count of a circular constellation from one latitude of a sphere, by a
+/// one-dimensional integral over the argument of latitude, without any time step: a satellite
+/// at latitude δ is over the cap of half-angle ψ around a point at latitude φ for the share
+/// H/π of all longitudes, with cos H = (cos ψ - sin φ sin δ) / (cos φ cos δ).
+fn visible_by_quadrature(design: &Design, latitude_rad: f64, mask_rad: f64) -> f64 {
+    let radius = RADIUS_KM + design.altitude_km();
+    let cap = (RADIUS_KM / radius * mask_rad.cos()).acos() - mask_rad;
+    let sin_i = design.inclination_deg().to_radians().sin();
+    let steps = 20_000;
+    let mut share = 0.0;
+    for n in 0..steps {
+        let u = (n as f64 + 0.5) / f64::from(steps) * std::f64::consts::TAU;
+        let declination = (sin_i * u.sin()).asin();
+        let cos_h = (cap.cos() - latitude_rad.sin() * declination.sin())
+            / (latitude_rad.cos() * declination.cos());
+        share += cos_h.clamp(-1.0, 1.0).acos() / std::f64::consts::PI;
+    }
+    design.satellite_count() as f64 * share / f64::from(steps)
+}
+
+/// A day does not cover all longitudes evenly, which leaves up to 0.02 of 8 satellites.
+#[test]
+fn validate_visible_count_by_quadrature() {
+    for (text, pattern) in [
+        ("delta:55:182/13/1@925", Pattern::Delta),
+        ("star:90:182/13/1@925", Pattern::Star),
+    ] {
+        let design: Design = text.parse().unwrap();
+        assert_eq!(design.pattern(), pattern);
+        let setup = Setup {
+            gnss: vec![],
+            ..setup([3.0, 54.0], Surface::Sphere)
+        };
+        let mask_rad = 7_f64.to_radians();
+        let expected = setup
+            .sites
+            .iter()
+            .map(|site| visible_by_quadrature(&design, site.latitude_deg.to_radians(), mask_rad))
+            .sum::<f64>()
+            / setup.sites.len() as f64;
+        let metrics = Evaluator::new(setup).unwrap().design(&design).unwrap();
+        let apart = metrics.mean_visible - expected;
+        assert!(
+            apart.abs() < 0.02,
+            "{text}: {} against {expected}",
+            metrics.mean_visible
+        );
+    }
+}
+
+#[test]
+fn what_is_never_seen_has_no_cost() {
+    let design: Design = "delta:0:1/1/0@200".parse().unwrap();
+    let evaluator = Evaluator::new(Setup {
+        gnss: vec![],
+        ..setup([80.0, 85.0], Surface::Wgs84)
+    })
+    .unwrap();
+    let metrics = evaluator.design(&design).unwrap();
+    assert_eq!(metrics.mean_visible, 0.0);
+    assert_eq!(
+        (metrics.j_cost, metrics.j_pos, metrics.max_pdop),
+        (None, None, None)
+    );
+    assert_eq!((metrics.solved_fraction, metrics.availability), (0.0, 0.0));
+}
+
+#[test]
+fn a_higher_mask_sees_less() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    let at = |mask_deg: f64| {
+        let mask = Mask::from_degrees(mask_deg).unwrap();
+        let evaluator = Evaluator::new(Setup {
+            mask,
+            ..setup([3.0, 54.0], Surface::Wgs84)
+        })
+        .unwrap();
+        evaluator.design(&design).unwrap().mean_visible
+    };
+    assert!(at(5.0) > at(10.0) && at(10.0) > at(40.0));
+}
