@@ -17,4 +17,5 @@ pub mod orbit;
 pub mod stats;
 pub mod time;
 pub mod units;
+pub mod validate;
 pub mod visibility;
