@@ -13,6 +13,7 @@ pub mod ephemeris;
 pub mod evaluate;
 pub mod frames;
 pub mod ground;
+pub mod optimize;
 pub mod orbit;
 pub mod stats;
 pub mod time;
