@@ -6,3 +6,4 @@
 //! modules and the direction of their imports; `docs/models.md` numbers the
 //! equations that the code cites.
 
+pub mod scenario;
