@@ -15,6 +15,7 @@ pub mod frames;
 pub mod ground;
 pub mod optimize;
 pub mod orbit;
+pub mod scenario;
 pub mod stats;
 pub mod time;
 pub mod units;
