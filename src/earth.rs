@@ -1,5 +1,6 @@
 //! The one set of physical constants, and the surface that ground points stand on.
 
+use crate::words::words;
 use nalgebra::Vector3;
 
 /// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).
@@ -21,13 +22,14 @@ pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
 
-/// What ground points, their heights and their verticals refer to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Surface {
-    /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
-    Wgs84,
-    /// A sphere of radius [`RADIUS_KM`]: latitudes are geocentric, the vertical is radial.
-    Sphere,
+words! {
+    /// What ground points, their heights and their verticals refer to.
+    Surface {
+        /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
+        Wgs84 = "wgs84",
+        /// A sphere of radius [`RADIUS_KM`]: latitudes are geocentric, the vertical is radial.
+        Sphere = "sphere",
+    }
 }
 
 impl Surface {

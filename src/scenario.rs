@@ -17,14 +17,13 @@
 
 mod builtin;
 mod canonical;
-mod constraint;
 mod keys;
-mod nearest;
 mod number;
 mod problem;
 mod resolve;
 mod resolved;
 mod rule;
+mod setup;
 mod source;
 mod template;
 mod words;
@@ -33,20 +32,25 @@ mod written;
 #[cfg(test)]
 mod tests;
 
+pub use crate::constellation::Pattern;
+pub use crate::constellation::gnss::Preset;
+pub use crate::dop::Clocks;
+pub use crate::earth::Surface;
+pub use crate::ground::PointWeights;
+pub use crate::orbit::Model;
+pub use crate::search::{Constraint, ConstraintError, Quantity, Relation};
+pub use crate::words::{UnknownWord, Word};
 pub use builtin::{builtin, builtin_names};
-pub use constraint::{Constraint, ConstraintError};
 pub use keys::{KeyDescription, describe_keys};
 pub use problem::{Fault, Problem, Problems};
 pub use resolved::{
     Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer, Propagation, Region,
     Scenario, SearchSpace, TimeSpan, Visibility,
 };
+pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, template};
-pub use words::{
-    Algorithm, Clocks, Gnss, Model, Pattern, Quantity, Relation, Surface, UnknownWord, Weighting,
-    Weights, Word,
-};
+pub use words::{Algorithm, Weighting};
 
 use source::Source;
 use written::Written;

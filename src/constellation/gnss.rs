@@ -6,59 +6,25 @@ use crate::frames::{EarthRotation, OrbitPlane, State};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
+use crate::words::words;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
-use std::fmt;
-use std::str::FromStr;
-use thiserror::Error;
 
-/// A named GNSS constellation that is part of the library.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Preset {
-    /// BeiDou-3: 24 MEO, 3 IGSO, 3 GEO.
-    BeiDou3,
+words! {
+    /// A named GNSS constellation that is part of the library.
+    Preset {
+        /// BeiDou-3: 24 MEO, 3 IGSO, 3 GEO.
+        Beidou3 = "beidou-3",
+    }
 }
 
-/// A name that is no GNSS preset.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("unknown GNSS constellation '{0}'")]
-pub struct UnknownPreset(pub String);
-
 impl Preset {
-    /// Every preset, in the order of the documentation.
-    pub const ALL: [Self; 1] = [Self::BeiDou3];
-
-    /// The name in scenario files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::BeiDou3 => "beidou-3",
-        }
-    }
-
     /// The satellites of the constellation, for a study that starts at `epoch`.
     #[must_use]
     pub fn satellites(self, epoch: Epoch) -> Vec<GnssSatellite> {
         match self {
-            Self::BeiDou3 => beidou3(epoch),
+            Self::Beidou3 => beidou3(epoch),
         }
-    }
-}
-
-impl fmt::Display for Preset {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.name())
-    }
-}
-
-impl FromStr for Preset {
-    type Err = UnknownPreset;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|preset| preset.name() == text)
-            .ok_or_else(|| UnknownPreset(text.to_owned()))
     }
 }
 
@@ -200,7 +166,7 @@ mod tests {
 
     #[test]
     fn validate_geostationary_satellites_stand_still() {
-        let satellites = Preset::BeiDou3.satellites(epoch());
+        let satellites = Preset::Beidou3.satellites(epoch());
         assert_eq!(satellites.len(), 30);
         for (satellite, longitude_deg) in satellites[27..].iter().zip([80.0, 110.5, 140.0_f64]) {
             for t in [0.0, 40_000.0, 86_340.0] {
@@ -215,7 +181,7 @@ mod tests {
     /// day after each other.
     #[test]
     fn validate_igso_share_one_ground_track() {
-        let satellites = Preset::BeiDou3.satellites(epoch());
+        let satellites = Preset::Beidou3.satellites(epoch());
         for (k, satellite) in satellites[24..27].iter().enumerate() {
             let crossing = TAU * k as f64 / 3.0 / GMST_RATE_RAD_S;
             let p = earth_fixed(&satellite.orbit, crossing);
@@ -227,7 +193,7 @@ mod tests {
 
     #[test]
     fn velocities_are_derivatives() {
-        for satellite in Preset::BeiDou3.satellites(epoch()).iter().step_by(5) {
+        for satellite in Preset::Beidou3.satellites(epoch()).iter().step_by(5) {
             let at = |t: f64| satellite.orbit.state_at(t).unwrap();
             let slope = (at(1001.0).position_km - at(999.0).position_km) / 2.0;
             // Central difference over 2 s: r n³/6 = 2e-8 km/s for the MEO.

@@ -1,6 +1,6 @@
 //! The scenarios that are built in.
 
-use super::words::UnknownWord;
+use crate::words::UnknownWord;
 
 /// Name and text of every built-in scenario.
 const BUILTINS: [(&str, &str); 2] = [

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::constraint::ConstraintError;
 use super::source::Place;
-use super::words::UnknownWord;
+use crate::search::ConstraintError;
+use crate::words::UnknownWord;
 
 /// Everything that is wrong with a scenario, in the order of the file and then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq)]

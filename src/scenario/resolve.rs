@@ -8,8 +8,8 @@ use super::resolved::{
     SearchSpace, TimeSpan, Visibility,
 };
 use super::rule::{Reading, Rule};
-use super::words::{Algorithm, Quantity, Weights};
 use super::written::Written;
+use super::{Algorithm, PointWeights, Quantity};
 
 /// Samples in time: 366 days at every 3.2 seconds.
 const MOST_SAMPLES: u64 = 10_000_000;
@@ -161,7 +161,7 @@ impl Resolver<'_, '_> {
             &table::LONGITUDE_DEG,
         ];
         self.at_most(MOST_POINTS, grid.points(), "grid points", &keys)?;
-        if grid.weights == Weights::CosLatitude && grid.only_poles() {
+        if grid.weights == PointWeights::CosLatitude && grid.only_poles() {
             self.report(&[&table::LATITUDE_DEG, &table::WEIGHTS], Fault::Weightless);
             return None;
         }

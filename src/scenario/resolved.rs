@@ -2,9 +2,9 @@
 
 use chrono::{DateTime, Utc};
 
-use super::constraint::Constraint;
-use super::words::{
-    Algorithm, Clocks, Gnss, Model, Pattern, Quantity, Surface, Weighting, Weights,
+use super::Constraint;
+use super::{
+    Algorithm, Clocks, Model, Pattern, PointWeights, Preset, Quantity, Surface, Weighting,
 };
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -102,7 +102,7 @@ pub struct Grid {
     /// Step in latitude and in longitude, degrees.
     pub step_deg: [f64; 2],
     /// How the points count in a mean.
-    pub weights: Weights,
+    pub weights: PointWeights,
 }
 
 impl Grid {
@@ -153,7 +153,7 @@ pub struct MaskPoint {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GnssSetup {
     /// Built-in constellations, no one twice; may be empty.
-    pub constellations: Vec<Gnss>,
+    pub constellations: Vec<Preset>,
     /// TLE or OMM files, paths as written, relative to the scenario file.
     pub files: Vec<String>,
     /// The receiver clocks.

@@ -8,10 +8,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{AnyKey, names, path, sections, table::KEYS};
-use super::nearest::nearest;
 use super::problem::{Fault, Problem};
 use super::rule::Node;
 use super::source::Source;
+use crate::words::nearest;
 
 /// The known keys that were given, the last one where several were.
 pub(super) struct Written<'a> {

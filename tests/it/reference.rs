@@ -5,7 +5,7 @@ use navwalker::constellation::{Design, Pattern};
 use navwalker::dop::Clocks;
 use navwalker::earth::Surface;
 use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
-use navwalker::ground::{Grid, Weighting};
+use navwalker::ground::{Grid, PointWeights};
 use navwalker::orbit::Model;
 use navwalker::stats::Level;
 use navwalker::time::{Epoch, TimeGrid};
@@ -71,7 +71,7 @@ impl Case {
             latitude_deg: [self.lat[0], self.lat[1]],
             longitude_deg: [self.lon[0], self.lon[1]],
             step_deg: [self.lat[2], self.lon[2]],
-            weighting: Weighting::Equal,
+            weights: PointWeights::Equal,
         };
         let surface = match self.surface.as_str() {
             "sphere" => Surface::Sphere,
@@ -84,7 +84,7 @@ impl Case {
             mask: Mask::from_degrees(self.mask_deg).unwrap(),
             gnss_mask: Mask::from_degrees(self.gnss_mask_deg).unwrap(),
             gnss: if self.gnss == "all" {
-                vec![Preset::BeiDou3]
+                vec![Preset::Beidou3]
             } else {
                 vec![]
             },

@@ -8,8 +8,8 @@ use crate::scenario::rule::{
     Constraints, Eastward, Instant, Integer, Interval, Number, Numbers, OneOf, Paths, Skyline,
     SomeOf, Steps, Text,
 };
-use crate::scenario::words::{
-    Algorithm, Clocks, Gnss, Model, Pattern, Quantity, Surface, Weighting, Weights,
+use crate::scenario::{
+    Algorithm, Clocks, Model, Pattern, PointWeights, Preset, Quantity, Surface, Weighting,
 };
 
 /// The most satellites of one design.
@@ -164,13 +164,13 @@ pub(in crate::scenario) static STEP_DEG: Key<Steps> = Key {
     of: |s| grid(s).map(|grid| grid.step_deg),
 };
 
-pub(in crate::scenario) static WEIGHTS: Key<OneOf<Weights>> = Key {
+pub(in crate::scenario) static WEIGHTS: Key<OneOf<PointWeights>> = Key {
     section: "region",
     name: "weights",
     unit: "",
     meaning: "How the points of the grid count in a mean",
     rule: OneOf::new(),
-    otherwise: Otherwise::Value(|| Weights::Equal),
+    otherwise: Otherwise::Value(|| PointWeights::Equal),
     of: |s| grid(s).map(|grid| grid.weights),
 };
 
@@ -240,13 +240,13 @@ pub(in crate::scenario) static PDOP_CAP: Key<Number> = Key {
     of: |s| Some(s.visibility.pdop_cap),
 };
 
-pub(in crate::scenario) static CONSTELLATIONS: Key<SomeOf<Gnss>> = Key {
+pub(in crate::scenario) static CONSTELLATIONS: Key<SomeOf<Preset>> = Key {
     section: "gnss",
     name: "constellations",
     unit: "",
     meaning: "Built-in GNSS constellations that the design augments",
     rule: SomeOf::at_least(0),
-    otherwise: Otherwise::Value(|| vec![Gnss::Beidou3]),
+    otherwise: Otherwise::Value(|| vec![Preset::Beidou3]),
     of: |s| Some(s.gnss.constellations.clone()),
 };
 

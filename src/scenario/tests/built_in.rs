@@ -2,8 +2,8 @@ use chrono::{TimeZone, Utc};
 
 use super::{defaults, parse};
 use crate::scenario::{
-    Algorithm, Clocks, Gnss, Model, Pattern, Quantity, Region, Scenario, Surface, Weighting,
-    Weights, builtin, builtin_names, describe_keys, json_schema, template,
+    Algorithm, Clocks, Preset, Model, Pattern, Quantity, Region, Scenario, Surface, Weighting,
+    PointWeights, builtin, builtin_names, describe_keys, json_schema, template,
 };
 
 fn built_in(name: &str) -> Scenario {
@@ -26,14 +26,14 @@ fn an_empty_file_has_the_documented_defaults() {
     assert_eq!(grid.latitude_deg, [3.0, 54.0]);
     assert_eq!(grid.longitude_deg, [73.0, 136.0]);
     assert_eq!(grid.step_deg, [5.0, 5.0]);
-    assert_eq!(grid.weights, Weights::Equal);
+    assert_eq!(grid.weights, PointWeights::Equal);
     assert_eq!(grid.points(), 143.0);
     let visibility = scenario.visibility;
     assert_eq!((visibility.mask_deg, visibility.gnss_mask_deg), (7.0, 7.0));
     assert_eq!(visibility.pdop_cap, 100.0);
     assert_eq!(visibility.mask_table, []);
     assert_eq!(visibility.weighting, Weighting::Unit);
-    assert_eq!(scenario.gnss.constellations, [Gnss::Beidou3]);
+    assert_eq!(scenario.gnss.constellations, [Preset::Beidou3]);
     assert!(scenario.gnss.files.is_empty());
     assert_eq!(scenario.gnss.clocks, Clocks::PerSystem);
     assert_eq!(scenario.export.originator, "NAVWALKER");

@@ -1,10 +1,20 @@
-//! Constraints as written in a scenario: `max-pdop <= 2.5`.
+//! Bounds that a feasible design keeps, written like `max-pdop <= 2.5`.
 
 use std::fmt;
 use std::str::FromStr;
 
-use super::number::toml_number;
-use super::words::{Quantity, Relation, UnknownWord, Word};
+use super::Quantity;
+use crate::words::{UnknownWord, Word, words};
+
+words! {
+    /// The side of its bound on which a constrained quantity must stay.
+    Relation {
+        /// The quantity is at most the bound.
+        AtMost = "<=",
+        /// The quantity is at least the bound.
+        AtLeast = ">=",
+    }
+}
 
 /// A bound that a feasible design keeps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +49,20 @@ pub enum ConstraintError {
     },
 }
 
+impl Constraint {
+    /// How far a value is from keeping the bound, relative to the bound (absolute for bounds
+    /// below 1); 1 for a value that does not exist.
+    #[must_use]
+    pub fn violation(&self, value: Option<f64>) -> f64 {
+        let Some(value) = value else { return 1.0 };
+        let excess = match self.relation {
+            Relation::AtMost => value - self.bound,
+            Relation::AtLeast => self.bound - value,
+        };
+        excess.max(0.0) / self.bound.abs().max(1.0)
+    }
+}
+
 impl FromStr for Constraint {
     type Err = ConstraintError;
 
@@ -71,6 +95,6 @@ impl fmt::Display for Constraint {
             relation,
             bound,
         } = self;
-        write!(f, "{quantity} {relation} {}", toml_number(*bound))
+        write!(f, "{quantity} {relation} {}", bound)
     }
 }
