@@ -15,6 +15,7 @@ pub mod frames;
 pub mod ground;
 pub mod optimize;
 pub mod orbit;
+pub mod report;
 pub mod scenario;
 pub mod search;
 pub mod stats;

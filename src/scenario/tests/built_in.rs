@@ -2,8 +2,8 @@ use chrono::{TimeZone, Utc};
 
 use super::{defaults, parse};
 use crate::scenario::{
-    Algorithm, Clocks, Preset, Model, Pattern, Quantity, Region, Scenario, Surface, Weighting,
-    PointWeights, builtin, builtin_names, describe_keys, json_schema, template,
+    Algorithm, Clocks, Model, Pattern, PointWeights, Preset, Quantity, Region, Scenario, Surface,
+    Weighting, builtin, builtin_names, describe_keys, json_schema, template,
 };
 
 fn built_in(name: &str) -> Scenario {
