@@ -65,6 +65,20 @@ pub enum OptimizeError {
         /// Objectives of the problem.
         expected: usize,
     },
+    /// An exhaustive search takes one grid step per variable.
+    #[error("there are {found} grid steps for {expected} variables")]
+    StepCount {
+        /// Steps given.
+        found: usize,
+        /// Variables of the space.
+        expected: usize,
+    },
+    /// A grid with more points than could be counted, let alone evaluated.
+    #[error("the grid has {points:e} points, more than 2^53")]
+    GridTooLarge {
+        /// The number of points.
+        points: f64,
+    },
     /// The problem answered a batch with the wrong number of evaluations.
     #[error("the problem returned {found} evaluations for a batch of {expected}")]
     BatchLength {

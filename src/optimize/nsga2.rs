@@ -211,9 +211,9 @@ impl Strategy for Nsga2 {
         self.population.extend(children);
         select(&mut self.population, self.config.population);
         self.history.push(Record::new(
-            self.generation,
-            self.evaluations,
-            &self.population,
+            self.progress(),
+            &self.front(),
+            self.population.iter().filter(|a| a.is_feasible()).count(),
             self.config.hypervolume_reference.as_deref(),
         ));
         Ok(())

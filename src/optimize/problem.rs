@@ -129,12 +129,7 @@ impl Space {
     ///
     /// The genome's length, or the first value outside its variable.
     pub fn check(&self, genome: &[f64]) -> Result<(), OptimizeError> {
-        if genome.len() != self.variables.len() {
-            return Err(OptimizeError::GenomeLength {
-                found: genome.len(),
-                expected: self.variables.len(),
-            });
-        }
+        self.check_length(genome)?;
         for (&value, variable) in genome.iter().zip(&self.variables) {
             if variable.kind.nearest(value) != value {
                 let name = variable.name.clone();
@@ -142,6 +137,37 @@ impl Space {
             }
         }
         Ok(())
+    }
+
+    fn check_length(&self, genome: &[f64]) -> Result<(), OptimizeError> {
+        if genome.len() != self.variables.len() {
+            return Err(OptimizeError::GenomeLength {
+                found: genome.len(),
+                expected: self.variables.len(),
+            });
+        }
+        Ok(())
+    }
+
+    /// As [`check`](Self::check), for values that need not be whole.
+    pub(super) fn check_confined(&self, values: &[f64]) -> Result<(), OptimizeError> {
+        self.check_length(values)?;
+        for (&value, variable) in values.iter().zip(&self.variables) {
+            let (lo, hi) = variable.kind.bounds();
+            if !(lo..=hi).contains(&value) {
+                let name = variable.name.clone();
+                return Err(OptimizeError::OutsideSpace { name, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves every value between the bounds of its variable, whole or not.
+    pub(super) fn confine(&self, values: &mut [f64]) {
+        for (value, variable) in values.iter_mut().zip(&self.variables) {
+            let (lo, hi) = variable.kind.bounds();
+            *value = value.clamp(lo, hi);
+        }
     }
 
     /// A genome drawn uniformly, every integer with the same probability.

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::error::OptimizeError;
 use super::hypervolume::hypervolume;
 use super::problem::{Individual, Problem};
-use super::sorting::feasible_front;
 
 /// A search that advances one batch at a time.
 ///
@@ -69,26 +68,38 @@ pub struct Record {
 }
 
 impl Record {
-    /// Describes what a strategy holds after a step.
+    /// Describes what a strategy holds after a step: its feasible front, and how
+    /// many feasible individuals.
     pub(super) fn new(
-        generation: u64,
-        evaluations: u64,
-        held: &[Individual],
+        progress: Progress,
+        front: &[Individual],
+        feasible: usize,
         reference: Option<&[f64]>,
     ) -> Self {
-        let front = feasible_front(held);
         let points: Vec<&[f64]> = front.iter().map(|a| a.objectives.as_slice()).collect();
         let least = |a: Vec<f64>, b: &[f64]| a.iter().zip(b).map(|(a, b)| a.min(*b)).collect();
         Self {
-            generation,
-            evaluations,
+            generation: progress.step,
+            evaluations: progress.evaluations,
             hypervolume: reference.map(|reference| hypervolume(&points, reference)),
             ideal: points
                 .split_first()
                 .map(|(first, rest)| rest.iter().fold(first.to_vec(), |a, b| least(a, b))),
             front_size: front.len(),
-            feasible: held.iter().filter(|a| a.is_feasible()).count(),
+            feasible,
         }
+    }
+
+    /// Describes a strategy that holds an archive: all of it is the front, unless
+    /// nothing feasible is known.
+    pub(super) fn of_archive(
+        progress: Progress,
+        archive: &[Individual],
+        reference: Option<&[f64]>,
+    ) -> Self {
+        let feasible = archive.iter().filter(|a| a.is_feasible()).count();
+        let front = if feasible > 0 { archive } else { &[] };
+        Self::new(progress, front, feasible, reference)
     }
 }
 
