@@ -42,7 +42,7 @@ pub use resolved::{
     Scenario, SearchSpace, TimeSpan, Visibility,
 };
 pub use source::{Excerpt, Place};
-pub use template::{json_schema, template};
+pub use template::{json_schema, reference_markdown, template};
 pub use words::{
     Algorithm, Clocks, Gnss, Model, Pattern, Quantity, Relation, Surface, UnknownWord, Weighting,
     Weights, Word,
