@@ -49,7 +49,7 @@ pub use resolved::{
 };
 pub use setup::SetupError;
 pub use source::{Excerpt, Place};
-pub use template::{json_schema, template};
+pub use template::{json_schema, reference_markdown, template};
 pub use words::{Algorithm, Weighting};
 
 use source::Source;

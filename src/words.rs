@@ -97,7 +97,7 @@ pub(crate) use words;
 
 /// Below this Jaro-Winkler similarity (0 to 1) a name is not worth suggesting:
 /// short unrelated keys such as `epoch` and `points` reach about 0.6.
-const WORTH_SUGGESTING: f64 = 0.75;
+const WORTH_SUGGESTING: f64 = 0.7;
 
 /// The candidate most similar to `written`, if one is similar enough.
 ///

@@ -38,7 +38,7 @@ pub enum Fault {
     #[error("expected key.path=value")]
     NotAnAssignment,
     /// There is no such key.
-    #[error("unknown key{}; known here: {}", did_you_mean(.nearest.as_deref()), .known.join(", "))]
+    #[error("unknown key{} (choices: {})", did_you_mean(.nearest.as_deref()), .known.join(", "))]
     UnknownKey {
         /// The path of the key that was most likely meant.
         nearest: Option<String>,
@@ -113,7 +113,7 @@ pub enum Fault {
         expected: usize,
     },
     /// A phasing that no design of the search can have.
-    #[error("the lowest phasing is {lowest}, but with at most {planes} planes it is at most {}", .planes - 1)]
+    #[error("the lowest phasing is {lowest}, but with at most {planes} planes it is at most {}", .planes.saturating_sub(1))]
     PhasingAbovePlanes {
         /// The lowest phasing.
         lowest: u32,

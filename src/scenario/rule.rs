@@ -64,7 +64,12 @@ impl Reading<'_> {
         self.report(node.span(), fault);
     }
 
+    /// The value as written; a table has no text of its own where its keys are dotted.
     pub(super) fn written(&self, node: &Node<'_>) -> String {
-        self.source.written(node.span())
+        if node.get_ref().is_table() {
+            "a table".to_owned()
+        } else {
+            self.source.written(node.span())
+        }
     }
 }

@@ -119,7 +119,8 @@ impl<'a> Source<'a> {
     }
 }
 
-fn printable(text: &str) -> impl Iterator<Item = char> {
+/// The characters of a text, with spaces for those that would move the cursor of a terminal.
+pub(super) fn printable(text: &str) -> impl Iterator<Item = char> {
     text.chars().map(|c| if c.is_control() { ' ' } else { c })
 }
 

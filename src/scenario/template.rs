@@ -62,3 +62,32 @@ fn section_properties(section: &str) -> Map<String, Json> {
     keys.map(|key| (key.name().to_owned(), key.schema()))
         .collect()
 }
+
+/// The reference of all keys as Markdown, one table for each section.
+#[must_use]
+pub fn reference_markdown() -> String {
+    let mut text = String::new();
+    let mut section = None;
+    for key in describe_keys() {
+        if section != Some(key.section) {
+            section = Some(key.section);
+            let heading = match key.section {
+                "" => "At the top".to_owned(),
+                section => format!("`[{section}]`"),
+            };
+            text.push_str(&format!(
+                "\n## {heading}\n\n| key | unit | default | accepts | meaning |\n"
+            ));
+            text.push_str("|---|---|---|---|---|\n");
+        }
+        let default = key
+            .follows
+            .map_or_else(|| format!("`{}`", key.shown), str::to_owned);
+        let accepted = key.accepted.replace('|', "\\|");
+        let (name, unit, meaning) = (key.name, key.unit, key.meaning);
+        text.push_str(&format!(
+            "| `{name}` | {unit} | {default} | {accepted} | {meaning} |\n"
+        ));
+    }
+    text
+}

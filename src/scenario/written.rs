@@ -10,8 +10,11 @@ use toml::de::{DeTable, DeValue};
 use super::keys::{AnyKey, names, path, sections, table::KEYS};
 use super::problem::{Fault, Problem};
 use super::rule::Node;
-use super::source::Source;
+use super::source::{Source, printable};
 use crate::words::nearest;
+
+/// Characters of an unknown key repeated in a message.
+const LONGEST_KEY: usize = 60;
 
 /// The known keys that were given, the last one where several were.
 pub(super) struct Written<'a> {
@@ -170,7 +173,7 @@ impl Site<'_, '_> {
     fn report(&self, problems: &mut Vec<Problem>, key: &str, fault: Fault) {
         problems.push(Problem {
             place: self.source.place(self.span.clone()),
-            key: key.to_owned(),
+            key: printable(key).take(LONGEST_KEY).collect(),
             fault,
         });
     }
@@ -212,13 +215,18 @@ fn find(section: &str, name: &str) -> Option<&'static dyn AnyKey> {
 }
 
 /// The fault of a key that is not there, with the key that was most likely meant: the same name in
-/// another section, a similar name in this one, or a similar name anywhere.
+/// another section, a similar name in this one, a similar name anywhere, or a similar section.
 fn unknown(section: &str, name: &str) -> Fault {
-    let meant = sections().into_iter().find(|known| *known == section);
     let mut known = names(section);
-    if section.is_empty() {
+    if known.is_empty() || section.is_empty() {
         known.extend(sections());
     }
+    let section_is_known = section.is_empty() || sections().contains(&section);
+    let candidates = if section_is_known {
+        known.clone()
+    } else {
+        Vec::new()
+    };
     let elsewhere = |name: &str| {
         KEYS.iter()
             .find(|key| key.name() == name)
@@ -226,11 +234,12 @@ fn unknown(section: &str, name: &str) -> Fault {
     };
     let everywhere: Vec<&str> = KEYS.iter().map(|key| key.name()).collect();
     let nearest = elsewhere(name)
-        .or_else(|| nearest(name, &known).map(|name| path(meant.unwrap_or_default(), name)))
+        .or_else(|| nearest(name, &candidates).map(|name| path(section, name)))
         .or_else(|| nearest(name, &everywhere).and_then(elsewhere))
-        .or_else(|| nearest(section, &sections()).map(str::to_owned));
-    if known.is_empty() {
-        known = sections();
-    }
+        .or_else(|| {
+            nearest(section, &sections())
+                .filter(|_| !section_is_known)
+                .map(str::to_owned)
+        });
     Fault::UnknownKey { nearest, known }
 }

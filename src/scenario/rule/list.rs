@@ -261,21 +261,26 @@ impl Rule for OnePoint {
     }
 }
 
-/// Reads every element, so that all of them are reported.
+/// Reads every element, so that all problems are reported; an element is `None` where it is wrong.
+fn read_each<R: Rule>(
+    rule: &R,
+    node: &Node<'_>,
+    reading: &mut Reading<'_>,
+) -> Option<Vec<Option<R::Value>>> {
+    let Some(elements) = node.get_ref().as_array() else {
+        reading.refuse(node);
+        return None;
+    };
+    let read = |element| rule.read(element, reading);
+    Some(elements.iter().map(read).collect())
+}
+
 fn read_list<R: Rule>(
     rule: &R,
     node: &Node<'_>,
     reading: &mut Reading<'_>,
 ) -> Option<Vec<R::Value>> {
-    let Some(elements) = node.get_ref().as_array() else {
-        reading.refuse(node);
-        return None;
-    };
-    let read: Vec<Option<R::Value>> = elements
-        .iter()
-        .map(|element| rule.read(element, reading))
-        .collect();
-    read.into_iter().collect()
+    read_each(rule, node, reading)?.into_iter().collect()
 }
 
 fn read_different<R: Rule<Value: Eq + Hash>>(
@@ -283,18 +288,19 @@ fn read_different<R: Rule<Value: Eq + Hash>>(
     node: &Node<'_>,
     reading: &mut Reading<'_>,
 ) -> Option<Vec<R::Value>> {
-    let values = read_list(rule, node, reading)?;
+    let values = read_each(rule, node, reading)?;
     let mut seen = HashSet::new();
-    let Some(twice) = values.iter().position(|value| !seen.insert(value)) else {
-        return Some(values);
-    };
-    let element = node
-        .get_ref()
-        .as_array()
-        .and_then(|elements| elements.get(twice));
-    let found = rule.write(&values[twice]);
-    reading.report(element.unwrap_or(node).span(), Fault::Repeated { found });
-    None
+    let mut different = true;
+    let elements = node.get_ref().as_array().into_iter().flatten();
+    for (element, value) in elements.zip(&values) {
+        if value.as_ref().is_some_and(|value| !seen.insert(value)) {
+            let found = reading.written(element);
+            reading.report(element.span(), Fault::Repeated { found });
+            different = false;
+        }
+    }
+    let values: Option<Vec<R::Value>> = values.into_iter().collect();
+    values.filter(|_| different)
 }
 
 fn write_list<R: Rule>(rule: &R, values: &[R::Value]) -> String {

@@ -1,3 +1,5 @@
+//! The defaults, the built-in scenarios, the template and the schema.
+
 use chrono::{TimeZone, Utc};
 
 use super::{defaults, parse};
