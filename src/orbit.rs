@@ -3,6 +3,7 @@
 mod elements;
 pub mod j2;
 pub mod kepler;
+pub mod osculating;
 pub mod sgp4;
 
 pub use elements::{ElementsError, MeanElements};
@@ -48,6 +49,8 @@ pub enum Model {
     TwoBody,
     /// Secular J2 on the node, the perigee and the mean anomaly.
     J2,
+    /// Secular J2 with its first-order short-period terms.
+    J2Osculating,
     /// SGP4 without drag, in AFSPC mode (WGS-72), from the J2 mean elements.
     Sgp4,
 }
@@ -59,7 +62,7 @@ pub struct UnknownModel(pub String);
 
 impl Model {
     /// Every model, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::TwoBody, Self::J2, Self::Sgp4];
+    pub const ALL: [Self; 4] = [Self::TwoBody, Self::J2, Self::J2Osculating, Self::Sgp4];
 
     /// The name in scenario files.
     #[must_use]
@@ -67,6 +70,7 @@ impl Model {
         match self {
             Self::TwoBody => "two-body",
             Self::J2 => "j2",
+            Self::J2Osculating => "j2-osculating",
             Self::Sgp4 => "sgp4",
         }
     }
@@ -83,6 +87,7 @@ impl Model {
         Ok(match self {
             Self::TwoBody => Box::new(j2::SecularOrbit::two_body(elements)),
             Self::J2 => Box::new(j2::SecularOrbit::j2(elements)),
+            Self::J2Osculating => Box::new(osculating::OsculatingOrbit::new(elements)),
             Self::Sgp4 => Box::new(sgp4::Sgp4Orbit::from_mean_elements(
                 elements,
                 epoch,
