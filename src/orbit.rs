@@ -3,6 +3,7 @@
 mod elements;
 pub mod j2;
 pub mod kepler;
+pub mod osculating;
 pub mod sgp4;
 
 pub use elements::{ElementsError, MeanElements};
@@ -47,6 +48,8 @@ words! {
         J2 = "j2",
         /// Point-mass Earth.
         TwoBody = "two-body",
+        /// Secular J2 with its first-order short-period terms.
+        J2Osculating = "j2-osculating",
         /// SGP4 without drag, in AFSPC mode (WGS-72), from the J2 mean elements.
         Sgp4 = "sgp4",
     }
@@ -65,6 +68,7 @@ impl Model {
         Ok(match self {
             Self::TwoBody => Box::new(j2::SecularOrbit::two_body(elements)),
             Self::J2 => Box::new(j2::SecularOrbit::j2(elements)),
+            Self::J2Osculating => Box::new(osculating::OsculatingOrbit::new(elements)),
             Self::Sgp4 => Box::new(sgp4::Sgp4Orbit::from_mean_elements(
                 elements,
                 epoch,

@@ -1,5 +1,6 @@
 use super::*;
 use crate::constellation::Pattern;
+use crate::constellation::gnss::Preset;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ground::{Grid, PointWeights};
 use crate::stats::Level;
@@ -18,7 +19,7 @@ fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
         sites: grid.sites(surface).unwrap(),
         mask: Mask::from_degrees(7.0).unwrap(),
         gnss_mask: Mask::from_degrees(7.0).unwrap(),
-        gnss: vec![Preset::Beidou3],
+        gnss: vec![Preset::Beidou3.into()],
         clocks: Clocks::PerSystem,
         pdop_cap: 100.0,
         model: Model::J2,

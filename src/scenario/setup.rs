@@ -1,6 +1,7 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
 use super::{Region, Scenario};
+use crate::constellation::gnss::System;
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
@@ -82,7 +83,13 @@ impl Scenario {
             sites: self.sites(read)?,
             mask: Mask::from_degrees(self.visibility.mask_deg)?,
             gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
-            gnss: self.gnss.constellations.clone(),
+            gnss: self
+                .gnss
+                .constellations
+                .iter()
+                .copied()
+                .map(System::from)
+                .collect(),
             clocks: self.gnss.clocks,
             pdop_cap: self.visibility.pdop_cap,
             model: self.propagation.model,

@@ -84,7 +84,7 @@ impl Case {
             mask: Mask::from_degrees(self.mask_deg).unwrap(),
             gnss_mask: Mask::from_degrees(self.gnss_mask_deg).unwrap(),
             gnss: if self.gnss == "all" {
-                vec![Preset::Beidou3]
+                vec![Preset::Beidou3.into()]
             } else {
                 vec![]
             },
