@@ -1,11 +1,13 @@
 //! The objects that `--format json` prints and that run directories hold.
 
-use super::{Diagnostic, VERSION};
+use super::{Diagnostic, VERSION, diagnose};
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
-use crate::optimize::Record;
+use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
 use crate::scenario::Scenario;
+use crate::search::DesignProblem;
 use crate::validate::Findings;
+use rayon::prelude::*;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -156,6 +158,81 @@ pub struct OptimizeResult {
     /// One record per generation; goes to the history files.
     #[serde(skip)]
     pub history: Vec<Record>,
+}
+
+impl OptimizeResult {
+    /// The result of a search as it stands, the members of its front evaluated once more.
+    #[must_use]
+    pub fn new(problem: &DesignProblem<'_>, search: &Search, scenario: &Scenario) -> Self {
+        let individuals = search.front();
+        let points: Vec<&[f64]> = individuals
+            .iter()
+            .map(|i| i.objectives.as_slice())
+            .collect();
+        let front = front_members(problem, &individuals, &points);
+        let progress = search.progress();
+        let reference = scenario.minimised_reference();
+        Self {
+            diagnostics: diagnose(&front, problem.designs()),
+            front,
+            evaluations: progress.evaluations,
+            hypervolume: Hypervolume {
+                value: reference.map(|reference| hypervolume(&points, &reference)),
+                reference: scenario.objectives.hypervolume_reference.clone(),
+            },
+            seed: scenario.optimizer.seed,
+            algorithm: scenario.optimizer.algorithm.to_string(),
+            generations: [progress.step, progress.steps],
+            scenario: scenario.into(),
+            version: VERSION,
+            history: search.history().to_vec(),
+        }
+    }
+
+    /// The pick of the fuzzy decision.
+    #[must_use]
+    pub fn chosen(&self) -> Option<&FrontMember> {
+        self.front.iter().find(|member| member.chosen)
+    }
+}
+
+fn front_members(
+    problem: &DesignProblem<'_>,
+    individuals: &[Individual],
+    points: &[&[f64]],
+) -> Vec<FrontMember> {
+    // An empty front has no memberships; every other one does.
+    let Ok(memberships) = fuzzy(points) else {
+        return Vec::new();
+    };
+    let chosen = best(&memberships.minimum);
+    let evaluated: Vec<_> = individuals
+        .par_iter()
+        .map(|individual| problem.evaluated(&individual.genome))
+        .collect();
+    let objectives = |individual: &Individual| {
+        let quantities = problem.goals().objectives.iter();
+        quantities
+            .zip(&individual.objectives)
+            .map(|(q, &v)| (q.to_string(), q.minimised(v)))
+            .collect()
+    };
+    evaluated
+        .into_iter()
+        .enumerate()
+        .filter_map(|(n, evaluated)| {
+            let (design, metrics) = evaluated?;
+            Some(FrontMember {
+                index: n + 1,
+                design: (&design).into(),
+                metrics,
+                objectives: objectives(&individuals[n]),
+                membership: memberships.minimum[n],
+                membership_sum: memberships.share[n],
+                chosen: chosen == Some(n),
+            })
+        })
+        .collect()
 }
 
 /// What `validate` prints.

@@ -1,11 +1,11 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
-use super::{Region, Scenario};
+use super::{Algorithm, Region, Scenario};
 use crate::constellation::gnss::System;
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
-use crate::optimize::Nsga2Config;
+use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, LaunchCost};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
@@ -13,6 +13,9 @@ use crate::units::SECONDS_PER_HOUR;
 use crate::visibility::{Mask, MaskError};
 use std::io;
 use thiserror::Error;
+
+/// Designs between two checkpoints of a sweep: a fraction of a second of work.
+const SWEEP_BATCH: usize = 256;
 
 /// Why a scenario cannot be set up although each of its values is in range.
 #[derive(Debug, Error)]
@@ -163,16 +166,44 @@ impl Scenario {
         )
     }
 
-    /// The settings of NSGA-II.
+    /// The method of the search and its budget.
     #[must_use]
-    pub fn nsga2(&self) -> Nsga2Config {
-        Nsga2Config {
-            population: self.optimizer.population as usize,
-            generations: self.optimizer.generations as usize,
-            crossover_probability: self.optimizer.crossover_probability,
-            mutation_probability: self.optimizer.mutation_probability,
-            hypervolume_reference: self.minimised_reference(),
-            ..Nsga2Config::default()
+    pub fn method(&self) -> Method {
+        let settings = &self.optimizer;
+        let (population, generations) =
+            (settings.population as usize, settings.generations as usize);
+        let hypervolume_reference = self.minimised_reference();
+        match settings.algorithm {
+            Algorithm::Nsga2 => Method::Nsga2(Nsga2Config {
+                population,
+                generations,
+                crossover_probability: settings.crossover_probability,
+                mutation_probability: settings.mutation_probability,
+                hypervolume_reference,
+                ..Nsga2Config::default()
+            }),
+            Algorithm::Mopso => Method::Mopso(MopsoConfig {
+                particles: population,
+                iterations: generations,
+                archive: population,
+                hypervolume_reference,
+            }),
+            Algorithm::Random => Method::Random(RandomConfig {
+                evaluations: population * generations,
+                batch: population,
+                hypervolume_reference,
+            }),
+            Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
+                steps: vec![
+                    1.0,
+                    1.0,
+                    self.search.inclination_step_deg,
+                    self.search.altitude_step_km,
+                    1.0,
+                ],
+                batch: SWEEP_BATCH,
+                hypervolume_reference,
+            }),
         }
     }
 }

@@ -1,3 +1,56 @@
-//! The `navwalker` program.
+//! The `navwalker` program: arguments in, results out. The science is in the library.
 
-fn main() {}
+mod args;
+mod commands;
+mod files;
+mod output;
+mod progress;
+mod run;
+mod study;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// How a command ended, as its exit status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Status {
+    /// Done.
+    Done = 0,
+    /// Done, but a gate failed, lint found something or no feasible design was found.
+    Failed = 1,
+    /// Could not run.
+    CouldNotRun = 2,
+    /// Stopped by Ctrl-C.
+    Interrupted = 130,
+}
+
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        // clap prints help to stdout with status 0 and errors to stderr with status 2.
+        Err(error) => error.exit(),
+    };
+    let status = match run(cli) {
+        Ok(status) => status,
+        Err(error) if output::is_broken_pipe(&error) => Status::Done,
+        Err(error) => {
+            output::error(&error);
+            Status::CouldNotRun
+        }
+    };
+    ExitCode::from(status as u8)
+}
+
+fn run(cli: Cli) -> anyhow::Result<Status> {
+    output::set_quiet(cli.quiet);
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build_global()?;
+    }
+    match cli.command {
+        Command::Optimize(args) => commands::optimize::run(&args),
+        Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Validate(args) => commands::validate::run(&args),
+        Command::Scenario(args) => commands::scenario::run(&args),
+    }
+}

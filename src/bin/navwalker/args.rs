@@ -1,0 +1,231 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use navwalker::constellation::Design;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+/// Designs, evaluates, exports and validates LEO Walker constellations that augment a GNSS.
+///
+/// A study is described by a scenario: a TOML file, or one of the built-in `paper` and
+/// `regional`. Results go to stdout and everything else to stderr. The exit status is 0 when
+/// done, 1 when done but a gate failed or no feasible design was found, 2 when the command could
+/// not run, and 130 after Ctrl-C.
+#[derive(Debug, Parser)]
+#[command(name = "navwalker", version, propagate_version = true, max_term_width = 100)]
+pub(crate) struct Cli {
+    /// Use this many threads instead of all cores; results do not depend on it.
+    #[arg(long, global = true, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Print results and errors only, no progress and no hints.
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Search for the Pareto set of designs; the main job.
+    ///
+    /// Runs the algorithm of the scenario, prints the non-dominated designs of its last population
+    /// and writes a run directory with the front, the history and a checkpoint of each generation.
+    /// Ctrl-C keeps the results so far; `--resume` goes on from the checkpoint.
+    ///
+    /// Example: navwalker optimize --seed 7 --set optimizer.generations=60
+    #[command(verbatim_doc_comment)]
+    Optimize(OptimizeArgs),
+
+    /// Compute visibility, PDOP, its tail and cost of one design.
+    ///
+    /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
+    #[command(verbatim_doc_comment)]
+    Evaluate(EvaluateArgs),
+
+    /// Check a design's propagation against independent standards, with gates that have reasons.
+    ///
+    /// Example: navwalker validate --design star:86.4:66/6/2@780 --against sgp4
+    #[command(verbatim_doc_comment)]
+    Validate(ValidateArgs),
+
+    /// List, show or create scenarios.
+    ///
+    /// Example: navwalker scenario new > study.toml
+    #[command(verbatim_doc_comment)]
+    Scenario(ScenarioArgs),
+}
+
+/// Which study a command works on.
+#[derive(Debug, Args)]
+pub(crate) struct StudyArgs {
+    /// A scenario file, or the name of a built-in scenario.
+    #[arg(value_name = "SCENARIO", default_value = "paper")]
+    pub(crate) scenario: String,
+
+    /// Override a scenario key, as in `--set visibility.mask-deg=10`; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+}
+
+/// The form of a result on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Tables to read.
+    Text,
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header.
+    Csv,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct OptimizeArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    /// Where the run goes [default: runs/<scenario>-<seed>].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Seed of the search; the same as `--set optimizer.seed=N`.
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Go on from the checkpoint of the run directory.
+    #[arg(long)]
+    pub(crate) resume: bool,
+
+    /// Replace a directory that holds something else.
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EvaluateArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
+    #[arg(long, value_name = "NOTATION")]
+    pub(crate) design: Design,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+}
+
+/// Which design of a run to take.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pick {
+    /// The pick of the fuzzy decision.
+    Fuzzy,
+    /// The member that bulges furthest towards the ideal point.
+    Knee,
+    /// A member by its index.
+    Index(usize),
+}
+
+impl std::str::FromStr for Pick {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "fuzzy" => Ok(Self::Fuzzy),
+            "knee" => Ok(Self::Knee),
+            _ => match text.parse() {
+                Ok(index) if index > 0 => Ok(Self::Index(index)),
+                _ => Err("expected fuzzy, knee, or the index of a front member from 1".to_owned()),
+            },
+        }
+    }
+}
+
+/// One design: given, or picked from a run.
+#[derive(Debug, Args)]
+#[group(required = false, multiple = true)]
+pub(crate) struct DesignArgs {
+    /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
+    #[arg(long, value_name = "NOTATION", conflicts_with = "run")]
+    pub(crate) design: Option<Design>,
+
+    /// Take the design, and the scenario, from the run in this directory.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) run: Option<PathBuf>,
+
+    /// Which design of the run: fuzzy, knee, or the index of a front member.
+    #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
+    pub(crate) pick: Pick,
+}
+
+/// The form of a validation on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReportFormat {
+    /// Tables to read.
+    Text,
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header: the checks.
+    Csv,
+    /// Markdown, for an appendix.
+    Markdown,
+    /// `JUnit` XML, for continuous integration.
+    Junit,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ValidateArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    #[command(flatten)]
+    pub(crate) design: DesignArgs,
+
+    /// What to check against, separated by commas: sgp4.
+    #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
+    pub(crate) against: Vec<String>,
+
+    /// Also write the report in every form into this directory.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: ReportFormat,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ScenarioArgs {
+    #[command(subcommand)]
+    pub(crate) action: ScenarioAction,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum ScenarioAction {
+    /// List the built-in scenarios.
+    List {
+        /// Form of the result on stdout.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+    },
+    /// Print a scenario with every default filled in.
+    ///
+    /// Example: navwalker scenario show regional --set visibility.mask-deg=15
+    #[command(verbatim_doc_comment)]
+    Show {
+        #[command(flatten)]
+        study: StudyArgs,
+    },
+    /// Print a commented scenario file with every key, to start from.
+    ///
+    /// Example: navwalker scenario new > study.toml
+    #[command(verbatim_doc_comment)]
+    New,
+    /// Print the JSON schema of scenario files, for editors.
+    Schema,
+}

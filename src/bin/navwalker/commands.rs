@@ -1,0 +1,6 @@
+//! One file a command.
+
+pub(crate) mod evaluate;
+pub(crate) mod optimize;
+pub(crate) mod scenario;
+pub(crate) mod validate;

@@ -1,0 +1,93 @@
+//! Files and directories that are either whole or absent: written beside, then renamed.
+
+use anyhow::{Context, Result, bail};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Writes a file beside its place and renames it.
+pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    let partial = beside(path);
+    let written = File::create(&partial)
+        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&partial, path));
+    if written.is_err() {
+        // What cannot be removed either is named by the error below.
+        let _ = fs::remove_file(&partial);
+    }
+    written.with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// A name next to `path` that no other process of this program uses.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
+}
+
+/// A directory that replaces its place when it is complete, and is gone when it is dropped before.
+pub(crate) struct StagedDirectory {
+    staging: PathBuf,
+    place: PathBuf,
+}
+
+impl StagedDirectory {
+    /// An empty directory beside `place`.
+    pub(crate) fn new(place: &Path) -> Result<Self> {
+        let place = absolute(place)?;
+        let staging = beside(&place);
+        fs::create_dir_all(&staging)
+            .with_context(|| format!("cannot create a directory beside {}", place.display()))?;
+        Ok(Self { staging, place })
+    }
+
+    /// Where to write.
+    pub(crate) fn path(&self) -> &Path {
+        &self.staging
+    }
+
+    /// Puts the directory in its place, replacing what is there.
+    pub(crate) fn commit(self) -> Result<()> {
+        let replace = || -> std::io::Result<()> {
+            if self.place.exists() {
+                let old = beside(&self.place.with_extension("old"));
+                fs::rename(&self.place, &old)?;
+                if let Err(error) = fs::rename(&self.staging, &self.place) {
+                    fs::rename(&old, &self.place)?;
+                    return Err(error);
+                }
+                fs::remove_dir_all(old)
+            } else {
+                fs::rename(&self.staging, &self.place)
+            }
+        };
+        replace().with_context(|| format!("cannot write {}", self.place.display()))
+    }
+}
+
+impl Drop for StagedDirectory {
+    fn drop(&mut self) {
+        // After a commit there is nothing left to remove.
+        let _ = fs::remove_dir_all(&self.staging);
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).with_context(|| format!("no directory '{}'", path.display()))
+}
+
+/// Whether a directory is missing or has nothing in it.
+pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
+    match fs::read_dir(path) {
+        Ok(mut entries) => Ok(entries.next().is_none()),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(true),
+        Err(error) => Err(error).with_context(|| format!("cannot use {}", path.display())),
+    }
+}
+
+/// Refuses a directory that holds something.
+pub(crate) fn require_vacant(path: &Path, force: bool) -> Result<()> {
+    if !force && !is_vacant(path)? {
+        bail!("{} is not empty; choose another directory, or replace it with --force", path.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,64 @@
+//! stdout carries results; stderr carries everything else.
+
+use anyhow::Result;
+use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether hints and warnings are wanted; set once, from the command line.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+pub(crate) fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether progress may be drawn: wanted, and on a terminal.
+pub(crate) fn shows_progress() -> bool {
+    !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal()
+}
+
+/// Prints a result.
+pub(crate) fn result(text: &str) -> Result<()> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    if !text.ends_with('\n') {
+        stdout.write_all(b"\n")?;
+    }
+    Ok(stdout.flush()?)
+}
+
+/// Prints what helps but is no result.
+pub(crate) fn hint(text: &str) {
+    if !QUIET.load(Ordering::Relaxed) {
+        to_stderr(text);
+    }
+}
+
+/// Prints what the user should know.
+pub(crate) fn warning(text: &str) {
+    hint(&format!("warning: {text}"));
+}
+
+/// Prints why the command could not run, the causes one below the other.
+pub(crate) fn error(error: &anyhow::Error) {
+    let mut text = format!("error: {error}");
+    for cause in error.chain().skip(1) {
+        let cause = cause.to_string();
+        // Some errors already say what their cause says.
+        if !text.contains(&cause) {
+            text += &format!("\n  cause: {cause}");
+        }
+    }
+    to_stderr(&text);
+}
+
+fn to_stderr(text: &str) {
+    // Where stderr is closed there is nobody to tell.
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// Whether the reader of stdout has gone, as `head` does.
+pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        cause.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+    })
+}
