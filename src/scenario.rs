@@ -52,6 +52,7 @@ pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use words::{Algorithm, Weighting};
 
+use problem::Report;
 use source::Source;
 use written::Written;
 
@@ -63,32 +64,37 @@ impl Scenario {
     /// of objectives, replaces the grid, or the reference point, of the file.
     ///
     /// # Errors
-    /// Everything that is wrong, each with its place, key, what was found and what is accepted. Text
+    /// Everything that is wrong (the first thousand), each with its place, key, what was found and what is accepted. Text
     /// that is not TOML hides what is wrong beyond its syntax.
     pub fn parse<S: AsRef<str>>(
         label: &str,
         bytes: &[u8],
         overrides: &[S],
     ) -> Result<Self, Problems> {
-        let text = decode(label, bytes)?;
-        let mut problems = Vec::new();
-        let mut written = Written::read(label, text, &mut problems).map_err(Problems::new)?;
-        for (index, argument) in overrides.iter().enumerate() {
-            written.override_with(index, argument.as_ref(), &mut problems);
-        }
-        match resolve::resolve(&written, &mut problems) {
-            Some(scenario) if problems.is_empty() => Ok(scenario),
-            _ => Err(Problems::new(problems)),
+        let mut report = Report::default();
+        let scenario = decode(label, bytes, &mut report)
+            .and_then(|text| Written::read(label, text, &mut report))
+            .and_then(|mut written| {
+                for (index, argument) in overrides.iter().enumerate() {
+                    written.override_with(index, argument.as_ref(), &mut report);
+                }
+                resolve::resolve(&written, &mut report)
+            });
+        match scenario {
+            Some(scenario) if report.is_empty() => Ok(scenario),
+            _ => Err(report.into()),
         }
     }
 }
 
-fn decode<'a>(label: &str, bytes: &'a [u8]) -> Result<&'a str, Problems> {
-    std::str::from_utf8(bytes).map_err(|error| {
-        let valid = bytes.split_at(error.valid_up_to()).0;
-        let text = std::str::from_utf8(valid).unwrap_or_default();
-        let place = Source::file(label, text).place(text.len()..text.len());
-        let (key, fault) = (String::new(), Fault::NotUtf8);
-        Problems::new(vec![Problem { place, key, fault }])
-    })
+fn decode<'a>(label: &str, bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
+    let error = match std::str::from_utf8(bytes) {
+        Ok(text) => return Some(text),
+        Err(error) => error,
+    };
+    let valid = bytes.split_at(error.valid_up_to()).0;
+    let text = std::str::from_utf8(valid).unwrap_or_default();
+    let end = text.len()..text.len();
+    report.add(&Source::file(label, text), end, "", Fault::NotUtf8);
+    None
 }

@@ -1,14 +1,18 @@
 //! What is wrong with a scenario, all of it at once.
 
 use std::fmt;
+use std::ops::Range;
 
-use super::source::Place;
+use super::source::{Place, Source, printable};
 use crate::search::ConstraintError;
 use crate::words::UnknownWord;
 
+/// Characters of an unknown key repeated in a message.
+const LONGEST_KEY: usize = 60;
+
 /// Everything that is wrong with a scenario, in the order of the file and then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problems(pub(super) Vec<Problem>);
+pub struct Problems(Vec<Problem>);
 
 /// One thing that is wrong with a scenario.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,13 +133,43 @@ fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
 }
 
-impl Problems {
-    /// Sorts the problems into the order of the file and then of the arguments.
-    pub(super) fn new(mut problems: Vec<Problem>) -> Self {
+/// Problems beyond this many are left out: no one reads them, and a file of nonsense has millions.
+const MOST_PROBLEMS: usize = 1000;
+
+/// The problems met so far.
+#[derive(Debug, Default)]
+pub(super) struct Report(Vec<Problem>);
+
+impl Report {
+    pub(super) fn add(
+        &mut self,
+        source: &Source<'_>,
+        span: Range<usize>,
+        key: &str,
+        fault: impl Into<Fault>,
+    ) {
+        if self.0.len() < MOST_PROBLEMS {
+            self.0.push(Problem {
+                place: source.place(span),
+                key: printable(key).take(LONGEST_KEY).collect(),
+                fault: fault.into(),
+            });
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+impl From<Report> for Problems {
+    fn from(Report(mut problems): Report) -> Self {
         problems.sort_by(|a, b| a.place.cmp(&b.place));
         Self(problems)
     }
+}
 
+impl Problems {
     /// The problems, at least one.
     #[must_use]
     pub fn as_slice(&self) -> &[Problem] {

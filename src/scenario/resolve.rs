@@ -2,7 +2,7 @@
 
 use super::keys::table::{self, MOST_SATELLITES};
 use super::keys::{AnyKey, Key};
-use super::problem::{Fault, Problem};
+use super::problem::{Fault, Report};
 use super::resolved::{
     Earth, Export, GnssSetup, Grid, Objectives, Optimizer, Propagation, Region, Scenario,
     SearchSpace, TimeSpan, Visibility,
@@ -20,11 +20,11 @@ const MOST_POINT_SAMPLES: u64 = 1_000_000_000;
 /// Designs of an exhaustive search: weeks of a machine.
 const MOST_DESIGNS: u64 = 1_000_000_000;
 
-/// Checks everything that was written, and adds what is wrong to `problems`.
+/// Checks everything that was written, and adds what is wrong to `report`.
 ///
 /// `None` only if something is wrong.
-pub(super) fn resolve(written: &Written<'_>, problems: &mut Vec<Problem>) -> Option<Scenario> {
-    let mut resolver = Resolver { written, problems };
+pub(super) fn resolve(written: &Written<'_>, report: &mut Report) -> Option<Scenario> {
+    let mut resolver = Resolver { written, report };
     let name = resolver.value(&table::NAME);
     let reference_design = resolver.value(&table::REFERENCE_DESIGN);
     let time = resolver.time();
@@ -57,7 +57,7 @@ pub(super) fn resolve(written: &Written<'_>, problems: &mut Vec<Problem>) -> Opt
 
 struct Resolver<'w, 'a> {
     written: &'w Written<'a>,
-    problems: &'w mut Vec<Problem>,
+    report: &'w mut Report,
 }
 
 impl Resolver<'_, '_> {
@@ -78,14 +78,13 @@ impl Resolver<'_, '_> {
             source: &entry.source,
             key: key.path(),
             accepted: key.accepted(),
-            problems: self.problems,
+            report: self.report,
         };
         key.rule.read(&entry.value, &mut reading)
     }
 
     fn report(&mut self, keys: &[&dyn AnyKey], fault: Fault) {
-        self.problems
-            .push(self.written.problem_between(keys, fault));
+        self.written.report_between(keys, fault, self.report);
     }
 
     fn at_most(

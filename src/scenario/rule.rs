@@ -14,7 +14,7 @@ use serde_json::Value as Json;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::problem::{Fault, Problem};
+use super::problem::{Fault, Report};
 use super::source::Source;
 
 /// A value with its span in its source.
@@ -43,16 +43,12 @@ pub(super) struct Reading<'r> {
     pub(super) source: &'r Source<'r>,
     pub(super) key: String,
     pub(super) accepted: String,
-    pub(super) problems: &'r mut Vec<Problem>,
+    pub(super) report: &'r mut Report,
 }
 
 impl Reading<'_> {
     pub(super) fn report(&mut self, span: Range<usize>, fault: impl Into<Fault>) {
-        self.problems.push(Problem {
-            place: self.source.place(span),
-            key: self.key.clone(),
-            fault: fault.into(),
-        });
+        self.report.add(self.source, span, &self.key, fault);
     }
 
     /// Reports that the value is of another type or outside its range.

@@ -8,13 +8,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::{AnyKey, names, path, sections, table::KEYS};
-use super::problem::{Fault, Problem};
+use super::problem::{Fault, Report};
 use super::rule::Node;
-use super::source::{Source, printable};
+use super::source::Source;
 use crate::words::nearest;
-
-/// Characters of an unknown key repeated in a message.
-const LONGEST_KEY: usize = 60;
 
 /// The known keys that were given, the last one where several were.
 pub(super) struct Written<'a> {
@@ -35,27 +32,18 @@ struct Site<'s, 'a> {
 }
 
 impl<'a> Written<'a> {
-    /// Reads a file.
-    ///
-    /// # Errors
-    /// What keeps the text from being TOML. Unknown keys go to `problems` instead, for the rest
-    /// of the file can still be checked.
-    pub(super) fn read(
-        label: &'a str,
-        text: &'a str,
-        problems: &mut Vec<Problem>,
-    ) -> Result<Self, Vec<Problem>> {
+    /// Reads a file. `None` where it is not TOML; unknown keys are left out, so that the rest can
+    /// still be checked.
+    pub(super) fn read(label: &'a str, text: &'a str, report: &mut Report) -> Option<Self> {
         let file = Rc::new(Source::file(label, text));
         let (document, errors) = DeTable::parse_recoverable(text);
+        for error in &errors {
+            let message = error.message().to_owned();
+            let span = error.span().unwrap_or_default();
+            report.add(&file, span, "", Fault::Syntax { message });
+        }
         if !errors.is_empty() {
-            let syntax = |error: &toml::de::Error| Problem {
-                place: file.place(error.span().unwrap_or_default()),
-                key: String::new(),
-                fault: Fault::Syntax {
-                    message: error.message().to_owned(),
-                },
-            };
-            return Err(errors.iter().map(syntax).collect());
+            return None;
         }
         let mut written = Self {
             file: Rc::clone(&file),
@@ -66,32 +54,26 @@ impl<'a> Written<'a> {
                 source: &file,
                 span: key.span(),
             };
-            written.enter_top(key.get_ref(), value, &site, problems);
+            written.enter_top(key.get_ref(), value, &site, report);
         }
-        Ok(written)
+        Some(written)
     }
 
     /// Enters a key at the top of the file, which may be a section.
-    fn enter_top(
-        &mut self,
-        name: &str,
-        value: Node<'a>,
-        site: &Site<'_, 'a>,
-        problems: &mut Vec<Problem>,
-    ) {
+    fn enter_top(&mut self, name: &str, value: Node<'a>, site: &Site<'_, 'a>, report: &mut Report) {
         let Some(section) = sections().into_iter().find(|section| *section == name) else {
-            return self.enter(("", name), value, site, problems);
+            return self.enter(("", name), value, site, report);
         };
         let DeValue::Table(keys) = value.into_inner() else {
             let known = names(section);
-            return site.report(problems, name, Fault::NotASection { section, known });
+            return site.report(report, name, Fault::NotASection { section, known });
         };
         for (key, value) in keys {
             let site = Site {
                 source: site.source,
                 span: key.span(),
             };
-            self.enter((section, key.get_ref()), value, &site, problems);
+            self.enter((section, key.get_ref()), value, &site, report);
         }
     }
 
@@ -100,11 +82,16 @@ impl<'a> Written<'a> {
         (section, name): (&str, &str),
         value: Node<'a>,
         site: &Site<'_, 'a>,
-        problems: &mut Vec<Problem>,
+        report: &mut Report,
     ) {
         let Some(key) = find(section, name) else {
-            return site.report(problems, &path(section, name), unknown(section, name));
+            return site.report(report, &path(section, name), unknown(section, name));
         };
+        if !site.source.is_file() {
+            let rivals = superseded_by(section, name);
+            self.entries
+                .retain(|key, entry| !(entry.source.is_file() && rivals.contains(key)));
+        }
         let entry = Entry {
             source: Rc::clone(site.source),
             value,
@@ -113,12 +100,7 @@ impl<'a> Written<'a> {
     }
 
     /// Enters the `index`-th `--set` argument over what is there.
-    pub(super) fn override_with(
-        &mut self,
-        index: usize,
-        argument: &'a str,
-        problems: &mut Vec<Problem>,
-    ) {
+    pub(super) fn override_with(&mut self, index: usize, argument: &'a str, report: &mut Report) {
         let (key, text) = argument.split_once('=').unwrap_or((argument, ""));
         let text = text.trim();
         let source = Rc::new(Source::argument(index, argument, text));
@@ -128,54 +110,42 @@ impl<'a> Written<'a> {
         };
         let key = key.trim();
         if !argument.contains('=') {
-            return site.report(problems, key, Fault::NotAnAssignment);
+            return site.report(report, key, Fault::NotAnAssignment);
         }
         let value = match value(text) {
             Ok(value) => value,
-            Err(fault) => return site.report(problems, key, fault),
+            Err(fault) => return site.report(report, key, fault),
         };
         let Some((section, name)) = key.split_once('.') else {
-            return self.enter_top(key, value, &site, problems);
+            return self.enter_top(key, value, &site, report);
         };
-        for rival in superseded_by(section, name) {
-            if self
-                .entries
-                .get(rival)
-                .is_some_and(|entry| entry.source.is_file())
-            {
-                self.entries.remove(rival);
-            }
-        }
-        self.enter((section, name), value, &site, problems);
+        self.enter((section, name), value, &site, report);
     }
 
     pub(super) fn entry(&self, key: &dyn AnyKey) -> Option<&Entry<'a>> {
         self.entries.get(&(key.section(), key.name()))
     }
 
-    /// A problem between several keys: at the first that a `--set` argument gives, else at the first
-    /// that the file gives.
-    pub(super) fn problem_between(&self, keys: &[&dyn AnyKey], fault: Fault) -> Problem {
+    /// Reports a problem between several keys: at the first that a `--set` argument gives, else at
+    /// the first that the file gives.
+    pub(super) fn report_between(&self, keys: &[&dyn AnyKey], fault: Fault, report: &mut Report) {
         let given = || {
             keys.iter()
                 .filter_map(|key| Some((*key, self.entry(*key)?)))
         };
         let argument = given().find(|(_, entry)| !entry.source.is_file());
-        let (key, place) = match argument.or_else(|| given().next()) {
-            Some((key, entry)) => (key.path(), entry.source.place(entry.value.span())),
-            None => (String::new(), self.file.place(0..0)),
-        };
-        Problem { place, key, fault }
+        match argument.or_else(|| given().next()) {
+            Some((key, entry)) => {
+                report.add(&entry.source, entry.value.span(), &key.path(), fault);
+            }
+            None => report.add(&self.file, 0..0, "", fault),
+        }
     }
 }
 
 impl Site<'_, '_> {
-    fn report(&self, problems: &mut Vec<Problem>, key: &str, fault: Fault) {
-        problems.push(Problem {
-            place: self.source.place(self.span.clone()),
-            key: printable(key).take(LONGEST_KEY).collect(),
-            fault,
-        });
+    fn report(&self, report: &mut Report, key: &str, fault: Fault) {
+        report.add(self.source, self.span.clone(), key, fault);
     }
 }
 

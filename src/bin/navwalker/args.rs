@@ -12,7 +12,12 @@ use std::path::PathBuf;
 /// done, 1 when done but a gate failed or no feasible design was found, 2 when the command could
 /// not run, and 130 after Ctrl-C.
 #[derive(Debug, Parser)]
-#[command(name = "navwalker", version, propagate_version = true, max_term_width = 100)]
+#[command(
+    name = "navwalker",
+    version,
+    propagate_version = true,
+    max_term_width = 100
+)]
 pub(crate) struct Cli {
     /// Use this many threads instead of all cores; results do not depend on it.
     #[arg(long, global = true, value_name = "N")]

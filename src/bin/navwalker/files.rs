@@ -20,7 +20,9 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
 
 /// A name next to `path` that no other process of this program uses.
 fn beside(path: &Path) -> PathBuf {
-    let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let name = path
+        .file_name()
+        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
 }
 
@@ -87,7 +89,10 @@ pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
 /// Refuses a directory that holds something.
 pub(crate) fn require_vacant(path: &Path, force: bool) -> Result<()> {
     if !force && !is_vacant(path)? {
-        bail!("{} is not empty; choose another directory, or replace it with --force", path.display());
+        bail!(
+            "{} is not empty; choose another directory, or replace it with --force",
+            path.display()
+        );
     }
     Ok(())
 }

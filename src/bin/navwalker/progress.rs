@@ -27,8 +27,12 @@ impl Progress {
     pub(crate) fn show(&self, search: &impl Strategy) {
         let Some(bar) = &self.0 else { return };
         let progress = search.progress();
-        let hypervolume = search.history().last().and_then(|record| record.hypervolume);
-        let hypervolume = hypervolume.map_or(String::new(), |value| format!(", hypervolume {value:.4}"));
+        let hypervolume = search
+            .history()
+            .last()
+            .and_then(|record| record.hypervolume);
+        let hypervolume =
+            hypervolume.map_or(String::new(), |value| format!(", hypervolume {value:.4}"));
         bar.set_message(format!("{} evaluations{hypervolume}", progress.evaluations));
         bar.set_position(progress.step);
     }

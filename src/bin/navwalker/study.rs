@@ -22,7 +22,10 @@ impl Study {
         let overrides: Vec<&String> = args.overrides.iter().chain(further).collect();
         let (bytes, directory) = read_scenario(&args.scenario)?;
         let scenario = Scenario::parse(&args.scenario, &bytes, &overrides)?;
-        Ok(Self { scenario, directory })
+        Ok(Self {
+            scenario,
+            directory,
+        })
     }
 
     /// The scenario that a run was made with.
@@ -32,7 +35,27 @@ impl Study {
             .with_context(|| format!("{} is no run directory", directory.display()))
             .with_context(|| format!("cannot read {}", path.display()))?;
         let scenario = Scenario::parse(&path.to_string_lossy(), &bytes, overrides)?;
-        Ok(Self { scenario, directory: directory.to_owned() })
+        Ok(Self {
+            scenario,
+            directory: directory.to_owned(),
+        })
+    }
+
+    /// SHA-256 of what is computed, the contents of the scenario's files included.
+    pub(crate) fn hash(&self) -> Result<String> {
+        let read = |file: &str| {
+            let path = self.directory.join(file);
+            fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
+        };
+        let contents: Vec<Vec<u8>> = self
+            .scenario
+            .files()
+            .into_iter()
+            .map(read)
+            .collect::<Result<_>>()?;
+        Ok(self
+            .scenario
+            .hash_with_files(&contents.iter().map(Vec::as_slice).collect::<Vec<_>>()))
     }
 
     /// What an evaluation depends on; refuses what would not fit into memory.
@@ -53,7 +76,9 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
     let is_path = name.contains(['/', '\\']) || Path::new(name).extension().is_some();
     if !is_path {
         let text = builtin(name).map_err(|unknown| {
-            anyhow::anyhow!("no built-in scenario: {unknown}; a file needs its extension, as in study.toml")
+            anyhow::anyhow!(
+                "no built-in scenario: {unknown}; a file needs its extension, as in study.toml"
+            )
         })?;
         return Ok((text.as_bytes().to_vec(), PathBuf::new()));
     }
@@ -66,7 +91,9 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
 /// Says before starting that a scenario needs more memory than there is.
 fn check_memory(setup: &Setup) -> Result<()> {
     let needed = setup.memory_bytes(rayon::current_num_threads());
-    let Some(available) = available_memory() else { return Ok(()) };
+    let Some(available) = available_memory() else {
+        return Ok(());
+    };
     if needed > available {
         let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
         bail!(
@@ -84,7 +111,9 @@ fn check_memory(setup: &Setup) -> Result<()> {
 /// Memory that the system can give, bytes; `None` where it does not say (other than Linux).
 fn available_memory() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kib * 1024)
 }
@@ -93,7 +122,10 @@ fn available_memory() -> Option<u64> {
 pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result<(Study, Design)> {
     if let Some(directory) = &design.run {
         if study.scenario != "paper" {
-            bail!("a run has its own scenario; leave out '{}' or --run", study.scenario);
+            bail!(
+                "a run has its own scenario; leave out '{}' or --run",
+                study.scenario
+            );
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
         let picked = run::pick(directory, design.pick)?;

@@ -7,9 +7,6 @@ use toml::de::DeValue;
 use super::{Node, Reading, Rule};
 use crate::scenario::number::toml_text;
 
-/// Longest text; a name becomes part of a path, where 255 bytes are the usual limit.
-const LONGEST: usize = 200;
-
 /// A text of a certain kind, never empty and without control characters.
 pub(in crate::scenario) enum Text {
     /// Something that is safe as part of a file name everywhere.
@@ -21,6 +18,15 @@ pub(in crate::scenario) enum Text {
 }
 
 impl Text {
+    /// Longest text in bytes. A name becomes part of the name of a directory, where 255 is the usual
+    /// limit; 4096 is the usual one of a path.
+    fn longest(&self) -> usize {
+        match self {
+            Self::Name => 100,
+            Self::Ascii | Self::Any => 4096,
+        }
+    }
+
     fn accepts(&self, text: &str) -> bool {
         let right_kind = match self {
             Self::Name => {
@@ -32,7 +38,7 @@ impl Text {
             Self::Ascii => text.is_ascii(),
             Self::Any => true,
         };
-        let filled = !text.trim().is_empty() && text.len() <= LONGEST;
+        let filled = !text.trim().is_empty() && text.len() <= self.longest();
         filled && right_kind && !text.contains(char::is_control)
     }
 }
@@ -56,7 +62,7 @@ impl Rule for Text {
             Self::Ascii => "a text of printable ASCII",
             Self::Any => "a text without control characters",
         };
-        format!("{kind}, 1 to {LONGEST} bytes")
+        format!("{kind}, 1 to {} bytes", self.longest())
     }
 
     fn schema(&self) -> Json {
@@ -65,7 +71,7 @@ impl Rule for Text {
             Self::Ascii => "^[ -~]*[!-~][ -~]*$",
             Self::Any => r"^[^\u0000-\u001F\u007F-\u009F]+$",
         };
-        json!({ "type": "string", "minLength": 1, "maxLength": LONGEST, "pattern": pattern })
+        json!({ "type": "string", "minLength": 1, "maxLength": self.longest(), "pattern": pattern })
     }
 
     fn write(&self, value: &String) -> String {

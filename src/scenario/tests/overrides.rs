@@ -131,6 +131,8 @@ fn points_replace_the_grid_of_the_file_and_the_reverse() {
     let text = "[region]\npoints = \"stations.csv\"";
     let grid = parse(text, &["region.step-deg=10"]).unwrap();
     assert!(matches!(grid.region, Region::Grid(grid) if grid.step_deg == [10.0, 10.0]));
+    let inline = parse(paper, &["region={ points = 'stations.csv' }"]).unwrap();
+    assert_eq!(inline.region, points.region);
     let both = one_problem("", &["region.points=a.csv", "region.step-deg=10"]);
     assert!(
         both.contains("region.step-deg: excluded by `region.points`"),

@@ -192,3 +192,21 @@ fn control_characters_do_not_reach_the_terminal() {
         "{problems:?}"
     );
 }
+
+#[test]
+fn a_file_of_nonsense_has_a_bounded_number_of_problems() {
+    // A hundred thousand wrong elements on one line took minutes when all were shown.
+    let text = format!("[gnss]\nfiles = [{}]\n", "0, ".repeat(100_000));
+    assert_eq!(parse(&text, &[]).unwrap_err().as_slice().len(), 1000);
+}
+
+#[test]
+fn texts_have_a_longest_length() {
+    let longest = "a".repeat(100);
+    assert_eq!(
+        parse(&format!("name = \"{longest}\""), &[]).unwrap().name,
+        longest
+    );
+    let message = problem(&format!("name = \"{longest}a\"")).to_string();
+    assert!(message.ends_with("1 to 100 bytes"), "{message}");
+}

@@ -34,16 +34,45 @@ fn text(study: &Study, design: &Design, metrics: &Metrics) -> String {
     let weight = scenario.objectives.cvar_weight;
     let level = 100.0 * metrics.cvar_level;
     let threshold = scenario.objectives.availability_pdop;
-    row("mean visible", Some(metrics.mean_visible), 4, "LEO satellites in view, mean over points and times".to_owned());
+    row(
+        "mean visible",
+        Some(metrics.mean_visible),
+        4,
+        "LEO satellites in view, mean over points and times".to_owned(),
+    );
     row("mean PDOP", metrics.mean_pdop, 4, String::new());
-    row("CVaR PDOP", metrics.cvar_pdop, 4, format!("mean of the worst {:.4} %", 100.0 - level));
+    row(
+        "CVaR PDOP",
+        metrics.cvar_pdop,
+        4,
+        format!("mean of the worst {:.4} %", 100.0 - level),
+    );
     row("median PDOP", metrics.p50_pdop, 4, String::new());
     row("95 % PDOP", metrics.p95_pdop, 4, String::new());
     row("99 % PDOP", metrics.p99_pdop, 4, String::new());
     row("maximum PDOP", metrics.max_pdop, 4, String::new());
-    row("solved", Some(100.0 * metrics.solved_fraction), 3, "% of points and times".to_owned());
-    row("available", Some(100.0 * metrics.availability), 3, format!("% with PDOP <= {threshold}"));
+    row(
+        "solved",
+        Some(100.0 * metrics.solved_fraction),
+        3,
+        "% of points and times".to_owned(),
+    );
+    row(
+        "available",
+        Some(100.0 * metrics.availability),
+        3,
+        format!("% with PDOP <= {threshold}"),
+    );
     row("J_pos", metrics.j_pos, 4, format!("mean + {weight} CVaR"));
-    row("J_cost", metrics.j_cost, 4, "satellites per visible satellite".to_owned());
-    format!("{design} in scenario {}\n{}", scenario.name, table.to_text())
+    row(
+        "J_cost",
+        metrics.j_cost,
+        4,
+        "satellites per visible satellite".to_owned(),
+    );
+    format!(
+        "{design} in scenario {}\n{}",
+        scenario.name,
+        table.to_text()
+    )
 }

@@ -34,7 +34,12 @@ fn list(format: Format) -> Result<()> {
             Region::Points { file } => file.clone(),
         };
         let surface = scenario.earth.surface.to_string();
-        rows.push([name.to_owned(), surface, scenario.visibility.mask_deg.to_string(), region]);
+        rows.push([
+            name.to_owned(),
+            surface,
+            scenario.visibility.mask_deg.to_string(),
+            region,
+        ]);
     }
     match format {
         Format::Text => {
@@ -46,7 +51,9 @@ fn list(format: Format) -> Result<()> {
             ]);
             rows.into_iter().for_each(|row| table.row(row));
             output::result(&table.to_text())?;
-            output::hint("\nnavwalker scenario show NAME prints one with every key; scenario new starts your own");
+            output::hint(
+                "\nnavwalker scenario show NAME prints one with every key; scenario new starts your own",
+            );
             Ok(())
         }
         Format::Json => {

@@ -4,15 +4,24 @@ use crate::args::{ReportFormat, ValidateArgs};
 use crate::study::study_and_design;
 use crate::{Status, files, output};
 use anyhow::{Result, bail};
-use navwalker::report::{ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text};
+use navwalker::report::{
+    ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
+};
 use navwalker::validate::{Findings, sgp4::against_sgp4};
 
 /// The targets that can be named.
 const TARGETS: [&str; 1] = ["sgp4"];
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
-    if let Some(unknown) = args.against.iter().find(|target| !TARGETS.contains(&target.as_str())) {
-        bail!("unknown target '{unknown}' for --against; the targets are: {}", TARGETS.join(", "));
+    if let Some(unknown) = args
+        .against
+        .iter()
+        .find(|target| !TARGETS.contains(&target.as_str()))
+    {
+        bail!(
+            "unknown target '{unknown}' for --against; the targets are: {}",
+            TARGETS.join(", ")
+        );
     }
     if let Some(directory) = &args.out {
         files::require_vacant(directory, false)?;
@@ -29,12 +38,19 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
             ("report.md", ReportFormat::Markdown),
             ("report.junit.xml", ReportFormat::Junit),
         ] {
-            files::write_atomically(&staged.path().join(name), render(&result, format)?.as_bytes())?;
+            files::write_atomically(
+                &staged.path().join(name),
+                render(&result, format)?.as_bytes(),
+            )?;
         }
         staged.commit()?;
     }
     output::result(&render(&result, args.format)?)?;
-    Ok(if result.passed { Status::Done } else { Status::Failed })
+    Ok(if result.passed {
+        Status::Done
+    } else {
+        Status::Failed
+    })
 }
 
 fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {

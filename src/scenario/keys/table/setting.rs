@@ -33,7 +33,7 @@ pub(in crate::scenario) static EPOCH: Key<Instant> = Key {
     section: "time",
     name: "epoch",
     unit: "",
-    meaning: "First sample, UTC; the first satellite of a design is at its node then",
+    meaning: "First sample, UTC; the elements of every design hold at it",
     rule: Instant,
     otherwise: Otherwise::Value(|| DateTime::from_timestamp_nanos(1_735_689_600_000_000_000)),
     of: |s| Some(s.time.epoch),
