@@ -140,15 +140,13 @@ fn reasons(checks: &[Check]) -> Vec<String> {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for check in checks {
         match seen.iter_mut().find(|(reason, _)| *reason == check.reason) {
+            Some((_, names)) if names.contains(&check.quantity.as_str()) => {}
             Some((_, names)) => names.push(&check.quantity),
             None => seen.push((&check.reason, vec![&check.quantity])),
         }
     }
-    seen.iter_mut()
-        .map(|(reason, names)| {
-            names.dedup();
-            format!("{}: {reason}", names.join(", "))
-        })
+    seen.iter()
+        .map(|(reason, names)| format!("{}: {reason}", names.join(", ")))
         .collect()
 }
 
