@@ -111,7 +111,7 @@ pub fn fuzzy<P: AsRef<[f64]>>(points: &[P]) -> Result<Memberships, DecisionError
 /// points are the same, all score 1.
 ///
 /// Source: C.-L. Hwang, K. Yoon, "Multiple Attribute Decision Making", Springer
-/// 1981, section III-2.4.4.
+/// 1981.
 ///
 /// # Errors
 ///

@@ -13,7 +13,8 @@
 //!   In a space with fewer points than the population all of them end up in it.
 //! - Tournaments pick both contestants independently, which lets any number of
 //!   children be drawn again, and compare crowding among the survivors.
-//! - Integers are varied as described in [`variation`](super::variation).
+//! - Children beyond a bound are moved to it, and integers are crossed as reals and
+//!   mutated in whole steps, as `variation` explains.
 
 use std::collections::HashSet;
 
@@ -35,6 +36,10 @@ const DRAWS_PER_INDIVIDUAL: usize = 100;
 
 /// The settings of NSGA-II; by default 30 individuals, 30 generations, and
 /// crossover and mutation with probabilities 0.8 and 0.1.
+///
+/// The distribution indices are 5 and 10 by default, below the customary 15 to 20:
+/// thirty generations are too few for small steps, and with the customary ones a
+/// run now and then ends several percent short of the hypervolume within reach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nsga2Config {
     /// Individuals kept from one generation to the next, at least 1. An odd
@@ -62,8 +67,8 @@ impl Default for Nsga2Config {
             generations: 30,
             crossover_probability: 0.8,
             mutation_probability: 0.1,
-            crossover_index: 15.0,
-            mutation_index: 20.0,
+            crossover_index: 5.0,
+            mutation_index: 10.0,
             hypervolume_reference: None,
         }
     }
@@ -143,6 +148,10 @@ impl Nsga2 {
         let held = self.population.len() as u64;
         check_at_most("population", held, self.config.population as u64)?;
         check_equal("history", self.history.len() as u64, self.generation)?;
+        let evaluations = self
+            .generation
+            .saturating_mul(self.config.population as u64);
+        check_at_most("evaluations", self.evaluations, evaluations)?;
         check_equal("population", u64::from(held > 0), self.generation.min(1))?;
         self.population.iter().try_for_each(|a| a.check(problem))
     }

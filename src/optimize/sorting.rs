@@ -3,7 +3,7 @@
 //! Source: K. Deb, A. Pratap, S. Agarwal, T. Meyarivan, "A fast and elitist
 //! multiobjective genetic algorithm: NSGA-II", IEEE Transactions on Evolutionary
 //! Computation 6(2), 2002: the sort in section III-A, the crowding distance in
-//! III-B, constraint domination in section VI.
+//! III-B, constraint domination where it comes to constraint handling.
 
 use super::problem::Individual;
 

@@ -106,7 +106,7 @@ pub(super) fn binh_korn() -> TestProblem {
     })
 }
 
-/// CONSTR of Deb et al. 2002, table V: f1 = x, f2 = (1 + y)/x, y + 9 x >= 6 and
+/// CONSTR of Deb et al. 2002: f1 = x, f2 = (1 + y)/x, y + 9 x >= 6 and
 /// -y + 9 x >= 1. Its front is y = 6 - 9 x up to x = 2/3, then y = 0.
 pub(super) fn constr() -> TestProblem {
     let kinds = [

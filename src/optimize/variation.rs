@@ -1,30 +1,27 @@
 //! Crossover and mutation of genomes that mix real and integer variables.
 //!
-//! Reals take simulated binary crossover (K. Deb, R. B. Agrawal, "Simulated binary
-//! crossover for continuous search space", Complex Systems 9(2), 1995) and
-//! polynomial mutation (K. Deb, M. Goyal, "A combined genetic adaptive search
-//! (GeneAS) for engineering design", Computer Science and Informatics 26(4),
-//! 1996), both with their distributions truncated so that a child lies between
-//! the bounds.
+//! Simulated binary crossover (K. Deb, R. B. Agrawal, "Simulated binary crossover
+//! for continuous search space", Complex Systems 9(2), 1995) and polynomial
+//! mutation (K. Deb, M. Goyal, "A combined genetic adaptive search (GeneAS) for
+//! engineering design", Computer Science and Informatics 26(4), 1996), with these
+//! choices:
 //!
-//! Integers take the same two laws and leave the lattice only in between:
-//!
-//! - A crossover's real child is rounded up or down at random with its distance
-//!   to either as the probability. Rounding to the nearest would swallow almost
-//!   every spread, since parents a few units apart have children within half a
-//!   unit of them; this way the mean of the children stays that of the parents.
-//! - A mutation's step is rounded away from zero. Rounded to the nearest, nine of
-//!   ten steps in a range of five values would change nothing, and the mutation
-//!   probability would not be one.
+//! - The distributions are not truncated at the bounds; whatever falls outside is
+//!   moved to the bound. The best designs often sit on a bound, which a truncated
+//!   distribution approaches but never hits.
+//! - Integers are crossed as reals and rounded, which mostly hands on the values of
+//!   the parents; what moves them is mutation, whose step is therefore rounded
+//!   away from zero. Rounded to the nearest, nine of ten steps in a range of five
+//!   values would change nothing.
 
 use super::generator::Generator;
-use super::problem::{Kind, Space, Variable};
+use super::problem::{Kind, Space};
 
-/// The chance that a variable takes part in a crossover (Deb and Agrawal 1995,
-/// section 5), and that a child then follows the other parent.
+/// The chance that a variable takes part in a crossover, and that its values then
+/// change places.
 const EVEN: f64 = 0.5;
 
-/// Two children of two genomes by simulated binary crossover.
+/// Two children of two genomes by simulated binary crossover, inside the space.
 ///
 /// `index` is the distribution index, at least 0: the larger, the closer children
 /// stay to their parents.
@@ -35,45 +32,31 @@ pub(super) fn cross(
     generator: &mut Generator,
 ) -> [Vec<f64>; 2] {
     let mut children = parents.map(<[f64]>::to_vec);
-    for (k, variable) in space.variables().iter().enumerate() {
-        let (low, high) = (
-            parents[0][k].min(parents[1][k]),
-            parents[0][k].max(parents[1][k]),
-        );
-        if low < high && generator.chance(EVEN) {
-            let [below, above] = spread(variable, [low, high], index, generator);
-            let first = usize::from(generator.chance(EVEN));
-            children[first][k] = below;
-            children[1 - first][k] = above;
+    for k in 0..space.variables().len() {
+        let (a, b) = (parents[0][k], parents[1][k]);
+        if a == b || !generator.chance(EVEN) {
+            continue;
         }
+        let (mean, half) = (0.5 * (a + b), 0.5 * (b - a));
+        let reach = half * spread_factor(generator.unit(), index);
+        let reach = if generator.chance(EVEN) {
+            -reach
+        } else {
+            reach
+        };
+        children[0][k] = mean - reach;
+        children[1][k] = mean + reach;
+    }
+    for child in &mut children {
+        space.clamp(child);
     }
     children
 }
 
-/// The two children of one variable's parents `low < high`.
-fn spread(
-    variable: &Variable,
-    [low, high]: [f64; 2],
-    index: f64,
-    generator: &mut Generator,
-) -> [f64; 2] {
-    let (lo, hi) = variable.kind.bounds();
-    let (mean, half) = (0.5 * (low + high), 0.5 * (high - low));
-    let draw = generator.unit();
-    let below = mean - half * spread_factor(draw, 1.0 + (low - lo) / half, index);
-    let above = mean + half * spread_factor(draw, 1.0 + (hi - high) / half, index);
-    match variable.kind {
-        Kind::Integer { .. } => [below, above].map(|x| (x + generator.unit()).floor()),
-        Kind::Real { .. } => [below, above],
-    }
-}
-
-/// The spread factor of simulated binary crossover for a uniform `draw`, with
-/// density (η + 1)/2 β^η up to 1 and (η + 1)/2 β^-(η + 2) above, truncated at
-/// `limit`.
-fn spread_factor(draw: f64, limit: f64, index: f64) -> f64 {
-    let inside = 1.0 - 0.5 * limit.powf(-(index + 1.0));
-    let draw = draw * inside;
+/// The distance between two children in units of that of their parents, for a
+/// uniform `draw`: its density is (η + 1)/2 β^η up to 1 and (η + 1)/2 β^-(η + 2)
+/// above.
+fn spread_factor(draw: f64, index: f64) -> f64 {
     let power = if draw <= 0.5 {
         2.0 * draw
     } else {
@@ -82,10 +65,11 @@ fn spread_factor(draw: f64, limit: f64, index: f64) -> f64 {
     power.powf(1.0 / (index + 1.0))
 }
 
-/// Polynomial mutation: moves each variable with the given probability.
+/// Polynomial mutation: moves each variable with the given probability and leaves
+/// the genome inside the space.
 ///
 /// `index` is the distribution index, at least 0: the larger, the smaller the
-/// steps, whose mean is about the variable's range over `index + 2`.
+/// steps, whose mean is the variable's range over `index + 2`.
 pub(super) fn mutate(
     space: &Space,
     genome: &mut [f64],
@@ -94,33 +78,153 @@ pub(super) fn mutate(
     generator: &mut Generator,
 ) {
     for (value, variable) in genome.iter_mut().zip(space.variables()) {
-        if generator.chance(probability) {
-            *value += step(variable, *value, index, generator);
+        if !generator.chance(probability) {
+            continue;
+        }
+        let (lo, hi) = variable.kind.bounds();
+        let size = (hi - lo) * step_size(generator.unit(), index);
+        let size = match variable.kind {
+            Kind::Integer { .. } => size.ceil().max(1.0),
+            Kind::Real { .. } => size,
+        };
+        *value += if generator.chance(EVEN) { -size } else { size };
+    }
+    space.clamp(genome);
+}
+
+/// The step of polynomial mutation in units of the range, for a uniform `draw`:
+/// its density is (η + 1)(1 - δ)^η.
+fn step_size(draw: f64, index: f64) -> f64 {
+    1.0 - (1.0 - draw).powf(1.0 / (index + 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::problem::Variable;
+    use super::*;
+
+    const DRAWS: u32 = 40_000;
+    /// Five standard deviations of a share of all draws, at most 1/2/sqrt(draws).
+    const SHARE_ERROR: f64 = 0.0125;
+
+    fn space(kinds: &[Kind]) -> Space {
+        let variable = |(k, &kind): (usize, &Kind)| Variable {
+            name: format!("x{k}"),
+            kind,
+        };
+        Space::new(kinds.iter().enumerate().map(variable).collect()).unwrap()
+    }
+
+    fn share(event: impl FnMut(u32) -> bool) -> f64 {
+        let mut event = event;
+        f64::from((0..DRAWS).map(|k| u32::from(event(k))).sum::<u32>()) / f64::from(DRAWS)
+    }
+
+    fn assert_share(found: f64, expected: f64) {
+        assert!(
+            (found - expected).abs() < SHARE_ERROR,
+            "{found} is not {expected}"
+        );
+    }
+
+    #[test]
+    fn validate_spread_has_the_distribution_of_simulated_binary_crossover() {
+        let mut generator = Generator::new(1, 0);
+        for index in [0.0, 2.0, 15.0] {
+            // Distribution function: β^(η+1)/2 up to 1, 1 - β^-(η+1)/2 above.
+            let below = |limit: f64, generator: &mut Generator| {
+                share(|_| spread_factor(generator.unit(), index) <= limit)
+            };
+            assert_share(below(0.9, &mut generator), 0.9_f64.powf(index + 1.0) / 2.0);
+            assert_share(below(1.0, &mut generator), 0.5);
+            let above = 1.1_f64.powf(-index - 1.0) / 2.0;
+            assert_share(below(1.1, &mut generator), 1.0 - above);
         }
     }
-}
 
-/// One step of polynomial mutation from `value`.
-fn step(variable: &Variable, value: f64, index: f64, generator: &mut Generator) -> f64 {
-    let (lo, hi) = variable.kind.bounds();
-    if lo == hi {
-        return 0.0;
+    #[test]
+    fn validate_steps_have_the_distribution_of_polynomial_mutation() {
+        let mut generator = Generator::new(1, 1);
+        for index in [0.0, 5.0, 20.0] {
+            // Distribution function: 1 - (1 - δ)^(η+1); mean 1/(η+2).
+            let near = share(|_| step_size(generator.unit(), index) <= 0.1);
+            assert_share(near, 1.0 - 0.9_f64.powf(index + 1.0));
+            let sum: f64 = (0..DRAWS).map(|_| step_size(generator.unit(), index)).sum();
+            assert_share(sum / f64::from(DRAWS), 1.0 / (index + 2.0));
+        }
     }
-    let (sign, room) = if generator.chance(EVEN) {
-        (-1.0, value - lo)
-    } else {
-        (1.0, hi - value)
-    };
-    let size = (hi - lo) * step_size(generator.unit(), room / (hi - lo), index);
-    match variable.kind {
-        Kind::Integer { .. } => sign * size.ceil().max(1.0),
-        Kind::Real { .. } => sign * size,
-    }
-}
 
-/// The step of polynomial mutation for a uniform `draw`, in units of the range,
-/// with density (η + 1)(1 - δ)^η truncated at `room`.
-fn step_size(draw: f64, room: f64, index: f64) -> f64 {
-    let beyond = (1.0 - room).powf(index + 1.0);
-    1.0 - (1.0 - draw * (1.0 - beyond)).powf(1.0 / (index + 1.0))
+    #[test]
+    fn children_lie_around_the_mean_of_their_parents() {
+        let space = space(&[Kind::Real { lo: -1e6, hi: 1e6 }; 2]);
+        let parents = [[3.0, 7.0], [4.0, 7.0]];
+        let mut generator = Generator::new(1, 2);
+        let (mut changed, mut swapped) = (0, 0);
+        for _ in 0..DRAWS {
+            let [a, b] = cross(&space, [&parents[0], &parents[1]], 2.0, &mut generator);
+            // Rounding of numbers up to the widest spread, some 1e5.
+            assert!((a[0] + b[0] - 7.0).abs() < 1e-9, "{a:?} {b:?}");
+            assert_eq!((a[1], b[1]), (7.0, 7.0));
+            changed += u32::from(a[0] != 3.0);
+            swapped += u32::from(a[0] > b[0]);
+        }
+        // Half of the variables take part, half of those change places.
+        assert_share(f64::from(changed) / f64::from(DRAWS), 0.5);
+        assert_share(f64::from(swapped) / f64::from(DRAWS), 0.25);
+    }
+
+    #[test]
+    fn a_bound_is_hit_exactly() {
+        let space = space(&[Kind::Real { lo: 0.0, hi: 1.0 }]);
+        let mut generator = Generator::new(1, 3);
+        let crossed = share(|_| {
+            let [a, b] = cross(&space, [&[0.5], &[0.9]], 5.0, &mut generator);
+            a[0] == 1.0 || b[0] == 1.0
+        });
+        // β >= 1.5, in the half of cases that cross: 1/2 * 1.5^-6/2.
+        assert_share(crossed, 1.5_f64.powi(-6) / 4.0);
+        let mutated = share(|_| {
+            let mut genome = [0.9];
+            mutate(&space, &mut genome, 1.0, 5.0, &mut generator);
+            genome[0] == 1.0
+        });
+        // An upward step of at least 0.1: 1/2 * 0.9^6.
+        assert_share(mutated, 0.9_f64.powi(6) / 2.0);
+    }
+
+    #[test]
+    fn mutation_moves_an_integer_whenever_it_is_said_to() {
+        let space = space(&[
+            Kind::Integer { lo: 11, hi: 15 },
+            Kind::Integer { lo: 4, hi: 4 },
+        ]);
+        let mut generator = Generator::new(1, 4);
+        let mut distances = [0_u32; 3];
+        for _ in 0..DRAWS {
+            let mut genome = [13.0, 4.0];
+            mutate(&space, &mut genome, 0.1, 10.0, &mut generator);
+            assert_eq!(space.check(&genome), Ok(()));
+            assert_eq!(genome[1], 4.0);
+            distances[(genome[0] - 13.0).abs() as usize] += 1;
+        }
+        let shares = distances.map(|count| f64::from(count) / f64::from(DRAWS));
+        assert_share(shares[0], 0.9);
+        // Two units or more: a step above 1/4 of the range, 0.75^11 = 4 % of moves.
+        assert_share(shares[2], 0.1 * 0.75_f64.powi(11));
+        assert!(distances[2] > 0);
+    }
+
+    #[test]
+    fn integer_children_are_integers_between_the_bounds() {
+        let space = space(&[Kind::Integer { lo: 0, hi: 9 }]);
+        let mut generator = Generator::new(1, 5);
+        let mut seen = [false; 10];
+        for _ in 0..DRAWS {
+            for child in cross(&space, [&[3.0], &[6.0]], 1.0, &mut generator) {
+                assert_eq!(space.check(&child), Ok(()));
+                seen[child[0] as usize] = true;
+            }
+        }
+        assert_eq!(seen, [true; 10]);
+    }
 }
