@@ -6,10 +6,15 @@
 
 mod element_set;
 pub mod finding;
+pub mod interpolation;
+mod kvn;
 mod lines;
+pub mod manifest;
 pub mod metadata;
+pub mod oem;
 pub mod stamp;
 pub mod tle;
+pub mod trajectory;
 
 pub use element_set::element_set;
 

@@ -2,6 +2,15 @@
 
 use thiserror::Error;
 
+/// How bad a broken rule is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Severity {
+    /// The content cannot be trusted: a reader refuses the file.
+    Error,
+    /// The standard forbids it, but the meaning is clear: a reader goes on, a linter tells.
+    Warning,
+}
+
 /// A broken rule of a format.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("line {line}, column {column}: {message} [{rule}]")]
@@ -14,44 +23,80 @@ pub struct Finding {
     pub rule: &'static str,
     /// What is wrong, and what the rule asks for.
     pub message: String,
+    /// Whether a reader goes on.
+    pub severity: Severity,
 }
 
 /// A list of findings that stops growing at a limit, so that a hostile file costs no memory.
 #[derive(Debug)]
 pub struct Findings {
     limit: usize,
+    keeps_warnings: bool,
     found: Vec<Finding>,
 }
 
 impl Findings {
-    /// An empty list that takes up to `limit` findings.
+    /// For a linter: errors and warnings, up to `limit` of them.
     #[must_use]
-    pub fn with_limit(limit: usize) -> Self {
+    pub fn of_linter(limit: usize) -> Self {
         Self {
             limit,
+            keeps_warnings: true,
             found: Vec::new(),
         }
     }
 
-    /// Whether the list takes no more: a reader may stop.
+    /// For a reader: the first error.
+    pub(crate) fn of_reader() -> Self {
+        Self {
+            limit: 1,
+            keeps_warnings: false,
+            found: Vec::new(),
+        }
+    }
+
+    /// Whether the list takes no more: a parser may stop.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.found.len() >= self.limit
     }
 
-    /// Adds a finding, unless the list is full.
-    pub(crate) fn add(
+    /// Adds an error, unless the list is full.
+    pub(crate) fn error(
+        &mut self,
+        place: (usize, usize),
+        rule: &'static str,
+        message: impl Into<String>,
+    ) {
+        self.add(place, rule, message.into(), Severity::Error);
+    }
+
+    /// Adds a warning, if the list keeps them and is not full.
+    pub(crate) fn warning(
+        &mut self,
+        place: (usize, usize),
+        rule: &'static str,
+        message: impl Into<String>,
+    ) {
+        if self.keeps_warnings {
+            self.add(place, rule, message.into(), Severity::Warning);
+        }
+    }
+
+    fn add(
         &mut self,
         (line, column): (usize, usize),
         rule: &'static str,
-        message: impl Into<String>,
+        message: String,
+        severity: Severity,
     ) {
         if !self.is_full() {
             self.found.push(Finding {
                 line,
                 column,
                 rule,
-                message: message.into(),
+                message,
+                severity,
             });
         }
     }
@@ -62,9 +107,13 @@ impl Findings {
         self.found
     }
 
-    /// `value` if nothing was found.
-    pub(crate) fn unless_any<T>(self, value: T) -> Result<T, super::ReadError> {
-        match self.found.into_iter().next() {
+    /// `value` if a reader may go on with it.
+    pub(crate) fn unless_error<T>(self, value: T) -> Result<T, super::ReadError> {
+        let mut errors = self
+            .found
+            .into_iter()
+            .filter(|f| f.severity == Severity::Error);
+        match errors.next() {
             None => Ok(value),
             Some(first) => Err(first.into()),
         }

@@ -56,36 +56,39 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             if matches!(taken, Taken::TooLong) {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
-                findings.add((self.number, MAX_LINE + 1), "line-length", message);
+                findings.error((self.number, MAX_LINE + 1), "line-length", message);
                 continue;
             }
             if self.number == 1 && bytes.starts_with(BYTE_ORDER_MARK) {
                 bytes.drain(..BYTE_ORDER_MARK.len());
             }
-            match String::from_utf8(bytes) {
-                Ok(text) if text.bytes().all(is_text) => {
-                    let number = self.number;
-                    return Ok(Some(Line { number, text }));
+            self.replace_tabs(&mut bytes, findings);
+            match bytes.iter().position(|byte| !is_text(*byte)) {
+                None => return Ok(Some(self.line(&bytes))),
+                Some(at) => {
+                    let message = format!("byte 0x{:02X} is no printable ASCII", bytes[at]);
+                    findings.error((self.number, at + 1), "character", message);
                 }
-                Ok(text) => self.report_byte(text.as_bytes(), findings),
-                Err(error) => self.report_byte(error.as_bytes(), findings),
             }
         }
         Ok(None)
     }
 
-    fn report_byte(&self, bytes: &[u8], findings: &mut Findings) {
-        let at = bytes.iter().position(|byte| !is_text(*byte)).unwrap_or(0);
-        let byte = bytes.get(at).copied().unwrap_or_default();
-        let message = match byte {
-            b'\t' => "a tab stands here; only printable ASCII and blanks are allowed".to_owned(),
-            _ => {
-                format!(
-                    "byte 0x{byte:02X} stands here; only printable ASCII and blanks are allowed"
-                )
+    fn line(&self, bytes: &[u8]) -> Line {
+        Line {
+            number: self.number,
+            text: bytes.iter().map(|byte| char::from(*byte)).collect(),
+        }
+    }
+
+    fn replace_tabs(&self, bytes: &mut [u8], findings: &mut Findings) {
+        for (at, byte) in bytes.iter_mut().enumerate() {
+            if *byte == b'\t' {
+                *byte = b' ';
+                let message = "a tab stands where a blank belongs";
+                findings.warning((self.number, at + 1), "tab", message);
             }
-        };
-        findings.add((self.number, at + 1), "character", message);
+        }
     }
 
     /// Takes the bytes up to the end of the line out of the input, and keeps the first of them.
@@ -135,9 +138,10 @@ fn is_text(byte: u8) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::formats::finding::Severity;
 
     fn lines(bytes: &[u8]) -> (Vec<(usize, String)>, Vec<super::super::finding::Finding>) {
-        let mut findings = Findings::with_limit(10);
+        let mut findings = Findings::of_linter(10);
         let mut reader = Lines::new(bytes);
         let mut found = Vec::new();
         while let Some(line) = reader.next(&mut findings).unwrap() {
@@ -160,11 +164,13 @@ mod tests {
 
     #[test]
     fn bytes_that_are_no_text_are_reported() {
-        let (found, findings) = lines(b"ok\na\tb\n\xff\xfe\nlast");
-        assert_eq!(found.len(), 2);
+        let (found, findings) = lines(b"ok\na\tb\n\xff\xfe\na\0\nlast");
+        let texts: Vec<_> = found.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["ok", "a b", "last"]);
         let places: Vec<_> = findings.iter().map(|f| (f.line, f.column)).collect();
-        assert_eq!(places, [(2, 2), (3, 1)]);
-        assert!(findings[0].message.starts_with("a tab"));
+        assert_eq!(places, [(2, 2), (3, 1), (4, 2)]);
+        assert_eq!(findings[0].rule, "tab");
+        assert_eq!(findings[0].severity, Severity::Warning);
     }
 
     #[test]

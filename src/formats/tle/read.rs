@@ -21,10 +21,10 @@ pub struct Record {
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<Vec<sgp4::Elements>, ReadError> {
-    let mut findings = Findings::with_limit(1);
+    let mut findings = Findings::of_reader();
     let mut sets = Vec::new();
     parse(input, &mut findings, |record| sets.push(record.set))?;
-    findings.unless_any(sets)
+    findings.unless_error(sets)
 }
 
 /// Passes every element set that keeps the rules to `take`, until the list of findings is full.
@@ -65,7 +65,7 @@ pub fn parse(
                 }
                 None => {
                     let place = (line.number, 1);
-                    findings.add(place, "tle-pair", "line 2 without a line 1 before it");
+                    findings.error(place, "tle-pair", "line 2 without a line 1 before it");
                 }
             },
         }
@@ -74,7 +74,7 @@ pub fn parse(
     if let Some(lonely) = name {
         missing_lines(&lonely, findings);
     } else if !any {
-        findings.add((lines.number().max(1), 1), "tle-empty", "no element set");
+        findings.error((lines.number().max(1), 1), "tle-empty", "no element set");
     }
     Ok(())
 }
@@ -99,7 +99,7 @@ impl Role {
 
 fn report_unpaired(first: Option<Line>, findings: &mut Findings) {
     if let Some(line) = first {
-        findings.add(
+        findings.error(
             (line.number, 1),
             "tle-pair",
             "line 1 without a line 2 after it",
@@ -109,7 +109,7 @@ fn report_unpaired(first: Option<Line>, findings: &mut Findings) {
 
 fn missing_lines(name: &Line, findings: &mut Findings) {
     let message = "neither line 1 nor line 2 of an element set, nor a name before one";
-    findings.add((name.number, 1), "tle-line", message);
+    findings.error((name.number, 1), "tle-line", message);
 }
 
 /// Columns of line 1, from the first; see [`column_fits`].
@@ -152,13 +152,13 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut Findings) -> bool
     if text.len() != LINE {
         let message = format!("the line has {} columns; it needs {LINE}", text.len());
         let column = text.len().min(LINE) + 1;
-        findings.add((line.number, column), "tle-length", message);
+        findings.error((line.number, column), "tle-length", message);
         return false;
     }
     for (at, (class, byte)) in columns.iter().zip(text).enumerate() {
         if let Err(expected) = column_fits(*class, *byte) {
             let message = format!("'{}' stands where {expected} belongs", char::from(*byte));
-            findings.add((line.number, at + 1), "tle-column", message);
+            findings.error((line.number, at + 1), "tle-column", message);
             return false;
         }
     }
@@ -168,7 +168,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut Findings) -> bool
             "checksum {} is written; the line sums to {sum}",
             char::from(text[LINE - 1])
         );
-        findings.add((line.number, LINE), "tle-checksum", message);
+        findings.error((line.number, LINE), "tle-checksum", message);
         return false;
     }
     true
@@ -194,7 +194,7 @@ fn record(
             &one[2..7],
             &two[2..7]
         );
-        findings.add((second.number, 3), "tle-catalogue-number", message);
+        findings.error((second.number, 3), "tle-catalogue-number", message);
         return None;
     }
     let name = match name {
@@ -212,7 +212,7 @@ fn record(
             Some(Record { set, line })
         }
         Err(error) => {
-            findings.add((first.number, 1), "tle-field", error.to_string());
+            findings.error((first.number, 1), "tle-field", error.to_string());
             None
         }
     }
@@ -225,7 +225,7 @@ fn checked_name(line: &Line, findings: &mut Findings) -> Option<String> {
         return Some(name.to_owned());
     }
     let message = format!("the name has {} characters; {NAME} fit", name.len());
-    findings.add((line.number, NAME + 1), "tle-name", message);
+    findings.error((line.number, NAME + 1), "tle-name", message);
     None
 }
 
@@ -237,7 +237,7 @@ fn ranges_fit(first: &Line, second: &Line, findings: &mut Findings) -> bool {
         let value = number(line, from, to);
         if !matches!(value, Ok(value) if (0.0..=most).contains(&value)) {
             let message = format!("{name} '{}' is not from 0 to {most}", &line.text[from..to]);
-            findings.add((line.number, from + 1), "tle-range", message);
+            findings.error((line.number, from + 1), "tle-range", message);
             fits = false;
         }
     };
@@ -253,7 +253,7 @@ fn ranges_fit(first: &Line, second: &Line, findings: &mut Findings) -> bool {
             "day '{}' is not in a year of {days} days",
             &first.text[20..32]
         );
-        findings.add((first.number, 21), "tle-range", message);
+        findings.error((first.number, 21), "tle-range", message);
         fits = false;
     }
     fits

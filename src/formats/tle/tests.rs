@@ -36,7 +36,7 @@ fn written(sets: &[sgp4::Elements]) -> String {
 }
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::with_limit(20);
+    let mut findings = Findings::of_linter(20);
     parse(text.as_ref(), &mut findings, |_| ()).unwrap();
     findings.into_vec()
 }
@@ -99,7 +99,7 @@ fn broken_rules_are_named_with_their_place() {
             "",
             (2, 1, "tle-pair"),
         ),
-        ("1 25544U 98", "1\t25544U 98", (2, 2, "character")),
+        ("1 25544U 98", "1\u{7f}25544U 98", (2, 2, "character")),
     ];
     let iss = PUBLISHED.lines().take(3).collect::<Vec<_>>().join("\n") + "\n";
     for (from, to, (line, column, rule)) in cases {
