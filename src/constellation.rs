@@ -4,7 +4,7 @@ mod design;
 pub mod gnss;
 mod notation;
 
-pub use design::{Design, DesignError, Pattern, UnknownPattern};
+pub use design::{Design, DesignError, Pattern};
 pub use notation::NotationError;
 
 use crate::orbit::MeanElements;

@@ -6,16 +6,18 @@
 //! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19). No matrix of the
 //! size of the satellites is built.
 
+use crate::words::words;
 use nalgebra::Vector3;
 use std::ops::AddAssign;
 
-/// How many clock states there are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Clocks {
-    /// One for each system in view.
-    PerSystem,
-    /// One for all systems.
-    Shared,
+words! {
+    /// How many clock states there are.
+    Clocks {
+        /// One for each system in view.
+        PerSystem = "per-system",
+        /// One for all systems.
+        Shared = "shared",
+    }
 }
 
 /// A symmetric 3x3 matrix: the upper triangle.

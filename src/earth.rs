@@ -1,5 +1,6 @@
 //! The one set of physical constants, and the surface that ground points stand on.
 
+use crate::words::words;
 use nalgebra::Vector3;
 
 /// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).
@@ -11,6 +12,11 @@ pub const RADIUS_KM: f64 = 6_378.137;
 /// Second zonal harmonic, unnormalised (EGM96: -√5 C̄₂₀).
 pub const J2: f64 = 1.082_626_68e-3;
 
+/// Third zonal harmonic, unnormalised (EGM96: -√7 C̄₃₀, C̄₃₀ = 0.957 254 173 792e-6; Lemoine et al.,
+/// NASA/TP-1998-206861). No theory here flies it but SGP4, which has the value of WGS-72; it
+/// sizes the frozen eccentricity.
+pub const J3: f64 = -2.532_656_485_33e-6;
+
 /// Flattening of the WGS 84 ellipsoid.
 pub const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
@@ -21,13 +27,14 @@ pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
 
-/// What ground points, their heights and their verticals refer to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Surface {
-    /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
-    Wgs84,
-    /// A sphere of radius [`RADIUS_KM`]: latitudes are geocentric, the vertical is radial.
-    Sphere,
+words! {
+    /// What ground points, their heights and their verticals refer to.
+    Surface {
+        /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
+        Wgs84 = "wgs84",
+        /// A sphere of radius [`RADIUS_KM`]: latitudes are geocentric, the vertical is radial.
+        Sphere = "sphere",
+    }
 }
 
 impl Surface {
@@ -82,6 +89,13 @@ mod tests {
         let rate = (day + std::f64::consts::TAU) / 86_400.0;
         // One day of gmst82 in doubles is good to about 1e-15 rad/s; the constant has 11 digits.
         assert!((rate - GMST_RATE_RAD_S).abs() < 5e-15, "{rate:e}");
+    }
+
+    /// The coefficient as EGM96 prints it, fully normalised.
+    #[test]
+    fn validate_j3_against_the_normalised_coefficient() {
+        // Twelve digits are printed.
+        assert!((J3 / (-7_f64.sqrt() * 0.957_254_173_792e-6) - 1.0).abs() < 1e-12);
     }
 
     /// Semi-minor axis of WGS 84: 6356.752 314 245 km (NIMA TR8350.2, table 3.3).

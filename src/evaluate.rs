@@ -11,7 +11,7 @@ mod plain;
 pub use metrics::{MetricOptions, Metrics};
 
 use crate::constellation::Design;
-use crate::constellation::gnss::Preset;
+use crate::constellation::gnss::System;
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -32,8 +32,8 @@ pub struct Setup {
     pub mask: Mask,
     /// Elevation mask of the GNSS satellites.
     pub gnss_mask: Mask,
-    /// GNSS constellations in view, each one system.
-    pub gnss: Vec<Preset>,
+    /// GNSS in view, each with a clock of its own if clocks are per system.
+    pub gnss: Vec<System>,
     /// Clock states.
     pub clocks: Clocks,
     /// PDOP above which a sample counts as unsolved.

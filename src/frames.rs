@@ -7,9 +7,8 @@
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
 use crate::time::Epoch;
+use crate::words::words;
 use nalgebra::{Matrix3, Vector3};
-use std::fmt;
-use std::str::FromStr;
 
 /// Position and velocity in one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,46 +19,17 @@ pub struct State {
     pub velocity_km_s: Vector3<f64>,
 }
 
-/// The frames in which trajectories are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Frame {
-    /// True equator, mean equinox of date.
-    Teme,
-    /// Mean equator and equinox of J2000.0 (IAU 1976/1980, no corrections).
-    Eme2000,
-    /// Geocentric celestial reference frame: EME2000 less the frame bias.
-    Gcrf,
-    /// Pseudo-Earth-fixed, named ITRF in files.
-    EarthFixed,
-}
-
-/// A name that is no frame.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown frame '{0}'; the frames are EME2000, GCRF, ITRF and TEME")]
-pub struct UnknownFrame(pub String);
-
-impl FromStr for Frame {
-    type Err = UnknownFrame;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text.to_ascii_uppercase().as_str() {
-            "TEME" => Ok(Self::Teme),
-            "EME2000" => Ok(Self::Eme2000),
-            "GCRF" => Ok(Self::Gcrf),
-            "ITRF" => Ok(Self::EarthFixed),
-            _ => Err(UnknownFrame(text.to_owned())),
-        }
-    }
-}
-
-impl fmt::Display for Frame {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(match self {
-            Self::Teme => "TEME",
-            Self::Eme2000 => "EME2000",
-            Self::Gcrf => "GCRF",
-            Self::EarthFixed => "ITRF",
-        })
+words! {
+    /// The frames in which trajectories are written.
+    Frame {
+        /// Mean equator and equinox of J2000.0 (IAU 1976/1980, no corrections).
+        Eme2000 = "EME2000",
+        /// Geocentric celestial reference frame: EME2000 less the frame bias.
+        Gcrf = "GCRF",
+        /// Pseudo-Earth-fixed, named ITRF in files.
+        EarthFixed = "ITRF",
+        /// True equator, mean equinox of date.
+        Teme = "TEME",
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
 use crate::units::wrap_360;
+use crate::words::words;
 use std::io::Read;
 use thiserror::Error;
 
@@ -53,13 +54,14 @@ pub enum GroundError {
 /// Most points that a region may have: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
 
-/// How grid points count in means and tails.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Weighting {
-    /// Every point counts the same.
-    Equal,
-    /// By the cosine of latitude, that is by area.
-    CosLatitude,
+words! {
+    /// How grid points count in means and tails.
+    PointWeights {
+        /// Every point counts the same.
+        Equal = "equal",
+        /// By the cosine of latitude, that is by area.
+        CosLatitude = "cos-latitude",
+    }
 }
 
 /// A ground point.
@@ -119,7 +121,7 @@ pub struct Grid {
     /// Steps in latitude and longitude, degrees.
     pub step_deg: [f64; 2],
     /// How points count.
-    pub weighting: Weighting,
+    pub weights: PointWeights,
 }
 
 impl Grid {
@@ -175,10 +177,10 @@ impl Grid {
         }
         let mut sites = Vec::with_capacity(points as usize);
         for &latitude in &latitudes {
-            let weight = match self.weighting {
-                Weighting::Equal => 1.0,
+            let weight = match self.weights {
+                PointWeights::Equal => 1.0,
                 // A pole has no area of its own; its points share half a step's cap instead of 0.
-                Weighting::CosLatitude => latitude
+                PointWeights::CosLatitude => latitude
                     .to_radians()
                     .cos()
                     .max((self.step_deg[0] / 4.0).to_radians().sin()),
@@ -269,7 +271,7 @@ mod tests {
             latitude_deg,
             longitude_deg,
             step_deg: [step, step],
-            weighting: Weighting::Equal,
+            weights: PointWeights::Equal,
         }
     }
 

@@ -3,14 +3,14 @@
 mod elements;
 pub mod j2;
 pub mod kepler;
+pub mod osculating;
 pub mod sgp4;
 
 pub use elements::{ElementsError, MeanElements};
 
 use crate::frames::State;
 use crate::time::Epoch;
-use std::fmt;
-use std::str::FromStr;
+use crate::words::words;
 use thiserror::Error;
 
 /// A theory bound to one satellite: seconds since the epoch in, TEME state out.
@@ -41,36 +41,21 @@ pub enum PropagationError {
     },
 }
 
-/// The theories that a scenario can fly its LEO design with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Model {
-    /// Point-mass Earth.
-    TwoBody,
-    /// Secular J2 on the node, the perigee and the mean anomaly.
-    J2,
-    /// SGP4 without drag, in AFSPC mode (WGS-72), from the J2 mean elements.
-    Sgp4,
+words! {
+    /// The theories that a scenario can fly its LEO design with.
+    Model {
+        /// Secular J2 on the node, the perigee and the mean anomaly.
+        J2 = "j2",
+        /// Point-mass Earth.
+        TwoBody = "two-body",
+        /// Secular J2 with its first-order short-period terms.
+        J2Osculating = "j2-osculating",
+        /// SGP4 without drag, in AFSPC mode (WGS-72), from the J2 mean elements.
+        Sgp4 = "sgp4",
+    }
 }
 
-/// A name that is no propagation model.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("unknown propagation model '{0}'")]
-pub struct UnknownModel(pub String);
-
 impl Model {
-    /// Every model, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::TwoBody, Self::J2, Self::Sgp4];
-
-    /// The name in scenario files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::TwoBody => "two-body",
-            Self::J2 => "j2",
-            Self::Sgp4 => "sgp4",
-        }
-    }
-
     /// The propagator of this model for mean elements given at `epoch`.
     ///
     /// # Errors
@@ -83,6 +68,7 @@ impl Model {
         Ok(match self {
             Self::TwoBody => Box::new(j2::SecularOrbit::two_body(elements)),
             Self::J2 => Box::new(j2::SecularOrbit::j2(elements)),
+            Self::J2Osculating => Box::new(osculating::OsculatingOrbit::new(elements)),
             Self::Sgp4 => Box::new(sgp4::Sgp4Orbit::from_mean_elements(
                 elements,
                 epoch,
@@ -90,22 +76,5 @@ impl Model {
                 sgp4::ZonalHarmonics::Full,
             )?),
         })
-    }
-}
-
-impl fmt::Display for Model {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.name())
-    }
-}
-
-impl FromStr for Model {
-    type Err = UnknownModel;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|model| model.name() == text)
-            .ok_or_else(|| UnknownModel(text.to_owned()))
     }
 }

@@ -4,56 +4,19 @@ use super::{Satellite, Slot};
 use crate::earth::RADIUS_KM;
 use crate::orbit::{ElementsError, MeanElements};
 use crate::units::{wrap_360, wrap_two_pi};
-use std::fmt;
-use std::str::FromStr;
+use crate::words::words;
 use thiserror::Error;
 
-/// How planes and phases are laid out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Pattern {
-    /// Walker delta: nodes over 360°, phase step 360° F/T between planes.
-    Delta,
-    /// Walker star: nodes over 180°, the same phase step (as in Orekit, TAT-C and brahe;
-    /// lox steps by half of it).
-    Star,
-    /// Two-dimensional lattice flower: nodes over 360°, phase step -360° `N_c`/T.
-    Lattice,
-}
-
-/// A name that is no pattern.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("unknown pattern '{0}'; the patterns are delta, star and lattice")]
-pub struct UnknownPattern(pub String);
-
-impl Pattern {
-    /// Every pattern, in the order of the documentation.
-    pub const ALL: [Self; 3] = [Self::Delta, Self::Star, Self::Lattice];
-
-    /// The name in notation and scenario files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Delta => "delta",
-            Self::Star => "star",
-            Self::Lattice => "lattice",
-        }
-    }
-}
-
-impl fmt::Display for Pattern {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.name())
-    }
-}
-
-impl FromStr for Pattern {
-    type Err = UnknownPattern;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|pattern| pattern.name() == text)
-            .ok_or_else(|| UnknownPattern(text.to_owned()))
+words! {
+    /// How planes and phases are laid out.
+    Pattern {
+        /// Walker delta: nodes over 360°, phase step 360° F/T between planes.
+        Delta = "delta",
+        /// Walker star: nodes over 180°, the same phase step (as in Orekit, TAT-C and brahe;
+        /// lox steps by half of it).
+        Star = "star",
+        /// Two-dimensional lattice flower: nodes over 360°, phase step -360° `N_c`/T.
+        Lattice = "lattice",
     }
 }
 

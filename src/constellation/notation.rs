@@ -1,6 +1,7 @@
 //! Walker's notation with pattern and altitude: `delta:55:182/13/1@925[,e=0.01,w=270]`.
 
-use super::{Design, DesignError, Pattern, UnknownPattern};
+use super::{Design, DesignError};
+use crate::words::UnknownWord;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -32,8 +33,8 @@ pub enum NotationError {
     #[error("'+' is reserved for designs of several shells, which are not supported yet")]
     SeveralShells,
     /// A pattern that does not exist.
-    #[error(transparent)]
-    Pattern(#[from] UnknownPattern),
+    #[error("pattern: {0}")]
+    Pattern(#[from] UnknownWord),
     /// Numbers that describe no design.
     #[error(transparent)]
     Design(#[from] DesignError),
@@ -127,18 +128,11 @@ impl fmt::Display for Design {
     }
 }
 
-/// The patterns by name, so that callers can list them.
-impl Pattern {
-    /// The names of all patterns.
-    #[must_use]
-    pub fn names() -> [&'static str; 3] {
-        Self::ALL.map(Self::name)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constellation::Pattern;
+    use crate::words::Word;
     use proptest::prelude::*;
 
     fn error(text: &str) -> String {
@@ -168,7 +162,7 @@ mod tests {
         assert!(error("delta:55:182/13/-1@925").starts_with("phasing F '-1' is not a number"));
         assert!(error("delta:x:182/13/1@925").starts_with("inclination 'x' is not a number"));
         assert!(error("delta:55:182/13/1@nan").starts_with("altitude 'nan' is not a number"));
-        assert!(error("helix:55:182/13/1@925").contains("delta, star and lattice"));
+        assert!(error("helix:55:182/13/1@925").contains("(choices: delta, star, lattice)"));
         assert!(error("delta:55:182/13/1@925,f=3").starts_with("option 'f=3' is unknown"));
         assert!(error("delta:55:182/13/1@925,e=0,e=0").contains("given twice"));
         assert!(error("delta:55:4/2/1@925,e=0.95").contains("outside [0, 0.9)"));
@@ -178,7 +172,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_design_round_trips(
-            pattern in prop::sample::select(Pattern::ALL.to_vec()),
+            pattern in prop::sample::select(<Pattern as Word>::ALL.to_vec()),
             planes in 1_usize..40, per_plane in 1_usize..40, f in 0_usize..40,
             inclination in 0.0..180.0_f64, altitude in 200.0..30_000.0_f64,
             e in 0.0..0.02_f64, w in 0.0..360.0_f64,

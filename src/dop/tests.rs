@@ -104,7 +104,7 @@ proptest! {
     /// Teng and Wang (2015): the clock of a lone satellite of a new system eats its measurement.
     #[test]
     fn validate_a_lone_satellite_with_its_own_clock_changes_nothing(a in sky(5..12), b in sky(1..2)) {
-        let without = geometry(&[a.clone()]).pdop(100.0);
+        let without = geometry(std::slice::from_ref(&a)).pdop(100.0);
         let with = geometry(&[a, b]).pdop(100.0);
         prop_assert_eq!(without.is_some(), with.is_some());
         if let (Some(x), Some(y)) = (without, with) {
@@ -114,7 +114,7 @@ proptest! {
 
     #[test]
     fn a_further_satellite_of_a_system_in_view_never_hurts(a in sky(5..12), v in sky(1..2)) {
-        let before = geometry(&[a.clone()]).pdop(1e6);
+        let before = geometry(std::slice::from_ref(&a)).pdop(1e6);
         let mut more = a;
         more.extend(v);
         if let (Some(before), Some(after)) = (before, geometry(&[more]).pdop(1e6)) {

@@ -23,9 +23,9 @@ pub(super) struct FixedGeometry {
 impl FixedGeometry {
     pub(super) fn new(setup: &Setup, rotations: &[EarthRotation]) -> Result<Self, EphemerisError> {
         let mut samples = vec![FixedSample::default(); setup.sample_count()];
-        for preset in &setup.gnss {
-            let system = Ephemeris::of_gnss(preset.satellites(setup.grid.epoch()), setup.grid);
-            add_system(setup, rotations, &system, &mut samples)?;
+        for system in &setup.gnss {
+            let ephemeris = Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid);
+            add_system(setup, rotations, &ephemeris, &mut samples)?;
         }
         Ok(Self {
             samples,

@@ -1,7 +1,8 @@
 use super::*;
 use crate::constellation::Pattern;
+use crate::constellation::gnss::Preset;
 use crate::earth::{RADIUS_KM, Surface};
-use crate::ground::{Grid, Weighting};
+use crate::ground::{Grid, PointWeights};
 use crate::stats::Level;
 use crate::time::Epoch;
 
@@ -11,14 +12,14 @@ fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
         latitude_deg,
         longitude_deg: [73.0, 136.0],
         step_deg: [5.0, 5.0],
-        weighting: Weighting::Equal,
+        weights: PointWeights::Equal,
     };
     Setup {
         grid: TimeGrid::new(epoch, 86_400.0, 60.0).unwrap(),
         sites: grid.sites(surface).unwrap(),
         mask: Mask::from_degrees(7.0).unwrap(),
         gnss_mask: Mask::from_degrees(7.0).unwrap(),
-        gnss: vec![Preset::BeiDou3],
+        gnss: vec![Preset::Beidou3.into()],
         clocks: Clocks::PerSystem,
         pdop_cap: 100.0,
         model: Model::J2,

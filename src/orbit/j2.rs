@@ -82,6 +82,12 @@ impl SecularOrbit {
         Self::new(elements, SecularRates::j2(elements))
     }
 
+    /// The constant rates.
+    #[must_use]
+    pub fn rates(&self) -> SecularRates {
+        self.rates
+    }
+
     /// The mean elements `elapsed_s` seconds after the epoch.
     #[must_use]
     pub fn elements_at(&self, elapsed_s: f64) -> MeanElements {

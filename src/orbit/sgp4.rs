@@ -112,6 +112,15 @@ impl Sgp4Orbit {
             epoch_offset_s,
         })
     }
+
+    /// The same satellite with a time origin that is `seconds` later.
+    #[must_use]
+    pub fn with_origin_moved(&self, seconds: f64) -> Self {
+        Self {
+            constants: self.constants.clone(),
+            epoch_offset_s: self.epoch_offset_s - seconds,
+        }
+    }
 }
 
 fn refused(error: impl std::fmt::Display) -> PropagationError {

@@ -1,0 +1,126 @@
+//! The nominal constellations, from the documents that define them.
+//!
+//! All are referred to the epoch of the study: the angles of a table, or Ω = M = 0 of the first
+//! satellite, are mean elements in TEME at that instant, and the satellites fly on under secular
+//! J2. So a study sees the nominal geometry whatever its date; where the ground tracks lie
+//! follows from the sidereal time of its epoch. For satellites where they really are, take
+//! element sets.
+
+use super::{GeosynchronousOrbit, GnssOrbit, GnssSatellite};
+use crate::constellation::{Design, Pattern};
+use crate::earth::RADIUS_KM;
+use crate::orbit::MeanElements;
+use crate::orbit::j2::SecularOrbit;
+use crate::time::Epoch;
+use std::f64::consts::TAU;
+
+/// BeiDou-3 as in Table I of the paper: MEO Walker 24/3/1 at 56° and 21 528 km; 3 IGSO at 55°.
+///
+/// The paper gives no slots. The GEO longitudes are the nominal ones of BeiDou-3 (China Satellite
+/// Navigation Office, *BeiDou Open Service Performance Standard* 3.0, 2021); the IGSO share one
+/// ground track that crosses the equator at 118°E.
+pub(super) fn beidou3(epoch: Epoch) -> Vec<GnssSatellite> {
+    let mut satellites = walker("MEO", (24, 3, 1), 56.0, 21_528.0);
+    let gmst = epoch.gmst_rad(0.0);
+    for member in 0..3 {
+        let offset = TAU * f64::from(member) / 3.0;
+        satellites.push(GnssSatellite {
+            name: format!("IGSO-{}", member + 1),
+            orbit: GnssOrbit::Geosynchronous(GeosynchronousOrbit {
+                inclination_rad: 55_f64.to_radians(),
+                raan_rad: 118_f64.to_radians() + gmst + offset,
+                argument_of_latitude_rad: -offset,
+            }),
+        });
+    }
+    for (member, longitude_deg) in [80.0_f64, 110.5, 140.0].into_iter().enumerate() {
+        satellites.push(GnssSatellite {
+            name: format!("GEO-{}", member + 1),
+            orbit: GnssOrbit::Geostationary {
+                longitude_rad: longitude_deg.to_radians(),
+                epoch,
+            },
+        });
+    }
+    satellites
+}
+
+/// GPS as the 24 slots of the baseline constellation: six planes 60° apart with four satellites
+/// each, unevenly spaced so that one may fail; 55°, 26 559.7 km, e = 0.
+///
+/// Source: *GPS Standard Positioning Service Performance Standard* (2001), tables 3-1 and A-2-1,
+/// kept in the editions of 2008 and 2020. Its epoch is 1993-07-01T00:00:00Z; see the module for
+/// what becomes of it here.
+pub(super) fn gps() -> Vec<GnssSatellite> {
+    let mut satellites = Vec::with_capacity(24);
+    for (plane, raan_deg, arguments_deg) in GPS_PLANES {
+        for (number, argument_deg) in (1..).zip(arguments_deg) {
+            let elements = MeanElements {
+                semi_major_axis_km: 26_559.7,
+                eccentricity: 0.0,
+                inclination_rad: 55_f64.to_radians(),
+                raan_rad: raan_deg.to_radians(),
+                arg_perigee_rad: 0.0,
+                mean_anomaly_rad: argument_deg.to_radians(),
+            };
+            satellites.push(GnssSatellite {
+                name: format!("{plane}{number}"),
+                orbit: GnssOrbit::Secular(SecularOrbit::j2(&elements)),
+            });
+        }
+    }
+    satellites
+}
+
+/// Planes of GPS: letter, right ascension of the node and arguments of latitude, degrees.
+const GPS_PLANES: [(char, f64, [f64; 4]); 6] = [
+    ('A', 272.847, [268.126, 161.786, 11.676, 41.806]),
+    ('B', 332.847, [80.956, 173.336, 309.976, 204.376]),
+    ('C', 32.847, [111.876, 11.796, 339.666, 241.556]),
+    ('D', 92.847, [135.226, 265.446, 35.156, 167.356]),
+    ('E', 152.847, [197.046, 302.596, 66.066, 333.686]),
+    ('F', 212.847, [238.886, 345.226, 105.206, 135.346]),
+];
+
+/// Galileo: Walker 24/3/1 at 56°, semi-major axis 29 600.318 km, 17 revolutions in ten sidereal
+/// days.
+///
+/// Source: *European GNSS (Galileo) Open Service Service Definition Document* (reference
+/// constellation of 24 slots in three planes, 56°); the semi-major axis is the nominal value of
+/// the almanac in the *OS SIS Interface Control Document*, to which its Δ√A refers.
+pub(super) fn galileo() -> Vec<GnssSatellite> {
+    walker("GAL", (24, 3, 1), 56.0, 29_600.318 - RADIUS_KM)
+}
+
+/// GLONASS: Walker 24/3/1 at 64.8°, semi-major axis 25 508 km, 17 revolutions in eight sidereal
+/// days, 11 h 15 min 44 s each.
+///
+/// Source: *GLONASS Interface Control Document*, edition 5.1 (2008), section on the orbital
+/// constellation: three planes 120° apart, eight satellites 45° apart, planes shifted by 15°.
+pub(super) fn glonass() -> Vec<GnssSatellite> {
+    walker("GLO", (24, 3, 1), 64.8, 25_508.0 - RADIUS_KM)
+}
+
+/// A circular Walker delta constellation under secular J2; the first satellite has Ω = M = 0.
+fn walker(
+    prefix: &str,
+    (total, planes, phasing): (usize, usize, usize),
+    inclination_deg: f64,
+    altitude_km: f64,
+) -> Vec<GnssSatellite> {
+    let design = Design::new(
+        Pattern::Delta,
+        (total, planes, phasing),
+        inclination_deg,
+        altitude_km,
+    );
+    // The presets are constants of this module, which its tests build.
+    let satellites = design.map(|design| design.satellites()).unwrap_or_default();
+    (1..)
+        .zip(satellites)
+        .map(|(number, satellite)| GnssSatellite {
+            name: format!("{prefix}-{number}"),
+            orbit: GnssOrbit::Secular(SecularOrbit::j2(&satellite.elements)),
+        })
+        .collect()
+}

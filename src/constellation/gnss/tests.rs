@@ -1,0 +1,167 @@
+use super::*;
+use crate::earth::GMST_RATE_RAD_S;
+use crate::orbit::j2::SecularRates;
+use std::f64::consts::TAU;
+
+fn epoch() -> Epoch {
+    Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap())
+}
+
+fn earth_fixed(orbit: &GnssOrbit, elapsed_s: f64) -> Vector3<f64> {
+    let state = orbit.state_at(elapsed_s).unwrap();
+    EarthRotation::from_gmst(epoch().gmst_rad(elapsed_s)).to_earth_fixed(state.position_km)
+}
+
+#[test]
+fn validate_geostationary_satellites_stand_still() {
+    let satellites = Preset::Beidou3.satellites(epoch());
+    assert_eq!(satellites.len(), 30);
+    for (satellite, longitude_deg) in satellites[27..].iter().zip([80.0, 110.5, 140.0_f64]) {
+        for t in [0.0, 40_000.0, 86_340.0] {
+            let p = earth_fixed(&satellite.orbit, t);
+            assert!((p.y.atan2(p.x).to_degrees() - longitude_deg).abs() < 1e-10);
+            assert!(p.z == 0.0 && (p.norm() - 42_164.17).abs() < 1e-9);
+        }
+    }
+}
+
+/// The three IGSO satellites cross the equator northwards at 118°E, a third of a sidereal
+/// day after each other.
+#[test]
+fn validate_igso_share_one_ground_track() {
+    let satellites = Preset::Beidou3.satellites(epoch());
+    for (k, satellite) in satellites[24..27].iter().enumerate() {
+        let crossing = TAU * k as f64 / 3.0 / GMST_RATE_RAD_S;
+        let p = earth_fixed(&satellite.orbit, crossing);
+        // 1e-8° is 7 m at this radius: the rate constant and gmst82 differ by that in a day.
+        assert!((p.y.atan2(p.x).to_degrees() - 118.0).abs() < 1e-8, "{k}");
+        assert!(p.z.abs() < 1e-6 && earth_fixed(&satellite.orbit, crossing + 60.0).z > 0.0);
+    }
+}
+
+#[test]
+fn velocities_are_derivatives() {
+    for satellite in Preset::Beidou3.satellites(epoch()).iter().step_by(5) {
+        let at = |t: f64| satellite.orbit.state_at(t).unwrap();
+        let slope = (at(1001.0).position_km - at(999.0).position_km) / 2.0;
+        // Central difference over 2 s: r n³/6 = 2e-8 km/s for the MEO.
+        assert!(
+            (slope - at(1000.0).velocity_km_s).norm() < 5e-8,
+            "{}",
+            satellite.name
+        );
+    }
+}
+
+/// The elements at the epoch, for constellations that fly under secular J2.
+fn elements(preset: Preset) -> Vec<crate::orbit::MeanElements> {
+    let elements = |satellite: &GnssSatellite| match &satellite.orbit {
+        GnssOrbit::Secular(orbit) => Some(orbit.elements_at(0.0)),
+        _ => None,
+    };
+    preset
+        .satellites(epoch())
+        .iter()
+        .filter_map(elements)
+        .collect()
+}
+
+/// Degrees by which the ground track misses itself after revolutions from node to node.
+fn track_shift_deg(preset: Preset, revolutions: f64, sidereal_days: f64) -> f64 {
+    let rates = SecularRates::j2(&elements(preset)[0]);
+    let nodal_s = TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+    let turned = (GMST_RATE_RAD_S - rates.raan_rad_s) * nodal_s * revolutions;
+    (sidereal_days * TAU - turned).to_degrees()
+}
+
+/// GPS: two revolutions a sidereal day, Galileo 17 in ten, GLONASS 17 in eight, BeiDou's MEO 13 in
+/// seven (the interface control documents). A kilometre of semi-major axis is worth 0.02° a day,
+/// and sources differ by some tenths of a kilometre.
+#[test]
+fn validate_ground_tracks_repeat() {
+    for (preset, revolutions, days) in [
+        (Preset::Gps, 2.0, 1.0),
+        (Preset::Galileo, 17.0, 10.0),
+        (Preset::Glonass, 17.0, 8.0),
+        (Preset::Beidou3, 13.0, 7.0),
+    ] {
+        let per_day = track_shift_deg(preset, revolutions, days) / days;
+        assert!(per_day.abs() < 0.015, "{preset}: {per_day}");
+    }
+}
+
+/// The almanac of the GPS performance standard (2001, table A-2-1) has the node at
+/// -4.4874e-7 °/s; the Moon and the Sun have a share in it that J2 has not.
+#[test]
+fn validate_gps_node_rate() {
+    let rate_deg_s = SecularRates::j2(&elements(Preset::Gps)[0])
+        .raan_rad_s
+        .to_degrees();
+    assert!((rate_deg_s / -4.4874e-7 - 1.0).abs() < 1e-3, "{rate_deg_s}");
+}
+
+/// The GLONASS ICD has a draconic period of 11 h 15 min 44 s ± 5 s.
+#[test]
+fn validate_glonass_period() {
+    let rates = SecularRates::j2(&elements(Preset::Glonass)[0]);
+    let nodal_s = TAU / (rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s);
+    assert!((nodal_s - 40_544.0).abs() < 5.0, "{nodal_s}");
+}
+
+/// The four satellites of each GPS plane as the almanac of the same standard has them: mean
+/// anomalies (table A-2-1) of planes D and F less that of their first satellite.
+#[test]
+fn validate_gps_slots_against_the_almanac() {
+    let satellites = elements(Preset::Gps);
+    let plane = |first: usize| {
+        [0, 1, 2, 3].map(|n| {
+            let apart = satellites[first + n].mean_anomaly_rad - satellites[first].mean_anomaly_rad;
+            crate::units::wrap_360(apart.to_degrees())
+        })
+    };
+    let published = [
+        (12, [-50.074, -279.854, 209.856, -17.944]),
+        (16, [11.746, -242.704, -119.234, -211.614]),
+        (20, [53.586, 159.926, -80.094, -49.954]),
+    ];
+    for (first, anomalies) in published {
+        for (ours, anomaly) in plane(first).into_iter().zip(anomalies) {
+            let theirs = crate::units::wrap_360(anomaly - anomalies[0] + 1e-9);
+            assert!((ours - theirs).abs() < 1e-6, "{first}: {ours} {theirs}");
+        }
+    }
+}
+
+/// Slots of the nominal constellations: six GPS planes 60° apart with four satellites; Galileo
+/// and GLONASS with three planes 120° apart, eight satellites 45° apart, 15° from plane to plane.
+#[test]
+fn validate_slots() {
+    let gps = elements(Preset::Gps);
+    assert_eq!(gps.len(), 24);
+    for (n, satellite) in gps.iter().enumerate() {
+        let node = crate::units::wrap_360(272.847 + 60.0 * (n / 4) as f64);
+        assert!((satellite.raan_rad.to_degrees() - node).abs() < 1e-9);
+    }
+    for preset in [Preset::Galileo, Preset::Glonass] {
+        let satellites = elements(preset);
+        assert_eq!(satellites.len(), 24);
+        for (n, satellite) in satellites.iter().enumerate() {
+            let (plane, place) = ((n / 8) as f64, (n % 8) as f64);
+            let argument = crate::units::wrap_360(45.0 * place + 15.0 * plane);
+            assert!((satellite.mean_anomaly_rad.to_degrees() - argument).abs() < 1e-9);
+            assert!((satellite.raan_rad.to_degrees() - 120.0 * plane).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn names_are_unique_and_round_trip() {
+    for &preset in Preset::ALL {
+        assert_eq!(preset.word().parse(), Ok(preset));
+        let satellites = preset.satellites(epoch());
+        let mut names: Vec<_> = satellites.iter().map(|s| s.name.clone()).collect();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), satellites.len(), "{preset}");
+    }
+}

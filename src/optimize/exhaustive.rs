@@ -1,0 +1,344 @@
+//! Exhaustive search: every point of a grid over the space, in a fixed order. Its
+//! front is exact for that grid, which makes it the yardstick of the others.
+
+use serde::{Deserialize, Serialize};
+
+use super::archive::offer;
+use super::error::OptimizeError;
+use super::problem::{Individual, Kind, Problem, Variable, admit, evaluate};
+use super::sorting::feasible_front;
+use super::strategy::{
+    Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
+    check_setting,
+};
+
+/// How far a range may fall short of a whole number of steps and still include
+/// its upper end, as a share of a step: the rounding of a decimal step.
+const SLACK: f64 = 1e-9;
+
+/// The settings of exhaustive search.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ExhaustiveConfig {
+    /// The step of each variable, in the space's order and the variable's unit,
+    /// from the lower bound upwards: finite and positive, whole for an integer.
+    pub steps: Vec<f64>,
+    /// Designs in a step of the search, at least 1.
+    pub batch: usize,
+    /// Where the history measures hypervolume: one coordinate per objective.
+    pub hypervolume_reference: Option<Vec<f64>>,
+}
+
+impl ExhaustiveConfig {
+    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+        let variables = problem.space().variables();
+        if self.steps.len() != variables.len() {
+            return Err(OptimizeError::StepCount {
+                found: self.steps.len(),
+                expected: variables.len(),
+            });
+        }
+        for (&step, variable) in self.steps.iter().zip(variables) {
+            let positive = step.is_finite() && step > 0.0;
+            check_setting(positive, "grid step", step, "finite and greater than 0")?;
+            let whole = matches!(variable.kind, Kind::Real { .. }) || step.fract() == 0.0;
+            check_setting(whole, "grid step", step, "whole for an integer variable")?;
+        }
+        check_count("batch", self.batch)?;
+        check_objectives(problem, self.hypervolume_reference.as_deref())
+    }
+}
+
+/// One variable's values, from its lower bound upwards.
+struct Axis {
+    lo: f64,
+    hi: f64,
+    step: f64,
+    /// A whole number.
+    count: f64,
+}
+
+impl Axis {
+    fn new(variable: &Variable, step: f64) -> Self {
+        let (lo, hi) = variable.kind.bounds();
+        let count = ((hi - lo) / step + SLACK).floor() + 1.0;
+        Self {
+            lo,
+            hi,
+            step,
+            count,
+        }
+    }
+
+    fn value(&self, index: f64) -> f64 {
+        (self.lo + index * self.step).min(self.hi)
+    }
+
+    fn holds(&self, value: f64) -> bool {
+        let index = ((value - self.lo) / self.step).round();
+        index < self.count && self.value(index) == value
+    }
+}
+
+/// The points of a grid, the last variable changing fastest.
+struct Grid(Vec<Axis>);
+
+impl Grid {
+    fn new(problem: &dyn Problem, steps: &[f64]) -> Self {
+        let variables = problem.space().variables().iter();
+        Self(
+            variables
+                .zip(steps)
+                .map(|(v, &step)| Axis::new(v, step))
+                .collect(),
+        )
+    }
+
+    /// The number of points, exact as long as it can be counted.
+    fn points(&self) -> Result<u64, OptimizeError> {
+        let points: f64 = self.0.iter().map(|axis| axis.count).product();
+        if points > (1_u64 << 53) as f64 {
+            return Err(OptimizeError::GridTooLarge { points });
+        }
+        Ok(points as u64)
+    }
+
+    fn genome(&self, mut index: u64) -> Vec<f64> {
+        let mut genome = vec![0.0; self.0.len()];
+        for (value, axis) in genome.iter_mut().zip(&self.0).rev() {
+            let count = axis.count as u64;
+            *value = axis.value((index % count) as f64);
+            index /= count;
+        }
+        genome
+    }
+
+    fn holds(&self, genome: &[f64]) -> bool {
+        self.0
+            .iter()
+            .zip(genome)
+            .all(|(axis, &value)| axis.holds(value))
+    }
+}
+
+/// An exhaustive search, its own checkpoint.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Exhaustive {
+    config: ExhaustiveConfig,
+    points: u64,
+    step: u64,
+    evaluations: u64,
+    archive: Vec<Individual>,
+    history: Vec<Record>,
+}
+
+impl Exhaustive {
+    /// A search before its first step.
+    ///
+    /// # Errors
+    ///
+    /// A setting out of its range, a number of steps other than that of variables,
+    /// a grid of more than 2^53 points, a problem without objectives, or a
+    /// reference that does not fit them.
+    pub fn start(problem: &dyn Problem, config: ExhaustiveConfig) -> Result<Self, OptimizeError> {
+        config.check(problem)?;
+        Ok(Self {
+            points: Grid::new(problem, &config.steps).points()?,
+            config,
+            step: 0,
+            evaluations: 0,
+            archive: Vec::new(),
+            history: Vec::new(),
+        })
+    }
+
+    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+        self.config.check(problem)?;
+        let points = Grid::new(problem, &self.config.steps).points()?;
+        check_equal("grid points", self.points, points)?;
+        check_equal("history", self.history.len() as u64, self.step)?;
+        check_at_most("archive", self.archive.len() as u64, self.evaluations)?;
+        check_at_most("evaluations", self.evaluations, self.passed(self.step))?;
+        self.archive.iter().try_for_each(|a| a.check(problem))
+    }
+
+    /// Grid points behind the search after so many steps.
+    fn passed(&self, step: u64) -> u64 {
+        self.points
+            .min(step.saturating_mul(self.config.batch as u64))
+    }
+
+    /// The points of the next step. One that a repair turns into another point of
+    /// the grid is left out: that one has its own turn.
+    fn batch(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
+        let grid = Grid::new(problem, &self.config.steps);
+        let mut batch = Vec::new();
+        for index in self.passed(self.step)..self.passed(self.step + 1) {
+            let point = grid.genome(index);
+            let genome = admit(problem, point.clone())?;
+            if genome == point || !grid.holds(&genome) {
+                batch.push(genome);
+            }
+        }
+        Ok(batch)
+    }
+}
+
+impl Strategy for Exhaustive {
+    fn step(&mut self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+        if self.is_done() {
+            return Ok(());
+        }
+        self.check(problem)?;
+        let answers = evaluate(problem, self.batch(problem)?)?;
+        self.evaluations += answers.len() as u64;
+        self.step += 1;
+        for candidate in &answers {
+            offer(&mut self.archive, candidate);
+        }
+        let reference = self.config.hypervolume_reference.as_deref();
+        let record = Record::of_archive(self.progress(), &self.archive, reference);
+        self.history.push(record);
+        Ok(())
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            step: self.step,
+            steps: self.points.div_ceil(self.config.batch.max(1) as u64),
+            evaluations: self.evaluations,
+        }
+    }
+
+    fn front(&self) -> Vec<Individual> {
+        feasible_front(&self.archive)
+    }
+
+    fn history(&self) -> &[Record] {
+        &self.history
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::test_problems::{TestProblem, UNIT, mixed};
+    use super::*;
+
+    fn config(steps: &[f64], batch: usize) -> ExhaustiveConfig {
+        ExhaustiveConfig {
+            steps: steps.to_vec(),
+            batch,
+            hypervolume_reference: None,
+        }
+    }
+
+    fn run(problem: &dyn Problem, config: ExhaustiveConfig) -> Exhaustive {
+        let mut search = Exhaustive::start(problem, config).unwrap();
+        while !search.is_done() {
+            search.step(problem).unwrap();
+        }
+        search
+    }
+
+    #[test]
+    fn every_point_is_visited_once_in_order() {
+        let kinds = [
+            Kind::Integer { lo: -1, hi: 1 },
+            Kind::Real { lo: 0.0, hi: 0.3 },
+        ];
+        let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
+        // 0.3 is not three times 0.1 in binary: the upper end is still a point, exactly.
+        let search = run(&problem, config(&[2.0, 0.1], 3));
+        let visited: Vec<Vec<f64>> = search.archive.iter().map(|a| a.genome.clone()).collect();
+        let expected: Vec<Vec<f64>> = [-1.0, 1.0]
+            .iter()
+            .flat_map(|&n| [0.0, 0.1, 0.2, 0.3].map(|x| vec![n, x]))
+            .collect();
+        assert_eq!(visited, expected);
+        let counts: Vec<u64> = search.history.iter().map(|r| r.evaluations).collect();
+        assert_eq!(counts, [3, 6, 8]);
+    }
+
+    #[test]
+    fn validate_mixed_front_is_found_exactly() {
+        let search = run(&mixed(), config(&[1.0, 1.0, 0.25, 0.1], 64));
+        let front = search.front();
+        assert_eq!(search.progress().evaluations, 13 * 5 * 5 * 11);
+        assert_eq!(front.len(), 13);
+        for (n, member) in (0_u8..).zip(&front) {
+            let n = f64::from(n);
+            // 0.3 on a grid of 0.1 is one rounding off.
+            assert!((member.genome[3] - 0.3).abs() < 1e-15);
+            assert_eq!(member.genome[..3], [n, 4.0, 1.0]);
+        }
+    }
+
+    #[test]
+    fn a_point_repaired_into_another_is_not_evaluated_twice() {
+        let kinds = [
+            Kind::Integer { lo: 2, hi: 4 },
+            Kind::Integer { lo: 0, hi: 3 },
+        ];
+        let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0))
+            .with_repair(|v| v[1] = v[1].min(v[0] - 1.0));
+        let search = run(&problem, config(&[1.0, 1.0], 5));
+        assert_eq!(search.progress().evaluations, 2 + 3 + 4);
+        assert_eq!(search.front().len(), 9);
+        // On a coarser grid the repaired point can be off it, and is needed then.
+        let search = run(&problem, config(&[1.0, 3.0], 5));
+        let genomes: Vec<Vec<f64>> = search.front().iter().map(|a| a.genome.clone()).collect();
+        assert_eq!(
+            genomes,
+            [
+                [2.0, 0.0],
+                [2.0, 1.0],
+                [3.0, 0.0],
+                [3.0, 2.0],
+                [4.0, 0.0],
+                [4.0, 3.0]
+            ]
+        );
+    }
+
+    #[test]
+    fn a_resumed_search_equals_an_unbroken_one() {
+        let problem = mixed();
+        let settings = config(&[1.0, 1.0, 0.5, 0.3], 50);
+        let unbroken = run(&problem, settings.clone());
+        let mut broken = Exhaustive::start(&problem, settings).unwrap();
+        while !broken.is_done() {
+            broken.step(&problem).unwrap();
+            let text = serde_json::to_string(&broken).unwrap();
+            broken = serde_json::from_str(&text).unwrap();
+        }
+        assert_eq!(broken, unbroken);
+    }
+
+    #[test]
+    fn grids_that_make_no_sense_are_refused() {
+        let kinds = [Kind::Integer { lo: 0, hi: 9 }, UNIT];
+        let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
+        let refused = |steps: &[f64], batch| {
+            let refused = Exhaustive::start(&problem, config(steps, batch));
+            refused.unwrap_err().to_string()
+        };
+        assert_eq!(refused(&[1.0], 1), "there are 1 grid steps for 2 variables");
+        assert_eq!(refused(&[1.0, 0.1], 0), "batch must be at least 1, found 0");
+        assert_eq!(
+            refused(&[0.5, 0.1], 1),
+            "grid step must be whole for an integer variable, found 0.5"
+        );
+        for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(refused(&[1.0, step], 1).contains("finite and greater than 0"));
+        }
+        assert!(matches!(
+            Exhaustive::start(&problem, config(&[1.0, 1e-300], 1)),
+            Err(OptimizeError::GridTooLarge { .. })
+        ));
+        let mut damaged = Exhaustive::start(&problem, config(&[1.0, 0.5], 4)).unwrap();
+        damaged.points = 31;
+        assert_eq!(
+            damaged.step(&problem).unwrap_err().to_string(),
+            "the checkpoint does not fit: grid points is 31, expected 30"
+        );
+    }
+}

@@ -1,0 +1,186 @@
+//! What every strategy has in common: one batch a step, a budget, a front and a
+//! history, so that one loop runs any of them.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::OptimizeError;
+use super::hypervolume::hypervolume;
+use super::problem::{Individual, Problem};
+
+/// A search that advances one batch at a time.
+///
+/// A strategy is its own checkpoint: serialise it after any step, read it back,
+/// and the steps that follow give the same bits as an unbroken run, provided that
+/// the form it is written in keeps every `f64` exactly.
+pub trait Strategy {
+    /// Sends the problem one batch and learns from the answers. Does nothing when
+    /// the search is done.
+    ///
+    /// # Errors
+    ///
+    /// An answer that cannot be compared, a repair that leaves the space, or a
+    /// state that does not fit the problem. The search is then unchanged.
+    fn step(&mut self, problem: &dyn Problem) -> Result<(), OptimizeError>;
+
+    /// How far the search has come.
+    fn progress(&self) -> Progress;
+
+    /// The best designs known: feasible, none dominated by another, sorted by
+    /// their objectives from the first to the last. Empty if none is feasible.
+    fn front(&self) -> Vec<Individual>;
+
+    /// One record per step so far.
+    fn history(&self) -> &[Record];
+
+    /// Whether no step is left.
+    fn is_done(&self) -> bool {
+        let progress = self.progress();
+        progress.step >= progress.steps
+    }
+}
+
+/// How far a search has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Steps taken.
+    pub step: u64,
+    /// Steps in all.
+    pub steps: u64,
+    /// Designs evaluated.
+    pub evaluations: u64,
+}
+
+/// What one step left behind.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    /// The step, from 1: a generation, an iteration or a batch.
+    pub generation: u64,
+    /// Designs evaluated so far.
+    pub evaluations: u64,
+    /// Hypervolume of the feasible front, where a reference was given.
+    pub hypervolume: Option<f64>,
+    /// The least feasible value of each objective, where anything is feasible.
+    pub ideal: Option<Vec<f64>>,
+    /// Members of the feasible front.
+    pub front_size: usize,
+    /// Feasible individuals among those that the strategy holds.
+    pub feasible: usize,
+}
+
+impl Record {
+    /// Describes what a strategy holds after a step: its feasible front, and how
+    /// many feasible individuals.
+    pub(super) fn new(
+        progress: Progress,
+        front: &[Individual],
+        feasible: usize,
+        reference: Option<&[f64]>,
+    ) -> Self {
+        let points: Vec<&[f64]> = front.iter().map(|a| a.objectives.as_slice()).collect();
+        let least = |a: Vec<f64>, b: &[f64]| a.iter().zip(b).map(|(a, b)| a.min(*b)).collect();
+        Self {
+            generation: progress.step,
+            evaluations: progress.evaluations,
+            hypervolume: reference.map(|reference| hypervolume(&points, reference)),
+            ideal: points
+                .split_first()
+                .map(|(first, rest)| rest.iter().fold(first.to_vec(), |a, b| least(a, b))),
+            front_size: front.len(),
+            feasible,
+        }
+    }
+
+    /// Describes a strategy that holds an archive: all of it is the front, unless
+    /// nothing feasible is known.
+    pub(super) fn of_archive(
+        progress: Progress,
+        archive: &[Individual],
+        reference: Option<&[f64]>,
+    ) -> Self {
+        let feasible = archive.iter().filter(|a| a.is_feasible()).count();
+        let front = if feasible > 0 { archive } else { &[] };
+        Self::new(progress, front, feasible, reference)
+    }
+}
+
+/// Checks a setting that is a probability.
+pub(super) fn check_probability(setting: &'static str, value: f64) -> Result<(), OptimizeError> {
+    let expected = "between 0 and 1";
+    check_setting((0.0..=1.0).contains(&value), setting, value, expected)
+}
+
+/// Checks a setting that counts something.
+pub(super) fn check_count(setting: &'static str, value: usize) -> Result<(), OptimizeError> {
+    check_setting(value > 0, setting, value as f64, "at least 1")
+}
+
+/// Reports a setting that is not as expected.
+pub(super) fn check_setting(
+    valid: bool,
+    setting: &'static str,
+    value: f64,
+    expected: &'static str,
+) -> Result<(), OptimizeError> {
+    if valid {
+        return Ok(());
+    }
+    Err(OptimizeError::Setting {
+        setting,
+        value,
+        expected,
+    })
+}
+
+/// Checks that a problem has objectives and a reference, if any, one finite
+/// coordinate for each.
+pub(super) fn check_objectives(
+    problem: &dyn Problem,
+    reference: Option<&[f64]>,
+) -> Result<(), OptimizeError> {
+    let expected = problem.objective_names().len();
+    if expected == 0 {
+        return Err(OptimizeError::NoObjective);
+    }
+    let Some(reference) = reference else {
+        return Ok(());
+    };
+    if reference.len() != expected {
+        let found = reference.len();
+        return Err(OptimizeError::ReferenceLength { found, expected });
+    }
+    let check =
+        |value: &f64| check_setting(value.is_finite(), "hypervolume reference", *value, "finite");
+    reference.iter().try_for_each(check)
+}
+
+/// Checks that a count read from a checkpoint does not exceed what fits.
+pub(super) fn check_at_most(
+    quantity: &'static str,
+    found: u64,
+    expected: u64,
+) -> Result<(), OptimizeError> {
+    if found <= expected {
+        return Ok(());
+    }
+    Err(OptimizeError::Checkpoint {
+        quantity,
+        found,
+        expected,
+    })
+}
+
+/// Checks that a count read from a checkpoint is what the rest of it implies.
+pub(super) fn check_equal(
+    quantity: &'static str,
+    found: u64,
+    expected: u64,
+) -> Result<(), OptimizeError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(OptimizeError::Checkpoint {
+        quantity,
+        found,
+        expected,
+    })
+}

@@ -1,0 +1,94 @@
+//! Scenarios: a study as written in a TOML file, and as validated.
+//!
+//! [`Scenario::parse`] goes in two stages. The first keeps what was written, key by key with its
+//! place, and merges `--set` arguments over it. The second checks types, ranges and what keys say
+//! together, fills in the defaults, and gives a [`Scenario`] in which nothing is left open, or
+//! all [`Problems`] at once. One table of keys drives both, and the template, the JSON schema
+//! and the canonical form too.
+//!
+//! ```
+//! use navwalker::scenario::{Scenario, builtin};
+//!
+//! let paper = builtin("paper")?;
+//! let scenario = Scenario::parse("paper", paper.as_bytes(), &["visibility.mask-deg=10"])?;
+//! assert_eq!(scenario.visibility.gnss_mask_deg, 10.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod builtin;
+mod canonical;
+mod keys;
+mod number;
+mod problem;
+mod resolve;
+mod resolved;
+mod rule;
+mod setup;
+mod source;
+mod template;
+mod words;
+mod written;
+
+#[cfg(test)]
+mod tests;
+
+pub use crate::constellation::Pattern;
+pub use crate::constellation::gnss::Preset;
+pub use crate::dop::Clocks;
+pub use crate::earth::Surface;
+pub use crate::ground::PointWeights;
+pub use crate::orbit::Model;
+pub use crate::search::{Constraint, ConstraintError, Quantity, Relation};
+pub use crate::words::{UnknownWord, Word};
+pub use builtin::{builtin, builtin_names};
+pub use keys::{KeyDescription, describe_keys};
+pub use problem::{Fault, Problem, Problems};
+pub use resolved::{
+    Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer, Propagation, Region,
+    Scenario, SearchSpace, TimeSpan, Visibility,
+};
+pub use setup::SetupError;
+pub use source::{Excerpt, Place};
+pub use template::{json_schema, reference_markdown, template};
+pub use words::{Algorithm, Weighting};
+
+use source::Source;
+use written::Written;
+
+impl Scenario {
+    /// Parses and validates the bytes of a scenario file, with `--set` arguments
+    /// (`key.path=value`) merged over it in their order. `label` names the file in problems.
+    ///
+    /// The value of an argument is TOML, or else a bare text. An argument that gives points, or a list
+    /// of objectives, replaces the grid, or the reference point, of the file.
+    ///
+    /// # Errors
+    /// Everything that is wrong, each with its place, key, what was found and what is accepted. Text
+    /// that is not TOML hides what is wrong beyond its syntax.
+    pub fn parse<S: AsRef<str>>(
+        label: &str,
+        bytes: &[u8],
+        overrides: &[S],
+    ) -> Result<Self, Problems> {
+        let text = decode(label, bytes)?;
+        let mut problems = Vec::new();
+        let mut written = Written::read(label, text, &mut problems).map_err(Problems::new)?;
+        for (index, argument) in overrides.iter().enumerate() {
+            written.override_with(index, argument.as_ref(), &mut problems);
+        }
+        match resolve::resolve(&written, &mut problems) {
+            Some(scenario) if problems.is_empty() => Ok(scenario),
+            _ => Err(Problems::new(problems)),
+        }
+    }
+}
+
+fn decode<'a>(label: &str, bytes: &'a [u8]) -> Result<&'a str, Problems> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let valid = bytes.split_at(error.valid_up_to()).0;
+        let text = std::str::from_utf8(valid).unwrap_or_default();
+        let place = Source::file(label, text).place(text.len()..text.len());
+        let (key, fault) = (String::new(), Fault::NotUtf8);
+        Problems::new(vec![Problem { place, key, fault }])
+    })
+}

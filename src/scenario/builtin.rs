@@ -1,0 +1,29 @@
+//! The scenarios that are built in.
+
+use crate::words::UnknownWord;
+
+/// Name and text of every built-in scenario.
+const BUILTINS: [(&str, &str); 2] = [
+    ("paper", include_str!("../../data/scenarios/paper.toml")),
+    (
+        "regional",
+        include_str!("../../data/scenarios/regional.toml"),
+    ),
+];
+
+/// The names of the built-in scenarios.
+#[must_use]
+pub fn builtin_names() -> Vec<&'static str> {
+    BUILTINS.iter().map(|(name, _)| *name).collect()
+}
+
+/// The text of a built-in scenario.
+///
+/// # Errors
+/// [`UnknownWord`] with the names that there are and the nearest of them.
+pub fn builtin(name: &str) -> Result<&'static str, UnknownWord> {
+    let known = BUILTINS.iter().find(|(known, _)| *known == name);
+    known
+        .map(|(_, text)| *text)
+        .ok_or_else(|| UnknownWord::new(name, &builtin_names()))
+}

@@ -1,0 +1,55 @@
+//! The keys themselves, in the order in which they are written.
+
+mod search;
+mod setting;
+
+pub(in crate::scenario) use search::*;
+pub(in crate::scenario) use setting::*;
+
+use super::AnyKey;
+
+/// Every key, by section.
+pub(in crate::scenario) static KEYS: &[&dyn AnyKey] = &[
+    &NAME,
+    &REFERENCE_DESIGN,
+    &EPOCH,
+    &DURATION_H,
+    &STEP_S,
+    &SURFACE,
+    &MODEL,
+    &LATITUDE_DEG,
+    &LONGITUDE_DEG,
+    &STEP_DEG,
+    &WEIGHTS,
+    &POINTS,
+    &MASK_DEG,
+    &GNSS_MASK_DEG,
+    &MASK_TABLE,
+    &WEIGHTING,
+    &PDOP_CAP,
+    &CONSTELLATIONS,
+    &FILES,
+    &CLOCKS,
+    &MINIMIZE,
+    &CVAR_WEIGHT,
+    &CVAR_LEVEL,
+    &CONSTRAINTS,
+    &AVAILABILITY_PDOP,
+    &HYPERVOLUME_REFERENCE,
+    &PATTERN,
+    &PLANES,
+    &SATELLITES_PER_PLANE,
+    &INCLINATION_DEG,
+    &ALTITUDE_KM,
+    &PHASING,
+    &INCLINATION_STEP_DEG,
+    &ALTITUDE_STEP_KM,
+    &ALGORITHM,
+    &POPULATION,
+    &GENERATIONS,
+    &CROSSOVER_PROBABILITY,
+    &MUTATION_PROBABILITY,
+    &SEED,
+    &ORIGINATOR,
+    &CREATION_DATE,
+];

@@ -1,0 +1,181 @@
+//! What is wrong with a scenario, all of it at once.
+
+use std::fmt;
+
+use super::source::Place;
+use crate::search::ConstraintError;
+use crate::words::UnknownWord;
+
+/// Everything that is wrong with a scenario, in the order of the file and then of the `--set` arguments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problems(pub(super) Vec<Problem>);
+
+/// One thing that is wrong with a scenario.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// Where.
+    pub place: Place,
+    /// The key as `section.key`; empty where the text is not even TOML.
+    pub key: String,
+    /// What.
+    pub fault: Fault,
+}
+
+/// What is wrong with a key or its value.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Fault {
+    /// The file is not UTF-8.
+    #[error("the file is not UTF-8 text")]
+    NotUtf8,
+    /// The text is not TOML.
+    #[error("not TOML: {message}")]
+    Syntax {
+        /// What the TOML parser says.
+        message: String,
+    },
+    /// A `--set` argument without `=`.
+    #[error("expected key.path=value")]
+    NotAnAssignment,
+    /// There is no such key.
+    #[error("unknown key{} (choices: {})", did_you_mean(.nearest.as_deref()), .known.join(", "))]
+    UnknownKey {
+        /// The path of the key that was most likely meant.
+        nearest: Option<String>,
+        /// The keys of the same section, or the sections and keys at the top.
+        known: Vec<&'static str>,
+    },
+    /// A section is given a value, or `--set` names a section.
+    #[error("[{section}] is a section; set one of its keys: {}", .known.join(", "))]
+    NotASection {
+        /// The section.
+        section: &'static str,
+        /// Its keys.
+        known: Vec<&'static str>,
+    },
+    /// The value is of another type, or outside its range.
+    #[error("found {found}, expected {accepted}")]
+    NotAccepted {
+        /// The value as written.
+        found: String,
+        /// The accepted type, range and unit.
+        accepted: String,
+    },
+    /// The word is not one of the choices.
+    #[error(transparent)]
+    UnknownWord(#[from] UnknownWord),
+    /// The text is not a constraint.
+    #[error(transparent)]
+    Constraint(#[from] ConstraintError),
+    /// An element appears twice in a list.
+    #[error("{found} appears more than once")]
+    Repeated {
+        /// The element as written.
+        found: String,
+    },
+    /// An interval's limits are in the wrong order.
+    #[error("found {found}, but the low limit is above the high one")]
+    Reversed {
+        /// The interval as written.
+        found: String,
+    },
+    /// Longitudes that are not an interval eastwards.
+    #[error(
+        "found {found}, expected a span eastwards of 0 to 360 degrees \
+         ([160, -155] is [160, 205])"
+    )]
+    NotEastwards {
+        /// The interval as written.
+        found: String,
+    },
+    /// Two keys that exclude each other.
+    #[error("excluded by `{other}`; give one of them")]
+    Excluded {
+        /// The other key.
+        other: String,
+    },
+    /// More of something than a run can hold.
+    #[error("{count:.0} {what}, expected at most {most}")]
+    TooMany {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many there would be.
+        count: f64,
+        /// The bound.
+        most: u64,
+    },
+    /// A list that must be as long as another.
+    #[error("{found} numbers for {expected} objectives, expected one for each")]
+    Length {
+        /// Numbers given.
+        found: usize,
+        /// Objectives.
+        expected: usize,
+    },
+    /// A phasing that no design of the search can have.
+    #[error("the lowest phasing is {lowest}, but with at most {planes} planes it is at most {}", .planes.saturating_sub(1))]
+    PhasingAbovePlanes {
+        /// The lowest phasing.
+        lowest: u32,
+        /// The highest number of planes.
+        planes: u32,
+    },
+    /// A grid of poles alone, of which each weighs nothing.
+    #[error("every point is a pole and weighs nothing with \"cos-latitude\"")]
+    Weightless,
+}
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
+}
+
+impl Problems {
+    /// Sorts the problems into the order of the file and then of the arguments.
+    pub(super) fn new(mut problems: Vec<Problem>) -> Self {
+        problems.sort_by(|a, b| a.place.cmp(&b.place));
+        Self(problems)
+    }
+
+    /// The problems, at least one.
+    #[must_use]
+    pub fn as_slice(&self) -> &[Problem] {
+        &self.0
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: ", self.place)?;
+        if !self.key.is_empty() {
+            write!(f, "{}: ", self.key)?;
+        }
+        write!(f, "{}", self.fault)
+    }
+}
+
+impl fmt::Display for Problems {
+    /// One line for each problem, below it the source line with the part that is meant underlined.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let lines = self.0.iter().map(|problem| match problem.place {
+            Place::File { line, .. } => line,
+            Place::Argument { .. } => 0,
+        });
+        let width = lines.max().unwrap_or(0).to_string().len();
+        for (index, problem) in self.0.iter().enumerate() {
+            if index > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{problem}")?;
+            if let Place::File { line, excerpt, .. } = &problem.place {
+                let (text, offset) = (&excerpt.text, excerpt.offset);
+                let underline = "^".repeat(excerpt.length);
+                write!(f, "\n  {line:>width$} | {text}")?;
+                write!(f, "\n  {:>width$} | {:offset$}{underline}", "", "")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Problem {}
+impl std::error::Error for Problems {}

@@ -1,0 +1,75 @@
+//! Rules: what values a key accepts, how they are read, written and described.
+
+mod list;
+mod number;
+mod text;
+
+pub(super) use list::{Constraints, Numbers, OneOf, Paths, Skyline, SomeOf};
+pub(super) use number::{Eastward, Integer, Interval, Number, Steps};
+pub(super) use text::{Instant, Text};
+
+use std::ops::Range;
+
+use serde_json::Value as Json;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use super::problem::{Fault, Problem};
+use super::source::Source;
+
+/// A value with its span in its source.
+pub(super) type Node<'a> = Spanned<DeValue<'a>>;
+
+/// What values a key accepts.
+pub(super) trait Rule: Sync {
+    /// The validated value.
+    type Value;
+
+    /// Reads a value, or reports why not and gives `None`.
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Self::Value>;
+
+    /// The accepted type and range in words, to follow "expected".
+    fn accepted(&self) -> String;
+
+    /// The JSON schema of the value.
+    fn schema(&self) -> Json;
+
+    /// The value as canonical TOML, which [`Rule::read`] reads back as the same value.
+    fn write(&self, value: &Self::Value) -> String;
+}
+
+/// One value being read, and the problems met in it.
+pub(super) struct Reading<'r> {
+    pub(super) source: &'r Source<'r>,
+    pub(super) key: String,
+    pub(super) accepted: String,
+    pub(super) problems: &'r mut Vec<Problem>,
+}
+
+impl Reading<'_> {
+    pub(super) fn report(&mut self, span: Range<usize>, fault: impl Into<Fault>) {
+        self.problems.push(Problem {
+            place: self.source.place(span),
+            key: self.key.clone(),
+            fault: fault.into(),
+        });
+    }
+
+    /// Reports that the value is of another type or outside its range.
+    pub(super) fn refuse(&mut self, node: &Node<'_>) {
+        let fault = Fault::NotAccepted {
+            found: self.written(node),
+            accepted: self.accepted.clone(),
+        };
+        self.report(node.span(), fault);
+    }
+
+    /// The value as written; a table has no text of its own where its keys are dotted.
+    pub(super) fn written(&self, node: &Node<'_>) -> String {
+        if node.get_ref().is_table() {
+            "a table".to_owned()
+        } else {
+            self.source.written(node.span())
+        }
+    }
+}

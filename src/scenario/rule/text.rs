@@ -1,0 +1,120 @@
+//! Rules for texts and instants.
+
+use chrono::{DateTime, Datelike, SecondsFormat, Timelike, Utc};
+use serde_json::{Value as Json, json};
+use toml::de::DeValue;
+
+use super::{Node, Reading, Rule};
+use crate::scenario::number::toml_text;
+
+/// Longest text; a name becomes part of a path, where 255 bytes are the usual limit.
+const LONGEST: usize = 200;
+
+/// A text of a certain kind, never empty and without control characters.
+pub(in crate::scenario) enum Text {
+    /// Something that is safe as part of a file name everywhere.
+    Name,
+    /// Printable ASCII.
+    Ascii,
+    /// Anything.
+    Any,
+}
+
+impl Text {
+    fn accepts(&self, text: &str) -> bool {
+        let right_kind = match self {
+            Self::Name => {
+                text.starts_with(|c: char| c.is_ascii_alphanumeric())
+                    && text
+                        .chars()
+                        .all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
+            }
+            Self::Ascii => text.is_ascii(),
+            Self::Any => true,
+        };
+        let filled = !text.trim().is_empty() && text.len() <= LONGEST;
+        filled && right_kind && !text.contains(char::is_control)
+    }
+}
+
+impl Rule for Text {
+    type Value = String;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<String> {
+        let text = node.get_ref().as_str().filter(|text| self.accepts(text));
+        if text.is_none() {
+            reading.refuse(node);
+        }
+        text.map(str::to_owned)
+    }
+
+    fn accepted(&self) -> String {
+        let kind = match self {
+            Self::Name => {
+                "a text of letters, digits, '-', '_' and '.' that begins with a letter or digit"
+            }
+            Self::Ascii => "a text of printable ASCII",
+            Self::Any => "a text without control characters",
+        };
+        format!("{kind}, 1 to {LONGEST} bytes")
+    }
+
+    fn schema(&self) -> Json {
+        let pattern = match self {
+            Self::Name => "^[A-Za-z0-9][A-Za-z0-9._-]*$",
+            Self::Ascii => "^[ -~]*[!-~][ -~]*$",
+            Self::Any => r"^[^\u0000-\u001F\u007F-\u009F]+$",
+        };
+        json!({ "type": "string", "minLength": 1, "maxLength": LONGEST, "pattern": pattern })
+    }
+
+    fn write(&self, value: &String) -> String {
+        toml_text(value)
+    }
+}
+
+/// A UTC instant: RFC 3339 in a text, or a TOML date-time, both with `Z`.
+pub(in crate::scenario) struct Instant;
+
+impl Instant {
+    /// UTC begins in 1960; precession and nutation are those of the century around us.
+    const YEARS: std::ops::RangeInclusive<i32> = 1960..=2100;
+
+    fn parse(text: &str) -> Option<DateTime<Utc>> {
+        let instant = DateTime::parse_from_rfc3339(text).ok()?;
+        let in_utc = instant.offset().local_minus_utc() == 0;
+        // chrono holds a leap second as a second of more than 1e9 ns, which no arithmetic keeps.
+        let ordinary = instant.nanosecond() < 1_000_000_000;
+        let instant = instant.to_utc();
+        (in_utc && ordinary && Self::YEARS.contains(&instant.year())).then_some(instant)
+    }
+}
+
+impl Rule for Instant {
+    type Value = DateTime<Utc>;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<DateTime<Utc>> {
+        let instant = match node.get_ref() {
+            DeValue::String(text) => Self::parse(text),
+            DeValue::Datetime(datetime) => Self::parse(&datetime.to_string()),
+            _ => None,
+        };
+        if instant.is_none() {
+            reading.refuse(node);
+        }
+        instant
+    }
+
+    fn accepted(&self) -> String {
+        let (first, last) = (Self::YEARS.start(), Self::YEARS.end());
+        format!("a UTC instant such as \"2025-01-01T00:00:00Z\", years {first} to {last}")
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string", "format": "date-time", "pattern": "Z$" })
+    }
+
+    fn write(&self, value: &DateTime<Utc>) -> String {
+        toml_text(&value.to_rfc3339_opts(SecondsFormat::AutoSi, true))
+    }
+}

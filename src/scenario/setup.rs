@@ -1,0 +1,178 @@
+//! From a validated scenario to what the evaluator, the search and the optimisers take.
+
+use super::{Region, Scenario};
+use crate::constellation::gnss::System;
+use crate::constellation::{Design, NotationError};
+use crate::evaluate::{MetricOptions, Setup};
+use crate::ground::{self, GroundError, Site, sites_from_csv};
+use crate::optimize::Nsga2Config;
+use crate::search::{DesignSpace, Goals, LaunchCost};
+use crate::stats::{Level, LevelError};
+use crate::time::{Epoch, TimeError, TimeGrid};
+use crate::units::SECONDS_PER_HOUR;
+use crate::visibility::{Mask, MaskError};
+use std::io;
+use thiserror::Error;
+
+/// Why a scenario cannot be set up although each of its values is in range.
+#[derive(Debug, Error)]
+pub enum SetupError {
+    /// The points file cannot be read.
+    #[error("region.points: cannot read {file}")]
+    PointsFile {
+        /// The path as written.
+        file: String,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The points file is no list of points.
+    #[error("region.points: {file}")]
+    Points {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: GroundError,
+    },
+    /// The grid has no points.
+    #[error("region: {0}")]
+    Grid(#[from] GroundError),
+    /// The span has no samples.
+    #[error("time: {0}")]
+    Time(#[from] TimeError),
+    /// A mask out of range.
+    #[error("visibility: {0}")]
+    Mask(#[from] MaskError),
+    /// A tail level out of range.
+    #[error("objectives.cvar-level: {0}")]
+    Level(#[from] LevelError),
+    /// The reference design is no design.
+    #[error("reference-design: {0}")]
+    ReferenceDesign(#[from] NotationError),
+}
+
+impl Scenario {
+    /// The samples in time.
+    ///
+    /// # Errors
+    /// When the span has no sample or too many.
+    pub fn time_grid(&self) -> Result<TimeGrid, TimeError> {
+        let epoch = Epoch::from_utc(self.time.epoch);
+        TimeGrid::new(
+            epoch,
+            self.time.duration_h * SECONDS_PER_HOUR,
+            self.time.step_s,
+        )
+    }
+
+    /// The design that is validated when none is named.
+    ///
+    /// # Errors
+    /// When its notation describes no design.
+    pub fn reference_design(&self) -> Result<Design, SetupError> {
+        Ok(self.reference_design.parse()?)
+    }
+
+    /// Everything that an evaluation depends on. `read` gives the bytes of a file that the
+    /// scenario names, by the path as written.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or the values together leave no point or sample.
+    pub fn setup(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Setup, SetupError> {
+        Ok(Setup {
+            grid: self.time_grid()?,
+            sites: self.sites(read)?,
+            mask: Mask::from_degrees(self.visibility.mask_deg)?,
+            gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
+            gnss: self
+                .gnss
+                .constellations
+                .iter()
+                .copied()
+                .map(System::from)
+                .collect(),
+            clocks: self.gnss.clocks,
+            pdop_cap: self.visibility.pdop_cap,
+            model: self.propagation.model,
+            metrics: MetricOptions {
+                cvar_weight: self.objectives.cvar_weight,
+                cvar_level: Level::new(self.objectives.cvar_level)?,
+                availability_pdop: self.objectives.availability_pdop,
+            },
+        })
+    }
+
+    fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
+        let surface = self.earth.surface;
+        match &self.region {
+            Region::Grid(grid) => Ok(ground::Grid {
+                latitude_deg: grid.latitude_deg,
+                longitude_deg: grid.longitude_deg,
+                step_deg: grid.step_deg,
+                weights: grid.weights,
+            }
+            .sites(surface)?),
+            Region::Points { file } => {
+                let bytes = read(file).map_err(|source| SetupError::PointsFile {
+                    file: file.clone(),
+                    source,
+                })?;
+                sites_from_csv(bytes.as_slice(), surface).map_err(|source| SetupError::Points {
+                    file: file.clone(),
+                    source,
+                })
+            }
+        }
+    }
+
+    /// The designs among which is searched.
+    #[must_use]
+    pub fn design_space(&self) -> DesignSpace {
+        DesignSpace {
+            pattern: self.search.pattern,
+            planes: self.search.planes,
+            satellites_per_plane: self.search.satellites_per_plane,
+            inclination_deg: self.search.inclination_deg,
+            altitude_km: self.search.altitude_km,
+            phasing: self.search.phasing,
+        }
+    }
+
+    /// What is searched for.
+    #[must_use]
+    pub fn goals(&self) -> Goals {
+        Goals {
+            objectives: self.objectives.minimize.clone(),
+            constraints: self.objectives.constraints.clone(),
+            launch_cost: LaunchCost {
+                per_plane: 5.0,
+                per_1000_km: 0.2,
+            },
+        }
+    }
+
+    /// The hypervolume reference as the optimisers see it, every objective minimised.
+    #[must_use]
+    pub fn minimised_reference(&self) -> Option<Vec<f64>> {
+        let reference = self.objectives.hypervolume_reference.as_ref()?;
+        let objectives = self.objectives.minimize.iter();
+        Some(
+            objectives
+                .zip(reference)
+                .map(|(objective, &x)| objective.minimised(x))
+                .collect(),
+        )
+    }
+
+    /// The settings of NSGA-II.
+    #[must_use]
+    pub fn nsga2(&self) -> Nsga2Config {
+        Nsga2Config {
+            population: self.optimizer.population as usize,
+            generations: self.optimizer.generations as usize,
+            crossover_probability: self.optimizer.crossover_probability,
+            mutation_probability: self.optimizer.mutation_probability,
+            hypervolume_reference: self.minimised_reference(),
+            ..Nsga2Config::default()
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Properties over random input.
+
+use chrono::DateTime;
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::{select, subsequence};
+
+use super::parse;
+use crate::scenario::{
+    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer,
+    Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace, TimeSpan, Visibility,
+    Word, template,
+};
+
+fn word<T: Word + std::fmt::Debug>() -> impl Strategy<Value = T> {
+    select(T::ALL)
+}
+
+fn some<T: Word + std::fmt::Debug>(least: usize) -> impl Strategy<Value = Vec<T>> {
+    subsequence(T::ALL.to_vec(), least..=T::ALL.len()).prop_shuffle()
+}
+
+fn rising<T: Clone + PartialOrd + std::fmt::Debug>(
+    value: impl Strategy<Value = T> + Clone,
+) -> impl Strategy<Value = [T; 2]> {
+    (value.clone(), value).prop_map(|(a, b)| if a <= b { [a, b] } else { [b, a] })
+}
+
+/// A path with the characters that need escaping.
+fn file() -> impl Strategy<Value = String> {
+    "[a-z\"\\\\'#= /é]{0,12}\\.csv"
+}
+
+fn instant() -> impl Strategy<Value = DateTime<chrono::Utc>> {
+    // 1960-01-01 to 2100-12-31, in nanoseconds.
+    (-315_619_200_000_000_000..4_133_894_400_000_000_000_i64)
+        .prop_map(DateTime::from_timestamp_nanos)
+}
+
+fn region() -> impl Strategy<Value = Region> {
+    let grid = (
+        rising(-90.0..=90.0),
+        -360.0..=360.0,
+        0.0..=360.0,
+        [0.5..=360.0, 0.5..=360.0],
+        word(),
+    );
+    let grid = grid.prop_map(|(latitude_deg, west, span, step_deg, weights)| {
+        let east: f64 = west + span;
+        // Adding rounds; keep what a file could hold.
+        let east = if east - west > 360.0 { west } else { east };
+        Region::Grid(Grid {
+            latitude_deg,
+            longitude_deg: [west, east],
+            step_deg,
+            weights,
+        })
+    });
+    prop_oneof![grid, file().prop_map(|file| Region::Points { file })]
+}
+
+fn visibility() -> impl Strategy<Value = Visibility> {
+    let point = (0.0..360.0, 0.0..90.0);
+    let table = vec(point, 0..5).prop_map(|mut points: Vec<(f64, f64)>| {
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by_key(|point| point.0);
+        let point = |(azimuth_deg, mask_deg)| MaskPoint {
+            azimuth_deg,
+            mask_deg,
+        };
+        points.into_iter().map(point).collect()
+    });
+    (0.0..90.0, 0.0..90.0, table, word(), 1.01..1e20).prop_map(
+        |(mask_deg, gnss_mask_deg, mask_table, weighting, pdop_cap)| Visibility {
+            mask_deg,
+            gnss_mask_deg,
+            mask_table,
+            weighting,
+            pdop_cap,
+        },
+    )
+}
+
+fn gnss() -> impl Strategy<Value = GnssSetup> {
+    (some::<Preset>(0), vec(file(), 0..3), word()).prop_map(
+        |(constellations, mut files, clocks)| {
+            files.dedup();
+            files.truncate(2);
+            GnssSetup {
+                constellations,
+                files,
+                clocks,
+            }
+        },
+    )
+}
+
+fn objectives() -> impl Strategy<Value = Objectives> {
+    let constraint = (word::<Quantity>(), word::<Relation>(), -1e9..1e9).prop_map(
+        |(quantity, relation, bound)| Constraint {
+            quantity,
+            relation,
+            bound,
+        },
+    );
+    let scalars = (0.0..1e300, 0.001..0.999, 0.1..50.0);
+    let lists = (
+        some::<Quantity>(1),
+        vec(constraint, 0..4),
+        any::<bool>(),
+        -1e3..1e3,
+    );
+    (scalars, lists).prop_map(|((cvar_weight, cvar_level, availability_pdop), lists)| {
+        let (minimize, constraints, given, coordinate) = lists;
+        let usual: Option<Vec<f64>> = minimize
+            .iter()
+            .map(|quantity| quantity.default_reference())
+            .collect();
+        let reference = vec![coordinate; minimize.len()];
+        Objectives {
+            hypervolume_reference: if given { Some(reference) } else { usual },
+            minimize,
+            cvar_weight,
+            cvar_level,
+            constraints,
+            availability_pdop,
+        }
+    })
+}
+
+fn search() -> impl Strategy<Value = SearchSpace> {
+    let whole = (
+        rising(1..=300_u32),
+        rising(1..=300_u32),
+        rising(0..=400_u32),
+        word(),
+    );
+    let real = (
+        rising(0.0..=180.0),
+        rising(1.0..=100_000.0),
+        1.0..1e3,
+        1.0..1e3,
+    );
+    (whole, real).prop_map(
+        |((planes, satellites_per_plane, mut phasing, pattern), real)| {
+            let (inclination_deg, altitude_km, inclination_step_deg, altitude_step_km) = real;
+            phasing[0] = phasing[0].min(planes[1] - 1);
+            SearchSpace {
+                pattern,
+                planes,
+                satellites_per_plane,
+                inclination_deg,
+                altitude_km,
+                phasing,
+                inclination_step_deg,
+                altitude_step_km,
+            }
+        },
+    )
+}
+
+fn optimizer() -> impl Strategy<Value = Optimizer> {
+    // Exhaustive searches have a bound of their own on the search space.
+    let algorithm = select(vec![Algorithm::Nsga2, Algorithm::Mopso, Algorithm::Random]);
+    let numbers = (
+        4..=10_000_u32,
+        1..=1_000_000_u32,
+        0.0..=1.0,
+        0.0..=1.0,
+        any::<u64>(),
+    );
+    (algorithm, numbers).prop_map(|(algorithm, numbers)| {
+        let (population, generations, crossover_probability, mutation_probability, seed) = numbers;
+        Optimizer {
+            algorithm,
+            population,
+            generations,
+            crossover_probability,
+            mutation_probability,
+            seed,
+        }
+    })
+}
+
+fn scenario() -> impl Strategy<Value = Scenario> {
+    let texts = (
+        "[A-Za-z0-9][A-Za-z0-9._-]{0,20}",
+        "[a-z:/@\"\\\\é0-9]{1,20}",
+        "[!-~]{1,20}",
+    );
+    let time = (instant(), 0.1..8.0, 60.0..1e6).prop_map(|(epoch, duration_h, step_s)| TimeSpan {
+        epoch,
+        duration_h,
+        step_s,
+    });
+    let setting = (word(), word(), region(), visibility(), gnss());
+    let purpose = (objectives(), search(), optimizer(), instant());
+    (texts, time, setting, purpose).prop_map(|(texts, time, setting, purpose)| {
+        let (name, reference_design, originator) = texts;
+        let (surface, model, region, visibility, gnss) = setting;
+        let (objectives, search, optimizer, creation_date) = purpose;
+        Scenario {
+            name,
+            reference_design,
+            time,
+            earth: Earth { surface },
+            propagation: Propagation { model },
+            region,
+            visibility,
+            gnss,
+            objectives,
+            search,
+            optimizer,
+            export: Export {
+                originator,
+                creation_date,
+            },
+        }
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn canonical_text_parses_back_to_the_same_scenario(scenario in scenario()) {
+        let text = scenario.to_toml();
+        let back = parse(&text, &[]).map_err(|problems| TestCaseError::fail(problems.to_string()))?;
+        prop_assert_eq!(&back, &scenario);
+        prop_assert_eq!(back.to_toml(), text);
+        prop_assert_eq!(back.hash(), scenario.hash());
+    }
+
+    #[test]
+    fn arbitrary_bytes_are_a_scenario_or_problems(bytes in vec(any::<u8>(), 0..200)) {
+        check(&bytes, &[]);
+    }
+
+    #[test]
+    fn arbitrary_arguments_are_a_scenario_or_problems(argument in ".*", value in ".*") {
+        check(b"", &[&argument, &format!("region.points={value}"), &format!("time.epoch={value}")]);
+    }
+
+    #[test]
+    fn arbitrary_values_are_a_scenario_or_problems(
+        at in any::<prop::sample::Index>(),
+        value in prop_oneof![
+            "[-+0-9.eExXinf_]{1,12}", "\\[[-0-9., \\[\\]\"]{0,20}\\]", "\"[^\"\\\\\n]{0,12}\"",
+        ],
+    ) {
+        let template = template();
+        let mut lines: Vec<String> = template.lines().map(str::to_owned).collect();
+        let keys: Vec<usize> = (0..lines.len()).filter(|line| lines[*line].contains(" = ")).collect();
+        let line = &mut lines[keys[at.index(keys.len())]];
+        let name = line.split(" = ").next().unwrap_or_default().trim_start_matches("# ");
+        *line = format!("{name} = {value}");
+        check(lines.join("\n").as_bytes(), &[]);
+    }
+
+    #[test]
+    fn damaged_files_are_a_scenario_or_problems(
+        at in any::<prop::sample::Index>(),
+        length in 0..40_usize,
+        patch in vec(any::<u8>(), 0..8),
+    ) {
+        let mut bytes = template().into_bytes();
+        let from = at.index(bytes.len());
+        let to = (from + length).min(bytes.len());
+        bytes.splice(from..to, patch);
+        check(&bytes, &[]);
+    }
+}
+
+/// Bytes give a scenario that its own text gives again, or problems that can be shown.
+fn check(bytes: &[u8], overrides: &[&str]) {
+    match Scenario::parse("random.toml", bytes, overrides) {
+        Ok(scenario) => assert_eq!(parse(&scenario.to_toml(), &[]).unwrap(), scenario),
+        Err(problems) => {
+            assert!(!problems.as_slice().is_empty());
+            assert!(!problems.to_string().is_empty());
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The words of a scenario file that belong to no other module.
+
+use crate::words::words;
+
+words! {
+    /// How a line of sight counts in the least-squares solution behind a PDOP.
+    Weighting {
+        /// Every line of sight counts the same.
+        Unit = "unit",
+        /// A line of sight counts as the sine of its elevation.
+        SineElevation = "sine-elevation",
+    }
+}
+
+words! {
+    /// The strategy of the search.
+    Algorithm {
+        /// NSGA-II.
+        Nsga2 = "nsga2",
+        /// Multi-objective particle swarm.
+        Mopso = "mopso",
+        /// Uniform random sampling.
+        Random = "random",
+        /// Every design of the lattice that the steps span.
+        Exhaustive = "exhaustive",
+    }
+}

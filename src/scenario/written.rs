@@ -1,0 +1,245 @@
+//! The first stage: keys and values as written, in a file and then in `--set` arguments.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::rc::Rc;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::keys::{AnyKey, names, path, sections, table::KEYS};
+use super::problem::{Fault, Problem};
+use super::rule::Node;
+use super::source::{Source, printable};
+use crate::words::nearest;
+
+/// Characters of an unknown key repeated in a message.
+const LONGEST_KEY: usize = 60;
+
+/// The known keys that were given, the last one where several were.
+pub(super) struct Written<'a> {
+    file: Rc<Source<'a>>,
+    entries: BTreeMap<(&'static str, &'static str), Entry<'a>>,
+}
+
+/// One key as written.
+pub(super) struct Entry<'a> {
+    pub(super) source: Rc<Source<'a>>,
+    pub(super) value: Node<'a>,
+}
+
+/// Where a key is written, while it is being looked up.
+struct Site<'s, 'a> {
+    source: &'s Rc<Source<'a>>,
+    span: Range<usize>,
+}
+
+impl<'a> Written<'a> {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// What keeps the text from being TOML. Unknown keys go to `problems` instead, for the rest
+    /// of the file can still be checked.
+    pub(super) fn read(
+        label: &'a str,
+        text: &'a str,
+        problems: &mut Vec<Problem>,
+    ) -> Result<Self, Vec<Problem>> {
+        let file = Rc::new(Source::file(label, text));
+        let (document, errors) = DeTable::parse_recoverable(text);
+        if !errors.is_empty() {
+            let syntax = |error: &toml::de::Error| Problem {
+                place: file.place(error.span().unwrap_or_default()),
+                key: String::new(),
+                fault: Fault::Syntax {
+                    message: error.message().to_owned(),
+                },
+            };
+            return Err(errors.iter().map(syntax).collect());
+        }
+        let mut written = Self {
+            file: Rc::clone(&file),
+            entries: BTreeMap::new(),
+        };
+        for (key, value) in document.into_inner() {
+            let site = Site {
+                source: &file,
+                span: key.span(),
+            };
+            written.enter_top(key.get_ref(), value, &site, problems);
+        }
+        Ok(written)
+    }
+
+    /// Enters a key at the top of the file, which may be a section.
+    fn enter_top(
+        &mut self,
+        name: &str,
+        value: Node<'a>,
+        site: &Site<'_, 'a>,
+        problems: &mut Vec<Problem>,
+    ) {
+        let Some(section) = sections().into_iter().find(|section| *section == name) else {
+            return self.enter(("", name), value, site, problems);
+        };
+        let DeValue::Table(keys) = value.into_inner() else {
+            let known = names(section);
+            return site.report(problems, name, Fault::NotASection { section, known });
+        };
+        for (key, value) in keys {
+            let site = Site {
+                source: site.source,
+                span: key.span(),
+            };
+            self.enter((section, key.get_ref()), value, &site, problems);
+        }
+    }
+
+    fn enter(
+        &mut self,
+        (section, name): (&str, &str),
+        value: Node<'a>,
+        site: &Site<'_, 'a>,
+        problems: &mut Vec<Problem>,
+    ) {
+        let Some(key) = find(section, name) else {
+            return site.report(problems, &path(section, name), unknown(section, name));
+        };
+        let entry = Entry {
+            source: Rc::clone(site.source),
+            value,
+        };
+        self.entries.insert((key.section(), key.name()), entry);
+    }
+
+    /// Enters the `index`-th `--set` argument over what is there.
+    pub(super) fn override_with(
+        &mut self,
+        index: usize,
+        argument: &'a str,
+        problems: &mut Vec<Problem>,
+    ) {
+        let (key, text) = argument.split_once('=').unwrap_or((argument, ""));
+        let text = text.trim();
+        let source = Rc::new(Source::argument(index, argument, text));
+        let site = Site {
+            source: &source,
+            span: 0..text.len(),
+        };
+        let key = key.trim();
+        if !argument.contains('=') {
+            return site.report(problems, key, Fault::NotAnAssignment);
+        }
+        let value = match value(text) {
+            Ok(value) => value,
+            Err(fault) => return site.report(problems, key, fault),
+        };
+        let Some((section, name)) = key.split_once('.') else {
+            return self.enter_top(key, value, &site, problems);
+        };
+        for rival in superseded_by(section, name) {
+            if self
+                .entries
+                .get(rival)
+                .is_some_and(|entry| entry.source.is_file())
+            {
+                self.entries.remove(rival);
+            }
+        }
+        self.enter((section, name), value, &site, problems);
+    }
+
+    pub(super) fn entry(&self, key: &dyn AnyKey) -> Option<&Entry<'a>> {
+        self.entries.get(&(key.section(), key.name()))
+    }
+
+    /// A problem between several keys: at the first that a `--set` argument gives, else at the first
+    /// that the file gives.
+    pub(super) fn problem_between(&self, keys: &[&dyn AnyKey], fault: Fault) -> Problem {
+        let given = || {
+            keys.iter()
+                .filter_map(|key| Some((*key, self.entry(*key)?)))
+        };
+        let argument = given().find(|(_, entry)| !entry.source.is_file());
+        let (key, place) = match argument.or_else(|| given().next()) {
+            Some((key, entry)) => (key.path(), entry.source.place(entry.value.span())),
+            None => (String::new(), self.file.place(0..0)),
+        };
+        Problem { place, key, fault }
+    }
+}
+
+impl Site<'_, '_> {
+    fn report(&self, problems: &mut Vec<Problem>, key: &str, fault: Fault) {
+        problems.push(Problem {
+            place: self.source.place(self.span.clone()),
+            key: printable(key).take(LONGEST_KEY).collect(),
+            fault,
+        });
+    }
+}
+
+/// The keys of a file that a `--set` of another key replaces: the one or the other describes the
+/// points, and a reference point belongs to its list of objectives.
+fn superseded_by(section: &str, name: &str) -> &'static [(&'static str, &'static str)] {
+    match (section, name) {
+        ("region", "points") => &[
+            ("region", "latitude-deg"),
+            ("region", "longitude-deg"),
+            ("region", "step-deg"),
+            ("region", "weights"),
+        ],
+        ("region", "latitude-deg" | "longitude-deg" | "step-deg" | "weights") => {
+            &[("region", "points")]
+        }
+        ("objectives", "minimize") => &[("objectives", "hypervolume-reference")],
+        _ => &[],
+    }
+}
+
+/// A TOML value, or the text itself where it does not look like anything else.
+fn value(text: &str) -> Result<Node<'_>, Fault> {
+    match DeValue::parse(text) {
+        Ok(value) => Ok(value),
+        Err(error) if text.starts_with(['[', '{', '"', '\'']) => {
+            let message = format!("{} (words in a list are quoted)", error.message());
+            Err(Fault::Syntax { message })
+        }
+        Err(_) => Ok(Spanned::new(0..text.len(), DeValue::String(text.into()))),
+    }
+}
+
+fn find(section: &str, name: &str) -> Option<&'static dyn AnyKey> {
+    let same = |key: &&&dyn AnyKey| key.section() == section && key.name() == name;
+    KEYS.iter().find(same).copied()
+}
+
+/// The fault of a key that is not there, with the key that was most likely meant: the same name in
+/// another section, a similar name in this one, a similar name anywhere, or a similar section.
+fn unknown(section: &str, name: &str) -> Fault {
+    let mut known = names(section);
+    if known.is_empty() || section.is_empty() {
+        known.extend(sections());
+    }
+    let section_is_known = section.is_empty() || sections().contains(&section);
+    let candidates = if section_is_known {
+        known.clone()
+    } else {
+        Vec::new()
+    };
+    let elsewhere = |name: &str| {
+        KEYS.iter()
+            .find(|key| key.name() == name)
+            .map(|key| key.path())
+    };
+    let everywhere: Vec<&str> = KEYS.iter().map(|key| key.name()).collect();
+    let nearest = elsewhere(name)
+        .or_else(|| nearest(name, &candidates).map(|name| path(section, name)))
+        .or_else(|| nearest(name, &everywhere).and_then(elsewhere))
+        .or_else(|| {
+            nearest(section, &sections())
+                .filter(|_| !section_is_known)
+                .map(str::to_owned)
+        });
+    Fault::UnknownKey { nearest, known }
+}

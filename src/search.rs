@@ -1,0 +1,261 @@
+//! The one adapter between the optimisers, which know vectors, and the evaluator, which knows
+//! designs.
+
+mod constraint;
+mod quantity;
+
+pub use constraint::{Constraint, ConstraintError, Relation};
+pub use quantity::{LaunchCost, Quantity};
+
+use crate::constellation::{Design, DesignError, Pattern};
+use crate::evaluate::{Evaluator, Metrics};
+use crate::optimize::{Evaluation, Kind, OptimizeError, Problem, Space, Variable};
+use crate::units::round_decimal;
+use rayon::prelude::*;
+
+/// Decimals of a degree to which a search resolves inclination: the last digit of a TLE.
+const INCLINATION_DECIMALS: usize = 4;
+
+/// Decimals of a kilometre to which a search resolves altitude: one metre.
+const ALTITUDE_DECIMALS: usize = 3;
+
+/// Positions of the variables in a genome.
+const PLANES: usize = 0;
+const PER_PLANE: usize = 1;
+const INCLINATION: usize = 2;
+const ALTITUDE: usize = 3;
+const PHASING: usize = 4;
+
+/// The designs among which is searched; every interval includes its limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DesignSpace {
+    /// The pattern of all designs.
+    pub pattern: Pattern,
+    /// Planes.
+    pub planes: [u32; 2],
+    /// Satellites in a plane.
+    pub satellites_per_plane: [u32; 2],
+    /// Inclination, degrees.
+    pub inclination_deg: [f64; 2],
+    /// Altitude over the equatorial radius, km.
+    pub altitude_km: [f64; 2],
+    /// Phasing F, or `N_c` of a lattice; cut at P - 1.
+    pub phasing: [u32; 2],
+}
+
+impl DesignSpace {
+    /// The space of the vectors (P, S, i, h, F).
+    ///
+    /// # Errors
+    /// When an interval is reversed.
+    pub fn vectors(&self) -> Result<Space, OptimizeError> {
+        let integer = |name: &str, [lo, hi]: [u32; 2]| Variable {
+            name: name.to_owned(),
+            kind: Kind::Integer {
+                lo: lo.into(),
+                hi: hi.into(),
+            },
+        };
+        let real = |name: &str, [lo, hi]: [f64; 2]| Variable {
+            name: name.to_owned(),
+            kind: Kind::Real { lo, hi },
+        };
+        Space::new(vec![
+            integer("planes", self.planes),
+            integer("satellites-per-plane", self.satellites_per_plane),
+            real("inclination-deg", self.inclination_deg),
+            real("altitude-km", self.altitude_km),
+            integer("phasing", self.phasing),
+        ])
+    }
+
+    /// Cuts the phasing at P - 1, and brings inclination and altitude to their resolution, so that
+    /// a design is written in few digits and equal designs are equal vectors.
+    fn repair(&self, genome: &mut [f64]) {
+        genome[PHASING] = genome[PHASING].min(genome[PLANES] - 1.0);
+        let [south, north] = self.inclination_deg;
+        genome[INCLINATION] =
+            round_decimal(genome[INCLINATION], INCLINATION_DECIMALS).clamp(south, north);
+        let [low, high] = self.altitude_km;
+        genome[ALTITUDE] = round_decimal(genome[ALTITUDE], ALTITUDE_DECIMALS).clamp(low, high);
+    }
+
+    /// The design of a vector.
+    ///
+    /// # Errors
+    /// When the vector is no design, which a repaired vector of [`Self::vectors`] always is.
+    pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
+        let count = |n: usize| genome[n] as usize;
+        let satellites = count(PLANES) * count(PER_PLANE);
+        Design::new(
+            self.pattern,
+            (satellites, count(PLANES), count(PHASING)),
+            genome[INCLINATION],
+            genome[ALTITUDE],
+        )
+    }
+}
+
+/// What a search is for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Goals {
+    /// Quantities to optimise, each in its own direction.
+    pub objectives: Vec<Quantity>,
+    /// Bounds that a feasible design keeps.
+    pub constraints: Vec<Constraint>,
+    /// Parameters of the launch cost.
+    pub launch_cost: LaunchCost,
+}
+
+/// A design problem as the optimisers see it.
+pub struct DesignProblem<'a> {
+    evaluator: &'a Evaluator,
+    designs: DesignSpace,
+    space: Space,
+    goals: Goals,
+    names: Vec<String>,
+}
+
+impl<'a> DesignProblem<'a> {
+    /// The search for `goals` among `designs`.
+    ///
+    /// # Errors
+    /// When an interval of the space is reversed.
+    pub fn new(
+        evaluator: &'a Evaluator,
+        designs: DesignSpace,
+        goals: Goals,
+    ) -> Result<Self, OptimizeError> {
+        let space = designs.vectors()?;
+        let names = goals.objectives.iter().map(ToString::to_string).collect();
+        Ok(Self {
+            evaluator,
+            designs,
+            space,
+            goals,
+            names,
+        })
+    }
+
+    /// What the search is for.
+    #[must_use]
+    pub fn goals(&self) -> &Goals {
+        &self.goals
+    }
+
+    /// The designs among which is searched.
+    #[must_use]
+    pub fn designs(&self) -> &DesignSpace {
+        &self.designs
+    }
+
+    /// A design and its metrics, for a vector of the space; `None` when it cannot be flown.
+    #[must_use]
+    pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
+        let design = self.designs.design(genome).ok()?;
+        let metrics = self.evaluator.design(&design).ok()?;
+        Some((design, metrics))
+    }
+
+    fn answer(&self, genome: &[f64]) -> Evaluation {
+        let Some((design, metrics)) = self.evaluated(genome) else {
+            let objectives = vec![f64::INFINITY; self.goals.objectives.len()];
+            return Evaluation {
+                objectives,
+                violation: 2.0,
+            };
+        };
+        let value = |quantity: Quantity| quantity.value(&design, &metrics, &self.goals.launch_cost);
+        let mut violation: f64 = self
+            .goals
+            .constraints
+            .iter()
+            .map(|c| c.violation(value(c.quantity)))
+            .sum();
+        // A design with unsolved samples is infeasible for what is made of PDOP.
+        if self
+            .goals
+            .objectives
+            .iter()
+            .any(|objective| objective.needs_solution())
+        {
+            violation += 1.0 - metrics.solved_fraction;
+        }
+        let minimised = |objective: &Quantity| match value(*objective) {
+            Some(value) => objective.minimised(value),
+            None => f64::INFINITY,
+        };
+        let objectives: Vec<f64> = self.goals.objectives.iter().map(minimised).collect();
+        if objectives.iter().any(|objective| objective.is_infinite()) {
+            violation = violation.max(1.0);
+        }
+        Evaluation {
+            objectives,
+            violation,
+        }
+    }
+}
+
+impl Problem for DesignProblem<'_> {
+    fn space(&self) -> &Space {
+        &self.space
+    }
+
+    fn objective_names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn repair(&self, genome: &mut [f64]) {
+        self.designs.repair(genome);
+    }
+
+    /// In parallel over the designs; the answers come back in the order of the batch.
+    fn evaluate(&self, batch: &[Vec<f64>]) -> Vec<Evaluation> {
+        batch.par_iter().map(|genome| self.answer(genome)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn space() -> DesignSpace {
+        DesignSpace {
+            pattern: Pattern::Delta,
+            planes: [3, 15],
+            satellites_per_plane: [11, 15],
+            inclination_deg: [40.0, 60.0],
+            altitude_km: [400.0, 1000.0],
+            phasing: [0, 14],
+        }
+    }
+
+    #[test]
+    fn vectors_become_short_designs() {
+        let mut genome = vec![3.0, 11.0, 43.827_364_651, 999.999_96, 14.0];
+        space().repair(&mut genome);
+        let design = space().design(&genome).unwrap();
+        assert_eq!(design.to_string(), "delta:43.8274:33/3/2@1000");
+        let before = genome.clone();
+        space().repair(&mut genome);
+        assert_eq!(genome, before);
+    }
+
+    #[test]
+    fn constraints_measure_how_far() {
+        let at_most = Constraint {
+            quantity: Quantity::MaxPdop,
+            relation: Relation::AtMost,
+            bound: 2.0,
+        };
+        assert_eq!(at_most.violation(Some(2.0)), 0.0);
+        assert_eq!(at_most.violation(Some(3.0)), 0.5);
+        assert_eq!(at_most.violation(None), 1.0);
+        let at_least = Constraint {
+            quantity: Quantity::Availability,
+            relation: Relation::AtLeast,
+            bound: 0.75,
+        };
+        assert_eq!(at_least.violation(Some(0.5)), 0.25);
+    }
+}

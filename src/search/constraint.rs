@@ -1,0 +1,100 @@
+//! Bounds that a feasible design keeps, written like `max-pdop <= 2.5`.
+
+use std::fmt;
+use std::str::FromStr;
+
+use super::Quantity;
+use crate::words::{UnknownWord, Word, words};
+
+words! {
+    /// The side of its bound on which a constrained quantity must stay.
+    Relation {
+        /// The quantity is at most the bound.
+        AtMost = "<=",
+        /// The quantity is at least the bound.
+        AtLeast = ">=",
+    }
+}
+
+/// A bound that a feasible design keeps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Constraint {
+    /// What is bounded.
+    pub quantity: Quantity,
+    /// On which side.
+    pub relation: Relation,
+    /// The bound, in the unit of the quantity.
+    pub bound: f64,
+}
+
+/// Why a text is not a constraint.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConstraintError {
+    /// There is neither `<=` nor `>=` in it.
+    #[error(
+        "found {found:?}, expected a quantity, <= or >=, and a number, as in \"max-pdop <= 2.5\""
+    )]
+    NoRelation {
+        /// The text as written.
+        found: String,
+    },
+    /// The quantity is not known.
+    #[error(transparent)]
+    UnknownQuantity(#[from] UnknownWord),
+    /// The bound is not a finite number.
+    #[error("found the bound {found:?}, expected a finite number")]
+    Bound {
+        /// The bound as written.
+        found: String,
+    },
+}
+
+impl Constraint {
+    /// How far a value is from keeping the bound, relative to the bound (absolute for bounds
+    /// below 1); 1 for a value that does not exist.
+    #[must_use]
+    pub fn violation(&self, value: Option<f64>) -> f64 {
+        let Some(value) = value else { return 1.0 };
+        let excess = match self.relation {
+            Relation::AtMost => value - self.bound,
+            Relation::AtLeast => self.bound - value,
+        };
+        excess.max(0.0) / self.bound.abs().max(1.0)
+    }
+}
+
+impl FromStr for Constraint {
+    type Err = ConstraintError;
+
+    fn from_str(text: &str) -> Result<Self, ConstraintError> {
+        let split = |relation: &Relation| Some((*relation, text.split_once(relation.word())?));
+        let (relation, (quantity, bound)) =
+            Relation::ALL
+                .iter()
+                .find_map(split)
+                .ok_or_else(|| ConstraintError::NoRelation {
+                    found: text.to_owned(),
+                })?;
+        let bound = bound.trim();
+        let number = bound.parse().ok().filter(|number: &f64| number.is_finite());
+        Ok(Self {
+            quantity: quantity.trim().parse()?,
+            relation,
+            // Adding zero turns -0 into 0, so that equal bounds are written alike.
+            bound: number.ok_or_else(|| ConstraintError::Bound {
+                found: bound.to_owned(),
+            })? + 0.0,
+        })
+    }
+}
+
+impl fmt::Display for Constraint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            quantity,
+            relation,
+            bound,
+        } = self;
+        write!(f, "{quantity} {relation} {}", bound)
+    }
+}

@@ -1,0 +1,95 @@
+//! The quantities that a search can optimise or bound, by name.
+
+use crate::constellation::Design;
+use crate::evaluate::Metrics;
+use crate::words::words;
+
+words! {
+    /// A number that a design has.
+    Quantity {
+        /// Mean PDOP + λ CVaR; without unit, minimised (equation 8 of the paper).
+        JPos = "j-pos",
+        /// Satellites per visible satellite; without unit, minimised (equation 9).
+        JCost = "j-cost",
+        /// Mean PDOP; without unit, minimised.
+        MeanPdop = "mean-pdop",
+        /// Mean of the worst share of PDOP; without unit, minimised.
+        CvarPdop = "cvar-pdop",
+        /// Largest PDOP; without unit, minimised.
+        MaxPdop = "max-pdop",
+        /// Satellites T; minimised.
+        Satellites = "satellites",
+        /// Planes P; minimised.
+        Planes = "planes",
+        /// Mean number of visible LEO satellites; maximised.
+        MeanVisible = "mean-visible",
+        /// Share of samples whose PDOP is at most the availability threshold; maximised.
+        Availability = "availability",
+        /// Relative cost of bringing the satellites up; minimised.
+        LaunchCost = "launch-cost",
+    }
+}
+
+/// Parameters of the relative launch cost: T (1 + c_h h/1000 km) + c_P P, in satellites.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LaunchCost {
+    /// c_P, cost of opening one plane, in satellites.
+    pub per_plane: f64,
+    /// c_h, share that a satellite costs more for each 1000 km of altitude.
+    pub per_1000_km: f64,
+}
+
+impl Quantity {
+    /// Whether more of it is better.
+    #[must_use]
+    pub fn is_maximised(self) -> bool {
+        matches!(self, Self::MeanVisible | Self::Availability)
+    }
+
+    /// The coordinate of the hypervolume's reference point when none is given.
+    #[must_use]
+    pub fn default_reference(self) -> Option<f64> {
+        match self {
+            Self::JPos => Some(2.0),
+            Self::JCost => Some(22.0),
+            _ => None,
+        }
+    }
+
+    /// Whether it is a statistic of the solved samples, so that unsolved ones would flatter it.
+    #[must_use]
+    pub fn needs_solution(self) -> bool {
+        matches!(
+            self,
+            Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop
+        )
+    }
+
+    /// The value as an optimiser minimises it; the same map leads back.
+    #[must_use]
+    pub fn minimised(self, value: f64) -> f64 {
+        if self.is_maximised() { -value } else { value }
+    }
+
+    /// The value of a design; `None` when there is none, as for PDOP without a solution.
+    #[must_use]
+    pub fn value(self, design: &Design, metrics: &Metrics, cost: &LaunchCost) -> Option<f64> {
+        let satellites = design.satellite_count() as f64;
+        let planes = design.planes() as f64;
+        match self {
+            Self::JPos => metrics.j_pos,
+            Self::JCost => metrics.j_cost,
+            Self::MeanPdop => metrics.mean_pdop,
+            Self::CvarPdop => metrics.cvar_pdop,
+            Self::MaxPdop => metrics.max_pdop,
+            Self::Satellites => Some(satellites),
+            Self::Planes => Some(planes),
+            Self::MeanVisible => Some(metrics.mean_visible),
+            Self::Availability => Some(metrics.availability),
+            Self::LaunchCost => {
+                let lift = 1.0 + cost.per_1000_km * design.altitude_km() / 1000.0;
+                Some(satellites * lift + cost.per_plane * planes)
+            }
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Differences of two trajectories of the same satellites in radial, in-track, cross-track axes.
+
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::ric_basis;
+use crate::stats::line_fit;
+use crate::units::SECONDS_PER_DAY;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// A number for each axis of the RIC basis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Ric {
+    /// Along the position vector.
+    pub radial: f64,
+    /// Along C × R, forwards.
+    pub in_track: f64,
+    /// Along the orbit normal.
+    pub cross_track: f64,
+}
+
+impl Ric {
+    fn from_vector(v: Vector3<f64>) -> Self {
+        Self {
+            radial: v.x,
+            in_track: v.y,
+            cross_track: v.z,
+        }
+    }
+}
+
+/// Where the largest difference was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Worst {
+    /// Name of the satellite.
+    pub satellite: String,
+    /// Seconds since the epoch of the grid.
+    pub elapsed_s: f64,
+    /// Size of the difference, km.
+    pub distance_km: f64,
+}
+
+/// One line of an error budget: second trajectory minus first, over every satellite and sample.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BudgetLine {
+    /// What is compared: `first/second`.
+    pub case: String,
+    /// What the difference consists of.
+    pub cause: String,
+    /// Root mean square, km.
+    pub rms_km: Ric,
+    /// Largest size, km.
+    pub max_km: Ric,
+    /// Slope of the straight line through the mean of the constellation, km/day.
+    pub growth_km_per_day: Ric,
+    /// Where the largest difference was found.
+    pub worst: Worst,
+}
+
+/// The sums of one instant, over the satellites.
+struct Instant {
+    elapsed_s: f64,
+    sum: Vector3<f64>,
+    squares: Vector3<f64>,
+    largest: Vector3<f64>,
+    worst: (f64, usize),
+}
+
+fn instant(
+    first: &Ephemeris,
+    second: &Ephemeris,
+    elapsed_s: f64,
+) -> Result<Instant, EphemerisError> {
+    let mut sums = Instant {
+        elapsed_s,
+        sum: Vector3::zeros(),
+        squares: Vector3::zeros(),
+        largest: Vector3::zeros(),
+        worst: (-1.0, 0),
+    };
+    for (n, (a, b)) in first
+        .satellites()
+        .iter()
+        .zip(second.satellites())
+        .enumerate()
+    {
+        let (a, b) = (first.state(a, elapsed_s)?, second.state(b, elapsed_s)?);
+        // A closed orbit above the ground never moves along its position vector.
+        let Some(basis) = ric_basis(&a) else { continue };
+        let apart = basis * (b.position_km - a.position_km);
+        sums.sum += apart;
+        sums.squares += apart.component_mul(&apart);
+        sums.largest = sums.largest.sup(&apart.abs());
+        if apart.norm() > sums.worst.0 {
+            sums.worst = (apart.norm(), n);
+        }
+    }
+    Ok(sums)
+}
+
+/// The differences of `second` from `first` in the RIC basis of `first`, satellite by satellite in
+/// the order of both, over the grid of `first`.
+///
+/// # Errors
+/// When a satellite of either cannot be propagated.
+pub fn compare(
+    (case, cause): (&str, &str),
+    first: &Ephemeris,
+    second: &Ephemeris,
+) -> Result<BudgetLine, EphemerisError> {
+    let times: Vec<f64> = first.grid().iter().collect();
+    // Collected in the order of time: the sums below do not depend on the threads.
+    let instants = times
+        .par_iter()
+        .map(|&elapsed_s| instant(first, second, elapsed_s))
+        .collect::<Result<Vec<_>, _>>()?;
+    let satellites = first.satellites().len().min(second.satellites().len()) as f64;
+    let mut squares = Vector3::zeros();
+    let mut largest = Vector3::zeros();
+    let mut worst = (-1.0, 0, 0.0);
+    for at in &instants {
+        squares += at.squares;
+        largest = largest.sup(&at.largest);
+        if at.worst.0 > worst.0 {
+            worst = (at.worst.0, at.worst.1, at.elapsed_s);
+        }
+    }
+    let days: Vec<f64> = instants
+        .iter()
+        .map(|at| at.elapsed_s / SECONDS_PER_DAY)
+        .collect();
+    let slope = |axis: usize| {
+        let means: Vec<f64> = instants
+            .iter()
+            .map(|at| at.sum[axis] / satellites)
+            .collect();
+        line_fit(&days, &means).map_or(0.0, |(_, slope)| slope)
+    };
+    Ok(BudgetLine {
+        case: case.to_owned(),
+        cause: cause.to_owned(),
+        rms_km: Ric::from_vector((squares / (satellites * instants.len() as f64)).map(f64::sqrt)),
+        max_km: Ric::from_vector(largest),
+        growth_km_per_day: Ric {
+            radial: slope(0),
+            in_track: slope(1),
+            cross_track: slope(2),
+        },
+        worst: Worst {
+            satellite: first.satellites()[worst.1].name.clone(),
+            elapsed_s: worst.2,
+            distance_km: worst.0,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constellation::Design;
+    use crate::ephemeris::Flown;
+    use crate::orbit::j2::{SecularOrbit, SecularRates};
+    use crate::time::{Epoch, TimeGrid};
+
+    fn grid() -> TimeGrid {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        TimeGrid::new(epoch, SECONDS_PER_DAY, 600.0).unwrap()
+    }
+
+    /// A mean motion that is off by δ drifts by a δ t: growth, maximum and RMS are those of a ramp.
+    #[test]
+    fn validate_a_known_drift() {
+        let design: Design = "delta:55:6/3/1@925".parse().unwrap();
+        let drift_km_per_day = 2.0;
+        let fly = |extra_rad_s: f64| {
+            let satellites = design.satellites().into_iter().map(|satellite| {
+                let mut rates = SecularRates::j2(&satellite.elements);
+                rates.mean_anomaly_rad_s += extra_rad_s;
+                Flown {
+                    name: satellite.slot.to_string(),
+                    slot: Some(satellite.slot),
+                    propagator: Box::new(SecularOrbit::new(&satellite.elements, rates)),
+                }
+            });
+            Ephemeris::new(grid(), satellites.collect())
+        };
+        let extra = drift_km_per_day / SECONDS_PER_DAY / (crate::earth::RADIUS_KM + 925.0);
+        let line = compare(("a/b", "ramp"), &fly(0.0), &fly(extra)).unwrap();
+        // The chord is shorter than the arc by 2³/(24 a²) = 6e-9 km.
+        assert!((line.growth_km_per_day.in_track - drift_km_per_day).abs() < 1e-6);
+        let last_day = 143.0 / 144.0;
+        assert!((line.max_km.in_track - drift_km_per_day * last_day).abs() < 1e-6);
+        // RMS of a ramp of 144 samples: sqrt(Σ k²/n) with Σ_{k<n} k² = (n-1) n (2n-1) / 6
+        let rms = drift_km_per_day / 144.0 * (143.0_f64 * 287.0 / 6.0).sqrt();
+        assert!((line.rms_km.in_track - rms).abs() < 1e-6);
+        // r × v leans from the plane by Ω' sin i / n = 6e-4 rad, as the plane itself turns.
+        assert!(line.max_km.cross_track < 2.0 * 1e-3);
+        assert_eq!(line.worst.elapsed_s, 85_800.0);
+    }
+}
