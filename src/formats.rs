@@ -12,6 +12,7 @@ mod lines;
 pub mod manifest;
 pub mod metadata;
 pub mod oem;
+pub mod sampled;
 pub mod stamp;
 pub mod tle;
 pub mod trajectory;

@@ -3,8 +3,9 @@
 //! A table of positions and velocities is read between its lines by a polynomial. The file
 //! names its degree; here is measured which degree the step of the study needs.
 
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
-use crate::frames::{Frame, State, from_teme};
+use super::sampled::Sampled;
+use crate::ephemeris::{EphemerisError, Flown};
+use crate::frames::State;
 use nalgebra::Vector3;
 
 /// Error that the chosen degree keeps to where it can, km: the centimetre to which files are
@@ -28,16 +29,15 @@ pub struct Hermite {
 
 impl Hermite {
     /// The lowest degree from 7 whose error is below a centimetre, or the best up to 15,
-    /// measured on the states of one satellite in `frame`. None if there is only one sample.
+    /// measured on the states of one satellite. None if there is only one sample.
     ///
     /// # Errors
     /// When the satellite cannot be propagated.
     pub fn measured(
-        ephemeris: &Ephemeris,
+        sampled: &Sampled<'_>,
         satellite: &Flown,
-        frame: Frame,
     ) -> Result<Option<Self>, EphemerisError> {
-        let samples = ephemeris.grid().len();
+        let samples = sampled.grid().len();
         if samples < 2 {
             return Ok(None);
         }
@@ -45,7 +45,7 @@ impl Hermite {
         for nodes in NODES.map(|nodes| nodes.min(samples)) {
             let found = Self {
                 degree: 2 * nodes - 1,
-                max_error_km: max_error_km(ephemeris, satellite, frame, nodes)?,
+                max_error_km: max_error_km(sampled, satellite, nodes)?,
             };
             if best.is_none_or(|best| found.max_error_km < best.max_error_km) {
                 best = Some(found);
@@ -60,16 +60,12 @@ impl Hermite {
 
 /// Largest distance between the interpolated and the true position, halfway between samples.
 fn max_error_km(
-    ephemeris: &Ephemeris,
+    sampled: &Sampled<'_>,
     satellite: &Flown,
-    frame: Frame,
     nodes: usize,
 ) -> Result<f64, EphemerisError> {
-    let grid = ephemeris.grid();
-    let state = |elapsed_s: f64| {
-        let teme = ephemeris.state(satellite, elapsed_s)?;
-        Ok(from_teme(teme, frame, grid.epoch(), elapsed_s))
-    };
+    let grid = sampled.grid();
+    let state = |elapsed_s: f64| sampled.state(satellite, elapsed_s);
     let last = grid.len() - 1;
     let count = last.min(INTERVALS);
     let mut max_km = 0.0_f64;
@@ -128,6 +124,8 @@ pub fn hermite_position(table: &[(f64, State)], at_s: f64) -> Vector3<f64> {
 mod tests {
     use super::*;
     use crate::constellation::Design;
+    use crate::ephemeris::Ephemeris;
+    use crate::frames::Frame;
     use crate::orbit::Model;
     use crate::time::{Epoch, TimeGrid};
 
@@ -151,7 +149,8 @@ mod tests {
         let grid = TimeGrid::new(epoch, 86_400.0, step_s).unwrap();
         let design: Design = "delta:55:6/3/1@925".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        Hermite::measured(&ephemeris, &ephemeris.satellites()[0], frame)
+        let sampled = Sampled::new(&ephemeris, frame);
+        Hermite::measured(&sampled, &ephemeris.satellites()[0])
             .unwrap()
             .unwrap()
     }

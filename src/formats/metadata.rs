@@ -13,9 +13,6 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Who a file says it comes from.
-pub const ORIGINATOR: &str = "NAVWALKER";
-
 /// A catalogue or designator number that has no place in the formats.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum IdentityError {
@@ -211,6 +208,8 @@ impl fmt::Display for Theory {
 /// What a file says of its content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
+    /// Who made the file.
+    pub originator: String,
     /// When the file says it was made: the epoch of the scenario, so that equal runs give
     /// equal bytes.
     pub creation: Epoch,
@@ -319,6 +318,7 @@ mod tests {
     fn comments_fit_a_line_of_ccsds() {
         for frame in [Frame::Teme, Frame::Eme2000, Frame::Gcrf, Frame::EarthFixed] {
             let metadata = Metadata {
+                originator: "NAVWALKER".to_owned(),
                 creation: epoch(),
                 frame,
                 time_system: TimeSystem::Utc,

@@ -10,32 +10,25 @@ pub use read::{parse, read};
 
 use super::WriteError;
 use super::interpolation::Hermite;
-use super::metadata::{Metadata, ORIGINATOR, Object};
+use super::metadata::{Metadata, Object};
+use super::sampled::Sampled;
 use super::stamp::{SecondDigits, calendar};
-use super::trajectory::{Trajectory, TrajectoryError, frame_of_name};
-use crate::ephemeris::{Ephemeris, Flown};
-use crate::frames::{Frame, State, from_teme};
+use super::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
+use crate::ephemeris::Flown;
+use crate::frames::{Frame, State};
+use crate::time::TimeGrid;
+use crate::words::words;
 use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
 
-/// A version of the message.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Version {
-    /// 2.0, CCSDS 502.0-B-2: what most readers know.
-    V2,
-    /// 3.0, CCSDS 502.0-B-3.
-    V3,
-}
-
-impl Version {
-    /// The number in the file.
-    #[must_use]
-    pub fn number(self) -> &'static str {
-        match self {
-            Self::V2 => "2.0",
-            Self::V3 => "3.0",
-        }
+words! {
+    /// A version of the message.
+    Version {
+        /// CCSDS 502.0-B-2: what most readers know.
+        V2 = "2.0",
+        /// CCSDS 502.0-B-3.
+        V3 = "3.0",
     }
 }
 
@@ -165,7 +158,7 @@ impl Segment {
                 center: metadata.center_name.clone(),
             });
         }
-        let time_system: super::stamp::TimeSystem = metadata.time_system.parse()?;
+        let time_system = time_system_of_name(&metadata.time_system)?;
         let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
         Ok(Trajectory {
             name: metadata.object_name.clone(),
@@ -178,8 +171,7 @@ impl Segment {
 
 /// Writes the message of one satellite on the grid of its ephemeris, line by line.
 ///
-/// `hermite` is what was measured for the frame of `metadata`; without it the file names no
-/// interpolation.
+/// `hermite` is what was measured for these states; without it the file names no interpolation.
 ///
 /// # Errors
 /// When the satellite has no state, or the output does not take the bytes.
@@ -188,7 +180,7 @@ pub fn write(
     version: Version,
     metadata: &Metadata,
     object: &Object,
-    (ephemeris, satellite): (&Ephemeris, &Flown),
+    (sampled, satellite): (&Sampled<'_>, &Flown),
     hermite: Option<Hermite>,
 ) -> Result<(), WriteError> {
     let header = Header {
@@ -196,19 +188,18 @@ pub fn write(
         comments: metadata.comments(),
         classification: None,
         creation_date: metadata.creation.utc().naive_utc(),
-        originator: ORIGINATOR.to_owned(),
+        originator: metadata.originator.clone(),
         message_id: None,
     };
-    let digits = SecondDigits::of_grid(&ephemeris.grid());
+    let digits = SecondDigits::of_grid(&sampled.grid());
     write_header(out, &header)?;
-    let segment = segment_metadata(metadata, object, ephemeris, hermite);
+    let segment = segment_metadata(metadata, object, sampled.grid(), hermite);
     write_metadata(out, &segment, digits)?;
-    let epoch = ephemeris.grid().epoch();
-    for sample in ephemeris.states(satellite) {
-        let (elapsed_s, teme) = sample?;
+    for sample in sampled.states(satellite) {
+        let (at, state) = sample?;
         let line = StateLine {
-            epoch: metadata.time_system.stamp(epoch.plus_seconds(elapsed_s)),
-            state: from_teme(teme, metadata.frame, epoch, elapsed_s),
+            epoch: metadata.time_system.stamp(at),
+            state,
             acceleration_km_s2: None,
         };
         write_state(out, &line, digits)?;
@@ -220,10 +211,9 @@ pub fn write(
 pub(super) fn segment_metadata(
     metadata: &Metadata,
     object: &Object,
-    ephemeris: &Ephemeris,
+    grid: TimeGrid,
     hermite: Option<Hermite>,
 ) -> SegmentMetadata {
-    let grid = ephemeris.grid();
     let stamp = |elapsed_s| {
         let at = grid.epoch().plus_seconds(elapsed_s);
         metadata.time_system.stamp(at)
@@ -263,7 +253,7 @@ fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
 }
 
 fn write_header(out: &mut impl Write, header: &Header) -> io::Result<()> {
-    writeln!(out, "CCSDS_OEM_VERS = {}", header.version.number())?;
+    writeln!(out, "CCSDS_OEM_VERS = {}", header.version)?;
     write_comments(out, &header.comments)?;
     if let Some(classification) = &header.classification {
         writeln!(out, "CLASSIFICATION = {classification}")?;

@@ -1,9 +1,8 @@
 //! Calendar instants as files write them, and the time systems that they are counted in.
 
 use crate::time::{Epoch, TimeGrid};
+use crate::words::words;
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta, Timelike};
-use std::fmt;
-use std::str::FromStr;
 
 /// TAI - GPS time, s (IS-GPS-200: GPS time was UTC in January 1980, when TAI - UTC was 19 s).
 const TAI_MINUS_GPS_S: f64 = 19.0;
@@ -11,34 +10,21 @@ const TAI_MINUS_GPS_S: f64 = 19.0;
 /// TT - TAI, s.
 const TT_MINUS_TAI_S: f64 = 32.184;
 
-/// A time system of an exchanged file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TimeSystem {
-    /// Coordinated Universal Time.
-    Utc,
-    /// GPS time.
-    Gps,
-    /// International Atomic Time.
-    Tai,
-    /// Terrestrial Time.
-    Tt,
+words! {
+    /// A time system of an exchanged file.
+    TimeSystem {
+        /// Coordinated Universal Time.
+        Utc = "UTC",
+        /// GPS time.
+        Gps = "GPS",
+        /// International Atomic Time.
+        Tai = "TAI",
+        /// Terrestrial Time.
+        Tt = "TT",
+    }
 }
 
 impl TimeSystem {
-    /// Every system, in the order of the documentation.
-    pub const ALL: [Self; 4] = [Self::Utc, Self::Gps, Self::Tai, Self::Tt];
-
-    /// The name in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Utc => "UTC",
-            Self::Gps => "GPS",
-            Self::Tai => "TAI",
-            Self::Tt => "TT",
-        }
-    }
-
     /// The instant that a stamp of this system means.
     ///
     /// A stamp inside a leap second, which only UTC has, is the second after it.
@@ -72,28 +58,6 @@ impl TimeSystem {
         }
     }
 }
-
-impl fmt::Display for TimeSystem {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.pad(self.name())
-    }
-}
-
-impl FromStr for TimeSystem {
-    type Err = UnknownTimeSystem;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|system| system.name().eq_ignore_ascii_case(text))
-            .ok_or_else(|| UnknownTimeSystem(text.to_owned()))
-    }
-}
-
-/// A name that is no time system that can be turned into UTC.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown time system '{0}'; the systems are UTC, GPS, TAI and TT")]
-pub struct UnknownTimeSystem(pub String);
 
 /// How many decimals of a second are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

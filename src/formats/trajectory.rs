@@ -1,8 +1,9 @@
 //! A satellite's states as a file gives them, in the library's own terms.
 
-use super::stamp::UnknownTimeSystem;
-use crate::frames::{Frame, State, UnknownFrame};
+use super::stamp::TimeSystem;
+use crate::frames::{Frame, State};
 use crate::time::Epoch;
+use crate::words::{UnknownWord, Word};
 use thiserror::Error;
 
 /// States of one satellite, in the order of time.
@@ -29,12 +30,10 @@ pub enum TrajectoryError {
         /// The centre that the file names.
         center: String,
     },
-    /// A frame that the library has no rotation to.
+    /// A frame that the library has no rotation to, or a time system that it cannot turn
+    /// into UTC.
     #[error(transparent)]
-    Frame(#[from] UnknownFrame),
-    /// A time system that the library cannot turn into UTC.
-    #[error(transparent)]
-    TimeSystem(#[from] UnknownTimeSystem),
+    Name(#[from] UnknownWord),
 }
 
 /// The frame that a name in a file means.
@@ -44,11 +43,19 @@ pub enum TrajectoryError {
 ///
 /// # Errors
 /// When the library has no such frame.
-pub fn frame_of_name(name: &str) -> Result<Frame, UnknownFrame> {
+pub fn frame_of_name(name: &str) -> Result<Frame, UnknownWord> {
     match name.to_ascii_uppercase().as_str() {
         "J2000" => Ok(Frame::Eme2000),
         "ICRF" => Ok(Frame::Gcrf),
         upper if upper.starts_with("ITRF") => Ok(Frame::EarthFixed),
-        upper => upper.parse().map_err(|_| UnknownFrame(name.to_owned())),
+        upper => Frame::from_word(upper),
     }
+}
+
+/// The time system that a name in a file means; case does not matter (CCSDS 502.0-B-3, 7.5.3).
+///
+/// # Errors
+/// When the library cannot turn it into UTC.
+pub fn time_system_of_name(name: &str) -> Result<TimeSystem, UnknownWord> {
+    TimeSystem::from_word(&name.to_ascii_uppercase())
 }

@@ -1,5 +1,6 @@
 use super::*;
 use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
 use crate::formats::finding::{Finding, Findings, Severity};
 use crate::formats::metadata::Theory;
 use crate::formats::stamp::TimeSystem;
@@ -80,6 +81,7 @@ fn ephemeris(step_s: f64) -> Ephemeris {
 
 fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
     Metadata {
+        originator: "NAVWALKER".to_owned(),
         creation: ephemeris(60.0).grid().epoch(),
         frame,
         time_system,
@@ -91,14 +93,15 @@ fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
 fn written(ephemeris: &Ephemeris, metadata: &Metadata, version: Version) -> String {
     let satellite = &ephemeris.satellites()[1];
     let object = Object::numbered(&satellite.name, 1, ephemeris.grid().epoch()).unwrap();
-    let hermite = Hermite::measured(ephemeris, satellite, metadata.frame).unwrap();
+    let sampled = Sampled::new(ephemeris, metadata.frame);
+    let hermite = Hermite::measured(&sampled, satellite).unwrap();
     let mut out = Vec::new();
     write(
         &mut out,
         version,
         metadata,
         &object,
-        (ephemeris, satellite),
+        (&sampled, satellite),
         hermite,
     )
     .unwrap();
