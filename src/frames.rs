@@ -124,20 +124,47 @@ fn from_rows(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| rows[row][column])
 }
 
+/// The way from TEME to a frame at one instant, for many states.
+#[derive(Debug, Clone, Copy)]
+pub enum FromTeme {
+    /// TEME itself.
+    Stay,
+    /// To the rotating Earth.
+    EarthFixed(EarthRotation),
+    /// To a frame whose own rate is negligible.
+    Turn(Matrix3<f64>),
+}
+
+impl FromTeme {
+    /// The way to `frame`, at an instant `elapsed_s` after `epoch`.
+    #[must_use]
+    pub fn to(frame: Frame, epoch: Epoch, elapsed_s: f64) -> Self {
+        let to_eme2000 = || teme_to_eme2000(epoch.plus_seconds(elapsed_s));
+        match frame {
+            Frame::Teme => Self::Stay,
+            Frame::EarthFixed => {
+                Self::EarthFixed(EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
+            }
+            Frame::Eme2000 => Self::Turn(to_eme2000()),
+            Frame::Gcrf => Self::Turn(eme2000_to_gcrf() * to_eme2000()),
+        }
+    }
+
+    /// A TEME state in the frame.
+    #[must_use]
+    pub fn apply(&self, teme: State) -> State {
+        match self {
+            Self::Stay => teme,
+            Self::EarthFixed(rotation) => rotation.state_to_earth_fixed(teme),
+            Self::Turn(matrix) => turned(teme, *matrix),
+        }
+    }
+}
+
 /// The TEME state in `frame`, at an instant `elapsed_s` after `epoch`.
 #[must_use]
 pub fn from_teme(teme: State, frame: Frame, epoch: Epoch, elapsed_s: f64) -> State {
-    match frame {
-        Frame::Teme => teme,
-        Frame::EarthFixed => {
-            EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)).state_to_earth_fixed(teme)
-        }
-        Frame::Eme2000 => turned(teme, teme_to_eme2000(epoch.plus_seconds(elapsed_s))),
-        Frame::Gcrf => turned(
-            teme,
-            eme2000_to_gcrf() * teme_to_eme2000(epoch.plus_seconds(elapsed_s)),
-        ),
-    }
+    FromTeme::to(frame, epoch, elapsed_s).apply(teme)
 }
 
 /// A state of `frame` in TEME, at an instant `elapsed_s` after `epoch`; undoes [`from_teme`].

@@ -11,6 +11,7 @@ pub mod dop;
 pub mod earth;
 pub mod ephemeris;
 pub mod evaluate;
+pub mod formats;
 pub mod frames;
 pub mod ground;
 pub mod optimize;

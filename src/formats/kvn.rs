@@ -1,0 +1,246 @@
+//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the
+//! keyword tables that say what belongs where.
+
+use super::finding::Findings;
+use super::lines::Line;
+use super::stamp;
+use chrono::NaiveDateTime;
+
+/// Longest line (7.3.2).
+const LINE: usize = 254;
+
+/// Most digits of a number (7.5.6, 7.5.7).
+const DIGITS: usize = 16;
+
+/// A keyword of a table, and whether it must be there.
+pub(super) struct Keyword {
+    pub(super) name: &'static str,
+    pub(super) mandatory: bool,
+}
+
+/// A keyword that must be there.
+pub(super) const fn must(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        mandatory: true,
+    }
+}
+
+/// A keyword that may be there.
+pub(super) const fn may(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        mandatory: false,
+    }
+}
+
+/// A keyword and its value, as a line gives them.
+pub(super) struct Pair<'a> {
+    pub(super) key: &'a str,
+    pub(super) value: &'a str,
+    pub(super) key_place: (usize, usize),
+    pub(super) value_place: (usize, usize),
+}
+
+/// What a line of a message is.
+pub(super) enum Item<'a> {
+    Blank,
+    Comment(&'a str),
+    Pair(Pair<'a>),
+    /// Anything without an equals sign: a `_START`, a `_STOP`, a line of numbers.
+    Other(&'a str),
+}
+
+/// Takes a line apart.
+pub(super) fn item<'a>(line: &'a Line, findings: &mut Findings) -> Item<'a> {
+    if line.text.len() > LINE {
+        let message = format!(
+            "the line has {} characters; {LINE} are allowed",
+            line.text.len()
+        );
+        findings.warning((line.number, LINE + 1), "ccsds-line-length", message);
+    }
+    let text = line.text.trim();
+    if text.is_empty() {
+        return Item::Blank;
+    }
+    if let Some(comment) = text.strip_prefix("COMMENT")
+        && (comment.is_empty() || comment.starts_with(' '))
+    {
+        return Item::Comment(comment.strip_prefix(' ').unwrap_or(comment));
+    }
+    let Some((key, value)) = line.text.split_once('=') else {
+        return Item::Other(text);
+    };
+    let column = |part: &str| part.len() - part.trim_start().len() + 1;
+    Item::Pair(Pair {
+        key: key.trim(),
+        value: value.trim(),
+        key_place: (line.number, column(key)),
+        value_place: (line.number, key.len() + 1 + column(value)),
+    })
+}
+
+/// A value with its place in the file.
+#[derive(Debug, Clone)]
+struct Placed {
+    text: String,
+    place: (usize, usize),
+}
+
+/// The values of one table of keywords, as they come in.
+pub(super) struct Block {
+    table: &'static [Keyword],
+    values: Vec<Option<Placed>>,
+    last: Option<usize>,
+    /// Comments among the keywords.
+    pub(super) comments: Vec<String>,
+}
+
+impl Block {
+    pub(super) fn new(table: &'static [Keyword]) -> Self {
+        Self {
+            table,
+            values: table.iter().map(|_| None).collect(),
+            last: None,
+            comments: Vec::new(),
+        }
+    }
+
+    fn index(&self, key: &str) -> Option<usize> {
+        self.table.iter().position(|keyword| keyword.name == key)
+    }
+
+    /// Whether no keyword has come in yet.
+    pub(super) fn is_empty(&self) -> bool {
+        self.last.is_none()
+    }
+
+    /// Takes a keyword of the table.
+    pub(super) fn accept(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+        let Some(index) = self.index(pair.key) else {
+            let message = format!("keyword {} does not belong here", pair.key);
+            findings.error(pair.key_place, "ccsds-keyword", message);
+            return;
+        };
+        if self.values[index].is_some() {
+            let message = format!("{} is given twice", pair.key);
+            findings.error(pair.key_place, "ccsds-repeated", message);
+            return;
+        }
+        if let Some(last) = self.last.filter(|last| *last > index) {
+            let message = format!("{} stands after {}", pair.key, self.table[last].name);
+            findings.warning(pair.key_place, "ccsds-order", message);
+        }
+        self.last = self.last.max(Some(index));
+        if pair.value.is_empty() {
+            let message = format!("{} has no value", pair.key);
+            findings.error(pair.value_place, "ccsds-empty", message);
+            return;
+        }
+        self.values[index] = Some(Placed {
+            text: pair.value.to_owned(),
+            place: pair.value_place,
+        });
+    }
+
+    /// Reports the mandatory keywords that have not come in.
+    pub(super) fn finish(&self, place: (usize, usize), findings: &mut Findings) {
+        for (keyword, value) in self.table.iter().zip(&self.values) {
+            if keyword.mandatory && value.is_none() {
+                let message = format!("{} is mandatory and missing", keyword.name);
+                findings.error(place, "ccsds-missing", message);
+            }
+        }
+    }
+
+    fn placed(&self, key: &str) -> Option<&Placed> {
+        self.values[self.index(key)?].as_ref()
+    }
+
+    /// Where the value of a keyword stands.
+    pub(super) fn place(&self, key: &str) -> (usize, usize) {
+        self.placed(key).map_or((1, 1), |value| value.place)
+    }
+
+    /// A text value.
+    pub(super) fn text(&self, key: &str) -> Option<String> {
+        self.placed(key).map(|value| value.text.clone())
+    }
+
+    /// A text value that [`Self::finish`] has found, or nothing.
+    pub(super) fn text_or_empty(&self, key: &str) -> String {
+        self.text(key).unwrap_or_default()
+    }
+
+    /// A time; a finding if it is none.
+    pub(super) fn stamp(&self, key: &str, findings: &mut Findings) -> Option<NaiveDateTime> {
+        let value = self.placed(key)?;
+        read_stamp(&value.text, value.place, findings)
+    }
+
+    /// A count; a finding if it is none.
+    pub(super) fn count(&self, key: &str, findings: &mut Findings) -> Option<u64> {
+        let value = self.placed(key)?;
+        let parsed = value.text.parse().ok();
+        if parsed.is_none() {
+            let message = format!("'{}' is not a count", value.text);
+            findings.error(value.place, "ccsds-number", message);
+        }
+        parsed
+    }
+}
+
+/// Reads a time of 7.5.10; a finding if it is none.
+pub(super) fn read_stamp(
+    text: &str,
+    place: (usize, usize),
+    findings: &mut Findings,
+) -> Option<NaiveDateTime> {
+    let stamp = stamp::parse(text);
+    if stamp.is_none() {
+        let message = format!("'{text}' is not a time such as 2025-01-01T00:00:00.000");
+        findings.error(place, "ccsds-time", message);
+    }
+    stamp
+}
+
+/// Reads a number of 7.5.4 to 7.5.7; a finding if it is none.
+pub(super) fn read_number(
+    text: &str,
+    place: (usize, usize),
+    findings: &mut Findings,
+) -> Option<f64> {
+    let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+    let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
+    // Rust would also take "inf", "nan", ".5" and "5.".
+    let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
+    let all_digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    let Some(value) = value.filter(|_| all_digits(whole) && all_digits(decimals)) else {
+        let message = format!("'{text}' is not a number");
+        findings.error(place, "ccsds-number", message);
+        return None;
+    };
+    let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();
+    if digits > DIGITS {
+        let message = format!("the number has {digits} digits; {DIGITS} are allowed");
+        findings.warning(place, "ccsds-digits", message);
+    }
+    Some(value)
+}
+
+/// The words of a line with their columns, from 1.
+pub(super) fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        at += text[at..].len() - text[at..].trim_start().len();
+        let word = text[at..]
+            .split(' ')
+            .next()
+            .filter(|word| !word.is_empty())?;
+        let column = at + 1;
+        at += word.len();
+        Some((column, word))
+    })
+}

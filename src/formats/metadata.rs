@@ -1,0 +1,333 @@
+//! What every exported file says of itself: who and what it describes, and under which
+//! conventions.
+
+use super::stamp::TimeSystem;
+use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
+use crate::ephemeris::Flown;
+use crate::frames::Frame;
+use crate::orbit::Model;
+use crate::orbit::sgp4::MeanMotionSlot;
+use crate::time::Epoch;
+use chrono::Datelike;
+use std::fmt;
+use std::str::FromStr;
+use thiserror::Error;
+
+/// A catalogue or designator number that has no place in the formats.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum IdentityError {
+    /// Catalogue number past Alpha-5.
+    #[error(
+        "catalogue number {number} is past {}, the last of Alpha-5",
+        CatalogNumber::LAST
+    )]
+    CatalogNumber {
+        /// The number.
+        number: u32,
+    },
+    /// Text that is no catalogue number.
+    #[error(
+        "'{0}' is no catalogue number; Alpha-5 has a digit or a letter (not I or O) and four digits"
+    )]
+    Alpha5(String),
+    /// More satellites than synthetic designators.
+    #[error("satellite {index} has no designator; there are {}", Object::MOST)]
+    Designator {
+        /// Place of the satellite in its constellation, from 0.
+        index: usize,
+    },
+}
+
+/// A satellite catalogue number that a TLE can hold: five digits, or Alpha-5 past 99999.
+///
+/// Source: Space-Track, *Alpha-5* (the first digit becomes a letter, A = 10 to Z = 33,
+/// without I and O).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CatalogNumber(u32);
+
+/// The letters of Alpha-5 in the order of their values, from 10.
+const ALPHA5: &[u8; 24] = b"ABCDEFGHJKLMNPQRSTUVWXYZ";
+
+impl CatalogNumber {
+    /// The last number that Alpha-5 can write: `Z9999`.
+    pub const LAST: u32 = 339_999;
+
+    /// The first number that designs are given.
+    pub const FIRST_OF_DESIGNS: u32 = 90_001;
+
+    /// The number, if a TLE can hold it.
+    ///
+    /// # Errors
+    /// When it is past [`Self::LAST`].
+    pub fn new(number: u32) -> Result<Self, IdentityError> {
+        if number <= Self::LAST {
+            Ok(Self(number))
+        } else {
+            Err(IdentityError::CatalogNumber { number })
+        }
+    }
+
+    /// The number.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        self.0
+    }
+}
+
+impl fmt::Display for CatalogNumber {
+    /// The five characters of a TLE: `90001`, `A0000`.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (high, low) = (self.0 / 10_000, self.0 % 10_000);
+        match high.checked_sub(10) {
+            None => write!(formatter, "{:05}", self.0),
+            Some(letter) => {
+                let letter = char::from(ALPHA5[letter as usize]);
+                write!(formatter, "{letter}{low:04}")
+            }
+        }
+    }
+}
+
+impl FromStr for CatalogNumber {
+    type Err = IdentityError;
+
+    /// Reads the five characters of a TLE, with blanks or zeros in front.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let wrong = || IdentityError::Alpha5(text.to_owned());
+        let trimmed = text.trim_start_matches(' ');
+        let all_digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+        let first = trimmed.bytes().next().ok_or_else(wrong)?;
+        let letter = ALPHA5.iter().position(|candidate| *candidate == first);
+        let number = match letter {
+            Some(letter) if trimmed.len() == 5 && all_digits(&trimmed[1..]) => {
+                let low: u32 = trimmed[1..].parse().map_err(|_| wrong())?;
+                (letter as u32 + 10) * 10_000 + low
+            }
+            None if all_digits(trimmed) => trimmed.parse().map_err(|_| wrong())?,
+            _ => return Err(wrong()),
+        };
+        Self::new(number)
+    }
+}
+
+/// The identity of a satellite in every format.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Object {
+    /// Name: `NW-P01-S01`.
+    pub name: String,
+    /// Catalogue number.
+    pub catalog_number: CatalogNumber,
+    /// Identifier in the form of an international designator: `2025-900A`.
+    pub id: String,
+}
+
+impl Object {
+    /// Number of satellites that one constellation can hold: ten launches of as many pieces
+    /// as one to three letters name.
+    pub const MOST: usize = LAUNCHES * PIECES;
+
+    /// The satellite at place `index` (from 0) of its constellation.
+    ///
+    /// The catalogue number counts from 90001. The designator is synthetic and unique: the year
+    /// of `epoch`, launches from 900, which no year has reached, and pieces A to ZZZ
+    /// without I and O. The same place has the same identity in every export.
+    ///
+    /// # Errors
+    /// When the formats cannot tell so many satellites apart.
+    pub fn numbered(name: &str, index: usize, epoch: Epoch) -> Result<Self, IdentityError> {
+        if index >= Self::MOST {
+            return Err(IdentityError::Designator { index });
+        }
+        let number = CatalogNumber::FIRST_OF_DESIGNS + index as u32;
+        let launch = FIRST_LAUNCH + index / PIECES;
+        let piece = piece_letters(index % PIECES);
+        Ok(Self {
+            name: name.to_owned(),
+            catalog_number: CatalogNumber::new(number)?,
+            id: format!("{:04}-{launch:03}{piece}", epoch.utc().year()),
+        })
+    }
+
+    /// The identities of satellites in their order.
+    ///
+    /// # Errors
+    /// When the formats cannot tell so many satellites apart.
+    pub fn all(satellites: &[Flown], epoch: Epoch) -> Result<Vec<Self>, IdentityError> {
+        satellites
+            .iter()
+            .enumerate()
+            .map(|(index, satellite)| Self::numbered(&satellite.name, index, epoch))
+            .collect()
+    }
+}
+
+/// First launch number of the synthetic designators.
+const FIRST_LAUNCH: usize = 900;
+
+/// Launch numbers in use, from [`FIRST_LAUNCH`].
+const LAUNCHES: usize = 10;
+
+/// Pieces of a launch that one to three of 24 letters name.
+const PIECES: usize = 24 + 24 * 24 + 24 * 24 * 24;
+
+/// The piece letters of place `index`: A to Z, AA to ZZ, AAA to ZZZ, without I and O.
+fn piece_letters(index: usize) -> String {
+    let mut letters = Vec::new();
+    let mut rest = index + 1;
+    while rest > 0 {
+        rest -= 1;
+        letters.push(char::from(ALPHA5[rest % ALPHA5.len()]));
+        rest /= ALPHA5.len();
+    }
+    letters.iter().rev().collect()
+}
+
+/// What the numbers of a file were computed with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Theory {
+    /// States of the model that the scenario flies.
+    Flown(Model),
+    /// An SGP4 element set made from the design's J2 mean elements.
+    Sgp4Elements(MeanMotionSlot),
+}
+
+impl fmt::Display for Theory {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Flown(model) => model.fmt(formatter),
+            Self::Sgp4Elements(MeanMotionSlot::Kozai) => {
+                formatter.pad("SGP4 elements, Kozai mean motion dM/dt of secular J2")
+            }
+            Self::Sgp4Elements(MeanMotionSlot::Kepler) => {
+                formatter.pad("SGP4 elements, Kepler mean motion sqrt(mu/a^3) in the Kozai slot")
+            }
+        }
+    }
+}
+
+/// What a file says of its content.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Metadata {
+    /// Who made the file.
+    pub originator: String,
+    /// When the file says it was made: the epoch of the scenario, so that equal runs give
+    /// equal bytes.
+    pub creation: Epoch,
+    /// Frame of the states, or of the elements.
+    pub frame: Frame,
+    /// Time system of the stamps.
+    pub time_system: TimeSystem,
+    /// What the numbers were computed with.
+    pub theory: Theory,
+    /// The study that the file belongs to, one line each: design, scenario.
+    pub subject: Vec<String>,
+}
+
+impl Metadata {
+    /// The lines that name the subject and the conventions, for the comments of a file.
+    /// Printable ASCII, no line longer than 200 characters if the subject's are not.
+    #[must_use]
+    pub fn comments(&self) -> Vec<String> {
+        let mut lines = self.subject.clone();
+        lines.push(format!("Theory: {}", self.theory));
+        lines.push(format!(
+            "Design constants: mu = {MU_KM3_S2} km3/s2, Re = {RADIUS_KM} km, J2 = {J2:e}; \
+             WGS-72 in SGP4 alone"
+        ));
+        lines.push(frame_comment(self.frame).to_owned());
+        lines.push("Simulated objects: OBJECT_ID and catalogue numbers are synthetic".to_owned());
+        lines
+    }
+}
+
+/// What a reader has to know of a frame, with the conventions that lead to it.
+#[must_use]
+pub fn frame_comment(frame: Frame) -> &'static str {
+    match frame {
+        Frame::Teme => {
+            "Frame: TEME of date, true equator and mean equinox (Vallado et al., AIAA 2006-6753)"
+        }
+        Frame::Eme2000 => {
+            "Frame: EME2000 from TEME by the equation of the equinoxes (1994) and IAU 1976/1980, \
+             no corrections"
+        }
+        Frame::Gcrf => {
+            "Frame: GCRF from TEME by the equation of the equinoxes (1994), IAU 1976/1980 and the \
+             frame bias"
+        }
+        Frame::EarthFixed => {
+            "Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC, no polar motion; \
+             within 30 m of an ITRF in LEO"
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    fn epoch() -> Epoch {
+        Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap())
+    }
+
+    /// The examples of Space-Track's description of Alpha-5.
+    #[test]
+    fn validate_alpha5() {
+        for (number, text) in [
+            (5, "00005"),
+            (99_999, "99999"),
+            (100_000, "A0000"),
+            (148_493, "E8493"),
+            (182_931, "J2931"),
+            (234_018, "P4018"),
+            (301_928, "W1928"),
+            (339_999, "Z9999"),
+        ] {
+            let catalog = CatalogNumber::new(number).unwrap();
+            assert_eq!(catalog.to_string(), text);
+            assert_eq!(text.parse(), Ok(catalog));
+        }
+        assert_eq!("    5".parse(), CatalogNumber::new(5));
+        assert!(CatalogNumber::new(340_000).is_err());
+        for wrong in [
+            "I0000", "O0000", "A000", "a0000", "", "12 45", "-0001", "AA000",
+        ] {
+            assert!(wrong.parse::<CatalogNumber>().is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn identities_are_unique_and_fit_a_tle() {
+        let mut ids = HashSet::new();
+        let mut numbers = HashSet::new();
+        for index in 0..crate::constellation::Design::MAX_SATELLITES {
+            let object = Object::numbered("NW", index, epoch()).unwrap();
+            assert!(object.id.len() <= 11, "{}", object.id);
+            numbers.insert(object.catalog_number.to_string());
+            ids.insert(object.id);
+        }
+        assert_eq!(ids.len(), crate::constellation::Design::MAX_SATELLITES);
+        assert_eq!(numbers.len(), ids.len());
+        assert!(ids.contains("2025-900A") && ids.contains("2025-900AA"));
+        assert!(ids.contains("2025-901A"));
+        assert!(Object::numbered("NW", Object::MOST, epoch()).is_err());
+    }
+
+    #[test]
+    fn comments_fit_a_line_of_ccsds() {
+        for frame in [Frame::Teme, Frame::Eme2000, Frame::Gcrf, Frame::EarthFixed] {
+            let metadata = Metadata {
+                originator: "NAVWALKER".to_owned(),
+                creation: epoch(),
+                frame,
+                time_system: TimeSystem::Utc,
+                theory: Theory::Sgp4Elements(MeanMotionSlot::Kepler),
+                subject: vec!["Design: delta:55:182/13/1@925".to_owned()],
+            };
+            for line in metadata.comments() {
+                assert!(line.len() <= 200 && line.bytes().all(|b| (b' '..=b'~').contains(&b)));
+            }
+        }
+    }
+}

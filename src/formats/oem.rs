@@ -1,0 +1,333 @@
+//! CCSDS Orbit Ephemeris Messages in keyword = value notation, written and read.
+//!
+//! Source: CCSDS 502.0-B-3, *Orbit Data Messages* (April 2023), sections 5 and 7; version 2.0
+//! is that of 502.0-B-2, which differs by the optional header keywords. One object a file
+//! (5.1.3), no comment between ephemeris lines (7.8.9), numbers of at most 16 digits (7.5.6).
+
+mod read;
+
+pub use read::{parse, read};
+
+use super::WriteError;
+use super::interpolation::Hermite;
+use super::metadata::{Metadata, Object};
+use super::sampled::Sampled;
+use super::stamp::{SecondDigits, calendar};
+use super::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
+use crate::ephemeris::Flown;
+use crate::frames::{Frame, State};
+use crate::time::TimeGrid;
+use crate::words::words;
+use chrono::NaiveDateTime;
+use nalgebra::Vector3;
+use std::io::{self, Write};
+
+words! {
+    /// A version of the message.
+    Version {
+        /// CCSDS 502.0-B-2: what most readers know.
+        V2 = "2.0",
+        /// CCSDS 502.0-B-3.
+        V3 = "3.0",
+    }
+}
+
+/// A whole message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Oem {
+    /// The header.
+    pub header: Header,
+    /// The segments, in the order of the file.
+    pub segments: Vec<Segment>,
+}
+
+/// The header of a message (table 5-2).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// Version of the message.
+    pub version: Version,
+    /// Comments behind the version.
+    pub comments: Vec<String>,
+    /// Classification (version 3).
+    pub classification: Option<String>,
+    /// When the message was made, UTC.
+    pub creation_date: NaiveDateTime,
+    /// Who made it.
+    pub originator: String,
+    /// Identifier of the message (version 3).
+    pub message_id: Option<String>,
+}
+
+/// The metadata of a segment (table 5-3).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SegmentMetadata {
+    /// Comments behind `META_START`.
+    pub comments: Vec<String>,
+    /// Name of the satellite.
+    pub object_name: String,
+    /// Identifier of the satellite.
+    pub object_id: String,
+    /// Origin of the frame.
+    pub center_name: String,
+    /// Name of the frame.
+    pub ref_frame: String,
+    /// Epoch of the frame.
+    pub ref_frame_epoch: Option<NaiveDateTime>,
+    /// Name of the time system.
+    pub time_system: String,
+    /// First instant.
+    pub start_time: NaiveDateTime,
+    /// First instant for which a state may be interpolated.
+    pub useable_start_time: Option<NaiveDateTime>,
+    /// Last instant for which a state may be interpolated.
+    pub useable_stop_time: Option<NaiveDateTime>,
+    /// Last instant.
+    pub stop_time: NaiveDateTime,
+    /// Interpolation method and degree.
+    pub interpolation: Option<(String, usize)>,
+}
+
+/// A segment: its metadata and its ephemeris lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// What it says of itself.
+    pub metadata: SegmentMetadata,
+    /// Comments before the first ephemeris line.
+    pub comments: Vec<String>,
+    /// The ephemeris lines. A covariance is checked on reading, and not kept.
+    pub states: Vec<StateLine>,
+}
+
+/// An ephemeris line (5.2.4).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateLine {
+    /// Instant in the time system of the segment.
+    pub epoch: NaiveDateTime,
+    /// Position and velocity in the frame of the segment, km and km/s.
+    pub state: State,
+    /// Acceleration, km/s².
+    pub acceleration_km_s2: Option<Vector3<f64>>,
+}
+
+impl Oem {
+    /// Writes the message.
+    ///
+    /// # Errors
+    /// When the output does not take the bytes.
+    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        write_header(out, &self.header)?;
+        for segment in &self.segments {
+            let digits = segment.digits();
+            write_metadata(out, &segment.metadata, digits)?;
+            write_comments(out, &segment.comments)?;
+            for line in &segment.states {
+                write_state(out, line, digits)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Segment {
+    /// The decimals of a second that its times need.
+    fn digits(&self) -> SecondDigits {
+        let metadata = &self.metadata;
+        let edges = [
+            Some(metadata.start_time),
+            metadata.useable_start_time,
+            metadata.useable_stop_time,
+            Some(metadata.stop_time),
+            metadata.ref_frame_epoch,
+        ];
+        let lines = self.states.iter().map(|line| line.epoch);
+        lines
+            .chain(edges.into_iter().flatten())
+            .map(SecondDigits::of_stamp)
+            .fold(SecondDigits::FEWEST, Ord::max)
+    }
+
+    /// The states in the library's terms.
+    ///
+    /// # Errors
+    /// When the centre is not the Earth, or the frame or the time system is unknown.
+    pub fn trajectory(&self) -> Result<Trajectory, TrajectoryError> {
+        let metadata = &self.metadata;
+        if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
+            return Err(TrajectoryError::Center {
+                name: metadata.object_name.clone(),
+                center: metadata.center_name.clone(),
+            });
+        }
+        let time_system = time_system_of_name(&metadata.time_system)?;
+        let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
+        Ok(Trajectory {
+            name: metadata.object_name.clone(),
+            id: metadata.object_id.clone(),
+            frame: frame_of_name(&metadata.ref_frame)?,
+            states: self.states.iter().map(instant).collect(),
+        })
+    }
+}
+
+/// Writes the message of one satellite on the grid of its ephemeris, line by line.
+///
+/// `hermite` is what was measured for these states; without it the file names no interpolation.
+///
+/// # Errors
+/// When the satellite has no state, or the output does not take the bytes.
+pub fn write(
+    out: &mut impl Write,
+    version: Version,
+    metadata: &Metadata,
+    object: &Object,
+    (sampled, satellite): (&Sampled<'_>, &Flown),
+    hermite: Option<Hermite>,
+) -> Result<(), WriteError> {
+    let header = Header {
+        version,
+        comments: metadata.comments(),
+        classification: None,
+        creation_date: metadata.creation.utc().naive_utc(),
+        originator: metadata.originator.clone(),
+        message_id: None,
+    };
+    let digits = SecondDigits::of_grid(&sampled.grid());
+    write_header(out, &header)?;
+    let segment = segment_metadata(metadata, object, sampled.grid(), hermite);
+    write_metadata(out, &segment, digits)?;
+    for sample in sampled.states(satellite) {
+        let (at, state) = sample?;
+        let line = StateLine {
+            epoch: metadata.time_system.stamp(at),
+            state,
+            acceleration_km_s2: None,
+        };
+        write_state(out, &line, digits)?;
+    }
+    Ok(())
+}
+
+/// What the segment of a satellite says of itself.
+pub(super) fn segment_metadata(
+    metadata: &Metadata,
+    object: &Object,
+    grid: TimeGrid,
+    hermite: Option<Hermite>,
+) -> SegmentMetadata {
+    let stamp = |elapsed_s| {
+        let at = grid.epoch().plus_seconds(elapsed_s);
+        metadata.time_system.stamp(at)
+    };
+    let mut comments = Vec::new();
+    if metadata.frame == Frame::Teme {
+        let note = "TEME is no frame of CCSDS 502.0-B-3 for ephemerides; it was asked for";
+        comments.push(note.to_owned());
+    }
+    // 7.8.12 c asks for the accuracy.
+    if let Some(hermite) = hermite {
+        comments.push(format!(
+            "Error of this interpolation halfway between lines: at most {:.1e} km",
+            hermite.max_error_km
+        ));
+    }
+    SegmentMetadata {
+        comments,
+        object_name: object.name.clone(),
+        object_id: object.id.clone(),
+        center_name: "EARTH".to_owned(),
+        ref_frame: metadata.frame.to_string(),
+        ref_frame_epoch: None,
+        time_system: metadata.time_system.to_string(),
+        start_time: stamp(0.0),
+        useable_start_time: None,
+        useable_stop_time: None,
+        stop_time: stamp(grid.elapsed_s(grid.len() - 1)),
+        interpolation: hermite.map(|hermite| ("HERMITE".to_owned(), hermite.degree)),
+    }
+}
+
+fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
+    comments
+        .iter()
+        .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
+}
+
+fn write_header(out: &mut impl Write, header: &Header) -> io::Result<()> {
+    writeln!(out, "CCSDS_OEM_VERS = {}", header.version)?;
+    write_comments(out, &header.comments)?;
+    if let Some(classification) = &header.classification {
+        writeln!(out, "CLASSIFICATION = {classification}")?;
+    }
+    let digits = SecondDigits::of_stamp(header.creation_date);
+    let creation = calendar(header.creation_date, digits);
+    writeln!(out, "CREATION_DATE = {creation}")?;
+    writeln!(out, "ORIGINATOR = {}", header.originator)?;
+    if let Some(id) = &header.message_id {
+        writeln!(out, "MESSAGE_ID = {id}")?;
+    }
+    Ok(())
+}
+
+fn write_metadata(
+    out: &mut impl Write,
+    metadata: &SegmentMetadata,
+    digits: SecondDigits,
+) -> io::Result<()> {
+    writeln!(out, "\nMETA_START")?;
+    write_comments(out, &metadata.comments)?;
+    for (key, value) in metadata.pairs(digits) {
+        writeln!(out, "{key} = {value}")?;
+    }
+    writeln!(out, "META_STOP\n")
+}
+
+impl SegmentMetadata {
+    /// The keywords and their values in the order of table 5-3.
+    pub(super) fn pairs(&self, digits: SecondDigits) -> Vec<(&'static str, String)> {
+        let time = |stamp| calendar(stamp, digits);
+        let (method, degree) = match &self.interpolation {
+            Some((method, degree)) => (Some(method.clone()), Some(degree.to_string())),
+            None => (None, None),
+        };
+        [
+            ("OBJECT_NAME", Some(self.object_name.clone())),
+            ("OBJECT_ID", Some(self.object_id.clone())),
+            ("CENTER_NAME", Some(self.center_name.clone())),
+            ("REF_FRAME", Some(self.ref_frame.clone())),
+            ("REF_FRAME_EPOCH", self.ref_frame_epoch.map(time)),
+            ("TIME_SYSTEM", Some(self.time_system.clone())),
+            ("START_TIME", Some(time(self.start_time))),
+            ("USEABLE_START_TIME", self.useable_start_time.map(time)),
+            ("USEABLE_STOP_TIME", self.useable_stop_time.map(time)),
+            ("STOP_TIME", Some(time(self.stop_time))),
+            ("INTERPOLATION", method),
+            ("INTERPOLATION_DEGREE", degree),
+        ]
+        .into_iter()
+        .filter_map(|(key, value)| Some((key, value?)))
+        .collect()
+    }
+}
+
+/// Positions to 1e-9 km and velocities to 1e-12 km/s: below what doubles lose in a day.
+fn write_state(out: &mut impl Write, line: &StateLine, digits: SecondDigits) -> io::Result<()> {
+    let (r, v) = (line.state.position_km, line.state.velocity_km_s);
+    write!(
+        out,
+        "{} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}",
+        calendar(line.epoch, digits),
+        r.x,
+        r.y,
+        r.z,
+        v.x,
+        v.y,
+        v.z
+    )?;
+    if let Some(a) = line.acceleration_km_s2 {
+        write!(out, " {:.12} {:.12} {:.12}", a.x, a.y, a.z)?;
+    }
+    writeln!(out)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,89 @@
+//! The states of an ephemeris in the frame of a file.
+
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::frames::{Frame, FromTeme, State};
+use crate::time::{Epoch, TimeGrid};
+
+/// Most rotations that are kept, which all satellites share; beyond, they are computed again.
+const KEPT: usize = 100_000;
+
+/// An ephemeris seen in one frame.
+pub struct Sampled<'a> {
+    ephemeris: &'a Ephemeris,
+    frame: Frame,
+    /// The rotation of every sample; none for a grid that is too long.
+    rotations: Vec<FromTeme>,
+}
+
+impl<'a> Sampled<'a> {
+    /// `ephemeris` in `frame`.
+    #[must_use]
+    pub fn new(ephemeris: &'a Ephemeris, frame: Frame) -> Self {
+        let grid = ephemeris.grid();
+        let rotation = |elapsed_s| FromTeme::to(frame, grid.epoch(), elapsed_s);
+        let rotations = if grid.len() <= KEPT {
+            grid.iter().map(rotation).collect()
+        } else {
+            Vec::new()
+        };
+        Self {
+            ephemeris,
+            frame,
+            rotations,
+        }
+    }
+
+    /// The instants.
+    #[must_use]
+    pub fn grid(&self) -> TimeGrid {
+        self.ephemeris.grid()
+    }
+
+    /// The satellites.
+    #[must_use]
+    pub fn satellites(&self) -> &'a [Flown] {
+        self.ephemeris.satellites()
+    }
+
+    /// The frame.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    /// The state of a satellite `elapsed_s` after the epoch of the grid.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State, EphemerisError> {
+        let teme = self.ephemeris.state(satellite, elapsed_s)?;
+        Ok(FromTeme::to(self.frame, self.grid().epoch(), elapsed_s).apply(teme))
+    }
+
+    /// The state of a satellite at sample `k`.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State, EphemerisError> {
+        let elapsed_s = self.grid().elapsed_s(k);
+        match self.rotations.get(k) {
+            Some(rotation) => {
+                let teme = self.ephemeris.state(satellite, elapsed_s)?;
+                Ok(rotation.apply(teme))
+            }
+            None => self.state(satellite, elapsed_s),
+        }
+    }
+
+    /// The states of a satellite at every instant of the grid.
+    pub fn states(
+        &self,
+        satellite: &Flown,
+    ) -> impl ExactSizeIterator<Item = Result<(Epoch, State), EphemerisError>> {
+        let grid = self.grid();
+        (0..grid.len()).map(move |k| {
+            let at = grid.epoch().plus_seconds(grid.elapsed_s(k));
+            Ok((at, self.state_at(satellite, k)?))
+        })
+    }
+}
