@@ -241,7 +241,7 @@ mod tests {
         let mut cases = 0;
         loop {
             match reader.read_event().unwrap() {
-                quick_xml::events::Event::Start(start) if start.name().as_ref() == b"testcase" => {
+                quick_xml::events::Event::Start(start) if start.name().as_ref() == "testcase" => {
                     cases += 1
                 }
                 quick_xml::events::Event::Eof => break,
