@@ -1,0 +1,527 @@
+//! The program as it is typed: results, exit status, errors, and what is left on the disk.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A study of a fraction of a second.
+const SMALL: [&str; 12] = [
+    "--set",
+    "region.step-deg=20",
+    "--set",
+    "time.step-s=1200",
+    "--set",
+    "optimizer.population=8",
+    "--set",
+    "optimizer.generations=4",
+    "--set",
+    "search.planes=[5, 7]",
+    "--set",
+    "search.satellites-per-plane=[5, 7]",
+];
+
+fn navwalker(directory: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::cargo_bin("navwalker").unwrap();
+    command.current_dir(directory).args(arguments);
+    command
+}
+
+struct Ran {
+    status: i32,
+    stdout: String,
+    stderr: String,
+}
+
+fn ran(directory: &Path, arguments: &[&str]) -> Ran {
+    let output = navwalker(directory, arguments).output().unwrap();
+    Ran {
+        status: output.status.code().unwrap(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// Runs what must end with status 2, say why in one message, print nothing and leave nothing.
+fn refused(arguments: &[&str]) -> String {
+    let directory = TempDir::new().unwrap();
+    let ran = ran(directory.path(), arguments);
+    assert_eq!(ran.status, 2, "{arguments:?}: {}", ran.stderr);
+    assert_eq!(ran.stdout, "", "{arguments:?}");
+    let left: Vec<_> = fs::read_dir(directory.path()).unwrap().collect();
+    assert!(left.is_empty(), "{arguments:?} left {left:?}");
+    ran.stderr
+}
+
+fn optimize<'a>(further: &[&'a str]) -> Vec<&'a str> {
+    [&["optimize", "--quiet"], SMALL.as_slice(), further].concat()
+}
+
+#[test]
+fn evaluate_keeps_the_contract() {
+    let directory = TempDir::new().unwrap();
+    let ran = ran(
+        directory.path(),
+        &[
+            "evaluate",
+            "--design",
+            "delta:55:182/13/1@925",
+            "--set",
+            "region.step-deg=25",
+            "--format",
+            "json",
+        ],
+    );
+    assert_eq!(ran.status, 0);
+    let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+    for key in [
+        "notation",
+        "pattern",
+        "planes",
+        "satellites_per_plane",
+        "satellites",
+        "phasing",
+        "inclination_deg",
+        "altitude_km",
+        "eccentricity",
+        "arg_perigee_deg",
+    ] {
+        assert!(value["design"].get(key).is_some(), "design.{key}");
+    }
+    for key in [
+        "mean_visible",
+        "mean_pdop",
+        "cvar_pdop",
+        "cvar_level",
+        "p50_pdop",
+        "p95_pdop",
+        "p99_pdop",
+        "max_pdop",
+        "solved_fraction",
+        "availability",
+        "j_pos",
+        "j_cost",
+    ] {
+        assert!(value["metrics"].get(key).is_some(), "metrics.{key}");
+    }
+    assert_eq!(value["scenario"]["name"], "paper");
+    assert_eq!(value["version"], env!("CARGO_PKG_VERSION"));
+}
+
+#[test]
+fn csv_has_a_header_and_a_row() {
+    let directory = TempDir::new().unwrap();
+    let ran = ran(
+        directory.path(),
+        &[
+            "evaluate",
+            "--design",
+            "delta:55:6/3/1@925",
+            "--set",
+            "time.duration-h=1",
+            "--format",
+            "csv",
+        ],
+    );
+    let mut reader = csv::Reader::from_reader(ran.stdout.as_bytes());
+    assert_eq!(
+        reader.headers().unwrap().len(),
+        reader.records().next().unwrap().unwrap().len()
+    );
+}
+
+#[test]
+fn what_cannot_be_run_says_why() {
+    let design = ["evaluate", "--design", "delta:55:182/13/1@925"];
+    let set = |value: &'static str| refused(&[design.as_slice(), &["--set", value]].concat());
+    let cases = [
+        (
+            set("visibility.msk-deg=5"),
+            "did you mean `visibility.mask-deg`?",
+        ),
+        (
+            set("visibility.mask-deg=95"),
+            "expected a number >= 0 and < 90",
+        ),
+        (
+            set("region.latitude-deg=[54, 3]"),
+            "the low limit is above the high one",
+        ),
+        (set("time.step-s=0"), "expected a number > 0"),
+        (set("region.step-deg=-1"), "expected"),
+        (
+            set("region.points=\"nowhere.csv\""),
+            "cannot read nowhere.csv",
+        ),
+        (
+            refused(&["evaluate", "--design", "delta:55:182/13/1@-5"]),
+            "altitude -5 km is outside",
+        ),
+        (
+            refused(&["evaluate", "--design", "delta:55:182/0/1@925"]),
+            "planes P = 0",
+        ),
+        (
+            refused(&["evaluate", "--design", "delta:55:183/13/1@925"]),
+            "nearest: 182 or 195",
+        ),
+        (
+            refused(&["evaluate", "--design", "delta:55:182/13/13@925"]),
+            "outside 0 to P - 1 = 12",
+        ),
+        (
+            refused(&["evaluate", "papre", "--design", "delta:55:4/2/1@925"]),
+            "did you mean \"paper\"?",
+        ),
+        (
+            refused(&["evaluate", "missing.toml", "--design", "delta:55:4/2/1@925"]),
+            "cannot read the scenario missing.toml",
+        ),
+        (
+            refused(&["optimize", "--out", "/proc/nowhere/run"]),
+            "/proc/nowhere/run",
+        ),
+        (
+            refused(&["optimize", "--set", "search.altitude-km=[1000, 400]"]),
+            "above the high one",
+        ),
+        (
+            refused(&["validate", "--against", "stk"]),
+            "unknown target 'stk'",
+        ),
+        (refused(&["frobnicate"]), "unrecognized subcommand"),
+    ];
+    for (stderr, expected) in cases {
+        assert!(
+            stderr.contains(expected),
+            "{expected:?} is not in: {stderr}"
+        );
+    }
+}
+
+#[test]
+fn all_problems_of_a_file_are_told_at_once() {
+    let directory = TempDir::new().unwrap();
+    let text = "[visibility]\nmask-deg = 95\n[time]\nstep-s = -1\n[regoin]\n";
+    fs::write(directory.path().join("bad.toml"), text).unwrap();
+    let ran = ran(directory.path(), &["optimize", "bad.toml"]);
+    assert_eq!(ran.status, 2);
+    for place in ["bad.toml:2", "bad.toml:4", "bad.toml:5"] {
+        assert!(ran.stderr.contains(place), "{place}: {}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_scenario_too_large_for_memory_is_refused_before_it_starts() {
+    let stderr = refused(&[
+        "evaluate",
+        "--design",
+        "delta:55:4/2/1@925",
+        "--set",
+        "region.latitude-deg=[-90, 90]",
+        "--set",
+        "region.longitude-deg=[0, 360]",
+        "--set",
+        "region.step-deg=0.5",
+        "--set",
+        "time.step-s=86.4",
+        "--set",
+        "gnss.clocks=shared",
+    ]);
+    assert!(stderr.contains("GiB"), "{stderr}");
+}
+
+#[test]
+fn the_run_directory_is_whole_and_repeatable() {
+    let directory = TempDir::new().unwrap();
+    let json = ["--format", "json"];
+    let one = ran(
+        directory.path(),
+        &[
+            optimize(&["--out", "one", "--threads", "1"]).as_slice(),
+            &json,
+        ]
+        .concat(),
+    );
+    let two = ran(
+        directory.path(),
+        &[
+            optimize(&["--out", "two", "--threads", "2"]).as_slice(),
+            &json,
+        ]
+        .concat(),
+    );
+    assert_eq!(one.status, 0, "{}", one.stderr);
+    assert_eq!(one.stdout, two.stdout);
+    let mut names: Vec<String> = fs::read_dir(directory.path().join("one"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let expected = [
+        "checkpoint",
+        "front.csv",
+        "front.json",
+        "history.csv",
+        "history.json",
+        "scenario.toml",
+    ];
+    assert_eq!(names, expected);
+    for name in expected {
+        let read = |run: &str| fs::read(directory.path().join(run).join(name)).unwrap();
+        assert!(read("one") == read("two"), "{name} depends on the threads");
+    }
+    let value: Value = serde_json::from_str(&one.stdout).unwrap();
+    let member = &value["front"][0];
+    for key in [
+        "index",
+        "design",
+        "metrics",
+        "objectives",
+        "membership",
+        "membership_sum",
+        "chosen",
+    ] {
+        assert!(member.get(key).is_some(), "front[].{key}");
+    }
+    assert_eq!(value["evaluations"], 32);
+    assert!(value["hypervolume"].get("value").is_some() && value["diagnostics"].is_array());
+}
+
+#[test]
+fn another_run_is_not_overwritten() {
+    let directory = TempDir::new().unwrap();
+    assert_eq!(
+        ran(directory.path(), &optimize(&["--out", "run"])).status,
+        0
+    );
+    let before = fs::read(directory.path().join("run/front.json")).unwrap();
+    let other = ran(
+        directory.path(),
+        &optimize(&["--out", "run", "--seed", "2"]),
+    );
+    assert_eq!(other.status, 2);
+    assert!(other.stderr.contains("--force"), "{}", other.stderr);
+    assert_eq!(
+        fs::read(directory.path().join("run/front.json")).unwrap(),
+        before
+    );
+    // The same run again is welcome, and so is another with --force.
+    assert_eq!(
+        ran(directory.path(), &optimize(&["--out", "run"])).status,
+        0
+    );
+    let forced = ran(
+        directory.path(),
+        &optimize(&["--out", "run", "--seed", "2", "--force"]),
+    );
+    assert_eq!(forced.status, 0);
+}
+
+/// A run that is killed resumes to the same bytes as an unbroken one.
+#[test]
+fn a_killed_run_resumes_to_the_same_bytes() {
+    let directory = TempDir::new().unwrap();
+    let long = |out: &'static str| {
+        let more = [
+            "--set",
+            "optimizer.generations=60",
+            "--set",
+            "time.step-s=300",
+            "--out",
+            out,
+        ];
+        [optimize(&[]), more.to_vec()].concat()
+    };
+    assert_eq!(ran(directory.path(), &long("whole")).status, 0);
+    let program = assert_cmd::cargo::cargo_bin!("navwalker");
+    let mut child = std::process::Command::new(program)
+        .current_dir(directory.path())
+        .args(long("broken"))
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    let checkpoint = directory.path().join("broken/checkpoint");
+    while !checkpoint.exists() && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let resumed = ran(
+        directory.path(),
+        &[long("broken"), vec!["--resume"]].concat(),
+    );
+    assert_eq!(resumed.status, 0, "{}", resumed.stderr);
+    for name in [
+        "front.json",
+        "front.csv",
+        "history.json",
+        "history.csv",
+        "checkpoint",
+    ] {
+        let read = |run: &str| fs::read(directory.path().join(run).join(name)).unwrap();
+        assert!(read("whole") == read("broken"), "{name}");
+    }
+}
+
+#[test]
+fn a_damaged_checkpoint_gives_way_to_the_one_before() {
+    let directory = TempDir::new().unwrap();
+    let arguments = ["optimize"]
+        .iter()
+        .chain(&SMALL)
+        .chain(&["--out", "run"])
+        .copied()
+        .collect::<Vec<_>>();
+    assert_eq!(ran(directory.path(), &arguments).status, 0);
+    let checkpoint = directory.path().join("run/checkpoint");
+    let good = fs::read(&checkpoint).unwrap();
+    fs::write(directory.path().join("run/checkpoint.previous"), &good).unwrap();
+    fs::write(&checkpoint, &good[..good.len() / 2]).unwrap();
+    let resumed = ran(
+        directory.path(),
+        &[arguments.clone(), vec!["--resume"]].concat(),
+    );
+    assert_eq!(resumed.status, 0, "{}", resumed.stderr);
+    assert!(
+        resumed.stderr.contains("is damaged")
+            && resumed.stderr.contains("the one before it is used")
+    );
+    fs::write(&checkpoint, b"nonsense").unwrap();
+    let hopeless = ran(
+        directory.path(),
+        &[arguments, vec!["--resume", "--force"]].concat(),
+    );
+    assert_eq!(hopeless.status, 2);
+    assert!(
+        hopeless.stderr.contains("no earlier one is whole"),
+        "{}",
+        hopeless.stderr
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_results_so_far() {
+    let directory = TempDir::new().unwrap();
+    let program = assert_cmd::cargo::cargo_bin!("navwalker");
+    let long = ["--set", "optimizer.generations=100000", "--out", "run"];
+    let child = std::process::Command::new(program)
+        .current_dir(directory.path())
+        .args([optimize(&[]), long.to_vec()].concat())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !directory.path().join("run/checkpoint").exists() {
+        std::thread::yield_now();
+    }
+    let killed = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(directory.path().join("run/front.json").exists());
+    assert!(
+        String::from_utf8(output.stdout)
+            .unwrap()
+            .starts_with("Pareto set of scenario paper")
+    );
+}
+
+#[test]
+fn no_feasible_design_is_status_1() {
+    let directory = TempDir::new().unwrap();
+    let arguments = optimize(&[
+        "--out",
+        "run",
+        "--set",
+        "objectives.constraints=[\"max-pdop <= 0.1\"]",
+    ]);
+    let ran = ran(directory.path(), &arguments);
+    assert_eq!(ran.status, 1, "{}", ran.stderr);
+    assert!(ran.stdout.contains("[no-feasible-design]"));
+}
+
+#[test]
+fn validate_reports_in_every_form() {
+    let directory = TempDir::new().unwrap();
+    let base = [
+        "validate",
+        "--against",
+        "sgp4",
+        "--design",
+        "star:86.4:12/6/1@925",
+        "--out",
+        "report",
+    ];
+    let ran = ran(
+        directory.path(),
+        &[base.as_slice(), &["--format", "json"]].concat(),
+    );
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(value["passed"], true);
+    let cases: Vec<_> = value["budget"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|line| line["case"].as_str().unwrap())
+        .collect();
+    assert!(
+        ["mean-j2/sgp4", "mean-j2/sgp4-no-j3j4", "kepler-slot"]
+            .iter()
+            .all(|case| cases.contains(case))
+    );
+    for name in [
+        "report.txt",
+        "report.json",
+        "report.csv",
+        "report.md",
+        "report.junit.xml",
+    ] {
+        assert!(
+            directory.path().join("report").join(name).exists(),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn scenarios_can_be_listed_shown_and_begun() {
+    let directory = TempDir::new().unwrap();
+    assert!(
+        ran(directory.path(), &["scenario", "list"])
+            .stdout
+            .contains("regional")
+    );
+    let template = ran(directory.path(), &["scenario", "new"]).stdout;
+    fs::write(directory.path().join("study.toml"), &template).unwrap();
+    let shown = ran(directory.path(), &["scenario", "show", "study.toml"]);
+    assert_eq!(shown.status, 0, "{}", shown.stderr);
+    assert!(shown.stdout.contains("mask-deg = 7"));
+    let schema: Value =
+        serde_json::from_str(&ran(directory.path(), &["scenario", "schema"]).stdout).unwrap();
+    assert!(schema.get("properties").is_some());
+}
+
+#[test]
+fn a_closed_pipe_ends_quietly() {
+    let directory = TempDir::new().unwrap();
+    let program = assert_cmd::cargo::cargo_bin!("navwalker");
+    let mut child = std::process::Command::new(program)
+        .current_dir(directory.path())
+        .args(["scenario", "schema"])
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(
+        (output.status.code(), output.stderr.as_slice()),
+        (Some(0), b"".as_slice())
+    );
+}
