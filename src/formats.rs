@@ -4,7 +4,9 @@
 //! What a file says of itself comes from [`metadata`]; what a reader objects to is a
 //! [`finding::Finding`] with the line, the column and the rule of the standard.
 
+pub mod csv;
 mod element_set;
+pub mod export;
 pub mod finding;
 pub mod interpolation;
 mod kvn;
@@ -35,6 +37,9 @@ pub enum WriteError {
     /// An element does not fit the columns of a TLE.
     #[error(transparent)]
     Tle(#[from] tle::TleFieldError),
+    /// There is no name for a satellite.
+    #[error(transparent)]
+    Identity(#[from] metadata::IdentityError),
 }
 
 /// Why a file is not read.

@@ -22,6 +22,10 @@ use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
 
+/// What is said of a message in TEME, which is only written when it is asked for.
+pub(super) const TEME_NOTE: &str =
+    "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
+
 words! {
     /// A version of the message.
     Version {
@@ -220,8 +224,7 @@ pub(super) fn segment_metadata(
     };
     let mut comments = Vec::new();
     if metadata.frame == Frame::Teme {
-        let note = "TEME is no frame of CCSDS 502.0-B-3 for ephemerides; it was asked for";
-        comments.push(note.to_owned());
+        comments.push(TEME_NOTE.to_owned());
     }
     // 7.8.12 c asks for the accuracy.
     if let Some(hermite) = hermite {

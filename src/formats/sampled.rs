@@ -60,19 +60,13 @@ impl<'a> Sampled<'a> {
         Ok(FromTeme::to(self.frame, self.grid().epoch(), elapsed_s).apply(teme))
     }
 
-    /// The state of a satellite at sample `k`.
-    ///
-    /// # Errors
-    /// Names the satellite whose propagation fails.
-    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State, EphemerisError> {
-        let elapsed_s = self.grid().elapsed_s(k);
-        match self.rotations.get(k) {
-            Some(rotation) => {
-                let teme = self.ephemeris.state(satellite, elapsed_s)?;
-                Ok(rotation.apply(teme))
-            }
-            None => self.state(satellite, elapsed_s),
-        }
+    /// The TEME state of sample `k` in the frame.
+    #[must_use]
+    pub fn rotated(&self, k: usize, teme: State) -> State {
+        let rotation = self.rotations.get(k).copied().unwrap_or_else(|| {
+            FromTeme::to(self.frame, self.grid().epoch(), self.grid().elapsed_s(k))
+        });
+        rotation.apply(teme)
     }
 
     /// The states of a satellite at every instant of the grid.
@@ -82,8 +76,9 @@ impl<'a> Sampled<'a> {
     ) -> impl ExactSizeIterator<Item = Result<(Epoch, State), EphemerisError>> {
         let grid = self.grid();
         (0..grid.len()).map(move |k| {
-            let at = grid.epoch().plus_seconds(grid.elapsed_s(k));
-            Ok((at, self.state_at(satellite, k)?))
+            let elapsed_s = grid.elapsed_s(k);
+            let teme = self.ephemeris.state(satellite, elapsed_s)?;
+            Ok((grid.epoch().plus_seconds(elapsed_s), self.rotated(k, teme)))
         })
     }
 }

@@ -58,6 +58,9 @@ pub enum TleFieldError {
     /// A catalogue number past Alpha-5.
     #[error(transparent)]
     Identity(#[from] IdentityError),
+    /// Lines that another reader refuses.
+    #[error("the lines are not read back: {0}")]
+    Unreadable(sgp4::TleError),
 }
 
 /// `epoch` on the nearest step of a TLE epoch, 1e-8 day.
@@ -141,6 +144,16 @@ pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
         let sum = checksum(line.as_bytes());
         format!("{line}{sum}")
     }))
+}
+
+/// The element set that a reader finds in the two lines.
+///
+/// # Errors
+/// When an element does not fit its columns.
+pub fn as_written(set: &sgp4::Elements) -> Result<sgp4::Elements, TleFieldError> {
+    let [first, second] = lines(set)?;
+    let name = set.object_name.clone();
+    read::set_of_lines(name, [&first, &second]).map_err(TleFieldError::Unreadable)
 }
 
 /// Sum of the digits modulo 10, a minus sign counting 1.

@@ -204,10 +204,8 @@ fn record(
     if !ranges_fit(first, second, findings) {
         return None;
     }
-    match sgp4::Elements::from_tle(name, one.as_bytes(), two.as_bytes()) {
-        Ok(mut set) => {
-            // Decimal days in doubles are some nanoseconds off the step that is written.
-            set.datetime = snapped(set.datetime);
+    match set_of_lines(name, [one, two]) {
+        Ok(set) => {
             let line = first.number;
             Some(Record { set, line })
         }
@@ -216,6 +214,17 @@ fn record(
             None
         }
     }
+}
+
+/// The element set of two lines whose columns have been looked at.
+pub(super) fn set_of_lines(
+    name: Option<String>,
+    [one, two]: [&str; 2],
+) -> Result<sgp4::Elements, sgp4::TleError> {
+    let mut set = sgp4::Elements::from_tle(name, one.as_bytes(), two.as_bytes())?;
+    // Decimal days in doubles are some nanoseconds off the step that is written.
+    set.datetime = snapped(set.datetime);
+    Ok(set)
 }
 
 fn checked_name(line: &Line, findings: &mut Findings) -> Option<String> {

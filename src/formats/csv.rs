@@ -1,0 +1,136 @@
+//! Comma-separated tables with units in their headers: elements and states.
+//!
+//! A state has a row for each satellite and sample, in TEME and Earth-fixed, so that it serves
+//! as the neutral truth for every other file. Syntax: RFC 4180, with a bare line feed.
+
+use super::WriteError;
+use super::metadata::Object;
+use super::sampled::Sampled;
+use super::stamp::{SecondDigits, calendar};
+use crate::constellation::Satellite;
+use crate::ephemeris::Ephemeris;
+use crate::frames::{Frame, State};
+use crate::orbit::sgp4::MeanMotionSlot;
+use crate::time::Epoch;
+use std::io::{self, Write};
+
+/// Columns of the table of elements: mean elements at the epoch, in TEME.
+const ELEMENTS: [&str; 14] = [
+    "object",
+    "object_id",
+    "catalog_number",
+    "plane",
+    "slot",
+    "epoch_utc",
+    "semi_major_axis_km",
+    "eccentricity",
+    "inclination_deg",
+    "raan_deg",
+    "arg_perigee_deg",
+    "mean_anomaly_deg",
+    "kozai_mean_motion_rev_day",
+    "kepler_mean_motion_rev_day",
+];
+
+/// Columns of the table of states.
+const STATES: [&str; 15] = [
+    "object",
+    "utc",
+    "elapsed_s",
+    "teme_x_km",
+    "teme_y_km",
+    "teme_z_km",
+    "teme_vx_km_s",
+    "teme_vy_km_s",
+    "teme_vz_km_s",
+    "itrf_x_km",
+    "itrf_y_km",
+    "itrf_z_km",
+    "itrf_vx_km_s",
+    "itrf_vy_km_s",
+    "itrf_vz_km_s",
+];
+
+/// Writes the mean elements of a design, all digits.
+///
+/// # Errors
+/// When the output does not take the bytes.
+pub fn write_elements<'a>(
+    out: &mut impl Write,
+    satellites: impl Iterator<Item = (&'a Satellite, &'a Object)>,
+    epoch: Epoch,
+) -> Result<(), WriteError> {
+    let mut table = ::csv::Writer::from_writer(out);
+    table.write_record(ELEMENTS).map_err(io_error)?;
+    let stamp = epoch.utc().naive_utc();
+    let stamp = calendar(stamp, SecondDigits::of_stamp(stamp));
+    for (satellite, object) in satellites {
+        let elements = &satellite.elements;
+        let numbers = [
+            elements.semi_major_axis_km,
+            elements.eccentricity,
+            elements.inclination_rad.to_degrees(),
+            elements.raan_rad.to_degrees(),
+            elements.arg_perigee_rad.to_degrees(),
+            elements.mean_anomaly_rad.to_degrees(),
+            MeanMotionSlot::Kozai.mean_motion_rev_day(elements),
+            MeanMotionSlot::Kepler.mean_motion_rev_day(elements),
+        ];
+        let mut row = vec![
+            object.name.clone(),
+            object.id.clone(),
+            object.catalog_number.number().to_string(),
+            (satellite.slot.plane + 1).to_string(),
+            (satellite.slot.index + 1).to_string(),
+            stamp.clone(),
+        ];
+        row.extend(numbers.map(|number| number.to_string()));
+        table.write_record(&row).map_err(io_error)?;
+    }
+    table.flush()?;
+    Ok(())
+}
+
+/// Writes the states of an ephemeris, satellite by satellite.
+///
+/// # Errors
+/// When a satellite has no state, or the output does not take the bytes.
+pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), WriteError> {
+    let mut table = ::csv::Writer::from_writer(out);
+    table.write_record(STATES).map_err(io_error)?;
+    let grid = ephemeris.grid();
+    let digits = SecondDigits::of_grid(&grid);
+    let fixed = Sampled::new(ephemeris, Frame::EarthFixed);
+    for satellite in ephemeris.satellites() {
+        for (k, sample) in ephemeris.states(satellite).enumerate() {
+            let (elapsed_s, teme) = sample?;
+            let stamp = grid.epoch().plus_seconds(elapsed_s).utc().naive_utc();
+            let mut row = vec![
+                satellite.name.clone(),
+                calendar(stamp, digits),
+                elapsed_s.to_string(),
+            ];
+            row.extend(fields(&teme));
+            row.extend(fields(&fixed.rotated(k, teme)));
+            table.write_record(&row).map_err(io_error)?;
+        }
+    }
+    table.flush()?;
+    Ok(())
+}
+
+/// Position to 1e-9 km and velocity to 1e-12 km/s.
+fn fields(state: &State) -> impl Iterator<Item = String> {
+    let (r, v) = (state.position_km, state.velocity_km_s);
+    let position = [r.x, r.y, r.z].map(|x| format!("{x:.9}"));
+    let velocity = [v.x, v.y, v.z].map(|x| format!("{x:.12}"));
+    position.into_iter().chain(velocity)
+}
+
+/// The writer gives rows of equal length, so that only the output can fail.
+fn io_error(error: ::csv::Error) -> io::Error {
+    match error.into_kind() {
+        ::csv::ErrorKind::Io(error) => error,
+        kind => io::Error::other(format!("{kind:?}")),
+    }
+}
