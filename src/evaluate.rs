@@ -4,11 +4,13 @@
 //! rotation of every sample and the geometry of the GNSS. It is immutable and can be shared by
 //! threads; the result of a design does not depend on which thread computes it.
 
+mod dops;
 mod fixed;
 mod metrics;
 mod plain;
 mod series;
 
+pub use dops::{ClockDop, DopOptions, DopStatistics};
 pub use metrics::{MetricOptions, Metrics};
 pub use series::{EpochMetrics, PointMetrics, Series};
 
