@@ -6,6 +6,10 @@
 //! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19). No matrix of the
 //! size of the satellites is built.
 
+mod family;
+
+pub use family::{DopFamily, ObservationWeights, WeightedGroup};
+
 use crate::words::words;
 use nalgebra::Vector3;
 use std::ops::AddAssign;
@@ -64,6 +68,32 @@ impl Symmetric3 {
             + self.xz * (self.xy * self.yz - self.yy * self.xz);
         let definite = self.xx > 0.0 && minor_zz > 0.0 && determinant > 0.0;
         definite.then(|| (minor_xx + minor_yy + minor_zz) / determinant)
+    }
+
+    /// The inverse, by cofactors; `None` when the matrix is not positive definite.
+    #[must_use]
+    pub fn inverse(&self) -> Option<Self> {
+        let cofactor_xx = self.yy * self.zz - self.yz * self.yz;
+        let cofactor_xy = self.xz * self.yz - self.xy * self.zz;
+        let cofactor_xz = self.xy * self.yz - self.xz * self.yy;
+        let minor_zz = self.xx * self.yy - self.xy * self.xy;
+        let determinant = self.xx * cofactor_xx + self.xy * cofactor_xy + self.xz * cofactor_xz;
+        let definite = self.xx > 0.0 && minor_zz > 0.0 && determinant > 0.0;
+        definite.then(|| Self {
+            xx: cofactor_xx / determinant,
+            yy: (self.xx * self.zz - self.xz * self.xz) / determinant,
+            zz: minor_zz / determinant,
+            xy: cofactor_xy / determinant,
+            xz: cofactor_xz / determinant,
+            yz: (self.xy * self.xz - self.xx * self.yz) / determinant,
+        })
+    }
+
+    /// vᵀ A v.
+    #[must_use]
+    pub fn quadratic(&self, v: Vector3<f64>) -> f64 {
+        let squares = self.xx * v.x * v.x + self.yy * v.y * v.y + self.zz * v.z * v.z;
+        squares + 2.0 * (self.xy * v.x * v.y + self.xz * v.x * v.z + self.yz * v.y * v.z)
     }
 }
 

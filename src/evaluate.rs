@@ -4,11 +4,15 @@
 //! rotation of every sample and the geometry of the GNSS. It is immutable and can be shared by
 //! threads; the result of a design does not depend on which thread computes it.
 
+mod dops;
 mod fixed;
 mod metrics;
 mod plain;
+mod series;
 
+pub use dops::{ClockDop, DopOptions, DopStatistics};
 pub use metrics::{MetricOptions, Metrics};
+pub use series::{EpochMetrics, PointMetrics, Series};
 
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
@@ -49,6 +53,13 @@ impl Setup {
     #[must_use]
     pub fn sample_count(&self) -> usize {
         self.sites.len() * self.grid.len()
+    }
+
+    /// Whether all points count the same.
+    #[must_use]
+    pub fn has_equal_weights(&self) -> bool {
+        let mut pairs = self.sites.windows(2);
+        pairs.all(|pair| pair[0].weight == pair[1].weight)
     }
 
     /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take, bytes.
@@ -111,12 +122,15 @@ impl Evaluator {
     /// # Errors
     /// When a satellite cannot be propagated.
     pub fn ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        let samples = plain::evaluate(self, ephemeris)?;
-        Ok(Metrics::from_samples(
-            samples,
-            self.setup.metrics,
-            ephemeris.satellites().len(),
-        ))
+        let satellites = ephemeris.satellites().len();
+        let options = self.setup.metrics;
+        if self.setup.has_equal_weights() {
+            let samples = plain::evaluate(self, ephemeris)?;
+            Ok(Metrics::from_samples(samples, options, satellites))
+        } else {
+            let samples = plain::evaluate_weighted(self, ephemeris)?;
+            Ok(Metrics::from_weighted(samples, options, satellites))
+        }
     }
 }
 

@@ -34,7 +34,7 @@ mod tests;
 
 pub use crate::constellation::Pattern;
 pub use crate::constellation::gnss::Preset;
-pub use crate::dop::Clocks;
+pub use crate::dop::{Clocks, ObservationWeights};
 pub use crate::earth::Surface;
 pub use crate::ground::PointWeights;
 pub use crate::orbit::Model;
@@ -50,7 +50,7 @@ pub use resolved::{
 pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
-pub use words::{Algorithm, Weighting};
+pub use words::Algorithm;
 
 use problem::Report;
 use source::Source;

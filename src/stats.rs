@@ -1,5 +1,10 @@
 //! Quantiles and the conditional value-at-risk of a finite sample.
 
+mod weighted;
+
+pub use weighted::{Weighted, summarize_weighted, weighted_cvar, weighted_mean, weighted_quantile};
+
+use serde::Serialize;
 use thiserror::Error;
 
 /// A level that is not a probability strictly between 0 and 1.
@@ -32,7 +37,7 @@ impl Level {
 }
 
 /// Mean, quantiles, tail and extreme of one sample, all in the sample's unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Summary {
     /// Arithmetic mean.
     pub mean: f64,

@@ -1,5 +1,9 @@
 //! Who sees what: the one definition of visibility.
 
+mod table;
+
+pub use table::{MaskTable, MaskTableError};
+
 use crate::frames::LocalFrame;
 use nalgebra::Vector3;
 use thiserror::Error;

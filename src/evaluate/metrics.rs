@@ -1,7 +1,7 @@
 //! The figures of merit of a constellation over points and times.
 
-use super::plain::Samples;
-use crate::stats::{Level, summarize};
+use super::plain::{Samples, WeightedSamples};
+use crate::stats::{Level, Summary, summarize, summarize_weighted};
 use serde::Serialize;
 
 /// How samples are turned into metrics.
@@ -18,7 +18,8 @@ pub struct MetricOptions {
 /// The metrics of a constellation. Every one is without unit.
 ///
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved
-/// samples, and `None` when there is none.
+/// samples, and `None` when there is none. Every point counts with its weight in all of them:
+/// means, shares, quantiles and the tail are those of samples weighted by their point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Metrics {
     /// N̄, mean number of visible LEO satellites (equation 10 of the paper).
@@ -61,20 +62,50 @@ impl Metrics {
             .count();
         let solved = samples.pdop.len();
         let summary = summarize(&mut samples.pdop, options.cvar_level);
-        let mean_visible = samples.visible as f64 / count;
+        Self::assembled(
+            samples.visible as f64 / count,
+            summary,
+            [solved as f64 / count, available as f64 / count],
+            options,
+            satellites,
+        )
+    }
+
+    pub(super) fn from_weighted(
+        mut samples: WeightedSamples,
+        options: MetricOptions,
+        satellites: usize,
+    ) -> Self {
+        let share_up_to = |bound: f64| {
+            let within = samples.pdop.iter().filter(|x| x.value <= bound);
+            within.fold(0.0, |sum, x| sum + x.weight) / samples.weight
+        };
+        let shares = [f64::INFINITY, options.availability_pdop].map(share_up_to);
+        let summary = summarize_weighted(&mut samples.pdop, options.cvar_level);
+        let mean_visible = samples.visible / samples.weight;
+        Self::assembled(mean_visible, summary, shares, options, satellites)
+    }
+
+    fn assembled(
+        mean_visible: f64,
+        pdop: Option<Summary>,
+        [solved_fraction, availability]: [f64; 2],
+        options: MetricOptions,
+        satellites: usize,
+    ) -> Self {
         Self {
             mean_visible,
-            mean_pdop: summary.map(|s| s.mean),
-            cvar_pdop: summary.map(|s| s.cvar),
+            mean_pdop: pdop.map(|s| s.mean),
+            cvar_pdop: pdop.map(|s| s.cvar),
             cvar_level: options.cvar_level.get(),
-            p50_pdop: summary.map(|s| s.p50),
-            p95_pdop: summary.map(|s| s.p95),
-            p99_pdop: summary.map(|s| s.p99),
-            max_pdop: summary.map(|s| s.max),
-            solved_fraction: solved as f64 / count,
-            availability: available as f64 / count,
-            j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
-            j_cost: (samples.visible > 0).then(|| satellites as f64 / mean_visible),
+            p50_pdop: pdop.map(|s| s.p50),
+            p95_pdop: pdop.map(|s| s.p95),
+            p99_pdop: pdop.map(|s| s.p99),
+            max_pdop: pdop.map(|s| s.max),
+            solved_fraction,
+            availability,
+            j_pos: pdop.map(|s| s.mean + options.cvar_weight * s.cvar),
+            j_cost: (mean_visible > 0.0).then(|| satellites as f64 / mean_visible),
         }
     }
 }

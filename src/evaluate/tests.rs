@@ -1,3 +1,5 @@
+mod products;
+
 use super::*;
 use crate::constellation::Pattern;
 use crate::constellation::gnss::Preset;

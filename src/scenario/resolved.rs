@@ -4,7 +4,7 @@ use chrono::{DateTime, Utc};
 
 use super::Constraint;
 use super::{
-    Algorithm, Clocks, Model, Pattern, PointWeights, Preset, Quantity, Surface, Weighting,
+    Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Surface,
 };
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -135,7 +135,7 @@ pub struct Visibility {
     /// first across north; where it is higher than a mask it counts instead.
     pub mask_table: Vec<MaskPoint>,
     /// How a line of sight counts in the solution.
-    pub weighting: Weighting,
+    pub weighting: ObservationWeights,
     /// A PDOP above this is no solution.
     pub pdop_cap: f64,
 }

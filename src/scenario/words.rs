@@ -3,16 +3,6 @@
 use crate::words::words;
 
 words! {
-    /// How a line of sight counts in the least-squares solution behind a PDOP.
-    Weighting {
-        /// Every line of sight counts the same.
-        Unit = "unit",
-        /// A line of sight counts as the sine of its elevation.
-        SineElevation = "sine-elevation",
-    }
-}
-
-words! {
     /// The strategy of the search.
     Algorithm {
         /// NSGA-II.

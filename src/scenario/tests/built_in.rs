@@ -4,8 +4,8 @@ use chrono::{TimeZone, Utc};
 
 use super::{defaults, parse};
 use crate::scenario::{
-    Algorithm, Clocks, Model, Pattern, PointWeights, Preset, Quantity, Region, Scenario, Surface,
-    Weighting, builtin, builtin_names, describe_keys, json_schema, template,
+    Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Region,
+    Scenario, Surface, builtin, builtin_names, describe_keys, json_schema, template,
 };
 
 fn built_in(name: &str) -> Scenario {
@@ -34,7 +34,7 @@ fn an_empty_file_has_the_documented_defaults() {
     assert_eq!((visibility.mask_deg, visibility.gnss_mask_deg), (7.0, 7.0));
     assert_eq!(visibility.pdop_cap, 100.0);
     assert_eq!(visibility.mask_table, []);
-    assert_eq!(visibility.weighting, Weighting::Unit);
+    assert_eq!(visibility.weighting, ObservationWeights::Unit);
     assert_eq!(scenario.gnss.constellations, [Preset::Beidou3]);
     assert!(scenario.gnss.files.is_empty());
     assert_eq!(scenario.gnss.clocks, Clocks::PerSystem);

@@ -7,7 +7,7 @@ use crate::scenario::resolved::{Grid, Region, Scenario};
 use crate::scenario::rule::{
     Eastward, Instant, Interval, Number, OneOf, Paths, Skyline, SomeOf, Steps, Text,
 };
-use crate::scenario::{Clocks, Model, PointWeights, Preset, Surface, Weighting};
+use crate::scenario::{Clocks, Model, ObservationWeights, PointWeights, Preset, Surface};
 
 pub(in crate::scenario) static NAME: Key<Text> = Key {
     section: "",
@@ -168,13 +168,13 @@ pub(in crate::scenario) static MASK_TABLE: Key<Skyline> = Key {
     of: |s| Some(s.visibility.mask_table.clone()),
 };
 
-pub(in crate::scenario) static WEIGHTING: Key<OneOf<Weighting>> = Key {
+pub(in crate::scenario) static WEIGHTING: Key<OneOf<ObservationWeights>> = Key {
     section: "visibility",
     name: "weighting",
     unit: "",
     meaning: "How a line of sight counts in the least-squares solution",
     rule: OneOf::new(),
-    otherwise: Otherwise::Value(|| Weighting::Unit),
+    otherwise: Otherwise::Value(|| ObservationWeights::Unit),
     of: |s| Some(s.visibility.weighting),
 };
 

@@ -1,0 +1,188 @@
+//! All dilutions of precision of a constellation with its GNSS, by the plain path.
+
+use super::{Evaluator, plain};
+use crate::dop::{Clocks, DopFamily, ObservationWeights, WeightedGroup};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::LocalFrame;
+use crate::stats::{Level, Summary, Weighted, summarize_weighted};
+use crate::visibility::{Mask, MaskTable};
+use nalgebra::Vector3;
+use serde::Serialize;
+
+/// What [`Evaluator::dops`] adds to the setup.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DopOptions {
+    /// How observations count.
+    pub weights: ObservationWeights,
+    /// A skyline that satellites must clear besides the masks of the setup, the same at all points.
+    pub skyline: Option<MaskTable>,
+}
+
+/// Statistics of the dilutions of precision over the solved samples, by the weights of their
+/// points; `None` where there is no sample.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DopStatistics {
+    /// Position and clocks.
+    pub gdop: Option<Summary>,
+    /// Position.
+    pub pdop: Option<Summary>,
+    /// Horizontal position.
+    pub hdop: Option<Summary>,
+    /// Height.
+    pub vdop: Option<Summary>,
+    /// Clock by clock.
+    pub tdop: Vec<ClockDop>,
+    /// Share of the samples that are solved.
+    pub solved_fraction: f64,
+}
+
+/// The dilution of precision of one clock.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ClockDop {
+    /// The system that keeps the clock: `leo`, or the name of a GNSS; `shared` for one of all.
+    pub system: String,
+    /// Statistics over the solved samples with a satellite of the system in view.
+    pub tdop: Option<Summary>,
+}
+
+/// Satellites that are looked at under one mask and observed with one clock.
+struct View<'a> {
+    ephemeris: &'a Ephemeris,
+    mask: Mask,
+    clock: usize,
+    positions: Vec<Vector3<f64>>,
+}
+
+/// The samples of each quantity.
+struct Collected {
+    gdop: Vec<Weighted>,
+    pdop: Vec<Weighted>,
+    hdop: Vec<Weighted>,
+    vdop: Vec<Weighted>,
+    tdop: Vec<Vec<Weighted>>,
+    solved_weight: f64,
+    weight: f64,
+}
+
+impl Evaluator {
+    /// Every dilution of precision of any satellites together with the GNSS of the setup.
+    ///
+    /// With unit weights and no skyline PDOP is that of the metrics.
+    ///
+    /// # Errors
+    /// When a satellite cannot be propagated.
+    pub fn dops(
+        &self,
+        ephemeris: &Ephemeris,
+        options: &DopOptions,
+    ) -> Result<DopStatistics, EphemerisError> {
+        let setup = self.setup();
+        let systems: Vec<_> = setup
+            .gnss
+            .iter()
+            .map(|system| Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid))
+            .collect();
+        let clocks = self.clock_names();
+        let clock = |n: usize| n.min(clocks.len() - 1);
+        let mut views = vec![View::new(ephemeris, setup.mask, 0)];
+        let gnss = systems.iter().enumerate();
+        views.extend(gnss.map(|(n, system)| View::new(system, setup.gnss_mask, clock(n + 1))));
+
+        let mut collected = Collected::new(clocks.len());
+        let mut groups = Vec::new();
+        for time in 0..setup.grid.len() {
+            for view in &mut views {
+                plain::earth_fixed(self, view.ephemeris, time, &mut view.positions)?;
+            }
+            for site in &setup.sites {
+                groups.clear();
+                groups.resize(clocks.len(), WeightedGroup::default());
+                for view in &views {
+                    view.observe(&site.local, options, &mut groups[view.clock]);
+                }
+                let dops = DopFamily::of(&groups, &site.local, setup.pdop_cap);
+                collected.add(dops.as_ref(), site.weight);
+            }
+        }
+        Ok(collected.statistics(clocks, setup.metrics.cvar_level))
+    }
+
+    fn clock_names(&self) -> Vec<String> {
+        match self.setup().clocks {
+            Clocks::Shared => vec!["shared".to_owned()],
+            Clocks::PerSystem => {
+                let gnss = self.setup().gnss.iter().map(|system| system.name());
+                std::iter::once("leo")
+                    .chain(gnss)
+                    .map(str::to_owned)
+                    .collect()
+            }
+        }
+    }
+}
+
+impl<'a> View<'a> {
+    fn new(ephemeris: &'a Ephemeris, mask: Mask, clock: usize) -> Self {
+        Self {
+            ephemeris,
+            mask,
+            clock,
+            positions: Vec::with_capacity(ephemeris.satellites().len()),
+        }
+    }
+
+    fn observe(&self, site: &LocalFrame, options: &DopOptions, group: &mut WeightedGroup) {
+        let clears = |unit: &Vector3<f64>| {
+            let skyline = options.skyline.as_ref();
+            skyline.is_none_or(|skyline| skyline.clears(site, *unit))
+        };
+        for &position in &self.positions {
+            if let Some(unit) = self.mask.line_of_sight(site, position).filter(clears) {
+                group.add(unit, options.weights.weight(site.up.dot(&unit)));
+            }
+        }
+    }
+}
+
+impl Collected {
+    fn new(clocks: usize) -> Self {
+        Self {
+            gdop: Vec::new(),
+            pdop: Vec::new(),
+            hdop: Vec::new(),
+            vdop: Vec::new(),
+            tdop: vec![Vec::new(); clocks],
+            solved_weight: 0.0,
+            weight: 0.0,
+        }
+    }
+
+    fn add(&mut self, dops: Option<&DopFamily>, weight: f64) {
+        self.weight += weight;
+        let Some(dops) = dops else { return };
+        self.solved_weight += weight;
+        let weighted = |value: f64| Weighted { value, weight };
+        self.gdop.push(weighted(dops.gdop));
+        self.pdop.push(weighted(dops.pdop));
+        self.hdop.push(weighted(dops.hdop));
+        self.vdop.push(weighted(dops.vdop));
+        for (samples, tdop) in self.tdop.iter_mut().zip(&dops.tdop) {
+            samples.extend(tdop.map(weighted));
+        }
+    }
+
+    fn statistics(mut self, clocks: Vec<String>, level: Level) -> DopStatistics {
+        let clock = |(system, mut samples): (String, Vec<Weighted>)| ClockDop {
+            system,
+            tdop: summarize_weighted(&mut samples, level),
+        };
+        DopStatistics {
+            gdop: summarize_weighted(&mut self.gdop, level),
+            pdop: summarize_weighted(&mut self.pdop, level),
+            hdop: summarize_weighted(&mut self.hdop, level),
+            vdop: summarize_weighted(&mut self.vdop, level),
+            tdop: clocks.into_iter().zip(self.tdop).map(clock).collect(),
+            solved_fraction: self.solved_weight / self.weight,
+        }
+    }
+}

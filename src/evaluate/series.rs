@@ -1,0 +1,146 @@
+//! Metrics per instant and per point: what figures and maps are drawn from.
+
+use super::Evaluator;
+use super::plain::{self, Sample};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::stats::{Level, quantile};
+use serde::Serialize;
+
+/// One instant, over all points; every point counts with its weight (M-29).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EpochMetrics {
+    /// Seconds since the epoch of the grid.
+    pub elapsed_s: f64,
+    /// Mean number of visible LEO satellites, equation (22) of the paper.
+    pub mean_visible: f64,
+    /// Mean PDOP over the solved points, equation (24); `None` when no point is solved.
+    pub mean_pdop: Option<f64>,
+    /// Largest PDOP of a solved point: its maximum over time is equation (23).
+    pub max_pdop: Option<f64>,
+    /// Share of the points that are solved.
+    pub solved_fraction: f64,
+}
+
+/// One point, over all instants.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PointMetrics {
+    /// Latitude of the surface model, degrees.
+    pub latitude_deg: f64,
+    /// East longitude, degrees, as given.
+    pub longitude_deg: f64,
+    /// Mean number of visible LEO satellites.
+    pub mean_visible: f64,
+    /// Mean PDOP over the solved instants; `None` when there is none.
+    pub mean_pdop: Option<f64>,
+    /// 95 % quantile of PDOP over the solved instants.
+    pub p95_pdop: Option<f64>,
+    /// Largest PDOP of a solved instant.
+    pub max_pdop: Option<f64>,
+    /// Share of the instants that are solved.
+    pub solved_fraction: f64,
+    /// Share of the instants that are solved with PDOP at most the availability threshold.
+    pub availability: f64,
+}
+
+/// The two cuts through the samples of an evaluation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Instant by instant.
+    pub epochs: Vec<EpochMetrics>,
+    /// Point by point, in the order of the setup.
+    pub points: Vec<PointMetrics>,
+}
+
+/// Weighted sums over the points of one instant.
+#[derive(Clone, Copy, Default)]
+struct EpochSums {
+    weight: f64,
+    visible: f64,
+    solved: f64,
+    pdop: f64,
+    max: Option<f64>,
+}
+
+/// What one point collects over the instants.
+#[derive(Clone, Default)]
+struct PointSums {
+    visible: u64,
+    pdop: Vec<f64>,
+}
+
+impl Evaluator {
+    /// The metrics of any satellites per instant and per point, by the plain path.
+    ///
+    /// # Errors
+    /// When a satellite cannot be propagated.
+    pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
+        let setup = self.setup();
+        let mut epochs = vec![EpochSums::default(); setup.grid.len()];
+        let mut points = vec![PointSums::default(); setup.sites.len()];
+        plain::visit(self, ephemeris, |sample| {
+            epochs[sample.time].add(&sample, setup.sites[sample.site].weight);
+            let point = &mut points[sample.site];
+            point.visible += u64::from(sample.visible);
+            point.pdop.extend(sample.pdop);
+        })?;
+        let elapsed = setup.grid.iter();
+        let epochs = epochs.iter().zip(elapsed).map(|(sums, t)| sums.metrics(t));
+        let sites = setup.sites.iter();
+        let points = points.into_iter().zip(sites).map(|(sums, site)| {
+            let place = (site.latitude_deg, site.longitude_deg);
+            sums.metrics(place, setup.grid.len(), setup.metrics.availability_pdop)
+        });
+        Ok(Series {
+            epochs: epochs.collect(),
+            points: points.collect(),
+        })
+    }
+}
+
+impl EpochSums {
+    fn add(&mut self, sample: &Sample, weight: f64) {
+        self.weight += weight;
+        self.visible += weight * f64::from(sample.visible);
+        if let Some(pdop) = sample.pdop {
+            self.solved += weight;
+            self.pdop += weight * pdop;
+            self.max = Some(self.max.map_or(pdop, |max| max.max(pdop)));
+        }
+    }
+
+    fn metrics(&self, elapsed_s: f64) -> EpochMetrics {
+        EpochMetrics {
+            elapsed_s,
+            mean_visible: self.visible / self.weight,
+            mean_pdop: self.max.map(|_| self.pdop / self.solved),
+            max_pdop: self.max,
+            solved_fraction: self.solved / self.weight,
+        }
+    }
+}
+
+impl PointSums {
+    fn metrics(
+        mut self,
+        (latitude_deg, longitude_deg): (f64, f64),
+        instants: usize,
+        availability_pdop: f64,
+    ) -> PointMetrics {
+        let count = instants as f64;
+        let solved = self.pdop.len();
+        let sum: f64 = self.pdop.iter().sum();
+        let available = self.pdop.iter().filter(|&&x| x <= availability_pdop);
+        let available = available.count();
+        let p95 = Level::new(0.95).ok();
+        PointMetrics {
+            latitude_deg,
+            longitude_deg,
+            mean_visible: self.visible as f64 / count,
+            mean_pdop: (solved > 0).then(|| sum / solved as f64),
+            p95_pdop: p95.and_then(|level| quantile(&mut self.pdop, level)),
+            max_pdop: self.pdop.iter().copied().max_by(f64::total_cmp),
+            solved_fraction: solved as f64 / count,
+            availability: available as f64 / count,
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Weights, series and dilutions of precision.
+
+use super::*;
+use crate::dop::ObservationWeights;
+use crate::visibility::MaskTable;
+
+/// A point of weight 2 is that point twice. The gain over the equal weights of the same three
+/// points shows that weights count.
+#[test]
+fn a_weight_is_a_repetition() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    let base = setup([3.0, 54.0], Surface::Wgs84);
+    let metrics = |points: &[(f64, f64)]| {
+        let sites = points
+            .iter()
+            .map(|&(latitude, weight)| Site::new(Surface::Wgs84, latitude, 100.0, weight).unwrap())
+            .collect();
+        let setup = Setup {
+            sites,
+            grid: TimeGrid::new(base.grid.epoch(), 86_400.0, 300.0).unwrap(),
+            pdop_cap: 2.2,
+            metrics: MetricOptions {
+                availability_pdop: 1.6,
+                ..base.metrics
+            },
+            ..base.clone()
+        };
+        Evaluator::new(setup).unwrap().design(&design).unwrap()
+    };
+    let weighted = metrics(&[(5.0, 2.0), (40.0, 1.0), (75.0, 3.0)]);
+    let repeated = metrics(&[5.0, 5.0, 40.0, 75.0, 75.0, 75.0].map(|latitude| (latitude, 1.0)));
+    let equal = metrics(&[5.0, 40.0, 75.0].map(|latitude| (latitude, 1.0)));
+    let numbers = |m: &Metrics| {
+        let pdop = [m.mean_pdop, m.cvar_pdop, m.p50_pdop, m.p95_pdop, m.p99_pdop];
+        let mut all: Vec<f64> = pdop.into_iter().map(Option::unwrap).collect();
+        all.extend([m.mean_visible, m.solved_fraction, m.availability]);
+        all.extend([m.j_pos.unwrap(), m.j_cost.unwrap(), m.max_pdop.unwrap()]);
+        all
+    };
+    for (ours, theirs) in numbers(&weighted).iter().zip(numbers(&repeated)) {
+        // Sums in another order, of 1700 samples.
+        assert!(
+            (ours / theirs - 1.0).abs() < 1e-12,
+            "{weighted:?} {repeated:?}"
+        );
+    }
+    assert!((weighted.mean_visible / equal.mean_visible - 1.0).abs() > 0.01);
+    let shares = [weighted.availability, weighted.solved_fraction, 1.0];
+    assert!(
+        shares[0] > 0.0 && shares.is_sorted_by(|a, b| a < b),
+        "{shares:?}"
+    );
+}
+
+/// A few points in some hours, with unsolved samples and an availability below one.
+fn small(weights: [f64; 3]) -> Setup {
+    let base = setup([3.0, 54.0], Surface::Wgs84);
+    let site = |(latitude, weight)| Site::new(Surface::Wgs84, latitude, 100.0, weight).unwrap();
+    Setup {
+        sites: [5.0, 40.0, 75.0]
+            .into_iter()
+            .zip(weights)
+            .map(site)
+            .collect(),
+        grid: TimeGrid::new(base.grid.epoch(), 36_000.0, 300.0).unwrap(),
+        gnss: vec![Preset::Gps.into()],
+        pdop_cap: 2.2,
+        metrics: MetricOptions {
+            availability_pdop: 1.6,
+            ..base.metrics
+        },
+        ..base
+    }
+}
+
+/// The cuts of the series add up to the metrics of the whole.
+#[test]
+fn series_add_up_to_the_metrics() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    let setup = small([1.0, 2.0, 0.5]);
+    let evaluator = Evaluator::new(setup.clone()).unwrap();
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
+    let metrics = evaluator.ephemeris(&ephemeris).unwrap();
+    let Series { epochs, points } = evaluator.series(&ephemeris).unwrap();
+    assert_eq!((epochs.len(), points.len()), (120, 3));
+    assert_eq!(
+        (epochs[7].elapsed_s, points[1].latitude_deg),
+        (2100.0, 40.0)
+    );
+
+    let instants = epochs.len() as f64;
+    let visible = epochs.iter().map(|e| e.mean_visible).sum::<f64>() / instants;
+    let solved = epochs.iter().map(|e| e.solved_fraction).sum::<f64>() / instants;
+    let pdop = epochs
+        .iter()
+        .filter_map(|e| Some(e.mean_pdop? * e.solved_fraction));
+    let mean_pdop = pdop.sum::<f64>() / instants / solved;
+    // Sums in another order.
+    let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+    close(visible, metrics.mean_visible);
+    close(solved, metrics.solved_fraction);
+    close(mean_pdop, metrics.mean_pdop.unwrap());
+    let max = epochs.iter().filter_map(|e| e.max_pdop).fold(0.0, f64::max);
+    assert_eq!(Some(max), metrics.max_pdop);
+
+    let weights = [1.0, 2.0, 0.5];
+    let over_points = |value: fn(&PointMetrics) -> f64| {
+        let sum: f64 = points.iter().zip(weights).map(|(p, w)| w * value(p)).sum();
+        sum / 3.5
+    };
+    close(over_points(|p| p.mean_visible), metrics.mean_visible);
+    close(over_points(|p| p.solved_fraction), metrics.solved_fraction);
+    close(over_points(|p| p.availability), metrics.availability);
+    let pdop = over_points(|p| p.mean_pdop.unwrap() * p.solved_fraction);
+    close(pdop, metrics.mean_pdop.unwrap() * metrics.solved_fraction);
+    let max = points.iter().filter_map(|p| p.max_pdop).fold(0.0, f64::max);
+    assert_eq!(Some(max), metrics.max_pdop);
+}
+
+/// A point alone has its own metrics.
+#[test]
+fn a_point_of_the_series_is_an_evaluation_of_that_point() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    let all = small([1.0; 3]);
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, all.grid).unwrap();
+    let alone = Setup {
+        sites: vec![all.sites[1]],
+        ..all.clone()
+    };
+    let series = Evaluator::new(all).unwrap().series(&ephemeris).unwrap();
+    let evaluator = Evaluator::new(alone).unwrap();
+    let metrics = evaluator.ephemeris(&ephemeris).unwrap();
+    let point = series.points[1];
+    assert_eq!(point.p95_pdop, metrics.p95_pdop);
+    assert_eq!(point.mean_visible, metrics.mean_visible);
+    assert_eq!(point.mean_pdop, metrics.mean_pdop);
+    assert_eq!(point.availability, metrics.availability);
+    // An instant of a single point is that sample.
+    let single = evaluator.series(&ephemeris).unwrap();
+    assert!(single.epochs.iter().all(|e| e.mean_pdop == e.max_pdop));
+    assert!(single.epochs.iter().any(|e| e.max_pdop.is_none()));
+}
+
+fn plain_dops() -> DopOptions {
+    DopOptions {
+        weights: ObservationWeights::Unit,
+        skyline: None,
+    }
+}
+
+/// With unit weights the family has the PDOP of the metrics, whoever keeps the clocks.
+#[test]
+fn dops_have_the_pdop_of_the_metrics() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    for (clocks, names) in [
+        (Clocks::PerSystem, vec!["leo", "gps"]),
+        (Clocks::Shared, vec!["shared"]),
+    ] {
+        let setup = Setup {
+            clocks,
+            ..small([1.0, 2.0, 0.5])
+        };
+        let evaluator = Evaluator::new(setup.clone()).unwrap();
+        let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
+        let metrics = evaluator.ephemeris(&ephemeris).unwrap();
+        let dops = evaluator.dops(&ephemeris, &plain_dops()).unwrap();
+        let pdop = dops.pdop.unwrap();
+        // Inverse and trace of the inverse round differently.
+        assert!((pdop.mean / metrics.mean_pdop.unwrap() - 1.0).abs() < 1e-12);
+        assert!((pdop.cvar / metrics.cvar_pdop.unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(dops.solved_fraction, metrics.solved_fraction);
+        let systems: Vec<_> = dops
+            .tdop
+            .iter()
+            .map(|clock| clock.system.as_str())
+            .collect();
+        assert_eq!(systems, names);
+        assert!(dops.gdop.unwrap().mean > pdop.mean && pdop.mean > dops.hdop.unwrap().mean);
+    }
+}
+
+/// A wall of 30° around the whole horizon is a mask of 30°.
+#[test]
+fn a_level_skyline_is_a_mask() {
+    let design: Design = "delta:55:400/20/1@925".parse().unwrap();
+    let open = small([1.0; 3]);
+    let mask = Mask::from_degrees(30.0).unwrap();
+    let masked = Setup {
+        mask,
+        gnss_mask: mask,
+        pdop_cap: 100.0,
+        ..open.clone()
+    };
+    let open = Setup {
+        pdop_cap: 100.0,
+        ..open
+    };
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, open.grid).unwrap();
+    let walled = DopOptions {
+        skyline: Some(MaskTable::new(vec![(0.0, 30.0), (360.0, 30.0)]).unwrap()),
+        ..plain_dops()
+    };
+    let dops = |setup: Setup, options: DopOptions| {
+        let evaluator = Evaluator::new(setup).unwrap();
+        evaluator.dops(&ephemeris, &options).unwrap()
+    };
+    let in_open = dops(open.clone(), plain_dops());
+    let behind_wall = dops(open, walled);
+    assert_eq!(behind_wall, dops(masked, plain_dops()));
+    assert!(behind_wall.gdop.unwrap().mean > in_open.gdop.unwrap().mean);
+}
+
+/// Down-weighting low satellites can only lose information: every weight is at most one.
+#[test]
+fn sine_weights_dilute() {
+    let design: Design = "delta:55:24/6/1@925".parse().unwrap();
+    let setup = Setup {
+        pdop_cap: 100.0,
+        ..small([1.0; 3])
+    };
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
+    let evaluator = Evaluator::new(setup).unwrap();
+    let unit = evaluator.dops(&ephemeris, &plain_dops()).unwrap();
+    let sine = DopOptions {
+        weights: ObservationWeights::SineElevation,
+        ..plain_dops()
+    };
+    let sine = evaluator.dops(&ephemeris, &sine).unwrap();
+    for (more, less) in [
+        (sine.hdop, unit.hdop),
+        (sine.vdop, unit.vdop),
+        (sine.gdop, unit.gdop),
+    ] {
+        assert!(more.unwrap().mean > less.unwrap().mean);
+    }
+}

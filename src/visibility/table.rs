@@ -1,0 +1,177 @@
+//! Elevation masks that depend on azimuth: the skyline around a receiver.
+
+use super::MaskError;
+use crate::frames::LocalFrame;
+use nalgebra::Vector3;
+use thiserror::Error;
+
+/// Why vertices make no mask around the whole horizon.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum MaskTableError {
+    /// No vertex.
+    #[error("the mask table has no vertex; azimuths 0 to 360 degrees have no mask")]
+    Empty,
+    /// The first azimuth is not 0.
+    #[error("the mask table starts at azimuth {0} degrees; from 0 to there is no mask")]
+    Start(f64),
+    /// The last azimuth is not 360.
+    #[error("the mask table ends at azimuth {0} degrees; from there to 360 is no mask")]
+    End(f64),
+    /// Azimuths that do not increase.
+    #[error("azimuth {after} degrees follows {before} in the mask table; azimuths must increase")]
+    Order {
+        /// Azimuth before, degrees.
+        before: f64,
+        /// Azimuth that is not larger, degrees.
+        after: f64,
+    },
+    /// The masks at 0° and at 360°, which are one direction, differ.
+    #[error("the mask is {at_0} degrees at azimuth 0 and {at_360} at 360, which are both north")]
+    Seam {
+        /// Mask at azimuth 0, degrees.
+        at_0: f64,
+        /// Mask at azimuth 360, degrees.
+        at_360: f64,
+    },
+    /// A mask outside its range.
+    #[error("at azimuth {azimuth_deg} degrees: {source}")]
+    Mask {
+        /// Azimuth, degrees.
+        azimuth_deg: f64,
+        /// What is wrong.
+        source: MaskError,
+    },
+}
+
+/// An elevation mask by azimuth: straight lines between vertices from 0° to 360° (M-27).
+#[derive(Debug, Clone, PartialEq)]
+pub struct MaskTable {
+    /// (azimuth, mask), degrees; azimuths increase from 0 to 360.
+    vertices: Vec<(f64, f64)>,
+}
+
+impl MaskTable {
+    /// The mask through vertices (azimuth from north through east, elevation mask), degrees.
+    ///
+    /// # Errors
+    /// Names the gap when the azimuths do not run from 0 to 360, or the vertex that is wrong.
+    pub fn new(vertices: Vec<(f64, f64)>) -> Result<Self, MaskTableError> {
+        let (Some(&first), Some(&last)) = (vertices.first(), vertices.last()) else {
+            return Err(MaskTableError::Empty);
+        };
+        for &(azimuth_deg, mask_deg) in &vertices {
+            if !(0.0..90.0).contains(&mask_deg) {
+                let source = MaskError(mask_deg);
+                return Err(MaskTableError::Mask {
+                    azimuth_deg,
+                    source,
+                });
+            }
+        }
+        if first.0 != 0.0 {
+            return Err(MaskTableError::Start(first.0));
+        }
+        for pair in vertices.windows(2) {
+            let (before, after) = (pair[0].0, pair[1].0);
+            if after.is_nan() || after <= before {
+                return Err(MaskTableError::Order { before, after });
+            }
+        }
+        if last.0 != 360.0 {
+            return Err(MaskTableError::End(last.0));
+        }
+        if first.1 != last.1 {
+            let (at_0, at_360) = (first.1, last.1);
+            return Err(MaskTableError::Seam { at_0, at_360 });
+        }
+        Ok(Self { vertices })
+    }
+
+    /// The mask at an azimuth of [0, 360] degrees, degrees.
+    #[must_use]
+    pub fn degrees_at(&self, azimuth_deg: f64) -> f64 {
+        let behind = self
+            .vertices
+            .partition_point(|vertex| vertex.0 <= azimuth_deg)
+            .clamp(1, self.vertices.len() - 1);
+        let ((from_deg, from), (to_deg, to)) = (self.vertices[behind - 1], self.vertices[behind]);
+        from + (to - from) * (azimuth_deg - from_deg) / (to_deg - from_deg)
+    }
+
+    /// Whether a direction (Earth-fixed unit vector) is at or above the mask of its azimuth.
+    #[must_use]
+    pub fn clears(&self, site: &LocalFrame, unit: Vector3<f64>) -> bool {
+        let (elevation_rad, azimuth_rad) = site.look_angles(site.origin_km + unit);
+        elevation_rad.to_degrees() >= self.degrees_at(azimuth_rad.to_degrees())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::earth::Surface;
+
+    fn street() -> MaskTable {
+        MaskTable::new(vec![
+            (0.0, 10.0),
+            (90.0, 50.0),
+            (180.0, 10.0),
+            (360.0, 10.0),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn masks_are_straight_between_vertices() {
+        for (azimuth_deg, mask_deg) in [
+            (0.0, 10.0),
+            (45.0, 30.0),
+            (90.0, 50.0),
+            (135.0, 30.0),
+            (180.0, 10.0),
+            (270.0, 10.0),
+            (360.0, 10.0),
+        ] {
+            assert_eq!(street().degrees_at(azimuth_deg), mask_deg, "{azimuth_deg}");
+        }
+    }
+
+    #[test]
+    fn directions_clear_the_mask_of_their_azimuth() {
+        let site = LocalFrame::new(Surface::Wgs84, 0.6, 1.9);
+        for azimuth_deg in [5.0_f64, 45.0, 100.0, 300.0] {
+            let mask_deg = street().degrees_at(azimuth_deg);
+            for (offset_deg, clear) in [(1e-6, true), (-1e-6, false)] {
+                let (s, c) = (mask_deg + offset_deg).to_radians().sin_cos();
+                let (sin_az, cos_az) = azimuth_deg.to_radians().sin_cos();
+                let unit = site.up * s + (site.east * sin_az + site.north * cos_az) * c;
+                assert_eq!(street().clears(&site, unit), clear, "{azimuth_deg}");
+            }
+        }
+    }
+
+    #[test]
+    fn gaps_are_named() {
+        let error = |vertices: &[(f64, f64)]| MaskTable::new(vertices.to_vec()).unwrap_err();
+        assert_eq!(error(&[]), MaskTableError::Empty);
+        assert_eq!(
+            error(&[(10.0, 5.0), (360.0, 5.0)]).to_string(),
+            "the mask table starts at azimuth 10 degrees; from 0 to there is no mask"
+        );
+        assert_eq!(
+            error(&[(0.0, 5.0), (350.0, 5.0)]),
+            MaskTableError::End(350.0)
+        );
+        assert_eq!(error(&[(0.0, 5.0)]), MaskTableError::End(0.0));
+        let order = error(&[(0.0, 5.0), (90.0, 5.0), (90.0, 6.0), (360.0, 5.0)]);
+        assert!(matches!(order, MaskTableError::Order { .. }));
+        let lost = error(&[(0.0, 5.0), (f64::NAN, 5.0), (360.0, 5.0)]);
+        assert!(matches!(lost, MaskTableError::Order { .. }));
+        let seam = error(&[(0.0, 5.0), (360.0, 6.0)]);
+        assert!(matches!(seam, MaskTableError::Seam { .. }));
+        assert_eq!(
+            error(&[(0.0, 5.0), (120.0, 95.0), (360.0, 5.0)]).to_string(),
+            "at azimuth 120 degrees: mask 95 degrees is outside 0 to 90 (exclusive)"
+        );
+    }
+}
