@@ -2,8 +2,41 @@
 //!
 //! A [`Problem`] has variables with bounds, objectives that are all minimised, and
 //! one constraint violation; a [`Strategy`] sends it batches of genomes, one batch
-//! a step, and keeps everything that the next step needs in a state that can be
-//! written and read back.
+//! a step, and is itself the checkpoint from which it can go on.
+//!
+//! ```
+//! use navwalker::optimize::{
+//!     Evaluation, Kind, Method, Nsga2Config, OptimizeError, Problem, Space, Strategy, Variable,
+//! };
+//!
+//! struct TwoGoals(Space, [String; 2]);
+//!
+//! impl Problem for TwoGoals {
+//!     fn space(&self) -> &Space {
+//!         &self.0
+//!     }
+//!     fn objective_names(&self) -> &[String] {
+//!         &self.1
+//!     }
+//!     fn evaluate(&self, batch: &[Vec<f64>]) -> Vec<Evaluation> {
+//!         let evaluate = |x: &Vec<f64>| Evaluation {
+//!             objectives: vec![x[0].powi(2), (x[0] - 2.0).powi(2)],
+//!             violation: 0.0,
+//!         };
+//!         batch.iter().map(evaluate).collect()
+//!     }
+//! }
+//!
+//! let x = Variable { name: "x".to_owned(), kind: Kind::Real { lo: -9.0, hi: 9.0 } };
+//! let goals = ["near 0".to_owned(), "near 2".to_owned()];
+//! let problem = TwoGoals(Space::new(vec![x])?, goals);
+//! let mut search = Method::Nsga2(Nsga2Config::default()).start(&problem, 1)?;
+//! while !search.is_done() {
+//!     search.step(&problem)?;
+//! }
+//! assert!(search.front().iter().all(|best| (-0.1..2.1).contains(&best.genome[0])));
+//! # Ok::<(), OptimizeError>(())
+//! ```
 
 mod archive;
 mod decision;

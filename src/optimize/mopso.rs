@@ -386,6 +386,35 @@ mod tests {
     }
 
     #[test]
+    fn a_particle_remembers_its_best_design() {
+        let design = |x: f64, y: f64| Individual {
+            genome: vec![x, y],
+            objectives: vec![x, y],
+            violation: 0.0,
+        };
+        let mut generator = Generator::new(1, 2);
+        let (old, new, aside) = (design(2.0, 2.0), design(1.0, 2.0), design(0.0, 9.0));
+        let mut choose =
+            |best: &Individual, now: &Individual| better(best.clone(), now.clone(), &mut generator);
+        assert_eq!(choose(&old, &new), new);
+        assert_eq!(choose(&new, &old), new);
+        // Neither dominates: a coin decides, fairly within five standard
+        // deviations, 5 sqrt(1000/4) = 79.
+        let kept = (0..1000).filter(|_| choose(&old, &aside) == old).count();
+        assert!(kept.abs_diff(500) < 79, "{kept}");
+        let problem = mixed();
+        let mut search = Mopso::start(&problem, MopsoConfig::default(), 1).unwrap();
+        search.step(&problem).unwrap();
+        for _ in 1..30 {
+            let before = search.swarm.clone();
+            search.step(&problem).unwrap();
+            for (before, after) in before.iter().zip(&search.swarm) {
+                assert!(!constraint_dominates(&before.best, &after.best));
+            }
+        }
+    }
+
+    #[test]
     fn nonsense_is_refused() {
         let problem = mixed();
         let refused = |change: fn(&mut MopsoConfig)| {

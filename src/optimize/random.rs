@@ -131,7 +131,7 @@ impl Strategy for RandomSearch {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_problems::{binh_korn, mixed};
+    use super::super::test_problems::{TestProblem, UNIT, binh_korn, mixed};
     use super::*;
 
     fn run(problem: &dyn Problem, config: &RandomConfig, seed: u64) -> RandomSearch {
@@ -180,6 +180,14 @@ mod tests {
             unbroken.front(),
             run(&problem, &RandomConfig::default(), 3).front()
         );
+    }
+
+    #[test]
+    fn every_step_draws_anew() {
+        // Nothing dominates where all objectives are equal: every draw is kept.
+        let flat = TestProblem::new(&[UNIT], 1, |_| (vec![0.0], 0.0));
+        let search = run(&flat, &RandomConfig::default(), 1);
+        assert_eq!(search.front().len(), 900);
     }
 
     #[test]
