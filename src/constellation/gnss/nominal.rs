@@ -48,9 +48,8 @@ pub(super) fn beidou3(epoch: Epoch) -> Vec<GnssSatellite> {
 /// GPS as the 24 slots of the baseline constellation: six planes 60° apart with four satellites
 /// each, unevenly spaced so that one may fail; 55°, 26 559.7 km, e = 0.
 ///
-/// Source: *GPS Standard Positioning Service Performance Standard* (2001), tables 3-1 and A-2-1,
-/// kept in the editions of 2008 and 2020. Its epoch is 1993-07-01T00:00:00Z; see the module for
-/// what becomes of it here.
+/// Source: *GPS Standard Positioning Service Performance Standard* (2001), tables 3-1 and A-2-1.
+/// Its epoch is 1993-07-01T00:00:00Z; see the module for what becomes of it here.
 pub(super) fn gps() -> Vec<GnssSatellite> {
     let mut satellites = Vec::with_capacity(24);
     for (plane, raan_deg, arguments_deg) in GPS_PLANES {
@@ -82,12 +81,12 @@ const GPS_PLANES: [(char, f64, [f64; 4]); 6] = [
     ('F', 212.847, [238.886, 345.226, 105.206, 135.346]),
 ];
 
-/// Galileo: Walker 24/3/1 at 56°, semi-major axis 29 600.318 km, 17 revolutions in ten sidereal
-/// days.
+/// Galileo: Walker 24/3/1 at 56°, semi-major axis 29 600.318 km (23 222 km above the equator).
 ///
 /// Source: *European GNSS (Galileo) Open Service Service Definition Document* (reference
-/// constellation of 24 slots in three planes, 56°); the semi-major axis is the nominal value of
-/// the almanac in the *OS SIS Interface Control Document*, to which its Δ√A refers.
+/// constellation of 24 slots in three planes, 56°). The semi-major axis is the customary one, with
+/// which 17 revolutions take ten sidereal days under J2; the almanac of the *OS SIS Interface
+/// Control Document* refers to 29 600 km.
 pub(super) fn galileo() -> Vec<GnssSatellite> {
     walker("GAL", (24, 3, 1), 56.0, 29_600.318 - RADIUS_KM)
 }
