@@ -119,8 +119,8 @@ impl DopFamily {
 mod tests {
     use super::super::{ClockGroup, Geometry};
     use super::*;
-    use crate::words::Word;
     use crate::earth::Surface;
+    use crate::words::Word;
     use nalgebra::DMatrix;
     use proptest::prelude::*;
 

@@ -31,7 +31,8 @@ pub fn diagnose(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> {
         }];
     }
     let whole = |[lo, hi]: [u32; 2]| [f64::from(lo), f64::from(hi)];
-    let variables: [(&str, &str, [f64; 2], fn(&FrontMember) -> f64); 4] = [
+    type Value = fn(&FrontMember) -> f64;
+    let variables: [(&str, &str, [f64; 2], Value); 4] = [
         ("planes", "", whole(space.planes), |m| {
             m.design.planes as f64
         }),

@@ -2,6 +2,8 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
+use navwalker::formats::export::Product;
+use navwalker::frames::Frame;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -48,6 +50,12 @@ pub(crate) enum Command {
     /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
+
+    /// Write a design into files that other tools read, with a manifest of what each says and loses.
+    ///
+    /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
+    #[command(verbatim_doc_comment)]
+    Export(ExportArgs),
 
     /// Check a design's propagation against independent standards, with gates that have reasons.
     ///
@@ -166,6 +174,54 @@ pub(crate) struct DesignArgs {
     /// Which design of the run: fuzzy, knee, or the index of a front member.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
     pub(crate) pick: Pick,
+}
+
+/// What stands in the mean motion slot of element sets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Slot {
+    /// dM/dt of secular J2: what the slot means.
+    Kozai,
+    /// sqrt(mu/a^3): drifts by up to 400 km a day; for comparisons only.
+    Kepler,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    #[command(flatten)]
+    pub(crate) design: DesignArgs,
+
+    /// Products, separated by commas: tle, oem, csv, and tle-states for comparing another SGP4.
+    #[arg(
+        long = "as",
+        value_name = "PRODUCTS",
+        value_delimiter = ',',
+        required = true
+    )]
+    pub(crate) products: Vec<Product>,
+
+    /// Where the files go; an empty or new directory.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    /// Replace a directory that holds something.
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Frame of sampled states: EME2000, GCRF, ITRF, or TEME.
+    #[arg(
+        long,
+        value_name = "FRAME",
+        default_value = "EME2000",
+        ignore_case = true
+    )]
+    pub(crate) frame: Frame,
+
+    /// How the mean motion of element sets is made.
+    #[arg(long, value_enum, default_value = "kozai")]
+    pub(crate) tle_theory: Slot,
 }
 
 /// The form of a validation on stdout.

@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub(crate) mod evaluate;
+pub(crate) mod export;
 pub(crate) mod optimize;
 pub(crate) mod scenario;
 pub(crate) mod validate;
