@@ -1,8 +1,15 @@
 //! Results as people and programs read them.
 
+pub mod coastline;
 mod csv;
 mod diagnostics;
+#[cfg(feature = "figures")]
+pub mod figures;
+#[cfg(feature = "figures")]
+pub mod page;
+pub mod profile;
 mod results;
+pub mod run;
 mod table;
 mod validation;
 

@@ -3,7 +3,7 @@
 use super::Evaluator;
 use super::plain::{self, Sample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::stats::{Level, quantile};
+use crate::stats::{Level, Weighted, quantile};
 use serde::Serialize;
 
 /// One instant, over all points; every point counts with its weight (M-29).
@@ -42,13 +42,15 @@ pub struct PointMetrics {
     pub availability: f64,
 }
 
-/// The two cuts through the samples of an evaluation.
+/// The cuts through the samples of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Instant by instant.
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, in the order of the setup.
     pub points: Vec<PointMetrics>,
+    /// PDOP of every solved sample with the weight of its point, rising.
+    pub pdop: Vec<Weighted>,
 }
 
 /// Weighted sums over the points of one instant.
@@ -85,6 +87,15 @@ impl Evaluator {
         })?;
         let elapsed = setup.grid.iter();
         let epochs = epochs.iter().zip(elapsed).map(|(sums, t)| sums.metrics(t));
+        let mut pdop: Vec<Weighted> = points
+            .iter()
+            .zip(&setup.sites)
+            .flat_map(|(sums, site)| {
+                let weight = site.weight;
+                sums.pdop.iter().map(move |&value| Weighted { value, weight })
+            })
+            .collect();
+        pdop.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
         let sites = setup.sites.iter();
         let points = points.into_iter().zip(sites).map(|(sums, site)| {
             let place = (site.latitude_deg, site.longitude_deg);
@@ -93,6 +104,7 @@ impl Evaluator {
         Ok(Series {
             epochs: epochs.collect(),
             points: points.collect(),
+            pdop,
         })
     }
 }

@@ -65,9 +65,33 @@ pub struct Record {
     pub front_size: usize,
     /// Feasible individuals among those that the strategy holds.
     pub feasible: usize,
+    /// Objectives of the feasible front, for the picture of how it came about: at most
+    /// [`Record::MAX_POINTS`] of them, evenly over the front, and of late steps only some (all
+    /// of the first hundred, every tenth up to a thousand, and so on); else empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub front: Vec<Vec<f64>>,
+}
+
+/// Whether step `step` keeps the points of its front: about ninety in each power of ten.
+fn keeps_points(step: u64) -> bool {
+    let mut stride = 1;
+    while stride * 100 < step {
+        stride *= 10;
+    }
+    step.is_multiple_of(stride)
+}
+
+/// At most [`Record::MAX_POINTS`] of `points`, the first and the last among them.
+fn thinned(points: &[&[f64]]) -> Vec<Vec<f64>> {
+    let kept = points.len().min(Record::MAX_POINTS);
+    let at = |n: usize| n * (points.len() - 1) / (kept - 1).max(1);
+    (0..kept).map(|n| points[at(n)].to_vec()).collect()
 }
 
 impl Record {
+    /// Most points of a front that a record keeps.
+    pub const MAX_POINTS: usize = 64;
+
     /// Describes what a strategy holds after a step: its feasible front, and how
     /// many feasible individuals.
     pub(super) fn new(
@@ -87,6 +111,11 @@ impl Record {
                 .map(|(first, rest)| rest.iter().fold(first.to_vec(), |a, b| least(a, b))),
             front_size: front.len(),
             feasible,
+            front: if keeps_points(progress.step) {
+                thinned(&points)
+            } else {
+                Vec::new()
+            },
         }
     }
 
@@ -183,4 +212,27 @@ pub(super) fn check_equal(
         found,
         expected,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn late_steps_keep_few_points() {
+        assert!((1..=100).all(keeps_points));
+        assert_eq!((101..=1000).filter(|&step| keeps_points(step)).count(), 90);
+        assert_eq!((1001..=10_000).filter(|&step| keeps_points(step)).count(), 90);
+    }
+
+    #[test]
+    fn thinning_keeps_the_ends() {
+        let coordinates: Vec<Vec<f64>> = (0..1000).map(|n| vec![f64::from(n)]).collect();
+        let points: Vec<&[f64]> = coordinates.iter().map(Vec::as_slice).collect();
+        let kept = thinned(&points);
+        assert_eq!(kept.len(), Record::MAX_POINTS);
+        assert_eq!((kept[0][0], kept[63][0]), (0.0, 999.0));
+        assert_eq!(thinned(&points[..1]), [[0.0]]);
+        assert!(thinned(&[]).is_empty());
+    }
 }

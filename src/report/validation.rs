@@ -8,7 +8,7 @@ use quick_xml::escape::escape;
 use std::fmt::Write;
 
 /// Digits that tell a number of any size apart: four significant ones, plainly written.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     let magnitude = if value == 0.0 {
         0.0
     } else {

@@ -4,6 +4,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
 use navwalker::formats::export::Product;
 use navwalker::frames::Frame;
+use navwalker::report::figures::draw::Form;
+use navwalker::report::figures::{Figure, Measure};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -28,6 +30,10 @@ pub(crate) struct Cli {
     /// Print results and errors only, no progress and no hints.
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
+
+    /// Print without colours, as the variable NO_COLOR does.
+    #[arg(long, global = true)]
+    pub(crate) no_color: bool,
 
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -63,11 +69,64 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Validate(ValidateArgs),
 
+    /// Write one self-contained HTML page about a run.
+    ///
+    /// The page shows the trade-off, and of each design that is clicked the maps, the tail, the
+    /// series and a globe; it needs no network. It goes to report.html in the run directory. What
+    /// is damaged or missing in the directory is named, and the rest is shown.
+    ///
+    /// A validation is shown when it lies in DIR/validation:
+    ///   navwalker validate --run runs/paper-1 --against sgp4 --out runs/paper-1/validation
+    ///
+    /// Example: navwalker report runs/paper-1 --compare star:86.4:180/12/1@925
+    #[command(verbatim_doc_comment)]
+    Report(ReportArgs),
+
+    /// Draw a figure of a run for a paper or a review, with the table behind it.
+    ///
+    /// pareto       the front in the plane of the first two objectives
+    /// map          --measure mean-visible, mean-pdop, p95-pdop, max-pdop, availability
+    /// cdf          --measure mean-visible, mean-pdop, max-pdop (over time), or pdop with its tail
+    /// series       --measure mean-visible, mean-pdop, max-pdop
+    /// convergence  the hypervolume over the evaluations
+    /// budget       the error budget of a validation
+    ///
+    /// With --out the table goes beside the figure, as the same name with .csv; without it the
+    /// figure goes to stdout. The same run gives the same bytes.
+    ///
+    /// Example: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    #[command(verbatim_doc_comment)]
+    Plot(PlotArgs),
+
     /// List, show or create scenarios.
     ///
     /// Example: navwalker scenario new > study.toml
     #[command(verbatim_doc_comment)]
     Scenario(ScenarioArgs),
+
+    /// Print the completions of a shell.
+    ///
+    /// Example: navwalker completions bash > ~/.local/share/bash-completion/completions/navwalker
+    #[command(verbatim_doc_comment)]
+    Completions {
+        /// The shell.
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+
+    /// Print a manual page, or write all of them.
+    ///
+    /// Example: navwalker man optimize | man -l -
+    #[command(verbatim_doc_comment)]
+    Man {
+        /// The command whose page is printed [default: that of the program].
+        #[arg(value_name = "COMMAND", conflicts_with = "out")]
+        command: Option<String>,
+
+        /// Write the pages of all commands into this directory.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Which study a command works on.
@@ -113,6 +172,10 @@ pub(crate) struct OptimizeArgs {
     /// Replace a directory that holds something else.
     #[arg(long)]
     pub(crate) force: bool,
+
+    /// Also write report.html, as `navwalker report` does.
+    #[arg(long)]
+    pub(crate) report: bool,
 
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
@@ -258,6 +321,62 @@ pub(crate) struct ValidateArgs {
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: ReportFormat,
+}
+
+/// A run, and what is shown beside it.
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// A run directory.
+    #[arg(value_name = "DIR")]
+    pub(crate) directory: PathBuf,
+
+    /// Show this design beside the front, besides the scenario's reference design; may be repeated.
+    #[arg(long, value_name = "NOTATION")]
+    pub(crate) compare: Vec<Design>,
+
+    /// Show the front of this run too, as of an exhaustive search; may be repeated.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) front: Vec<PathBuf>,
+
+    /// The report.json of a validation, or its directory [default: DIR/validation].
+    #[arg(long, value_name = "PATH")]
+    pub(crate) validation: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+
+    /// Where the page goes [default: DIR/report.html].
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotArgs {
+    #[command(flatten)]
+    pub(crate) run: RunArgs,
+
+    /// What is drawn: pareto, map, cdf, series, convergence or budget.
+    #[arg(long)]
+    pub(crate) figure: Figure,
+
+    /// What a map, a distribution or a series shows.
+    #[arg(long)]
+    pub(crate) measure: Option<Measure>,
+
+    /// Which design of the run a map, a distribution or a series shows: fuzzy, knee, or an index.
+    #[arg(long, value_name = "PICK", default_value = "fuzzy")]
+    pub(crate) pick: Pick,
+
+    /// Form: svg, png, or csv for the table alone [default: by the name of --out, or svg].
+    #[arg(long = "as", value_name = "FORM")]
+    pub(crate) form: Option<Form>,
+
+    /// Where the figure goes; the table goes beside it.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,9 @@
 
 pub(crate) mod evaluate;
 pub(crate) mod export;
+pub(crate) mod help;
 pub(crate) mod optimize;
+pub(crate) mod plot;
+pub(crate) mod report;
 pub(crate) mod scenario;
 pub(crate) mod validate;

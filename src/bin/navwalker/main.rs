@@ -3,6 +3,7 @@
 mod args;
 mod commands;
 mod files;
+mod look;
 mod output;
 mod progress;
 mod run;
@@ -26,6 +27,7 @@ enum Status {
 }
 
 fn main() -> ExitCode {
+    output::choose_colors();
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         // clap prints help to stdout with status 0 and errors to stderr with status 2.
@@ -54,6 +56,10 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Validate(args) => commands::validate::run(&args),
+        Command::Report(args) => commands::report::run(&args),
+        Command::Plot(args) => commands::plot::run(&args),
         Command::Scenario(args) => commands::scenario::run(&args),
+        Command::Completions { shell } => commands::help::completions(shell),
+        Command::Man { command, out } => commands::help::man(command.as_deref(), out.as_deref()),
     }
 }

@@ -11,6 +11,21 @@ pub(crate) fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
+/// Turns colours off where `--no-color` stands on the command line, before that is parsed, so that
+/// errors of parsing heed it too. `NO_COLOR` and a stream that is no terminal do the same.
+pub(crate) fn choose_colors() {
+    let mut options = std::env::args_os().take_while(|argument| argument != "--");
+    if options.any(|argument| argument == "--no-color") {
+        anstream::ColorChoice::Never.write_global();
+    }
+}
+
+/// Terminal codes of the words that begin an error and a warning; stripped where they are not
+/// wanted.
+const RED: &str = "\x1b[1;31m";
+const YELLOW: &str = "\x1b[1;33m";
+const PLAIN: &str = "\x1b[0m";
+
 /// Whether progress may be drawn: wanted, and on a terminal.
 pub(crate) fn shows_progress() -> bool {
     !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal()
@@ -35,12 +50,12 @@ pub(crate) fn hint(text: &str) {
 
 /// Prints what the user should know.
 pub(crate) fn warning(text: &str) {
-    hint(&format!("warning: {text}"));
+    hint(&format!("{YELLOW}warning:{PLAIN} {text}"));
 }
 
 /// Prints why the command could not run, the causes one below the other.
 pub(crate) fn error(error: &anyhow::Error) {
-    let mut text = format!("error: {error}");
+    let mut text = format!("{RED}error:{PLAIN} {error}");
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
         // Some errors already say what their cause says.
@@ -53,7 +68,7 @@ pub(crate) fn error(error: &anyhow::Error) {
 
 fn to_stderr(text: &str) {
     // Where stderr is closed there is nobody to tell.
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(anstream::stderr().lock(), "{text}");
 }
 
 /// Whether the reader of stdout has gone, as `head` does.

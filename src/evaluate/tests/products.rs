@@ -81,7 +81,11 @@ fn series_add_up_to_the_metrics() {
     let evaluator = Evaluator::new(setup.clone()).unwrap();
     let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
     let metrics = evaluator.ephemeris(&ephemeris).unwrap();
-    let Series { epochs, points } = evaluator.series(&ephemeris).unwrap();
+    let Series {
+        epochs,
+        points,
+        pdop: rising,
+    } = evaluator.series(&ephemeris).unwrap();
     assert_eq!((epochs.len(), points.len()), (120, 3));
     assert_eq!(
         (epochs[7].elapsed_s, points[1].latitude_deg),

@@ -51,6 +51,10 @@ pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
         Format::Csv => front_csv(&result)?,
     })?;
     let shown = out.display().to_string();
+    if args.report {
+        let page = super::report::of_run(&out)?;
+        output::hint(&format!("\nreport written to {}", page.display()));
+    }
     if search.is_done() {
         hint_what_next(&result, &shown);
         Ok(if result.front.is_empty() {
@@ -184,7 +188,7 @@ fn hint_what_next(result: &OptimizeResult, out: &str) {
         return;
     }
     output::hint(&format!(
-        "next: navwalker export --run {out} --pick fuzzy --as tle,oem --out exports\n      \
+        "next: navwalker report {out}\n      navwalker export --run {out} --pick fuzzy --as tle,oem --out exports\n      \
          navwalker validate --run {out} --against sgp4"
     ));
 }

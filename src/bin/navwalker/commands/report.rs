@@ -1,0 +1,44 @@
+//! `navwalker report`.
+
+use crate::args::{ReportArgs, RunArgs};
+use crate::look::Look;
+use crate::{Status, files, output};
+use anyhow::Result;
+use navwalker::report::page::{self, Page};
+use std::path::{Path, PathBuf};
+
+pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
+    let usual = || args.run.directory.join("report.html");
+    let out = args.out.clone().unwrap_or_else(usual);
+    write(&args.run, &out)?;
+    output::result(&out.display().to_string())?;
+    Ok(Status::Done)
+}
+
+/// Writes the page of a run that has just ended into its directory.
+pub(crate) fn of_run(directory: &Path) -> Result<PathBuf> {
+    let args = RunArgs {
+        directory: directory.to_owned(),
+        compare: Vec::new(),
+        front: Vec::new(),
+        validation: None,
+    };
+    let out = directory.join("report.html");
+    write(&args, &out)?;
+    Ok(out)
+}
+
+fn write(args: &RunArgs, out: &Path) -> Result<()> {
+    let look = Look::at(args)?;
+    let mut html = Vec::new();
+    let page = Page {
+        run: &look.run,
+        scenario_toml: look.scenario_toml.as_deref(),
+        evaluator: look.evaluator.as_ref(),
+        baselines: &look.baselines(),
+        beside: &look.beside,
+        fronts: &look.fronts,
+    };
+    page::write(&page, &mut html)?;
+    files::write_atomically(out, &html)
+}

@@ -1,0 +1,220 @@
+//! The figures of a run: what each shows, as data, and the table behind it.
+//!
+//! A [`Plate`] holds a [`Chart`], which [`draw`] turns into SVG or PNG, and its CSV. The bytes
+//! depend on the plate alone: the typeface is part of the library and nothing is stamped.
+
+mod curves;
+pub mod draw;
+mod front;
+mod map;
+mod bars;
+mod table;
+
+pub use bars::budget;
+pub use curves::{Named, cdf, convergence, series};
+pub use front::{Baseline, NamedFront, pareto};
+pub use map::map;
+
+pub(in crate::report) use curves::at_epoch;
+pub(in crate::report) use front::earlier;
+pub(in crate::report) use map::at_point;
+
+use crate::scenario::{Quantity, Word};
+use crate::words::words;
+use thiserror::Error;
+
+words! {
+    /// A figure of a run.
+    Figure {
+        /// The front in the plane of two objectives (figure 2 of the paper).
+        Pareto = "pareto",
+        /// A measure over the region.
+        Map = "map",
+        /// A distribution (figures 3a and 4a).
+        Cdf = "cdf",
+        /// A measure over time (figures 3b and 4b).
+        Series = "series",
+        /// The hypervolume over the generations.
+        Convergence = "convergence",
+        /// The error budget of a validation.
+        Budget = "budget",
+    }
+}
+
+words! {
+    /// What a map, a distribution or a series shows.
+    Measure {
+        /// Visible LEO satellites: of a point over time, or of an instant over the points.
+        MeanVisible = "mean-visible",
+        /// Mean PDOP: likewise.
+        MeanPdop = "mean-pdop",
+        /// 95 % quantile of PDOP of a point.
+        P95Pdop = "p95-pdop",
+        /// Largest PDOP of a point, or of an instant.
+        MaxPdop = "max-pdop",
+        /// Share of the time that a point is available.
+        Availability = "availability",
+        /// PDOP of every point and instant, with its tail.
+        Pdop = "pdop",
+    }
+}
+
+impl Measure {
+    /// The label of its axis.
+    #[must_use]
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::MeanVisible => "mean number of visible LEO satellites",
+            Self::MeanPdop => "mean PDOP",
+            Self::P95Pdop => "95 % quantile of PDOP",
+            Self::MaxPdop => "largest PDOP",
+            Self::Availability => "availability (share of the time)",
+            Self::Pdop => "PDOP",
+        }
+    }
+}
+
+/// The label of a quantity's axis.
+#[must_use]
+pub fn quantity_label(name: &str) -> String {
+    let Ok(quantity) = Quantity::from_word(name) else {
+        return name.to_owned();
+    };
+    let label = match quantity {
+        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR",
+        Quantity::JCost => "J_cost = satellites per visible satellite",
+        Quantity::MeanPdop => "mean PDOP",
+        Quantity::CvarPdop => "CVaR of PDOP",
+        Quantity::MaxPdop => "largest PDOP",
+        Quantity::Satellites => "satellites",
+        Quantity::Planes => "planes",
+        Quantity::MeanVisible => "mean number of visible LEO satellites",
+        Quantity::Availability => "availability",
+        Quantity::LaunchCost => "launch cost (satellites)",
+    };
+    label.to_owned()
+}
+
+/// Why there is no such figure.
+#[derive(Debug, Error)]
+pub enum FigureError {
+    /// The run does not hold what the figure shows.
+    #[error("there is no {figure} figure: {reason}")]
+    Nothing {
+        /// The figure.
+        figure: Figure,
+        /// What is missing.
+        reason: &'static str,
+    },
+    /// The figure does not show that measure.
+    #[error("figure {figure} does not show {measure}; it shows {choices}")]
+    Measure {
+        /// The figure.
+        figure: Figure,
+        /// What was asked for.
+        measure: Measure,
+        /// What can be.
+        choices: String,
+    },
+    /// The table cannot be written; one in memory always can.
+    #[error("the table behind the figure: {0}")]
+    Table(#[from] ::csv::Error),
+}
+
+impl FigureError {
+    fn measure(figure: Figure, measure: Measure, choices: &[Measure]) -> Self {
+        let words: Vec<_> = choices.iter().map(|choice| choice.word()).collect();
+        Self::Measure {
+            figure,
+            measure,
+            choices: words.join(", "),
+        }
+    }
+}
+
+/// A figure: what is drawn, and the numbers behind it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plate {
+    /// What is drawn.
+    pub chart: Chart,
+    /// The numbers, with the unit of each column in its header.
+    pub csv: String,
+}
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Chart {
+    /// Points and lines in a plane.
+    Plane(PlaneChart),
+    /// Coloured points or cells over coastlines.
+    Map(MapChart),
+    /// Groups of bars on a logarithmic axis.
+    Bars(BarChart),
+}
+
+/// Points and lines in a plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlaneChart {
+    /// Title.
+    pub title: String,
+    /// Label of the horizontal axis, with its unit.
+    pub x: String,
+    /// Label of the vertical axis, with its unit.
+    pub y: String,
+    /// What is drawn, from the back to the front.
+    pub layers: Vec<Layer>,
+}
+
+/// Points that are drawn alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Name in the legend; empty for none.
+    pub name: String,
+    /// The points (x, y).
+    pub points: Vec<(f64, f64)>,
+    /// How.
+    pub style: Style,
+}
+
+/// How a layer is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Style {
+    /// A line in the n-th colour.
+    Line(usize),
+    /// A dashed grey line.
+    Rule,
+    /// Dots in the n-th colour.
+    Dots(usize),
+    /// Pale dots behind the others.
+    Faint,
+    /// Large marks in the n-th colour, of the n-th form.
+    Marks(usize),
+}
+
+/// A measure over a region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapChart {
+    /// Title.
+    pub title: String,
+    /// Label of the colours, with the unit.
+    pub label: String,
+    /// Longitude, latitude and value of each point, degrees; `None` where there is no value.
+    pub cells: Vec<(f64, f64, Option<f64>)>,
+    /// Width and height of a cell, degrees; `None` for points that are no grid.
+    pub cell_deg: Option<[f64; 2]>,
+    /// What is shown.
+    pub bounds: super::coastline::Bounds,
+}
+
+/// Groups of bars.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BarChart {
+    /// Title.
+    pub title: String,
+    /// Label of the vertical axis, with its unit.
+    pub y: String,
+    /// Names of the bars of each group.
+    pub bars: Vec<String>,
+    /// Name and sizes of each group.
+    pub groups: Vec<(String, Vec<f64>)>,
+}

@@ -1,0 +1,231 @@
+//! Distributions, series over time, and the convergence of the search.
+
+use super::table::{Csv, optional};
+use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style};
+use crate::evaluate::EpochMetrics;
+use crate::report::profile::{Profile, Quantile, quantiles_of};
+use crate::report::run::StoredRun;
+use crate::units::SECONDS_PER_HOUR;
+
+/// A profile with the name that it has in the legend.
+#[derive(Debug, Clone)]
+pub struct Named<'a> {
+    /// What the design is called.
+    pub name: String,
+    /// Its cuts.
+    pub profile: &'a Profile,
+}
+
+/// What has a value at each instant.
+const OVER_TIME: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
+
+/// The value of a measure at an instant.
+pub(in crate::report) fn at_epoch(measure: Measure, epoch: &EpochMetrics) -> Option<f64> {
+    match measure {
+        Measure::MeanVisible => Some(epoch.mean_visible),
+        Measure::MaxPdop => epoch.max_pdop,
+        _ => epoch.mean_pdop,
+    }
+}
+
+/// The label of a measure of one instant over the points.
+fn label_over_points(measure: Measure) -> &'static str {
+    match measure {
+        Measure::MeanVisible => "E_g(N_visible): visible LEO satellites, mean over the points",
+        Measure::MaxPdop => "largest PDOP of the points",
+        _ => "E_g(PDOP): mean PDOP over the points",
+    }
+}
+
+/// The distribution of a measure: of [`Measure::Pdop`] over all points and instants with the tail
+/// of the first design, of the others over the instants (figures 3a and 4a of the paper).
+///
+/// # Errors
+/// When the measure has no distribution, or nothing is to be shown.
+pub fn cdf(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureError> {
+    let figure = Figure::Cdf;
+    let distribution = |profile: &Profile| -> Vec<Quantile> {
+        let epochs = profile.epochs.iter();
+        match measure {
+            Measure::Pdop => profile.pdop.clone(),
+            _ => quantiles_of(epochs.filter_map(|epoch| at_epoch(measure, epoch))),
+        }
+    };
+    if measure != Measure::Pdop && !OVER_TIME.contains(&measure) {
+        let choices = [OVER_TIME.as_slice(), &[Measure::Pdop]].concat();
+        return Err(FigureError::measure(figure, measure, &choices));
+    }
+    let mut csv = Csv::new(&["design", "share", measure_column(measure)])?;
+    let mut layers = Vec::new();
+    for (n, named) in designs.iter().enumerate() {
+        let quantiles = distribution(named.profile);
+        for q in &quantiles {
+            csv.row([named.profile.design.to_string(), q.level.to_string(), q.value.to_string()])?;
+        }
+        layers.push(Layer {
+            name: named.name.clone(),
+            points: steps(&quantiles),
+            style: Style::Line(n),
+        });
+    }
+    if let (Measure::Pdop, Some(first)) = (measure, designs.first()) {
+        layers.extend(tail_marks(first.profile));
+    }
+    layers.retain(|layer| !layer.points.is_empty());
+    if layers.is_empty() {
+        let reason = "no sample is solved";
+        return Err(FigureError::Nothing { figure, reason });
+    }
+    let x = match measure {
+        Measure::Pdop => "PDOP of all points and times",
+        _ => label_over_points(measure),
+    };
+    let chart = PlaneChart {
+        title: "Cumulative distribution".to_owned(),
+        x: x.to_owned(),
+        y: "share at or below".to_owned(),
+        layers,
+    };
+    Ok(Plate {
+        chart: Chart::Plane(chart),
+        csv: csv.text()?,
+    })
+}
+
+/// The distribution as the staircase that it is, as far as its levels are drawn.
+fn steps(quantiles: &[Quantile]) -> Vec<(f64, f64)> {
+    quantiles.iter().map(|q| (q.value, q.level)).collect()
+}
+
+/// Vertical lines at the value at risk and at the CVaR.
+fn tail_marks(profile: &Profile) -> Vec<Layer> {
+    let Some(tail) = profile.tail else {
+        return Vec::new();
+    };
+    let line = |name: String, x: f64| Layer {
+        name,
+        points: vec![(x, 0.0), (x, 1.0)],
+        style: Style::Rule,
+    };
+    let percent = 100.0 * tail.level;
+    vec![
+        line(format!("{percent:.4} % quantile {:.4}", tail.value_at_risk), tail.value_at_risk),
+        line(format!("CVaR {:.4}", tail.cvar), tail.cvar),
+    ]
+}
+
+fn measure_column(measure: Measure) -> &'static str {
+    match measure {
+        Measure::MeanVisible => "mean_visible",
+        Measure::MaxPdop => "max_pdop",
+        Measure::Pdop => "pdop",
+        _ => "mean_pdop",
+    }
+}
+
+/// A measure over time (figures 3b and 4b of the paper).
+///
+/// # Errors
+/// When the measure has no value at an instant, or nothing is to be shown.
+pub fn series(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureError> {
+    let figure = Figure::Series;
+    if !OVER_TIME.contains(&measure) {
+        return Err(FigureError::measure(figure, measure, &OVER_TIME));
+    }
+    let header = [
+        "design",
+        "elapsed_s",
+        "mean_visible",
+        "mean_pdop",
+        "max_pdop",
+        "solved_fraction",
+    ];
+    let mut csv = Csv::new(&header)?;
+    let mut layers = Vec::new();
+    for (n, named) in designs.iter().enumerate() {
+        for epoch in &named.profile.epochs {
+            csv.row([
+                named.profile.design.to_string(),
+                epoch.elapsed_s.to_string(),
+                epoch.mean_visible.to_string(),
+                optional(epoch.mean_pdop),
+                optional(epoch.max_pdop),
+                epoch.solved_fraction.to_string(),
+            ])?;
+        }
+        let at = |e: &EpochMetrics| Some((e.elapsed_s / SECONDS_PER_HOUR, at_epoch(measure, e)?));
+        layers.push(Layer {
+            name: named.name.clone(),
+            points: named.profile.epochs.iter().filter_map(at).collect(),
+            style: Style::Line(n),
+        });
+    }
+    // The first design is drawn last, so that it lies on top.
+    layers.reverse();
+    layers.retain(|layer| !layer.points.is_empty());
+    if layers.is_empty() {
+        let reason = "no sample is solved";
+        return Err(FigureError::Nothing { figure, reason });
+    }
+    let chart = PlaneChart {
+        title: "Over time".to_owned(),
+        x: "time since the epoch (h)".to_owned(),
+        y: label_over_points(measure).to_owned(),
+        layers,
+    };
+    Ok(Plate {
+        chart: Chart::Plane(chart),
+        csv: csv.text()?,
+    })
+}
+
+/// The hypervolume over the evaluations; the size of the front where there is no hypervolume.
+///
+/// # Errors
+/// When the run has no history.
+pub fn convergence(run: &StoredRun) -> Result<Plate, FigureError> {
+    if run.history.is_empty() {
+        return Err(FigureError::Nothing {
+            figure: Figure::Convergence,
+            reason: "the run has no history",
+        });
+    }
+    let header = ["generation", "evaluations", "hypervolume", "front_size", "feasible"];
+    let mut csv = Csv::new(&header)?;
+    for record in &run.history {
+        csv.row([
+            record.generation.to_string(),
+            record.evaluations.to_string(),
+            optional(record.hypervolume),
+            record.front_size.to_string(),
+            record.feasible.to_string(),
+        ])?;
+    }
+    let has_volume = run.history.iter().any(|record| record.hypervolume.is_some());
+    let points = run.history.iter().filter_map(|record| {
+        let size = (!has_volume).then_some(record.front_size as f64);
+        Some((record.evaluations as f64, record.hypervolume.or(size)?))
+    });
+    let y = match (has_volume, &run.front.reference) {
+        (true, Some(reference)) => {
+            let at: Vec<_> = reference.iter().map(ToString::to_string).collect();
+            format!("hypervolume at ({})", at.join(", "))
+        }
+        (true, None) => "hypervolume".to_owned(),
+        (false, _) => "designs in the front".to_owned(),
+    };
+    let chart = PlaneChart {
+        title: "Convergence of the search".to_owned(),
+        x: "designs evaluated".to_owned(),
+        y,
+        layers: vec![Layer {
+            name: String::new(),
+            points: points.collect(),
+            style: Style::Line(0),
+        }],
+    };
+    Ok(Plate {
+        chart: Chart::Plane(chart),
+        csv: csv.text()?,
+    })
+}

@@ -1,0 +1,195 @@
+//! The front in the plane of two objectives.
+
+use super::table::{Csv, optional};
+use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantity_label};
+use crate::constellation::Design;
+use crate::evaluate::Evaluator;
+use crate::report::run::{StoredFront, StoredRun};
+use crate::scenario::{Quantity, Word};
+use crate::search::Goals;
+
+/// A design that is shown beside the front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baseline {
+    /// What it is called.
+    pub name: String,
+    /// Walker notation.
+    pub notation: String,
+    /// The objectives of the run, in their own directions; `None` for one without a value.
+    pub objectives: Vec<Option<f64>>,
+}
+
+impl Baseline {
+    /// A design with its objectives; `None` when it cannot be flown.
+    #[must_use]
+    pub fn evaluate(
+        name: &str,
+        design: &Design,
+        evaluator: &Evaluator,
+        goals: &Goals,
+    ) -> Option<Self> {
+        let metrics = evaluator.design(design).ok()?;
+        let value = |quantity: &Quantity| quantity.value(design, &metrics, &goals.launch_cost);
+        Some(Self {
+            name: name.to_owned(),
+            notation: design.to_string(),
+            objectives: goals.objectives.iter().map(value).collect(),
+        })
+    }
+}
+
+/// The front of another run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedFront {
+    /// What it is called.
+    pub name: String,
+    /// The front.
+    pub front: StoredFront,
+}
+
+/// Rows of the plane: name of the set, generation, index, notation, objectives, membership.
+struct Row<'a> {
+    set: &'a str,
+    generation: Option<u64>,
+    index: Option<usize>,
+    notation: &'a str,
+    objectives: Vec<Option<f64>>,
+    membership: Option<f64>,
+}
+
+/// Figure 2a of the paper: the front, the fronts of earlier generations behind it, and designs and
+/// fronts beside it. The plane is that of the first two objectives.
+///
+/// # Errors
+/// When the run has no front or only one objective.
+pub fn pareto(
+    run: &StoredRun,
+    baselines: &[Baseline],
+    fronts: &[NamedFront],
+) -> Result<Plate, FigureError> {
+    let figure = Figure::Pareto;
+    let names = run.objective_names();
+    if run.front.members.is_empty() {
+        let reason = "the front is empty";
+        return Err(FigureError::Nothing { figure, reason });
+    }
+    let [x, y, ..] = names.as_slice() else {
+        let reason = "a plane needs two objectives";
+        return Err(FigureError::Nothing { figure, reason });
+    };
+    let rows = rows(run, &names, baselines, fronts);
+    let points = |keep: &dyn Fn(&Row<'_>) -> bool| -> Vec<(f64, f64)> {
+        let kept = rows.iter().filter(|row| keep(row));
+        kept.filter_map(|row| Some((row.objectives[0]?, row.objectives[1]?))).collect()
+    };
+    let layer = |name: &str, points, style| Layer {
+        name: name.to_owned(),
+        points,
+        style,
+    };
+    let mut layers = vec![layer(
+        "earlier generations",
+        points(&|row| row.generation.is_some()),
+        Style::Faint,
+    )];
+    for (n, other) in fronts.iter().enumerate() {
+        layers.push(layer(&other.name, points(&|row| row.set == other.name), Style::Dots(n + 1)));
+    }
+    layers.push(layer("front", points(&|row| row.set == "front"), Style::Dots(0)));
+    for (n, baseline) in baselines.iter().enumerate() {
+        let own = points(&|row| row.set == "baseline" && row.notation == baseline.notation);
+        layers.push(layer(&baseline.name, own, Style::Marks(n + 1)));
+    }
+    let chosen = run.chosen().map(|n| &run.front.members[n]);
+    let at = chosen.and_then(|m| Some((m.objectives.first()?.1, m.objectives.get(1)?.1)));
+    layers.push(layer("fuzzy choice", at.into_iter().collect(), Style::Marks(0)));
+    layers.retain(|layer| !layer.points.is_empty());
+    let chart = PlaneChart {
+        title: "Pareto front".to_owned(),
+        x: quantity_label(x),
+        y: quantity_label(y),
+        layers,
+    };
+    Ok(Plate {
+        csv: table(&rows, &names)?,
+        chart: Chart::Plane(chart),
+    })
+}
+
+fn rows<'a>(
+    run: &'a StoredRun,
+    names: &[String],
+    baselines: &'a [Baseline],
+    fronts: &'a [NamedFront],
+) -> Vec<Row<'a>> {
+    let of_front = |set: &'a str, front: &'a StoredFront| {
+        let names = names.to_vec();
+        front.members.iter().map(move |member| Row {
+            set,
+            generation: None,
+            index: Some(member.index),
+            notation: &member.notation,
+            objectives: names.iter().map(|name| member.objective(name)).collect(),
+            membership: member.membership,
+        })
+    };
+    let mut rows: Vec<Row<'_>> = of_front("front", &run.front).collect();
+    for other in fronts {
+        rows.extend(of_front(&other.name, &other.front));
+    }
+    rows.extend(baselines.iter().map(|baseline| Row {
+        set: "baseline",
+        generation: None,
+        index: None,
+        notation: &baseline.notation,
+        objectives: baseline.objectives.clone(),
+        membership: None,
+    }));
+    for (generation, objectives) in earlier(run, names) {
+        rows.push(Row {
+            set: "generation",
+            generation: Some(generation),
+            index: None,
+            notation: "",
+            objectives: objectives.into_iter().map(Some).collect(),
+            membership: None,
+        });
+    }
+    rows
+}
+
+/// The fronts of earlier generations, point by point, in the objectives' own directions.
+pub(in crate::report) fn earlier(run: &StoredRun, names: &[String]) -> Vec<(u64, Vec<f64>)> {
+    let quantities: Vec<_> = names.iter().map(|name| Quantity::from_word(name).ok()).collect();
+    let own = |minimised: &Vec<f64>| -> Vec<f64> {
+        let pairs = quantities.iter().zip(minimised);
+        pairs.map(|(q, &v)| q.map_or(v, |q| q.minimised(v))).collect()
+    };
+    let of_record = |record: &crate::optimize::Record| {
+        let fitting = record.front.iter().filter(|point| point.len() == names.len());
+        let generation = record.generation;
+        fitting.map(|point| (generation, own(point))).collect::<Vec<_>>()
+    };
+    run.history.iter().flat_map(of_record).collect()
+}
+
+fn table(rows: &[Row<'_>], names: &[String]) -> Result<String, FigureError> {
+    let columns: Vec<String> = names.iter().map(|name| name.replace('-', "_")).collect();
+    let mut header = vec!["set", "generation", "index", "notation"];
+    header.extend(columns.iter().map(String::as_str));
+    header.push("membership");
+    let mut csv = Csv::new(&header)?;
+    for row in rows {
+        let number = |value: Option<usize>| value.map_or_else(String::new, |n| n.to_string());
+        let mut cells = vec![
+            row.set.to_owned(),
+            row.generation.map_or_else(String::new, |n| n.to_string()),
+            number(row.index),
+            row.notation.to_owned(),
+        ];
+        cells.extend(row.objectives.iter().copied().map(optional));
+        cells.push(optional(row.membership));
+        csv.row(cells)?;
+    }
+    csv.text()
+}

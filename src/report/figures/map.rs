@@ -1,0 +1,87 @@
+//! A measure over the region.
+
+use super::table::{Csv, optional};
+use super::{Chart, Figure, FigureError, MapChart, Measure, Plate};
+use crate::evaluate::PointMetrics;
+use crate::report::coastline::Bounds;
+use crate::report::profile::Profile;
+
+/// What maps can show.
+const MEASURES: [Measure; 5] = [
+    Measure::MeanVisible,
+    Measure::MeanPdop,
+    Measure::P95Pdop,
+    Measure::MaxPdop,
+    Measure::Availability,
+];
+
+/// The value of a measure at a point; `None` for PDOP without a solution.
+#[must_use]
+pub(in crate::report) fn at_point(measure: Measure, point: &PointMetrics) -> Option<f64> {
+    match measure {
+        Measure::MeanVisible => Some(point.mean_visible),
+        Measure::MeanPdop | Measure::Pdop => point.mean_pdop,
+        Measure::P95Pdop => point.p95_pdop,
+        Measure::MaxPdop => point.max_pdop,
+        Measure::Availability => Some(point.availability),
+    }
+}
+
+/// A design's measure over the points; `cell_deg` are the steps of a grid.
+///
+/// # Errors
+/// When the measure is none of a point.
+pub fn map(
+    profile: &Profile,
+    measure: Measure,
+    cell_deg: Option<[f64; 2]>,
+) -> Result<Plate, FigureError> {
+    let figure = Figure::Map;
+    if !MEASURES.contains(&measure) {
+        return Err(FigureError::measure(figure, measure, &MEASURES));
+    }
+    let places = profile.points.iter().map(|p| (p.latitude_deg, p.longitude_deg));
+    let margin = cell_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
+    let Some(bounds) = Bounds::around(places, margin) else {
+        let reason = "the region has no point";
+        return Err(FigureError::Nothing { figure, reason });
+    };
+    let cell = |p: &PointMetrics| (p.longitude_deg, p.latitude_deg, at_point(measure, p));
+    let chart = MapChart {
+        title: profile.design.to_string(),
+        label: measure.label().to_owned(),
+        cells: profile.points.iter().map(cell).collect(),
+        cell_deg,
+        bounds,
+    };
+    Ok(Plate {
+        csv: table(&profile.points)?,
+        chart: Chart::Map(chart),
+    })
+}
+
+fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
+    let mut csv = Csv::new(&[
+        "latitude_deg",
+        "longitude_deg",
+        "mean_visible",
+        "mean_pdop",
+        "p95_pdop",
+        "max_pdop",
+        "solved_fraction",
+        "availability",
+    ])?;
+    for p in points {
+        csv.row([
+            p.latitude_deg.to_string(),
+            p.longitude_deg.to_string(),
+            p.mean_visible.to_string(),
+            optional(p.mean_pdop),
+            optional(p.p95_pdop),
+            optional(p.max_pdop),
+            p.solved_fraction.to_string(),
+            p.availability.to_string(),
+        ])?;
+    }
+    csv.text()
+}

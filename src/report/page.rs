@@ -1,0 +1,162 @@
+//! The page of a run: one HTML file that needs nothing else.
+//!
+//! The words and tables stand in the page itself; the figures are drawn by the script of the
+//! plotly crate, from numbers that the page carries. A click on a design changes everything
+//! below it, so that the cuts of all members are in the page, packed; of a front that is too
+//! large for that, some members have them and the page says so.
+
+mod pack;
+mod payload;
+mod words;
+
+use super::figures::{Baseline, NamedFront};
+use super::profile::Profile;
+use super::run::StoredRun;
+use crate::constellation::Design;
+use crate::evaluate::Evaluator;
+use askama::Template;
+use payload::Payload;
+use std::io::Write;
+use thiserror::Error;
+use words::{Best, CheckRow, Member, Summary};
+
+/// Why a page cannot be written.
+#[derive(Debug, Error)]
+pub enum PageError {
+    /// The numbers.
+    #[error("cannot write the page's numbers")]
+    Numbers(#[from] serde_json::Error),
+    /// Where it goes.
+    #[error("cannot write the page")]
+    Write(#[from] std::io::Error),
+}
+
+/// What a page is about.
+#[derive(Clone, Copy)]
+pub struct Page<'a> {
+    /// The run.
+    pub run: &'a StoredRun,
+    /// Its scenario as written.
+    pub scenario_toml: Option<&'a str>,
+    /// Computes maps and series; without it there are none.
+    pub evaluator: Option<&'a Evaluator>,
+    /// Designs beside the front, with their objectives.
+    pub baselines: &'a [Baseline],
+    /// The same designs by name.
+    pub beside: &'a [(String, Design)],
+    /// Fronts of other runs.
+    pub fronts: &'a [NamedFront],
+}
+
+/// Bytes of a page that the cuts of the members may take: with the script for the figures (4.7 MB)
+/// it stays under 6 MB.
+const CUTS_BYTES: usize = 900_000;
+
+/// Most members whose cuts are computed: more take minutes.
+const MOST_CUTS: usize = 100;
+
+/// Most members in the table.
+const MOST_ROWS: usize = 200;
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Html<'a> {
+    title: String,
+    style: &'static str,
+    plotly: &'a str,
+    data: String,
+    scripts: String,
+    summary: Summary,
+    best: Vec<Best>,
+    members: Vec<Member>,
+    members_left_out: usize,
+    objectives: Vec<String>,
+    checks: Vec<CheckRow>,
+    validated: Option<String>,
+    conventions: Vec<(&'static str, String)>,
+    scenario_toml: Option<&'a str>,
+    version: &'static str,
+}
+
+/// Writes the page of a run. The same run gives the same bytes.
+///
+/// # Errors
+/// When it cannot be written; a run with gaps gives a page that names them.
+pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
+    let places = members_with_cuts(page);
+    let members = &page.run.front.members;
+    let designs: Vec<Design> = places.iter().filter_map(|&n| members[n].design).collect();
+    let beside: Vec<Design> = page.beside.iter().map(|(_, design)| *design).collect();
+    let profiles = |designs: &[Design]| match page.evaluator {
+        Some(evaluator) => Profile::of_all(evaluator, designs),
+        None => vec![None; designs.len()],
+    };
+    let payload = Payload::new(page, &places, &profiles(&designs), &profiles(&beside));
+    let plotly = plotly::Plot::offline_js_sources();
+    let html = Html {
+        title: words::title(page.run),
+        style: include_str!("page/style.css"),
+        plotly: first_script(&plotly),
+        data: safe_json(&payload)?,
+        scripts: [
+            include_str!("page/core.js"),
+            include_str!("page/figures.js"),
+            include_str!("page/globe.js"),
+            include_str!("page/main.js"),
+        ]
+        .concat(),
+        summary: Summary::new(page, &places),
+        best: words::best(page.run),
+        members: words::members(page.run, MOST_ROWS),
+        members_left_out: members.len().saturating_sub(MOST_ROWS),
+        objectives: page.run.objective_names(),
+        checks: words::checks(page.run),
+        validated: words::validated(page.run),
+        conventions: words::conventions(page.run),
+        scenario_toml: page.scenario_toml,
+        version: super::VERSION,
+    };
+    Ok(html.write_into(&mut to)?)
+}
+
+/// The members whose cuts the page carries, by place: evenly over the front, and the chosen one.
+fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
+    let members = &page.run.front.members;
+    let Some(evaluator) = page.evaluator else {
+        return Vec::new();
+    };
+    let flown: Vec<usize> = (0..members.len()).filter(|&n| members[n].design.is_some()).collect();
+    let setup = evaluator.setup();
+    let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
+    let count = (CUTS_BYTES / each).clamp(1, MOST_CUTS).min(flown.len());
+    let at = |k: usize| flown[k * (flown.len() - 1) / (count - 1).max(1)];
+    let mut places: Vec<usize> = (0..count).map(at).collect();
+    if let Some(chosen) = page.run.chosen().filter(|chosen| flown.contains(chosen))
+        && !places.contains(&chosen)
+    {
+        places.push(chosen);
+        places.sort_unstable();
+    }
+    places
+}
+
+/// The content of the first script in a piece of HTML: of what plotly embeds that is plotly
+/// itself, and the second is MathJax, which the page does without.
+fn first_script(html: &str) -> &str {
+    let after_tag = html.find('>').map_or(0, |end| end + 1);
+    let script = &html[after_tag..];
+    &script[..script.find("</script>").unwrap_or(script.len())]
+}
+
+/// JSON that may stand in a script element, whatever texts are in it.
+fn safe_json(payload: &Payload) -> Result<String, PageError> {
+    let json = serde_json::to_string(payload)?;
+    // Outside of texts JSON has no such character.
+    Ok(json
+        .replace('<', "\\u003c")
+        .replace('>', "\\u003e")
+        .replace('&', "\\u0026"))
+}
+
+#[cfg(test)]
+mod tests;

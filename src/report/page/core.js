@@ -1,0 +1,132 @@
+"use strict";
+// The numbers of the page, the selected design, and figures that are drawn when they are seen.
+const Core = (() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+
+  const MISSING = 65535;
+
+  /** The numbers of a packed row; null where there is none. */
+  function unpack(row) {
+    if (!row) return [];
+    const text = atob(row.codes);
+    const step = (row.hi - row.lo) / (MISSING - 1);
+    const values = new Array(text.length / 2);
+    for (let n = 0; n < values.length; n++) {
+      const code = text.charCodeAt(2 * n) | (text.charCodeAt(2 * n + 1) << 8);
+      values[n] = code === MISSING ? null : row.lo + step * code;
+    }
+    return values;
+  }
+
+  const unpacked = new Map();
+
+  /** The cuts of a design with their rows unpacked; undefined when the page has none. */
+  function open(cuts) {
+    if (!cuts) return undefined;
+    if (!unpacked.has(cuts)) {
+      const rows = (pairs) => Object.fromEntries(pairs.map(([name, row]) => [name, unpack(row)]));
+      unpacked.set(cuts, {
+        maps: rows(cuts.maps),
+        series: rows(cuts.series),
+        overTime: rows(cuts.over_time),
+        pdop: unpack(cuts.pdop),
+        tail: cuts.tail,
+        orbit: { ...cuts.orbit, meanAnomalyDeg: unpack(cuts.orbit.mean_anomaly_deg) },
+      });
+    }
+    return unpacked.get(cuts);
+  }
+
+  const count = data.front.index.length;
+  const withCuts = Object.keys(data.cuts).map(Number);
+  const first = data.chosen ?? withCuts[0] ?? 0;
+  const listeners = [];
+  const state = { place: count > 0 ? first : null };
+
+  /** Selects the design at a place of the front; everything that depends on it follows. */
+  function select(place) {
+    if (!(place >= 0 && place < count)) return;
+    state.place = place;
+    for (const listener of listeners) listener(place);
+  }
+
+  /** Text of a file, safe where Plotly reads a few HTML tags. */
+  function plain(text) {
+    return String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
+  }
+
+  /** A number to read. */
+  function digits(value, significant = 5) {
+    if (value === null || value === undefined) return "none";
+    return String(Number(value.toPrecision(significant)));
+  }
+
+  /** The colours of the present theme. */
+  function theme() {
+    const style = getComputedStyle(document.documentElement);
+    const names = ["paper", "ink", "soft", "line", "panel", "accent", "second", "third", "faint",
+      "land", "sea", "coast", "nothing"];
+    return Object.fromEntries(names.map((n) => [n, style.getPropertyValue("--" + n).trim()]));
+  }
+
+  const figures = new Map();
+  const CONFIG = { displaylogo: false, responsive: true,
+    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
+
+  function draw(figure) {
+    const { data: traces, layout } = figure.build(theme());
+    const done = Plotly.react(figure.element, traces, layout, CONFIG);
+    if (!figure.drawn) {
+      figure.drawn = true;
+      if (figure.click) {
+        done.then(() => figure.element.on("plotly_click", (event) => figure.click(event.points[0])));
+      }
+    }
+    return done;
+  }
+
+  const seen = new IntersectionObserver((entries) => {
+    for (const entry of entries) {
+      const figure = figures.get(entry.target.id);
+      if (entry.isIntersecting && figure && !figure.drawn) draw(figure);
+    }
+  }, { rootMargin: "200px" });
+
+  /** A figure: `build` gives its traces and layout, `click` takes a clicked point. */
+  function figure(id, { build, click, follows = true }) {
+    const element = document.getElementById(id);
+    if (!element) return;
+    figures.set(id, { element, build, click, follows, drawn: false });
+    seen.observe(element);
+  }
+
+  /** Draws again what has been drawn. */
+  function refresh(onlyFollowing) {
+    for (const figure of figures.values()) {
+      if (figure.drawn && (figure.follows || !onlyFollowing)) draw(figure);
+    }
+  }
+
+  listeners.push(() => refresh(true));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => refresh(false));
+  // Print takes the light colours, and figures that nobody has scrolled to.
+  addEventListener("beforeprint", () => { for (const f of figures.values()) draw(f); });
+  addEventListener("afterprint", () => refresh(false));
+
+  /** What all layouts have in common. */
+  function layout(colours, more) {
+    const axis = { gridcolor: colours.line, zeroline: false, linecolor: colours.soft, automargin: true,
+      ticks: "outside", tickcolor: colours.line, exponentformat: "power" };
+    return {
+      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+      font: { family: "system-ui, sans-serif", size: 12, color: colours.ink },
+      margin: { l: 58, r: 16, t: 12, b: 48 }, hovermode: "closest", showlegend: true,
+      legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+      ...more,
+      xaxis: { ...axis, ...more.xaxis }, yaxis: { ...axis, ...more.yaxis },
+    };
+  }
+
+  return { data, state, count, listeners, withCuts, select, open, unpack, plain, digits, theme, figure,
+    refresh, layout };
+})();

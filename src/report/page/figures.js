@@ -1,0 +1,266 @@
+// The figures, from the numbers of the page.
+(() => {
+  const { data, state, count, open, unpack, plain, digits, figure, layout, select } = Core;
+  const { front, objectives } = data;
+  const shown = { x: 0, y: objectives.length > 1 ? 1 : null };
+
+  const cutsOf = (place) => open(data.cuts[place]);
+  const label = (n) => plain(objectives[n].label);
+  const members = [...Array(count).keys()];
+
+  /** What is compared in curves: the selected design, the choice, and those beside the front. */
+  function compared(colours) {
+    const selected = { name: front.notation[state.place], cuts: cutsOf(state.place),
+      line: { color: colours.accent, width: 2.5 } };
+    const list = [selected];
+    if (data.chosen !== null && data.chosen !== state.place) {
+      list.push({ name: "fuzzy choice", cuts: cutsOf(data.chosen),
+        line: { color: colours.second, width: 1.5 } });
+    }
+    data.baselines.forEach((b, n) => list.push({ name: b.name, cuts: open(b.cuts),
+      line: { color: n === 0 ? colours.soft : colours.third, width: 1.5, dash: n === 0 ? "dot" : "dash" } }));
+    return list.filter((one) => one.cuts);
+  }
+
+  function pareto(colours) {
+    const { x, y } = shown;
+    const second = y === null ? data.front.variables[0][1] : front.objectives[y];
+    const at = (values) => (y === null ? null : values[y]);
+    const traces = [];
+    if (data.generations.length > 0 && y !== null) {
+      traces.push({ type: "scatter", mode: "markers", name: "earlier generations",
+        x: data.generations.map((g) => g[1][x]), y: data.generations.map((g) => g[1][y]),
+        text: data.generations.map((g) => "generation " + g[0]), hovertemplate: "%{text}<extra></extra>",
+        marker: { size: 4, color: colours.faint, opacity: 0.45 } });
+    }
+    for (const other of data.fronts) {
+      if (y === null) break;
+      traces.push({ type: "scatter", mode: "markers", name: plain(other.name), x: other.objectives[x],
+        y: other.objectives[y], text: other.notation.map(plain), hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>",
+        marker: { size: 6, color: colours.third, symbol: "x-thin", line: { width: 1.5, color: colours.third } } });
+    }
+    traces.push({ type: "scatter", mode: "markers", name: "front", x: front.objectives[x], y: second,
+      customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + digits(front.membership[n], 3)),
+      hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: { size: 9, color: colours.accent } });
+    data.baselines.forEach((b, n) => traces.push({ type: "scatter", mode: "markers", name: plain(b.name),
+      x: [b.objectives[x]], y: [at(b.objectives)], text: [plain(b.notation)],
+      hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>",
+      marker: { size: 10, symbol: ["diamond", "square", "triangle-up", "cross"][n % 4], color: colours.soft } }));
+    const ring = (name, place, color, size) => traces.push({ type: "scatter", mode: "markers", name,
+      x: [front.objectives[x][place]], y: [second[place]], hoverinfo: "skip",
+      marker: { size, symbol: "circle-open", color, line: { width: 2.5, color } } });
+    if (data.chosen !== null) ring("fuzzy choice", data.chosen, colours.second, 16);
+    ring("selected", state.place, colours.ink, 22);
+    return { data: traces, layout: layout(colours, { xaxis: { title: { text: label(x) } },
+      yaxis: { title: { text: y === null ? "satellites" : label(y) } } }) };
+  }
+
+  function membership(colours) {
+    const x = front.objectives[0];
+    const order = [...members].sort((a, b) => x[a] - x[b]);
+    const pickOf = (values) => order.map((n) => values[n]);
+    const trace = (name, values, axis, color, mode) => ({ type: "scatter", mode, name, x: pickOf(x),
+      y: pickOf(values), yaxis: axis, customdata: order, text: order.map((n) => plain(front.notation[n])),
+      hovertemplate: "%{text}<br>%{y}<extra></extra>", line: { color, width: 1, dash: "dot" },
+      marker: { color, size: 7 } });
+    const traces = [trace("least membership", front.membership, "y", colours.accent, "lines+markers"),
+      trace("normalised sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
+    traces.push({ type: "scatter", mode: "markers", name: "selected", x: [x[state.place]],
+      y: [front.membership[state.place]], hoverinfo: "skip",
+      marker: { size: 18, symbol: "circle-open", color: colours.ink, line: { width: 2.5, color: colours.ink } } });
+    return { data: traces, layout: layout(colours, { xaxis: { title: { text: label(0) } },
+      yaxis: { title: { text: "membership" }, rangemode: "tozero" },
+      yaxis2: { overlaying: "y", side: "right", rangemode: "tozero", showgrid: false, automargin: true, tickcolor: colours.line } }) };
+  }
+
+  const LABELS = { "mean-visible": "satellites", "mean-pdop": "PDOP", "p95-pdop": "PDOP", "max-pdop": "PDOP",
+    "availability": "share" };
+
+  /** The range of a measure over all designs whose maps the page has. */
+  function commonRange(measure) {
+    let lo = Infinity, hi = -Infinity;
+    for (const place of Core.withCuts) {
+      for (const value of cutsOf(place).maps[measure]) {
+        if (value === null) continue;
+        lo = Math.min(lo, value);
+        hi = Math.max(hi, value);
+      }
+    }
+    return lo <= hi ? [lo, hi] : undefined;
+  }
+
+  const coast = (() => {
+    const x = [], y = [];
+    for (const line of data.region?.coast ?? []) {
+      for (let n = 0; n < line.length; n += 2) { x.push(line[n] / 100); y.push(line[n + 1] / 100); }
+      x.push(null); y.push(null);
+    }
+    return { x, y };
+  })();
+
+  function map(measure) {
+    return (colours) => {
+      const region = data.region;
+      const cuts = cutsOf(state.place);
+      const values = cuts ? cuts.maps[measure] : region.latitude_deg.map(() => null);
+      const range = document.getElementById("common-scale").checked ? commonRange(measure) : undefined;
+      const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line };
+      const traces = [];
+      if (region.step_deg) {
+        const axis = (all) => [...new Set(all)].sort((a, b) => a - b);
+        const lats = axis(region.latitude_deg), lons = axis(region.longitude_deg);
+        const z = lats.map(() => new Array(lons.length).fill(null));
+        values.forEach((value, n) => {
+          z[lats.indexOf(region.latitude_deg[n])][lons.indexOf(region.longitude_deg[n])] = value;
+        });
+        traces.push({ type: "heatmap", x: lons, y: lats, z, colorscale: "Viridis", zsmooth: false, colorbar: bar,
+          zmin: range?.[0], zmax: range?.[1], zauto: !range,
+          hovertemplate: "%{y}° N, %{x}° E<br>%{z:.5~g}<extra></extra>" });
+      } else {
+        traces.push({ type: "scatter", mode: "markers", x: region.longitude_deg, y: region.latitude_deg,
+          marker: { size: 12, color: values, colorscale: "Viridis", colorbar: bar, cmin: range?.[0], cmax: range?.[1],
+            cauto: !range, line: { width: 1, color: colours.ink } },
+          text: values.map((v) => digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
+      }
+      traces.push({ type: "scatter", mode: "lines", x: coast.x, y: coast.y, hoverinfo: "skip",
+        line: { color: region.step_deg ? "rgba(0,0,0,0.75)" : colours.coast, width: 1 } });
+      const [south, north, west, east] = region.bounds;
+      const square = 1 / Math.max(0.1, Math.cos((south + north) / 2 * Math.PI / 180));
+      return { data: traces, layout: { ...layout(colours, {
+        showlegend: false, margin: { l: 52, r: 8, t: 8, b: 44 },
+        xaxis: { title: { text: "longitude (° E)" }, range: [west, east], constrain: "domain", showgrid: false },
+        yaxis: { title: { text: "latitude (° N)" }, range: [south, north], scaleanchor: "x", scaleratio: square,
+          constrain: "domain", showgrid: false } }), plot_bgcolor: colours.nothing } };
+    };
+  }
+
+  function cdfVisible(colours) {
+    const traces = compared(colours).map((one) => ({ type: "scatter", mode: "lines", name: plain(one.name),
+      x: one.cuts.overTime["mean-visible"], y: data.levels, line: { ...one.line, shape: "vh" },
+      hovertemplate: "%{x:.4~g} or less in %{y:.1%} of the time<extra></extra>" }));
+    return { data: traces, layout: layout(colours, { xaxis: { title: { text: "E<sub>g</sub>(N<sub>visible</sub>)" } },
+      yaxis: { title: { text: "share of the time" }, range: [0, 1.02] } }) };
+  }
+
+  const hours = unpack(data.region?.elapsed_h);
+
+  function overTime(measure, title) {
+    return (colours) => {
+      const traces = compared(colours).map((one) => ({ type: "scatter", mode: "lines", name: plain(one.name),
+        x: hours, y: one.cuts.series[measure], line: { ...one.line, width: one.line.width - 1 },
+        hovertemplate: "%{y:.4~g} at %{x:.2f} h<extra></extra>" })).reverse();
+      return { data: traces, layout: layout(colours, { xaxis: { title: { text: "time since the epoch (h)" } },
+        yaxis: { title: { text: title } }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, traceorder: "reversed" } }) };
+    };
+  }
+
+  function tail(colours) {
+    const larger = data.levels.map((level) => Math.max(1 - level, 1e-6));
+    const last = data.levels.length - 1;
+    const traces = compared(colours).filter((one) => one.cuts.pdop.length > 0).map((one) => ({ type: "scatter", mode: "lines",
+      name: plain(one.name), x: one.cuts.pdop.slice(0, last), y: larger.slice(0, last), line: one.line,
+      hovertemplate: "PDOP above %{x:.4~g}: share %{y:.2~g}<extra></extra>" }));
+    const selected = cutsOf(state.place);
+    const shapes = [], annotations = [];
+    if (selected?.tail) {
+      const [level, atRisk, cvar] = selected.tail;
+      const upright = (x, text, dash, color, anchor) => {
+        shapes.push({ type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color, dash, width: 1.5 } });
+        annotations.push({ x, y: 0.98, yref: "paper", text, showarrow: false, xanchor: anchor, yanchor: "top",
+          font: { size: 11, color } });
+      };
+      upright(atRisk, digits(100 * level, 4) + " % quantile " + digits(atRisk, 4) + " ", "dot", colours.soft, "right");
+      upright(cvar, " CVaR " + digits(cvar, 4), "dash", colours.second, "left");
+    }
+    return { data: traces, layout: layout(colours, { shapes, annotations, xaxis: { title: { text: "PDOP" } },
+      yaxis: { title: { text: "share with a larger PDOP" }, type: "log", dtick: 1 } }) };
+  }
+
+  function convergence(colours) {
+    const volume = data.history.some((record) => record.hypervolume !== null);
+    const at = data.reference ? " at (" + data.reference.join(", ") + ")" : "";
+    const traces = [{ type: "scatter", mode: "lines+markers", x: data.history.map((r) => r.generation),
+      y: data.history.map((r) => (volume ? r.hypervolume : r.front_size)), marker: { size: 5, color: colours.accent },
+      line: { color: colours.accent }, text: data.history.map((r) => r.evaluations + " designs, front of " + r.front_size),
+      hovertemplate: "generation %{x}: %{y:.6~g}<br>%{text}<extra></extra>" }];
+    return { data: traces, layout: layout(colours, { showlegend: false, xaxis: { title: { text: "generation" } },
+      yaxis: { title: { text: volume ? "hypervolume" + at : "designs in the front" } } }) };
+  }
+
+  /** Columns of the parallel coordinates that vary. */
+  const columns = [...front.variables, ...objectives.map((o, n) => [o.name, front.objectives[n]])]
+    .map(([name, values]) => {
+      const present = values.filter((v) => v !== null);
+      return { name, values, lo: Math.min(...present), hi: Math.max(...present) };
+    }).filter((column) => column.lo <= column.hi);
+  const MOST_LINES = 300;
+
+  function parallel(colours) {
+    const height = (column, n) => (column.values[n] === null ? null
+      : column.hi > column.lo ? (column.values[n] - column.lo) / (column.hi - column.lo) : 0.5);
+    const stride = Math.max(1, Math.ceil(count / MOST_LINES));
+    const lines = (places) => {
+      const x = [], y = [], customdata = [];
+      for (const n of places) {
+        columns.forEach((column, c) => { x.push(c); y.push(height(column, n)); customdata.push(n); });
+        x.push(null); y.push(null); customdata.push(n);
+      }
+      return { x, y, customdata };
+    };
+    const hover = { hovertemplate: "%{text}<extra></extra>" };
+    const all = lines(members.filter((n) => n % stride === 0));
+    const one = lines([state.place]);
+    const named = (l) => l.customdata.map((n, k) => plain(front.notation[n]) + (l.x[k] === null ? "" : "<br>"
+      + plain(columns[l.x[k]].name) + " " + digits(columns[l.x[k]].values[n])));
+    const traces = [
+      { type: "scatter", mode: "lines", ...all, text: named(all), ...hover, line: { color: colours.faint, width: 1 } },
+      { type: "scatter", mode: "lines+markers", ...one, text: named(one), ...hover, line: { color: colours.accent, width: 3 } },
+    ];
+    const ends = columns.flatMap((column, c) => [
+      { x: c, y: 1.03, text: digits(column.hi, 4), yanchor: "bottom" },
+      { x: c, y: -0.03, text: digits(column.lo, 4), yanchor: "top" },
+    ]).map((a) => ({ ...a, showarrow: false, font: { size: 11, color: colours.soft } }));
+    return { data: traces, layout: layout(colours, { showlegend: false, annotations: ends, margin: { l: 24, r: 24, t: 12, b: 70 },
+      xaxis: { tickvals: columns.map((_, c) => c), ticktext: columns.map((column) => plain(column.name)), tickangle: 30, range: [-0.4, columns.length - 0.6] },
+      yaxis: { showticklabels: false, ticks: "", range: [-0.15, 1.15], showgrid: false } }) };
+  }
+
+  function budget(colours) {
+    const cases = data.budget.map((line) => plain(line.case));
+    const bar = (name, axis, color) => ({ type: "bar", name, x: cases, y: data.budget.map((line) => line.rms_km[axis]),
+      marker: { color }, hovertemplate: "%{y:.3~g} km<extra>" + name + "</extra>" });
+    return { data: [bar("radial", 0, colours.accent), bar("in-track", 1, colours.second), bar("cross-track", 2, colours.third)],
+      layout: layout(colours, { barmode: "group", xaxis: { type: "category" }, yaxis: { type: "log", title: { text: "RMS difference (km)" }, dtick: 1 } }) };
+  }
+
+  const clicked = (point) => { if (point.customdata !== undefined) select(point.customdata); };
+
+  if (count > 0) {
+    figure("pareto", { build: pareto, click: clicked });
+    figure("membership", { build: membership, click: clicked });
+    figure("parallel", { build: parallel, click: clicked });
+    if (data.region) {
+      for (const measure of Object.keys(LABELS)) figure("map-" + measure, { build: map(measure) });
+      figure("cdf-visible", { build: cdfVisible });
+      figure("series-max-pdop", { build: overTime("max-pdop", "largest PDOP of the points") });
+      figure("series-mean-pdop", { build: overTime("mean-pdop", "E<sub>g</sub>(PDOP)") });
+      figure("tail", { build: tail });
+    }
+  }
+  if (data.history.length > 0) figure("convergence", { build: convergence, follows: false });
+  if (data.budget.length > 0) figure("budget", { build: budget, follows: false });
+
+  // More than two objectives: which two are shown.
+  const axes = document.getElementById("axes");
+  if (axes && objectives.length > 2) {
+    axes.hidden = false;
+    for (const axis of ["x", "y"]) {
+      const chooser = document.createElement("select");
+      objectives.forEach((o, n) => chooser.add(new Option(o.label, n, false, n === shown[axis])));
+      chooser.addEventListener("change", () => { shown[axis] = Number(chooser.value); Core.refresh(true); });
+      const text = document.createElement("label");
+      text.append(axis === "x" ? "across " : "up ", chooser);
+      axes.append(text);
+    }
+  }
+})();

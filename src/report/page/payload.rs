@@ -1,0 +1,414 @@
+//! The numbers that the page carries for its figures.
+
+use super::Page;
+use super::pack::{Packed, short};
+use crate::constellation::Design;
+use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
+use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
+use crate::orbit::Model;
+use crate::orbit::j2::SecularRates;
+use crate::report::coastline::{self, Bounds};
+use crate::report::figures::{Measure, quantity_label};
+use crate::report::figures::{at_epoch, at_point, earlier};
+use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
+use crate::report::run::{StoredFront, StoredMember, StoredRun};
+use crate::scenario::{Quantity, Region, Scenario, Word};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Most instants of a series in the page; longer ones are drawn by intervals.
+const MOST_EPOCHS: usize = 1440;
+
+/// What the page shows over the region.
+const MAPS: [Measure; 5] = [
+    Measure::MeanVisible,
+    Measure::MeanPdop,
+    Measure::P95Pdop,
+    Measure::MaxPdop,
+    Measure::Availability,
+];
+
+/// What the page shows over time.
+const SERIES: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
+
+/// Everything that the script of the page reads.
+#[derive(Serialize)]
+pub(super) struct Payload {
+    objectives: Vec<Objective>,
+    front: Front,
+    chosen: Option<usize>,
+    generations: Vec<(u64, Vec<f64>)>,
+    baselines: Vec<Beside>,
+    fronts: Vec<OtherFront>,
+    history: Vec<Generation>,
+    reference: Option<Vec<f64>>,
+    levels: Vec<f64>,
+    /// By place in the front.
+    cuts: BTreeMap<usize, Cuts>,
+    region: Option<RegionData>,
+    world: Option<World>,
+    budget: Vec<Budget>,
+}
+
+#[derive(Serialize)]
+struct Objective {
+    name: String,
+    label: String,
+    maximised: bool,
+}
+
+/// The front, column by column.
+#[derive(Serialize)]
+struct Front {
+    index: Vec<usize>,
+    notation: Vec<String>,
+    objectives: Vec<Vec<f64>>,
+    membership: Vec<Option<f64>>,
+    membership_sum: Vec<Option<f64>>,
+    metrics: Vec<(&'static str, Vec<Option<f64>>)>,
+    variables: Vec<(&'static str, Vec<Option<f64>>)>,
+}
+
+#[derive(Serialize)]
+struct Beside {
+    name: String,
+    notation: String,
+    objectives: Vec<Option<f64>>,
+    cuts: Option<Cuts>,
+}
+
+#[derive(Serialize)]
+struct OtherFront {
+    name: String,
+    notation: Vec<String>,
+    objectives: Vec<Vec<Option<f64>>>,
+}
+
+#[derive(Serialize)]
+struct Generation {
+    generation: u64,
+    evaluations: u64,
+    hypervolume: Option<f64>,
+    front_size: usize,
+}
+
+/// The cuts of a design.
+#[derive(Serialize)]
+struct Cuts {
+    /// By measure, point by point.
+    maps: Vec<(&'static str, Packed)>,
+    /// By measure, instant by instant.
+    series: Vec<(&'static str, Packed)>,
+    /// Quantiles over the instants, by measure, at the levels.
+    over_time: Vec<(&'static str, Packed)>,
+    /// Quantiles of PDOP over all samples.
+    pdop: Packed,
+    tail: Option<[f64; 3]>,
+    orbit: Orbit,
+}
+
+/// What the globe flies: mean elements at the epoch and their rates.
+#[derive(Serialize)]
+struct Orbit {
+    semi_major_axis_km: f64,
+    eccentricity: f64,
+    inclination_deg: f64,
+    arg_perigee_deg: f64,
+    per_plane: usize,
+    raan_deg: Vec<f64>,
+    mean_anomaly_deg: Packed,
+    /// Of node, perigee and mean anomaly, degrees a second.
+    rates_deg_s: [f64; 3],
+}
+
+#[derive(Serialize)]
+struct RegionData {
+    latitude_deg: Vec<f64>,
+    longitude_deg: Vec<f64>,
+    /// Steps in latitude and longitude, of a grid.
+    step_deg: Option<[f64; 2]>,
+    bounds: [f64; 4],
+    coast: Vec<Vec<i32>>,
+    elapsed_h: Packed,
+    availability_pdop: f64,
+}
+
+#[derive(Serialize)]
+struct World {
+    coast: Vec<Vec<i32>>,
+    epoch: String,
+    gmst_deg: f64,
+    gmst_rate_deg_s: f64,
+    radius_km: f64,
+    flattening: f64,
+    mask_deg: f64,
+}
+
+#[derive(Serialize)]
+struct Budget {
+    case: String,
+    rms_km: [f64; 3],
+}
+
+/// About as many bytes of the page as the cuts of one design take.
+pub(super) fn cut_bytes(epochs: usize, points: usize) -> usize {
+    let numbers = SERIES.len() * epochs.min(MOST_EPOCHS)
+        + MAPS.len() * points
+        + (SERIES.len() + 1) * drawn_levels().len();
+    // Two bytes each, in base64, and the names.
+    numbers * 2 * 4 / 3 + 2500
+}
+
+impl Payload {
+    pub(super) fn new(
+        page: &Page<'_>,
+        places: &[usize],
+        members: &[Option<Profile>],
+        beside: &[Option<Profile>],
+    ) -> Self {
+        let run = page.run;
+        let names = run.objective_names();
+        let setup = page.evaluator.map(|evaluator| evaluator.setup());
+        let cuts = |profile: &Profile| setup.map(|setup| Cuts::new(profile, setup));
+        let of_members = places.iter().zip(members);
+        let of_members = of_members.filter_map(|(&n, p)| Some((n, cuts(p.as_ref()?)?)));
+        let generations = earlier(run, &names).into_iter();
+        Self {
+            objectives: names.iter().map(|name| Objective::new(name)).collect(),
+            front: Front::new(&run.front.members, &names),
+            chosen: run.chosen(),
+            generations: generations.map(|(g, x)| (g, x.into_iter().map(short).collect())).collect(),
+            baselines: baselines(page, beside, &cuts),
+            fronts: page.fronts.iter().map(|f| OtherFront::new(&f.name, &f.front, &names)).collect(),
+            history: history(run),
+            reference: run.front.reference.clone(),
+            levels: drawn_levels().into_iter().map(short).collect(),
+            cuts: of_members.collect(),
+            region: setup.zip(run.scenario.as_ref()).and_then(RegionData::new),
+            world: setup
+                .zip(run.scenario.as_ref())
+                .map(|(setup, scenario)| World::new(setup, scenario)),
+            budget: budget(run),
+        }
+    }
+}
+
+fn baselines(
+    page: &Page<'_>,
+    profiles: &[Option<Profile>],
+    cuts: &dyn Fn(&Profile) -> Option<Cuts>,
+) -> Vec<Beside> {
+    let of = |notation: &str| {
+        let mut found = profiles.iter().flatten();
+        found.find(|profile| profile.design.to_string() == notation)
+    };
+    let beside = page.baselines.iter().map(|baseline| Beside {
+        name: baseline.name.clone(),
+        notation: baseline.notation.clone(),
+        objectives: baseline.objectives.iter().map(|x| x.map(short)).collect(),
+        cuts: of(&baseline.notation).and_then(cuts),
+    });
+    beside.collect()
+}
+
+fn history(run: &StoredRun) -> Vec<Generation> {
+    let records = run.history.iter().map(|record| Generation {
+        generation: record.generation,
+        evaluations: record.evaluations,
+        hypervolume: record.hypervolume.map(short),
+        front_size: record.front_size,
+    });
+    records.collect()
+}
+
+fn budget(run: &StoredRun) -> Vec<Budget> {
+    let lines = run.validation.iter().flat_map(|validation| &validation.budget);
+    let budget = lines.map(|line| Budget {
+        case: line.case.clone(),
+        rms_km: line.rms_km.axes().map(short),
+    });
+    budget.collect()
+}
+
+/// Polylines as longitude and latitude in hundredths of a degree.
+fn hundredths(lines: Vec<Vec<[f64; 2]>>) -> Vec<Vec<i32>> {
+    let whole = |x: f64| (100.0 * x).round() as i32;
+    let flat = |line: Vec<[f64; 2]>| line.into_iter().flatten().map(whole).collect();
+    lines.into_iter().map(flat).collect()
+}
+
+impl Objective {
+    fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            label: quantity_label(name),
+            maximised: Quantity::from_word(name).is_ok_and(Quantity::is_maximised),
+        }
+    }
+}
+
+impl Front {
+    fn new(members: &[StoredMember], names: &[String]) -> Self {
+        let column = |value: &dyn Fn(&StoredMember) -> Option<f64>| {
+            members.iter().map(|m| value(m).map(short)).collect::<Vec<_>>()
+        };
+        let of_design = |value: fn(&Design) -> f64| column(&move |m| m.design.as_ref().map(value));
+        Self {
+            index: members.iter().map(|m| m.index).collect(),
+            notation: members.iter().map(|m| m.notation.clone()).collect(),
+            objectives: names
+                .iter()
+                .map(|name| members.iter().filter_map(|m| m.objective(name)).map(short).collect())
+                .collect(),
+            membership: column(&|m| m.membership),
+            membership_sum: column(&|m| m.membership_sum),
+            metrics: vec![
+                ("mean visible", column(&|m| m.metrics.mean_visible)),
+                ("mean PDOP", column(&|m| m.metrics.mean_pdop)),
+                ("CVaR of PDOP", column(&|m| m.metrics.cvar_pdop)),
+                ("95 % PDOP", column(&|m| m.metrics.p95_pdop)),
+                ("largest PDOP", column(&|m| m.metrics.max_pdop)),
+                ("availability", column(&|m| m.metrics.availability)),
+                ("solved", column(&|m| m.metrics.solved_fraction)),
+            ],
+            variables: vec![
+                ("satellites", of_design(|d| d.satellite_count() as f64)),
+                ("planes", of_design(|d| d.planes() as f64)),
+                ("per plane", of_design(|d| d.satellites_per_plane() as f64)),
+                ("phasing", of_design(|d| d.phasing() as f64)),
+                ("inclination (\u{b0})", of_design(Design::inclination_deg)),
+                ("altitude (km)", of_design(Design::altitude_km)),
+            ],
+        }
+    }
+}
+
+impl OtherFront {
+    fn new(name: &str, front: &StoredFront, names: &[String]) -> Self {
+        let objective = |name: &String| {
+            let values = front.members.iter().map(|m| m.objective(name).map(short));
+            values.collect()
+        };
+        Self {
+            name: name.to_owned(),
+            notation: front.members.iter().map(|m| m.notation.clone()).collect(),
+            objectives: names.iter().map(objective).collect(),
+        }
+    }
+}
+
+impl Cuts {
+    fn new(profile: &Profile, setup: &Setup) -> Self {
+        let map = |measure: Measure| {
+            let values = profile.points.iter().map(|p: &PointMetrics| at_point(measure, p));
+            (measure.word(), Packed::new(values))
+        };
+        let over_time = |measure: Measure| {
+            let values = profile.epochs.iter().filter_map(|e| at_epoch(measure, e));
+            (measure.word(), levels(&quantiles_of(values)))
+        };
+        let series = |measure: Measure| (measure.word(), by_intervals(&profile.epochs, measure));
+        Self {
+            maps: MAPS.into_iter().map(map).collect(),
+            series: SERIES.into_iter().map(series).collect(),
+            over_time: SERIES.into_iter().map(over_time).collect(),
+            pdop: levels(&profile.pdop),
+            tail: profile
+                .tail
+                .map(|tail| [tail.level, tail.value_at_risk, tail.cvar].map(short)),
+            orbit: Orbit::new(&profile.design, setup.model),
+        }
+    }
+}
+
+fn levels(quantiles: &[Quantile]) -> Packed {
+    Packed::of(quantiles.iter().map(|q| q.value))
+}
+
+/// Instants in an interval that is drawn as one.
+fn interval(epochs: usize) -> usize {
+    epochs.div_ceil(MOST_EPOCHS).max(1)
+}
+
+/// A measure over time; of intervals the mean, but of the largest PDOP the largest.
+fn by_intervals(epochs: &[EpochMetrics], measure: Measure) -> Packed {
+    let of_interval = |interval: &[EpochMetrics]| {
+        let values: Vec<f64> = interval.iter().filter_map(|e| at_epoch(measure, e)).collect();
+        match measure {
+            Measure::MaxPdop => values.into_iter().reduce(f64::max),
+            _ => (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64),
+        }
+    };
+    Packed::new(epochs.chunks(interval(epochs.len())).map(of_interval))
+}
+
+impl Orbit {
+    fn new(design: &Design, model: Model) -> Self {
+        let satellites = design.satellites();
+        let per_plane = design.satellites_per_plane();
+        let first = satellites[0].elements;
+        let rates = match model {
+            Model::TwoBody => SecularRates::two_body(&first),
+            _ => SecularRates::j2(&first),
+        };
+        let raan = satellites.iter().step_by(per_plane).map(|s| s.elements.raan_rad);
+        let anomalies = satellites.iter().map(|s| s.elements.mean_anomaly_rad.to_degrees());
+        Self {
+            semi_major_axis_km: first.semi_major_axis_km,
+            eccentricity: first.eccentricity,
+            inclination_deg: design.inclination_deg(),
+            arg_perigee_deg: design.arg_perigee_deg(),
+            per_plane,
+            raan_deg: raan.map(|x| short(x.to_degrees())).collect(),
+            mean_anomaly_deg: Packed::of(anomalies),
+            rates_deg_s: [
+                rates.raan_rad_s,
+                rates.arg_perigee_rad_s,
+                rates.mean_anomaly_rad_s,
+            ]
+            .map(f64::to_degrees),
+        }
+    }
+}
+
+impl RegionData {
+    fn new((setup, scenario): (&Setup, &Scenario)) -> Option<Self> {
+        let step_deg = match &scenario.region {
+            Region::Grid(grid) => Some(grid.step_deg),
+            Region::Points { .. } => None,
+        };
+        let margin = step_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
+        let places = setup.sites.iter().map(|s| (s.latitude_deg, s.longitude_deg));
+        let bounds = Bounds::around(places, margin)?;
+        let times: Vec<f64> = setup.grid.iter().collect();
+        let starts = times.iter().step_by(interval(times.len()));
+        Some(Self {
+            latitude_deg: setup.sites.iter().map(|s| short(s.latitude_deg)).collect(),
+            longitude_deg: setup.sites.iter().map(|s| short(s.longitude_deg)).collect(),
+            step_deg,
+            bounds: [
+                bounds.latitude_deg[0],
+                bounds.latitude_deg[1],
+                bounds.longitude_deg[0],
+                bounds.longitude_deg[1],
+            ],
+            coast: hundredths(coastline::within(&bounds)),
+            elapsed_h: Packed::of(starts.map(|t| t / crate::units::SECONDS_PER_HOUR)),
+            availability_pdop: setup.metrics.availability_pdop,
+        })
+    }
+}
+
+impl World {
+    fn new(setup: &Setup, scenario: &Scenario) -> Self {
+        Self {
+            coast: hundredths(coastline::world()),
+            epoch: scenario.time.epoch.format("%Y-%m-%dT%H:%M:%SZ").to_string(),
+            gmst_deg: setup.grid.epoch().gmst_rad(0.0).to_degrees(),
+            gmst_rate_deg_s: GMST_RATE_RAD_S.to_degrees(),
+            radius_km: RADIUS_KM,
+            flattening: scenario.earth.surface.flattening(),
+            mask_deg: scenario.visibility.mask_deg,
+        }
+    }
+}

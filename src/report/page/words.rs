@@ -1,0 +1,348 @@
+//! What the page says in words and tables.
+
+use super::Page;
+use crate::earth;
+use crate::report::figures::quantity_label;
+use crate::report::run::{StoredMember, StoredRun};
+use crate::report::validation::digits;
+use crate::scenario::{Quantity, Region, Scenario, Word};
+
+/// The beginning of the page.
+pub(super) struct Summary {
+    /// What was studied and found.
+    pub(super) paragraphs: Vec<String>,
+    /// What the program noticed.
+    pub(super) notes: Vec<String>,
+    /// What is missing.
+    pub(super) gaps: Vec<String>,
+}
+
+/// The best design by one objective.
+pub(super) struct Best {
+    pub(super) objective: String,
+    pub(super) place: usize,
+    pub(super) notation: String,
+    pub(super) value: String,
+}
+
+/// A row of the table of members.
+pub(super) struct Member {
+    pub(super) place: usize,
+    pub(super) index: usize,
+    pub(super) notation: String,
+    pub(super) chosen: bool,
+    /// Objectives, then metrics.
+    pub(super) cells: Vec<String>,
+}
+
+/// A row of the validation.
+pub(super) struct CheckRow {
+    pub(super) name: String,
+    pub(super) verdict: &'static str,
+    pub(super) value: String,
+    pub(super) gate: String,
+    pub(super) unit: String,
+    pub(super) reason: String,
+}
+
+/// The title of the page.
+pub(super) fn title(run: &StoredRun) -> String {
+    match &run.scenario {
+        Some(scenario) => format!("Constellation study {}", scenario.name),
+        None => "Constellation study".to_owned(),
+    }
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or_else(|| "none".to_owned(), |value| format!("{value:.4}"))
+}
+
+impl Summary {
+    pub(super) fn new(page: &Page<'_>, places_with_cuts: &[usize]) -> Self {
+        let run = page.run;
+        let mut paragraphs = Vec::new();
+        paragraphs.extend(run.scenario.as_ref().map(setting));
+        paragraphs.push(found(run));
+        paragraphs.extend(choice(run));
+        let mut notes: Vec<String> = run.front.diagnostics.iter().map(|d| d.1.clone()).collect();
+        notes.extend(cost_note(run));
+        let mut gaps = run.gaps.clone();
+        let (cut, all) = (places_with_cuts.len(), run.front.members.len());
+        if page.evaluator.is_some() && cut < all {
+            gaps.push(format!(
+                "this page has the maps and series of {cut} of the {all} front members; navwalker \
+                 plot --pick N draws those of any other"
+            ));
+        }
+        Self {
+            paragraphs,
+            notes,
+            gaps,
+        }
+    }
+}
+
+/// Where, when and with what.
+fn setting(scenario: &Scenario) -> String {
+    let region = match &scenario.region {
+        Region::Grid(grid) => {
+            let [south, north] = grid.latitude_deg;
+            let [west, east] = grid.longitude_deg;
+            let [dlat, dlon] = grid.step_deg;
+            format!(
+                "the region from {south}\u{b0} to {north}\u{b0} N and {west}\u{b0} to {east}\u{b0} E, \
+                 every {dlat}\u{b0} by {dlon}\u{b0}"
+            )
+        }
+        Region::Points { file } => format!("the points of {file}"),
+    };
+    let gnss: Vec<&str> = scenario.gnss.constellations.iter().map(|c| c.word()).collect();
+    let gnss = if gnss.is_empty() && scenario.gnss.files.is_empty() {
+        "no GNSS".to_owned()
+    } else {
+        let files = scenario.gnss.files.iter().map(String::as_str);
+        gnss.into_iter().chain(files).collect::<Vec<_>>().join(" and ")
+    };
+    format!(
+        "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
+         {}; satellites count above {}\u{b0} of elevation.",
+        scenario.time.step_s,
+        scenario.time.duration_h,
+        scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
+        scenario.visibility.mask_deg
+    )
+}
+
+/// What the search did.
+fn found(run: &StoredRun) -> String {
+    let front = &run.front;
+    let members = match front.members.len() {
+        0 => "no design that meets the constraints".to_owned(),
+        1 => "one design".to_owned(),
+        n => format!("{n} designs, none of which is better than another in every objective"),
+    };
+    let algorithm = front.algorithm.as_deref().unwrap_or("The search");
+    let effort = front.evaluations.map(|n| format!(" evaluated {n} designs and"));
+    let seed = front.seed.map(|seed| format!(" (seed {seed})"));
+    let mut text = format!(
+        "{algorithm}{}{} found {members}.",
+        seed.unwrap_or_default(),
+        effort.unwrap_or_default()
+    );
+    if let Some([done, of]) = front.generations
+        && done < of
+    {
+        text += &format!(" It was stopped after generation {done} of {of}.");
+    }
+    if let (Some(value), Some(reference)) = (front.hypervolume, &front.reference) {
+        let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
+        text += &format!(" The hypervolume at ({}) is {value:.4}.", at.join(", "));
+    }
+    text
+}
+
+/// The chosen design and why.
+fn choice(run: &StoredRun) -> Option<String> {
+    let member = &run.front.members[run.chosen()?];
+    let objectives: Vec<String> = member
+        .objectives
+        .iter()
+        .map(|(name, value)| format!("{name} {value:.4}"))
+        .collect();
+    let metrics = &member.metrics;
+    Some(format!(
+        "The fuzzy decision picks {} ({}): among the front its least membership over the objectives, {}, \
+         is the largest, so it gives up least of any one goal. It shows {} LEO satellites on average, mean \
+         PDOP {}, CVaR {}, at most {}.",
+        member.notation,
+        objectives.join(", "),
+        number(member.membership),
+        number(metrics.mean_visible),
+        number(metrics.mean_pdop),
+        number(metrics.cvar_pdop),
+        number(metrics.max_pdop)
+    ))
+}
+
+/// What the paper's cost does not measure.
+fn cost_note(run: &StoredRun) -> Option<String> {
+    let scenario = run.scenario.as_ref()?;
+    let minimized = &scenario.objectives.minimize;
+    let counts = [Quantity::Satellites, Quantity::Planes, Quantity::LaunchCost];
+    let free = minimized.contains(&Quantity::JCost) && !counts.iter().any(|q| minimized.contains(q));
+    free.then(|| {
+        "j-cost, satellites per visible satellite, is one over the visible share of the constellation: \
+         it hardly depends on how many satellites there are, so that satellites are free under these \
+         objectives. Objectives that count them are satellites, planes and launch-cost."
+            .to_owned()
+    })
+}
+
+/// The best design by each objective.
+pub(super) fn best(run: &StoredRun) -> Vec<Best> {
+    let of = |name: &String| {
+        let quantity = Quantity::from_word(name).ok();
+        let key = |member: &StoredMember| {
+            let value = member.objective(name).unwrap_or(f64::INFINITY);
+            quantity.map_or(value, |q| q.minimised(value))
+        };
+        let members = run.front.members.iter().enumerate();
+        let (place, member) = members.min_by(|a, b| key(a.1).total_cmp(&key(b.1)))?;
+        Some(Best {
+            objective: quantity_label(name),
+            place,
+            notation: member.notation.clone(),
+            value: number(member.objective(name)),
+        })
+    };
+    run.objective_names().iter().filter_map(of).collect()
+}
+
+/// The members of the table: at most `most`, evenly over the front, and the chosen one.
+pub(super) fn members(run: &StoredRun, most: usize) -> Vec<Member> {
+    let all = &run.front.members;
+    let shown = all.len().min(most);
+    let at = |k: usize| k * (all.len() - 1) / (shown - 1).max(1);
+    let mut places: Vec<usize> = (0..shown).map(at).collect();
+    if let Some(chosen) = run.chosen().filter(|chosen| !places.contains(chosen)) {
+        places.push(chosen);
+        places.sort_unstable();
+    }
+    places.into_iter().map(|place| row(place, &all[place])).collect()
+}
+
+fn row(place: usize, member: &StoredMember) -> Member {
+    let metrics = &member.metrics;
+    let mut cells: Vec<String> = member.objectives.iter().map(|o| number(Some(o.1))).collect();
+    cells.extend(
+        [
+            metrics.mean_visible,
+            metrics.mean_pdop,
+            metrics.cvar_pdop,
+            metrics.max_pdop,
+            metrics.availability,
+            member.membership,
+        ]
+        .map(number),
+    );
+    Member {
+        place,
+        index: member.index,
+        notation: member.notation.clone(),
+        chosen: member.chosen,
+        cells,
+    }
+}
+
+/// The verdict of the validation.
+pub(super) fn validated(run: &StoredRun) -> Option<String> {
+    let validation = run.validation.as_ref()?;
+    let gated = validation.checks.iter().filter(|check| check.gate.is_some());
+    let (gated, failed) = gated.fold((0, 0), |(n, f), check| (n + 1, f + usize::from(!check.passed)));
+    Some(match failed {
+        0 => format!("{}: all {gated} gates are kept.", validation.design.notation),
+        _ => format!(
+            "{}: {failed} of {gated} gates are not kept.",
+            validation.design.notation
+        ),
+    })
+}
+
+/// The checks of the validation.
+pub(super) fn checks(run: &StoredRun) -> Vec<CheckRow> {
+    let checks = run.validation.iter().flat_map(|validation| &validation.checks);
+    let row = checks.map(|check| CheckRow {
+        name: check.name.clone(),
+        verdict: match (check.gate, check.passed) {
+            (None, _) => "info",
+            (Some(_), true) => "pass",
+            (Some(_), false) => "FAIL",
+        },
+        value: check.value.map_or_else(|| "none".to_owned(), digits),
+        gate: check.gate.map_or_else(String::new, digits),
+        unit: check.unit.clone(),
+        reason: check.reason.clone(),
+    });
+    row.collect()
+}
+
+/// What every number rests on.
+pub(super) fn conventions(run: &StoredRun) -> Vec<(&'static str, String)> {
+    let mut rows = vec![
+        (
+            "Constants",
+            format!(
+                "\u{3bc} = {} km\u{b3}/s\u{b2}, R = {} km, J2 = {:e} (EGM96), f = 1/298.257223563",
+                earth::MU_KM3_S2,
+                earth::RADIUS_KM,
+                earth::J2
+            ),
+        ),
+        (
+            "Frames",
+            "mean elements and propagation in TEME; Earth-fixed by GMST (IAU 1982), UT1 = UTC, no polar \
+             motion"
+                .to_owned(),
+        ),
+        (
+            "PDOP",
+            "unit-weight least squares; a sample without a solution is no number and enters no statistic"
+                .to_owned(),
+        ),
+        (
+            "Quantiles and CVaR",
+            "order statistics; CVaR is the mean of the worst share, with fractional weight on its \
+             quantile (Rockafellar and Uryasev)"
+                .to_owned(),
+        ),
+    ];
+    if let Some(scenario) = &run.scenario {
+        rows.extend(of_scenario(scenario));
+    }
+    if let Some(hash) = &run.front.scenario_hash {
+        rows.push(("Scenario hash", hash.clone()));
+    }
+    let by = run.front.version.as_deref().unwrap_or("unknown");
+    let this = crate::report::VERSION;
+    rows.push(("Versions", format!("run by navwalker {by}; this page by navwalker {this}")));
+    rows.push((
+        "Parts of this page",
+        "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \
+         (public domain)"
+            .to_owned(),
+    ));
+    rows
+}
+
+fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
+    let objectives = &scenario.objectives;
+    vec![
+        ("Surface", scenario.earth.surface.to_string()),
+        ("LEO propagation", scenario.propagation.model.to_string()),
+        ("Receiver clocks", scenario.gnss.clocks.to_string()),
+        (
+            "Masks",
+            format!(
+                "LEO {}\u{b0}, GNSS {}\u{b0}; PDOP above {} counts as unsolved",
+                scenario.visibility.mask_deg,
+                scenario.visibility.gnss_mask_deg,
+                scenario.visibility.pdop_cap
+            ),
+        ),
+        (
+            "Objectives",
+            format!(
+                "{}; \u{3bb} = {}, \u{3b1} = {}; available means PDOP at most {}",
+                run_names(scenario),
+                objectives.cvar_weight,
+                objectives.cvar_level,
+                objectives.availability_pdop
+            ),
+        ),
+    ]
+}
+
+fn run_names(scenario: &Scenario) -> String {
+    let names: Vec<&str> = scenario.objectives.minimize.iter().map(|q| q.word()).collect();
+    names.join(", ")
+}

@@ -1,0 +1,165 @@
+//! What the figures below the front show of one design: its cuts through space and time, and
+//! the distribution of PDOP.
+
+use crate::constellation::Design;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::{EpochMetrics, Evaluator, PointMetrics};
+use crate::stats::{Weighted, summarize_weighted, weighted_quantile};
+use rayon::prelude::*;
+
+/// One design under the setup of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Profile {
+    /// The design.
+    pub design: Design,
+    /// Instant by instant, over the points.
+    pub epochs: Vec<EpochMetrics>,
+    /// Point by point, over the instants.
+    pub points: Vec<PointMetrics>,
+    /// Quantiles of PDOP over all solved samples; empty when there is none.
+    pub pdop: Vec<Quantile>,
+    /// The tail of PDOP; `None` when no sample is solved.
+    pub tail: Option<Tail>,
+}
+
+/// One step of an empirical distribution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Quantile {
+    /// Share of the samples at or below the value.
+    pub level: f64,
+    /// The value.
+    pub value: f64,
+}
+
+/// The worst share of PDOP.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tail {
+    /// α.
+    pub level: f64,
+    /// The quantile of level α.
+    pub value_at_risk: f64,
+    /// The mean of the worst 1 - α.
+    pub cvar: f64,
+}
+
+impl Profile {
+    /// Evaluates one design.
+    ///
+    /// # Errors
+    /// When a satellite of it cannot be propagated.
+    pub fn new(evaluator: &Evaluator, design: &Design) -> Result<Self, EphemerisError> {
+        let setup = evaluator.setup();
+        let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
+        let mut series = evaluator.series(&ephemeris)?;
+        let pdop = quantiles(&series.pdop);
+        let level = setup.metrics.cvar_level;
+        let value_at_risk = weighted_quantile(&mut series.pdop, level);
+        let summary = summarize_weighted(&mut series.pdop, level);
+        let tail = summary.zip(value_at_risk).map(|(summary, at_risk)| Tail {
+            level: level.get(),
+            value_at_risk: at_risk,
+            cvar: summary.cvar,
+        });
+        Ok(Self {
+            design: *design,
+            epochs: series.epochs,
+            points: series.points,
+            pdop,
+            tail,
+        })
+    }
+
+    /// Evaluates several designs, in parallel and in their order; `None` for one that cannot be
+    /// flown.
+    #[must_use]
+    pub fn of_all(evaluator: &Evaluator, designs: &[Design]) -> Vec<Option<Self>> {
+        let one = |design: &Design| Self::new(evaluator, design).ok();
+        designs.par_iter().map(one).collect()
+    }
+}
+
+/// The levels of a distribution that is drawn: every half percent, and ten per power of ten of
+/// the worst share down to 1e-5.
+#[must_use]
+pub fn drawn_levels() -> Vec<f64> {
+    let even = (0..=190).map(|n| f64::from(n) / 200.0);
+    let tail = (1..=37).map(|n| 1.0 - 0.05 * 10_f64.powf(-f64::from(n) / 10.0));
+    even.chain(tail).chain([1.0]).collect()
+}
+
+/// The quantiles of a rising sample at the drawn levels: the first value whose share, its own
+/// weight included, reaches the level.
+#[must_use]
+pub fn quantiles(rising: &[Weighted]) -> Vec<Quantile> {
+    let total: f64 = rising.iter().map(|x| x.weight).sum();
+    let mut samples = rising.iter();
+    let Some(mut current) = samples.next() else {
+        return Vec::new();
+    };
+    let mut below = current.weight;
+    let mut quantile = |level: f64| {
+        // A share that is whole up to rounding counts as reached.
+        while below < level * total * (1.0 - 1e-12) {
+            let Some(next) = samples.next() else { break };
+            current = next;
+            below += next.weight;
+        }
+        Quantile {
+            level,
+            value: current.value,
+        }
+    };
+    drawn_levels().into_iter().map(&mut quantile).collect()
+}
+
+/// The quantiles of values that count the same.
+#[must_use]
+pub fn quantiles_of(values: impl Iterator<Item = f64>) -> Vec<Quantile> {
+    let mut rising: Vec<_> = values.map(|value| Weighted { value, weight: 1.0 }).collect();
+    rising.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
+    quantiles(&rising)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_order_statistics() {
+        let found = quantiles_of((1..=1000).rev().map(f64::from));
+        let at = |level: f64| {
+            let near = found.iter().find(|q| (q.level - level).abs() < 1e-12);
+            near.unwrap().value
+        };
+        assert_eq!((at(0.0), at(0.5), at(0.95), at(1.0)), (1.0, 500.0, 950.0, 1000.0));
+        assert!(found.windows(2).all(|q| q[0].level < q[1].level && q[0].value <= q[1].value));
+        assert!(quantiles_of(std::iter::empty()).is_empty());
+    }
+
+    #[test]
+    fn weights_shift_quantiles() {
+        let sample = [(1.0, 3.0), (2.0, 1.0)].map(|(value, weight)| Weighted { value, weight });
+        let found = quantiles(&sample);
+        let reached = found.iter().filter(|q| q.value == 1.0).map(|q| q.level);
+        assert_eq!(reached.fold(0.0, f64::max), 0.75);
+    }
+
+    #[test]
+    fn the_tail_is_that_of_the_metrics() {
+        let study = include_str!("../../data/scenarios/paper.toml");
+        let overrides = ["region.step-deg=25", "time.step-s=3600"];
+        let scenario =
+            crate::scenario::Scenario::parse("paper", study.as_bytes(), &overrides).unwrap();
+        let setup = scenario.setup(&|_| Err(std::io::ErrorKind::NotFound.into())).unwrap();
+        let evaluator = Evaluator::new(setup).unwrap();
+        let design = "delta:55:42/7/1@925".parse().unwrap();
+        let profile = Profile::new(&evaluator, &design).unwrap();
+        let metrics = evaluator.design(&design).unwrap();
+        // Sums in another order.
+        let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
+        close(profile.tail.unwrap().cvar, metrics.cvar_pdop.unwrap());
+        close(profile.pdop.last().unwrap().value, metrics.max_pdop.unwrap());
+        let visible: f64 = profile.points.iter().map(|p| p.mean_visible).sum();
+        close(visible / profile.points.len() as f64, metrics.mean_visible);
+    }
+}
