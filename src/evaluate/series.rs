@@ -92,7 +92,9 @@ impl Evaluator {
             .zip(&setup.sites)
             .flat_map(|(sums, site)| {
                 let weight = site.weight;
-                sums.pdop.iter().map(move |&value| Weighted { value, weight })
+                sums.pdop
+                    .iter()
+                    .map(move |&value| Weighted { value, weight })
             })
             .collect();
         pdop.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));

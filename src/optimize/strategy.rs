@@ -222,7 +222,10 @@ mod tests {
     fn late_steps_keep_few_points() {
         assert!((1..=100).all(keeps_points));
         assert_eq!((101..=1000).filter(|&step| keeps_points(step)).count(), 90);
-        assert_eq!((1001..=10_000).filter(|&step| keeps_points(step)).count(), 90);
+        assert_eq!(
+            (1001..=10_000).filter(|&step| keeps_points(step)).count(),
+            90
+        );
     }
 
     #[test]

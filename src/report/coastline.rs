@@ -44,7 +44,9 @@ impl Bounds {
 /// Polylines of [longitude, latitude], degrees.
 fn lines(text: &str) -> impl Iterator<Item = Vec<[f64; 2]>> {
     text.lines().map(|line| {
-        let hundredths = line.split_ascii_whitespace().filter_map(|x| x.parse::<f64>().ok());
+        let hundredths = line
+            .split_ascii_whitespace()
+            .filter_map(|x| x.parse::<f64>().ok());
         let degrees: Vec<f64> = hundredths.map(|x| x / 100.0).collect();
         degrees.chunks_exact(2).map(|p| [p[0], p[1]]).collect()
     })
@@ -62,7 +64,8 @@ pub fn world() -> Vec<Vec<[f64; 2]>> {
 pub fn within(bounds: &Bounds) -> Vec<Vec<[f64; 2]>> {
     let mut found = Vec::new();
     for line in lines(DETAILED) {
-        for turn in [-360.0, 0.0, 360.0] {
+        // A line that crosses the antimeridian goes on beyond it.
+        for turn in [-720.0, -360.0, 0.0, 360.0, 720.0] {
             let turned = line.iter().map(|[x, y]| [x + turn, *y]);
             clip(turned, bounds, &mut found);
         }
@@ -70,11 +73,7 @@ pub fn within(bounds: &Bounds) -> Vec<Vec<[f64; 2]>> {
     found
 }
 
-fn clip(
-    line: impl Iterator<Item = [f64; 2]>,
-    bounds: &Bounds,
-    found: &mut Vec<Vec<[f64; 2]>>,
-) {
+fn clip(line: impl Iterator<Item = [f64; 2]>, bounds: &Bounds, found: &mut Vec<Vec<[f64; 2]>>) {
     let mut run: Vec<[f64; 2]> = Vec::new();
     let mut before: Option<[f64; 2]> = None;
     for point in line {
@@ -103,7 +102,10 @@ mod tests {
     fn coasts_are_on_earth_and_pass_known_places() {
         for line in lines(WORLD).chain(lines(DETAILED)) {
             assert!(line.len() >= 2);
-            assert!(line.iter().all(|[x, y]| x.abs() <= 540.0 && y.abs() <= 90.0));
+            assert!(
+                line.iter()
+                    .all(|[x, y]| x.abs() <= 540.0 && y.abs() <= 90.0)
+            );
         }
         // Cape Agulhas, the southern end of Africa, is at 34.83° S, 20.00° E; the data are
         // good to a few hundredths of a degree here, and simplified by 0.05°.

@@ -3,11 +3,11 @@
 //! A [`Plate`] holds a [`Chart`], which [`draw`] turns into SVG or PNG, and its CSV. The bytes
 //! depend on the plate alone: the typeface is part of the library and nothing is stamped.
 
+mod bars;
 mod curves;
 pub mod draw;
 mod front;
 mod map;
-mod bars;
 mod table;
 
 pub use bars::budget;

@@ -125,7 +125,9 @@ fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let Some(evaluator) = page.evaluator else {
         return Vec::new();
     };
-    let flown: Vec<usize> = (0..members.len()).filter(|&n| members[n].design.is_some()).collect();
+    let flown: Vec<usize> = (0..members.len())
+        .filter(|&n| members[n].design.is_some())
+        .collect();
     let setup = evaluator.setup();
     let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
     let count = (CUTS_BYTES / each).clamp(1, MOST_CUTS).min(flown.len());

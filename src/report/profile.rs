@@ -115,7 +115,9 @@ pub fn quantiles(rising: &[Weighted]) -> Vec<Quantile> {
 /// The quantiles of values that count the same.
 #[must_use]
 pub fn quantiles_of(values: impl Iterator<Item = f64>) -> Vec<Quantile> {
-    let mut rising: Vec<_> = values.map(|value| Weighted { value, weight: 1.0 }).collect();
+    let mut rising: Vec<_> = values
+        .map(|value| Weighted { value, weight: 1.0 })
+        .collect();
     rising.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
     quantiles(&rising)
 }
@@ -131,8 +133,15 @@ mod tests {
             let near = found.iter().find(|q| (q.level - level).abs() < 1e-12);
             near.unwrap().value
         };
-        assert_eq!((at(0.0), at(0.5), at(0.95), at(1.0)), (1.0, 500.0, 950.0, 1000.0));
-        assert!(found.windows(2).all(|q| q[0].level < q[1].level && q[0].value <= q[1].value));
+        assert_eq!(
+            (at(0.0), at(0.5), at(0.95), at(1.0)),
+            (1.0, 500.0, 950.0, 1000.0)
+        );
+        assert!(
+            found
+                .windows(2)
+                .all(|q| q[0].level < q[1].level && q[0].value <= q[1].value)
+        );
         assert!(quantiles_of(std::iter::empty()).is_empty());
     }
 
@@ -150,7 +159,9 @@ mod tests {
         let overrides = ["region.step-deg=25", "time.step-s=3600"];
         let scenario =
             crate::scenario::Scenario::parse("paper", study.as_bytes(), &overrides).unwrap();
-        let setup = scenario.setup(&|_| Err(std::io::ErrorKind::NotFound.into())).unwrap();
+        let setup = scenario
+            .setup(&|_| Err(std::io::ErrorKind::NotFound.into()))
+            .unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let design = "delta:55:42/7/1@925".parse().unwrap();
         let profile = Profile::new(&evaluator, &design).unwrap();
@@ -158,7 +169,10 @@ mod tests {
         // Sums in another order.
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
         close(profile.tail.unwrap().cvar, metrics.cvar_pdop.unwrap());
-        close(profile.pdop.last().unwrap().value, metrics.max_pdop.unwrap());
+        close(
+            profile.pdop.last().unwrap().value,
+            metrics.max_pdop.unwrap(),
+        );
         let visible: f64 = profile.points.iter().map(|p| p.mean_visible).sum();
         close(visible / profile.points.len() as f64, metrics.mean_visible);
     }

@@ -202,7 +202,8 @@ impl StoredRun {
             Ok(value) => {
                 run.front = front(&value, &mut run.gaps);
                 if run.front.members.is_empty() {
-                    run.gaps.push("the front has no member that can be shown".to_owned());
+                    run.gaps
+                        .push("the front has no member that can be shown".to_owned());
                 }
             }
             Err(gap) => run.gaps.push(gap),
@@ -236,7 +237,11 @@ impl StoredRun {
                 let names = scenario.objectives.minimize.iter();
                 names.map(ToString::to_string).collect()
             }
-            (None, Some(member)) => member.objectives.iter().map(|(name, _)| name.clone()).collect(),
+            (None, Some(member)) => member
+                .objectives
+                .iter()
+                .map(|(name, _)| name.clone())
+                .collect(),
             (None, None) => Vec::new(),
         }
     }
@@ -324,8 +329,15 @@ fn front(value: &Value, gaps: &mut Vec<String>) -> StoredFront {
             written.len()
         ));
     }
-    let diagnostics = value["diagnostics"].as_array().map_or(&[][..], Vec::as_slice);
-    let pair = |d: &Value| Some((d["code"].as_str()?.to_owned(), d["message"].as_str()?.to_owned()));
+    let diagnostics = value["diagnostics"]
+        .as_array()
+        .map_or(&[][..], Vec::as_slice);
+    let pair = |d: &Value| {
+        Some((
+            d["code"].as_str()?.to_owned(),
+            d["message"].as_str()?.to_owned(),
+        ))
+    };
     StoredFront {
         members,
         evaluations: value["evaluations"].as_u64(),

@@ -232,12 +232,23 @@ struct Entry {
 /// Data that the tests hold against us: nothing unlisted, nothing changed since it was recorded.
 #[test]
 fn validation_cases_are_listed_with_their_checksums() {
-    let validation = root().join("validation");
-    let text = fs::read_to_string(validation.join("MANIFEST.toml")).unwrap();
+    check_manifest("validation", "cases");
+}
+
+/// Data of others that the program carries.
+#[test]
+fn coastlines_are_listed_with_their_checksums() {
+    check_manifest("data", "coastline");
+}
+
+/// Holds the files of a folder against the manifest above it.
+fn check_manifest(above: &str, folder: &str) {
+    let above = root().join(above);
+    let text = fs::read_to_string(above.join("MANIFEST.toml")).unwrap();
     let manifest: Manifest = toml::from_str(&text).unwrap();
     let mut listed = BTreeSet::new();
     for entry in &manifest.file {
-        let bytes = fs::read(validation.join(&entry.path)).unwrap();
+        let bytes = fs::read(above.join(&entry.path)).unwrap();
         let sum: String = Sha256::digest(&bytes)
             .iter()
             .map(|b| format!("{b:02x}"))
@@ -248,10 +259,10 @@ fn validation_cases_are_listed_with_their_checksums() {
                 .iter()
                 .any(|text| text.is_empty())
         );
-        listed.insert(validation.join(&entry.path));
+        listed.insert(above.join(&entry.path));
     }
     let mut present = BTreeSet::new();
-    collect(&validation.join("cases"), &mut present);
+    collect(&above.join(folder), &mut present);
     assert_eq!(present, listed);
 }
 

@@ -42,7 +42,11 @@ impl Look {
             output::warning(gap);
         }
         let beside = beside(args, &run);
-        let fronts = args.front.iter().map(|path| front(path)).collect::<Result<_>>()?;
+        let fronts = args
+            .front
+            .iter()
+            .map(|path| front(path))
+            .collect::<Result<_>>()?;
         let scenario_toml = files.scenario.ok();
         Ok(Self {
             run,
@@ -59,9 +63,8 @@ impl Look {
             return Vec::new();
         };
         let goals = scenario.goals();
-        let evaluated = |(name, design): &(String, Design)| {
-            Baseline::evaluate(name, design, evaluator, &goals)
-        };
+        let evaluated =
+            |(name, design): &(String, Design)| Baseline::evaluate(name, design, evaluator, &goals);
         self.beside.iter().filter_map(evaluated).collect()
     }
 
@@ -98,7 +101,10 @@ fn read(args: &RunArgs) -> Result<RunFiles> {
         validation: validation(args)?,
     };
     if files.scenario.is_err() && files.front.is_err() && files.history.is_err() {
-        bail!("{} is no run directory: it has no scenario, front or history", directory.display());
+        bail!(
+            "{} is no run directory: it has no scenario, front or history",
+            directory.display()
+        );
     }
     Ok(files)
 }
@@ -116,8 +122,13 @@ fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
     let within = |path: &Path| path.join("report.json");
     match &args.validation {
         Some(path) => {
-            let file = if path.is_dir() { within(path) } else { path.clone() };
-            let bytes = fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            let file = if path.is_dir() {
+                within(path)
+            } else {
+                path.clone()
+            };
+            let bytes =
+                fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
             Ok(Some(bytes))
         }
         None => Ok(fs::read(within(&args.directory.join("validation"))).ok()),
@@ -133,9 +144,15 @@ fn evaluator(directory: &Path, run: &StoredRun) -> Result<Option<Evaluator>> {
 }
 
 fn beside(args: &RunArgs, run: &StoredRun) -> Vec<(String, Design)> {
-    let reference = run.scenario.as_ref().and_then(|s| s.reference_design().ok());
+    let reference = run
+        .scenario
+        .as_ref()
+        .and_then(|s| s.reference_design().ok());
     let reference = reference.map(|design| ("reference design".to_owned(), design));
-    let compared = args.compare.iter().map(|design| (design.to_string(), *design));
+    let compared = args
+        .compare
+        .iter()
+        .map(|design| (design.to_string(), *design));
     reference.into_iter().chain(compared).collect()
 }
 

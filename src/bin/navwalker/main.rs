@@ -1,6 +1,7 @@
 //! The `navwalker` program: arguments in, results out. The science is in the library.
 
 mod args;
+mod chart;
 mod commands;
 mod files;
 mod look;

@@ -107,6 +107,14 @@ fn series_add_up_to_the_metrics() {
     let max = epochs.iter().filter_map(|e| e.max_pdop).fold(0.0, f64::max);
     assert_eq!(Some(max), metrics.max_pdop);
 
+    // Every solved sample is in the rising list, with the weight of its point.
+    assert!(rising.windows(2).all(|pair| pair[0].value <= pair[1].value));
+    assert_eq!(rising.last().map(|x| x.value), metrics.max_pdop);
+    let weight: f64 = rising.iter().map(|x| x.weight).sum();
+    close(weight / (3.5 * instants), metrics.solved_fraction);
+    let sum: f64 = rising.iter().map(|x| x.weight * x.value).sum();
+    close(sum / weight, metrics.mean_pdop.unwrap());
+
     let weights = [1.0, 2.0, 0.5];
     let over_points = |value: fn(&PointMetrics) -> f64| {
         let sum: f64 = points.iter().zip(weights).map(|(p, w)| w * value(p)).sum();

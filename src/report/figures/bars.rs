@@ -31,13 +31,18 @@ pub fn budget(validation: Option<&StoredValidation>) -> Result<Plate, FigureErro
     let mut csv = Csv::new(&header)?;
     for line in lines {
         let numbers = [line.rms_km, line.max_km, line.growth_km_per_day];
-        let numbers = numbers.iter().flat_map(|ric| ric.axes()).map(|x| x.to_string());
+        let numbers = numbers
+            .iter()
+            .flat_map(|ric| ric.axes())
+            .map(|x| x.to_string());
         csv.row([line.case.clone()].into_iter().chain(numbers))?;
     }
     let chart = BarChart {
         title: "Error budget of the propagation".to_owned(),
         y: "RMS difference (km)".to_owned(),
-        bars: ["radial", "in-track", "cross-track"].map(str::to_owned).to_vec(),
+        bars: ["radial", "in-track", "cross-track"]
+            .map(str::to_owned)
+            .to_vec(),
         groups: lines
             .iter()
             .map(|line| (line.case.clone(), line.rms_km.axes().to_vec()))

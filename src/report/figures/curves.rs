@@ -5,7 +5,7 @@ use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style
 use crate::evaluate::EpochMetrics;
 use crate::report::profile::{Profile, Quantile, quantiles_of};
 use crate::report::run::StoredRun;
-use crate::units::SECONDS_PER_HOUR;
+use crate::units::{SECONDS_PER_HOUR, round_decimal};
 
 /// A profile with the name that it has in the legend.
 #[derive(Debug, Clone)]
@@ -60,7 +60,11 @@ pub fn cdf(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureError
     for (n, named) in designs.iter().enumerate() {
         let quantiles = distribution(named.profile);
         for q in &quantiles {
-            csv.row([named.profile.design.to_string(), q.level.to_string(), q.value.to_string()])?;
+            csv.row([
+                named.profile.design.to_string(),
+                q.level.to_string(),
+                q.value.to_string(),
+            ])?;
         }
         layers.push(Layer {
             name: named.name.clone(),
@@ -107,9 +111,12 @@ fn tail_marks(profile: &Profile) -> Vec<Layer> {
         points: vec![(x, 0.0), (x, 1.0)],
         style: Style::Rule,
     };
-    let percent = 100.0 * tail.level;
+    let percent = round_decimal(100.0 * tail.level, 6);
     vec![
-        line(format!("{percent:.4} % quantile {:.4}", tail.value_at_risk), tail.value_at_risk),
+        line(
+            format!("{percent} % quantile {:.4}", tail.value_at_risk),
+            tail.value_at_risk,
+        ),
         line(format!("CVaR {:.4}", tail.cvar), tail.cvar),
     ]
 }
@@ -190,7 +197,13 @@ pub fn convergence(run: &StoredRun) -> Result<Plate, FigureError> {
             reason: "the run has no history",
         });
     }
-    let header = ["generation", "evaluations", "hypervolume", "front_size", "feasible"];
+    let header = [
+        "generation",
+        "evaluations",
+        "hypervolume",
+        "front_size",
+        "feasible",
+    ];
     let mut csv = Csv::new(&header)?;
     for record in &run.history {
         csv.row([
@@ -201,7 +214,10 @@ pub fn convergence(run: &StoredRun) -> Result<Plate, FigureError> {
             record.feasible.to_string(),
         ])?;
     }
-    let has_volume = run.history.iter().any(|record| record.hypervolume.is_some());
+    let has_volume = run
+        .history
+        .iter()
+        .any(|record| record.hypervolume.is_some());
     let points = run.history.iter().filter_map(|record| {
         let size = (!has_volume).then_some(record.front_size as f64);
         Some((record.evaluations as f64, record.hypervolume.or(size)?))

@@ -1,4 +1,4 @@
-//! Charts as SVG and PNG, through plotters.
+//! Charts as SVG, through plotters, and as PNG, through resvg from the SVG.
 //!
 //! No system font is read: text is set in Ubuntu Light, which comes with the library. PNG has
 //! its shapes; SVG names a generic `sans-serif` and has its widths.
@@ -11,9 +11,10 @@ use crate::words::words;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
-use std::error::Error;
-use std::io::Write;
-use std::sync::Once;
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg;
+use std::io::{self, Write};
+use std::sync::{Arc, Once};
 use thiserror::Error;
 
 words! {
@@ -33,17 +34,26 @@ words! {
 pub enum DrawError {
     /// The drawing itself.
     #[error("cannot draw the figure")]
-    Drawing(#[source] Box<dyn Error + Send + Sync>),
+    Drawing(#[from] DrawingAreaErrorKind<io::Error>),
+    /// The dots of the picture.
+    #[error("cannot draw the dots of the figure")]
+    Dots(#[from] usvg::Error),
+    /// The picture is larger than memory allows.
+    #[error("the figure of {0} by {1} dots is too large")]
+    Size(u32, u32),
     /// The picture as a file.
     #[error("cannot encode the figure")]
     Encoding(#[from] png::EncodingError),
     /// Where it goes.
     #[error("cannot write the figure")]
-    Write(#[from] std::io::Error),
+    Write(#[from] io::Error),
 }
 
 /// Pixels of a PNG for each unit of a figure: 7.2 inches wide at 300 dots per inch.
 const PNG_SCALE: u32 = 3;
+
+/// Plotters draws at whole coordinates; so many of them to a unit keep curves smooth.
+const FINE: u32 = 4;
 
 /// Dots per metre of a PNG: 300 per inch.
 const PNG_DOTS_PER_METRE: u32 = 11_811;
@@ -67,33 +77,30 @@ const COLOURS: [RGBColor; 6] = [
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-type Area<DB> = DrawingArea<DB, Shift>;
-type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
-/// A length in units of the figure, as the backend counts.
-#[derive(Clone, Copy)]
-struct Scale(u32);
-
-impl Scale {
-    fn of(self, units: u32) -> u32 {
-        units * self.0
-    }
-
-    fn signed(self, units: i32) -> i32 {
-        units * i32::try_from(self.0).unwrap_or(1)
-    }
-
-    fn font(self, units: f64) -> TextStyle<'static> {
-        let size = units * f64::from(self.0);
-        ("sans-serif", size).into_font().color(&INK)
-    }
-
-    fn line(self, colour: RGBColor, units: u32) -> ShapeStyle {
-        colour.stroke_width(self.of(units))
-    }
+/// A length as it is drawn.
+const fn fine(units: u32) -> u32 {
+    units * FINE
 }
 
-/// The typeface for measuring and for PNG.
+/// A length as it is drawn, for what has a direction.
+const fn signed(units: i32) -> i32 {
+    units * FINE as i32
+}
+
+/// A line of a width.
+fn line(colour: RGBColor, units: u32) -> ShapeStyle {
+    colour.stroke_width(fine(units))
+}
+
+/// Text of a size.
+fn font(size: u32) -> TextStyle<'static> {
+    ("sans-serif", fine(size)).into_font().color(&INK)
+}
+
+/// The typeface in which texts are measured.
 fn register_typeface() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -108,10 +115,7 @@ fn register_typeface() {
 /// # Errors
 /// When it cannot be drawn or written.
 pub fn svg(chart: &Chart, mut to: impl Write) -> Result<(), DrawError> {
-    let mut text = String::new();
-    let size = size(chart);
-    draw(chart, SVGBackend::with_string(&mut text, size), Scale(1))?;
-    Ok(to.write_all(text.as_bytes())?)
+    Ok(to.write_all(text(chart)?.as_bytes())?)
 }
 
 /// Writes a chart as PNG.
@@ -119,11 +123,23 @@ pub fn svg(chart: &Chart, mut to: impl Write) -> Result<(), DrawError> {
 /// # Errors
 /// When it cannot be drawn or written.
 pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    fonts.set_sans_serif_family("Ubuntu");
+    let options = usvg::Options {
+        fontdb: Arc::new(fonts),
+        ..usvg::Options::default()
+    };
+    let tree = usvg::Tree::from_str(&text(chart)?, &options)?;
     let (width, height) = size(chart);
     let (width, height) = (width * PNG_SCALE, height * PNG_SCALE);
-    let mut pixels = vec![0; 3 * width as usize * height as usize];
-    let backend = BitMapBackend::with_buffer(&mut pixels, (width, height));
-    draw(chart, backend, Scale(PNG_SCALE))?;
+    let mut picture = Pixmap::new(width, height).ok_or(DrawError::Size(width, height))?;
+    let scale = PNG_SCALE as f32;
+    resvg::render(
+        &tree,
+        Transform::from_scale(scale, scale),
+        &mut picture.as_mut(),
+    );
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_pixel_dims(Some(png::PixelDimensions {
@@ -131,8 +147,14 @@ pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
         yppu: PNG_DOTS_PER_METRE,
         unit: png::Unit::Meter,
     }));
+    // Every figure has an opaque ground, so that the colours are not scaled by any opacity.
+    let rgb: Vec<u8> = picture
+        .data()
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(&pixels)?;
+    writer.write_image_data(&rgb)?;
     Ok(writer.finish()?)
 }
 
@@ -144,20 +166,35 @@ fn size(chart: &Chart) -> (u32, u32) {
     }
 }
 
-fn draw<DB: DrawingBackend>(chart: &Chart, backend: DB, scale: Scale) -> Result<(), DrawError>
-where
-    DB::ErrorType: 'static,
-{
+fn text(chart: &Chart) -> Result<String, DrawError> {
     register_typeface();
-    let root = backend.into_drawing_area();
-    let drawn = root.fill(&WHITE).and_then(|()| match chart {
-        Chart::Plane(chart) => plane::draw(&root, chart, scale),
-        Chart::Map(chart) => map::draw(&root, chart, scale),
-        Chart::Bars(chart) => bars(&root, chart, scale),
-    });
-    drawn
-        .and_then(|()| root.present())
-        .map_err(|error| DrawError::Drawing(error.into()))
+    let mut text = String::new();
+    let (width, height) = size(chart);
+    {
+        let drawn = (fine(width), fine(height));
+        let root = SVGBackend::with_string(&mut text, drawn).into_drawing_area();
+        root.fill(&WHITE)?;
+        match chart {
+            Chart::Plane(chart) => plane::draw(&root, chart)?,
+            Chart::Map(chart) => map::draw(&root, chart)?,
+            Chart::Bars(chart) => bars(&root, chart)?,
+        }
+        root.present()?;
+    }
+    let size = |scale: u32| {
+        format!(
+            "<svg width=\"{}\" height=\"{}\"",
+            width * scale,
+            height * scale
+        )
+    };
+    Ok(text.replacen(&size(FINE), &size(1), 1))
+}
+
+/// Digits behind the point that tell the ticks of an axis apart.
+fn decimals(range: &std::ops::Range<f64>) -> usize {
+    let magnitude = (range.end - range.start).abs().log10().floor();
+    (1.0 - magnitude).clamp(0.0, 9.0) as usize
 }
 
 /// The least and the greatest of some values with a margin on both sides; [0, 1] without values.
@@ -179,31 +216,42 @@ fn padded(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 /// Share of the space of a group that its bars take.
 const GROUP_SHARE: f64 = 0.8;
 
-fn bars<DB: DrawingBackend>(root: &Area<DB>, chart: &BarChart, scale: Scale) -> Drawn<DB> {
-    let sizes = chart.groups.iter().flat_map(|(_, sizes)| sizes).map(|x| x.abs());
+fn bars(root: &Area<'_>, chart: &BarChart) -> Drawn {
+    let sizes = chart
+        .groups
+        .iter()
+        .flat_map(|(_, sizes)| sizes)
+        .map(|x| x.abs());
     let sizes = sizes.filter(|&x| x > 0.0);
     let (least, most) = sizes.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
-    let (least, most) = if least > most { (0.1, 1.0) } else { (least, most) };
+    let (least, most) = if least > most {
+        (0.1, 1.0)
+    } else {
+        (least, most)
+    };
     // Whole powers of ten around the sizes, so that the smallest bar can be seen.
     let floor = 10_f64.powf((least / 1.5).log10().floor());
-    let top = most * 2.0;
+    // Room for the legend above the bars.
+    let top = most * 12.0;
     let groups = chart.groups.len() as f64;
     let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, scale.font(17.0))
-        .margin(scale.of(12))
-        .x_label_area_size(scale.of(26))
-        .y_label_area_size(scale.of(64))
+        .caption(&chart.title, font(17))
+        .margin(fine(12))
+        .x_label_area_size(fine(26))
+        .y_label_area_size(fine(64))
         .build_cartesian_2d(0.0..groups, (floor..top).log_scale())?;
     context
         .configure_mesh()
         .disable_x_mesh()
         .x_labels(0)
         .y_desc(&chart.y)
-        .axis_style(scale.line(INK, 1))
-        .bold_line_style(scale.line(GRID, 1))
+        .y_label_formatter(&|y: &f64| y.to_string())
+        .set_all_tick_mark_size(fine(4))
+        .axis_style(line(INK, 1))
+        .bold_line_style(line(GRID, 1))
         .light_line_style(TRANSPARENT)
-        .label_style(scale.font(12.0))
-        .axis_desc_style(scale.font(14.0))
+        .label_style(font(12))
+        .axis_desc_style(font(14))
         .draw()?;
     let width = GROUP_SHARE / chart.bars.len().max(1) as f64;
     for (b, name) in chart.bars.iter().enumerate() {
@@ -211,17 +259,25 @@ fn bars<DB: DrawingBackend>(root: &Area<DB>, chart: &BarChart, scale: Scale) -> 
         let bar = |(g, (_, sizes)): (usize, &(String, Vec<f64>))| {
             let left = g as f64 + (1.0 - GROUP_SHARE) / 2.0 + b as f64 * width;
             let size = sizes.get(b).map_or(floor, |x| x.abs().max(floor));
-            Rectangle::new([(left, floor), (left + width * 0.92, size)], colour.filled())
+            Rectangle::new(
+                [(left, floor), (left + width * 0.92, size)],
+                colour.filled(),
+            )
         };
         context
             .draw_series(chart.groups.iter().enumerate().map(bar))?
             .label(name)
             .legend(move |(x, y)| {
-                let half = scale.signed(5);
-                Rectangle::new([(x, y - half), (x + 2 * half, y + half)], colour.filled())
+                Rectangle::new(
+                    [
+                        (x + signed(4), y - signed(5)),
+                        (x + signed(14), y + signed(5)),
+                    ],
+                    colour.filled(),
+                )
             });
     }
-    plane::legend(&mut context, scale)?;
+    plane::legend(&mut context, SeriesLabelPosition::UpperRight)?;
     let across = context.plotting_area().get_x_axis_pixel_range();
     let (left, right) = (across.start, across.end);
     let bottom = context.plotting_area().get_y_axis_pixel_range().end;
@@ -231,8 +287,8 @@ fn bars<DB: DrawingBackend>(root: &Area<DB>, chart: &BarChart, scale: Scale) -> 
     );
     for (g, (name, _)) in chart.groups.iter().enumerate() {
         let x = left + ((right - left) as f64 * (g as f64 + 0.5) / groups) as i32;
-        let style = scale.font(12.0).pos(centred);
-        root.draw(&Text::new(name.clone(), (x, bottom + scale.signed(8)), style))?;
+        let style = font(12).pos(centred);
+        root.draw(&Text::new(name.clone(), (x, bottom + signed(8)), style))?;
     }
     Ok(())
 }

@@ -80,7 +80,8 @@ pub fn pareto(
     let rows = rows(run, &names, baselines, fronts);
     let points = |keep: &dyn Fn(&Row<'_>) -> bool| -> Vec<(f64, f64)> {
         let kept = rows.iter().filter(|row| keep(row));
-        kept.filter_map(|row| Some((row.objectives[0]?, row.objectives[1]?))).collect()
+        kept.filter_map(|row| Some((row.objectives[0]?, row.objectives[1]?)))
+            .collect()
     };
     let layer = |name: &str, points, style| Layer {
         name: name.to_owned(),
@@ -93,16 +94,28 @@ pub fn pareto(
         Style::Faint,
     )];
     for (n, other) in fronts.iter().enumerate() {
-        layers.push(layer(&other.name, points(&|row| row.set == other.name), Style::Dots(n + 1)));
+        layers.push(layer(
+            &other.name,
+            points(&|row| row.set == other.name),
+            Style::Dots(n + 1),
+        ));
     }
-    layers.push(layer("front", points(&|row| row.set == "front"), Style::Dots(0)));
+    layers.push(layer(
+        "front",
+        points(&|row| row.set == "front"),
+        Style::Dots(0),
+    ));
     for (n, baseline) in baselines.iter().enumerate() {
         let own = points(&|row| row.set == "baseline" && row.notation == baseline.notation);
         layers.push(layer(&baseline.name, own, Style::Marks(n + 1)));
     }
     let chosen = run.chosen().map(|n| &run.front.members[n]);
     let at = chosen.and_then(|m| Some((m.objectives.first()?.1, m.objectives.get(1)?.1)));
-    layers.push(layer("fuzzy choice", at.into_iter().collect(), Style::Marks(0)));
+    layers.push(layer(
+        "fuzzy choice",
+        at.into_iter().collect(),
+        Style::Marks(0),
+    ));
     layers.retain(|layer| !layer.points.is_empty());
     let chart = PlaneChart {
         title: "Pareto front".to_owned(),
@@ -160,15 +173,25 @@ fn rows<'a>(
 
 /// The fronts of earlier generations, point by point, in the objectives' own directions.
 pub(in crate::report) fn earlier(run: &StoredRun, names: &[String]) -> Vec<(u64, Vec<f64>)> {
-    let quantities: Vec<_> = names.iter().map(|name| Quantity::from_word(name).ok()).collect();
+    let quantities: Vec<_> = names
+        .iter()
+        .map(|name| Quantity::from_word(name).ok())
+        .collect();
     let own = |minimised: &Vec<f64>| -> Vec<f64> {
         let pairs = quantities.iter().zip(minimised);
-        pairs.map(|(q, &v)| q.map_or(v, |q| q.minimised(v))).collect()
+        pairs
+            .map(|(q, &v)| q.map_or(v, |q| q.minimised(v)))
+            .collect()
     };
     let of_record = |record: &crate::optimize::Record| {
-        let fitting = record.front.iter().filter(|point| point.len() == names.len());
+        let fitting = record
+            .front
+            .iter()
+            .filter(|point| point.len() == names.len());
         let generation = record.generation;
-        fitting.map(|point| (generation, own(point))).collect::<Vec<_>>()
+        fitting
+            .map(|point| (generation, own(point)))
+            .collect::<Vec<_>>()
     };
     run.history.iter().flat_map(of_record).collect()
 }

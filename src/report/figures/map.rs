@@ -40,7 +40,10 @@ pub fn map(
     if !MEASURES.contains(&measure) {
         return Err(FigureError::measure(figure, measure, &MEASURES));
     }
-    let places = profile.points.iter().map(|p| (p.latitude_deg, p.longitude_deg));
+    let places = profile
+        .points
+        .iter()
+        .map(|p| (p.latitude_deg, p.longitude_deg));
     let margin = cell_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
     let Some(bounds) = Bounds::around(places, margin) else {
         let reason = "the region has no point";

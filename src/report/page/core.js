@@ -70,7 +70,7 @@ const Core = (() => {
   }
 
   const figures = new Map();
-  const CONFIG = { displaylogo: false, responsive: true,
+  const CONFIG = { displaylogo: false, responsive: true, displayModeBar: matchMedia("(hover: hover)").matches ? "hover" : false,
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d"] };
 
   function draw(figure) {
@@ -110,8 +110,16 @@ const Core = (() => {
   listeners.push(() => refresh(true));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => refresh(false));
   // Print takes the light colours, and figures that nobody has scrolled to.
-  addEventListener("beforeprint", () => { for (const f of figures.values()) draw(f); });
-  addEventListener("afterprint", () => refresh(false));
+  // The sheet is not as wide as the window, and no figure is told: it gets half a sheet.
+  const SHEET = { width: 345, height: 310 };
+  let printing = false;
+  function print(begins) {
+    printing = begins;
+    document.documentElement.classList.toggle("printing", begins);
+    for (const f of figures.values()) if (begins || f.drawn) draw(f);
+  }
+  addEventListener("beforeprint", () => print(true));
+  addEventListener("afterprint", () => print(false));
 
   /** What all layouts have in common. */
   function layout(colours, more) {
@@ -122,6 +130,8 @@ const Core = (() => {
       font: { family: "system-ui, sans-serif", size: 12, color: colours.ink },
       margin: { l: 58, r: 16, t: 12, b: 48 }, hovermode: "closest", showlegend: true,
       legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0 },
+      modebar: { bgcolor: "rgba(0,0,0,0)", color: colours.faint, activecolor: colours.ink, orientation: "v" },
+      ...(printing ? SHEET : { autosize: true }),
       ...more,
       xaxis: { ...axis, ...more.xaxis }, yaxis: { ...axis, ...more.yaxis },
     };

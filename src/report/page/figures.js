@@ -5,7 +5,8 @@
   const shown = { x: 0, y: objectives.length > 1 ? 1 : null };
 
   const cutsOf = (place) => open(data.cuts[place]);
-  const label = (n) => plain(objectives[n].label);
+  // A narrow screen has no room for more than the name.
+  const label = (n) => plain(innerWidth < 600 ? objectives[n].name : objectives[n].label);
   const members = [...Array(count).keys()];
 
   /** What is compared in curves: the selected design, the choice, and those beside the front. */
@@ -22,6 +23,13 @@
     return list.filter((one) => one.cuts);
   }
 
+  /** A range of an axis that holds some values. */
+  function around(values) {
+    const lo = Math.min(...values), hi = Math.max(...values);
+    const margin = 0.08 * (hi - lo) || 0.05 * Math.abs(hi) || 1;
+    return [lo - margin, hi + margin];
+  }
+
   function pareto(colours) {
     const { x, y } = shown;
     const second = y === null ? data.front.variables[0][1] : front.objectives[y];
@@ -30,7 +38,7 @@
     if (data.generations.length > 0 && y !== null) {
       traces.push({ type: "scatter", mode: "markers", name: "earlier generations",
         x: data.generations.map((g) => g[1][x]), y: data.generations.map((g) => g[1][y]),
-        text: data.generations.map((g) => "generation " + g[0]), hovertemplate: "%{text}<extra></extra>",
+        hoverinfo: "skip", // Many lie under the front, whose points are what is clicked.
         marker: { size: 4, color: colours.faint, opacity: 0.45 } });
     }
     for (const other of data.fronts) {
@@ -51,8 +59,10 @@
       marker: { size, symbol: "circle-open", color, line: { width: 2.5, color } } });
     if (data.chosen !== null) ring("fuzzy choice", data.chosen, colours.second, 16);
     ring("selected", state.place, colours.ink, 22);
-    return { data: traces, layout: layout(colours, { xaxis: { title: { text: label(x) } },
-      yaxis: { title: { text: y === null ? "satellites" : label(y) } } }) };
+    const close = document.getElementById("close-up").checked;
+    return { data: traces, layout: layout(colours, {
+      xaxis: { title: { text: label(x) }, ...(close && { range: around(front.objectives[x]) }) },
+      yaxis: { title: { text: y === null ? "satellites" : label(y) }, ...(close && { range: around(second) }) } }) };
   }
 
   function membership(colours) {
@@ -89,6 +99,12 @@
     return lo <= hi ? [lo, hi] : undefined;
   }
 
+  /** The range of one map's colours: as it is, or around a value that is the same everywhere. */
+  function ownRange(values) {
+    const present = values.filter((v) => v !== null);
+    return present.length > 0 ? [Math.min(...present), Math.max(...present)] : undefined;
+  }
+
   const coast = (() => {
     const x = [], y = [];
     for (const line of data.region?.coast ?? []) {
@@ -103,8 +119,11 @@
       const region = data.region;
       const cuts = cutsOf(state.place);
       const values = cuts ? cuts.maps[measure] : region.latitude_deg.map(() => null);
-      const range = document.getElementById("common-scale").checked ? commonRange(measure) : undefined;
-      const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line };
+      const range = document.getElementById("common-scale").checked ? commonRange(measure) : ownRange(values);
+      const same = range && range[0] === range[1];
+      if (same) range[0] -= 0.01 * (Math.abs(range[1]) || 1);
+      const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line,
+        ...(same && { tickvals: [range[1]] }) };
       const traces = [];
       if (region.step_deg) {
         const axis = (all) => [...new Set(all)].sort((a, b) => a - b);
@@ -114,12 +133,12 @@
           z[lats.indexOf(region.latitude_deg[n])][lons.indexOf(region.longitude_deg[n])] = value;
         });
         traces.push({ type: "heatmap", x: lons, y: lats, z, colorscale: "Viridis", zsmooth: false, colorbar: bar,
-          zmin: range?.[0], zmax: range?.[1], zauto: !range,
+          zmin: range?.[0], zmax: range?.[1],
           hovertemplate: "%{y}° N, %{x}° E<br>%{z:.5~g}<extra></extra>" });
       } else {
         traces.push({ type: "scatter", mode: "markers", x: region.longitude_deg, y: region.latitude_deg,
           marker: { size: 12, color: values, colorscale: "Viridis", colorbar: bar, cmin: range?.[0], cmax: range?.[1],
-            cauto: !range, line: { width: 1, color: colours.ink } },
+            line: { width: 1, color: colours.ink } },
           text: values.map((v) => digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
       }
       traces.push({ type: "scatter", mode: "lines", x: coast.x, y: coast.y, hoverinfo: "skip",
@@ -164,13 +183,13 @@
     const shapes = [], annotations = [];
     if (selected?.tail) {
       const [level, atRisk, cvar] = selected.tail;
-      const upright = (x, text, dash, color, anchor) => {
+      const upright = (x, text, dash, color, [xanchor, yanchor]) => {
         shapes.push({ type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color, dash, width: 1.5 } });
-        annotations.push({ x, y: 0.98, yref: "paper", text, showarrow: false, xanchor: anchor, yanchor: "top",
+        annotations.push({ x, y: yanchor === "top" ? 0.98 : 0.02, yref: "paper", text, showarrow: false, xanchor, yanchor,
           font: { size: 11, color } });
       };
-      upright(atRisk, digits(100 * level, 4) + " % quantile " + digits(atRisk, 4) + " ", "dot", colours.soft, "right");
-      upright(cvar, " CVaR " + digits(cvar, 4), "dash", colours.second, "left");
+      upright(atRisk, digits(100 * level, 4) + " % quantile " + digits(atRisk, 4) + " ", "dot", colours.soft, ["right", "bottom"]);
+      upright(cvar, " CVaR " + digits(cvar, 4), "dash", colours.second, ["left", "top"]);
     }
     return { data: traces, layout: layout(colours, { shapes, annotations, xaxis: { title: { text: "PDOP" } },
       yaxis: { title: { text: "share with a larger PDOP" }, type: "log", dtick: 1 } }) };
@@ -249,6 +268,8 @@
   }
   if (data.history.length > 0) figure("convergence", { build: convergence, follows: false });
   if (data.budget.length > 0) figure("budget", { build: budget, follows: false });
+
+  document.getElementById("close-up")?.addEventListener("change", () => Core.refresh(true));
 
   // More than two objectives: which two are shown.
   const axes = document.getElementById("axes");

@@ -55,7 +55,10 @@ mod tests {
 
     fn codes(packed: &Packed) -> Vec<u16> {
         let bytes = STANDARD.decode(&packed.codes).unwrap();
-        bytes.chunks(2).map(|b| u16::from_le_bytes([b[0], b[1]])).collect()
+        bytes
+            .chunks(2)
+            .map(|b| u16::from_le_bytes([b[0], b[1]]))
+            .collect()
     }
 
     #[test]

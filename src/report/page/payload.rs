@@ -177,9 +177,15 @@ impl Payload {
             objectives: names.iter().map(|name| Objective::new(name)).collect(),
             front: Front::new(&run.front.members, &names),
             chosen: run.chosen(),
-            generations: generations.map(|(g, x)| (g, x.into_iter().map(short).collect())).collect(),
+            generations: generations
+                .map(|(g, x)| (g, x.into_iter().map(short).collect()))
+                .collect(),
             baselines: baselines(page, beside, &cuts),
-            fronts: page.fronts.iter().map(|f| OtherFront::new(&f.name, &f.front, &names)).collect(),
+            fronts: page
+                .fronts
+                .iter()
+                .map(|f| OtherFront::new(&f.name, &f.front, &names))
+                .collect(),
             history: history(run),
             reference: run.front.reference.clone(),
             levels: drawn_levels().into_iter().map(short).collect(),
@@ -222,7 +228,10 @@ fn history(run: &StoredRun) -> Vec<Generation> {
 }
 
 fn budget(run: &StoredRun) -> Vec<Budget> {
-    let lines = run.validation.iter().flat_map(|validation| &validation.budget);
+    let lines = run
+        .validation
+        .iter()
+        .flat_map(|validation| &validation.budget);
     let budget = lines.map(|line| Budget {
         case: line.case.clone(),
         rms_km: line.rms_km.axes().map(short),
@@ -250,7 +259,10 @@ impl Objective {
 impl Front {
     fn new(members: &[StoredMember], names: &[String]) -> Self {
         let column = |value: &dyn Fn(&StoredMember) -> Option<f64>| {
-            members.iter().map(|m| value(m).map(short)).collect::<Vec<_>>()
+            members
+                .iter()
+                .map(|m| value(m).map(short))
+                .collect::<Vec<_>>()
         };
         let of_design = |value: fn(&Design) -> f64| column(&move |m| m.design.as_ref().map(value));
         Self {
@@ -258,7 +270,13 @@ impl Front {
             notation: members.iter().map(|m| m.notation.clone()).collect(),
             objectives: names
                 .iter()
-                .map(|name| members.iter().filter_map(|m| m.objective(name)).map(short).collect())
+                .map(|name| {
+                    members
+                        .iter()
+                        .filter_map(|m| m.objective(name))
+                        .map(short)
+                        .collect()
+                })
                 .collect(),
             membership: column(&|m| m.membership),
             membership_sum: column(&|m| m.membership_sum),
@@ -300,7 +318,10 @@ impl OtherFront {
 impl Cuts {
     fn new(profile: &Profile, setup: &Setup) -> Self {
         let map = |measure: Measure| {
-            let values = profile.points.iter().map(|p: &PointMetrics| at_point(measure, p));
+            let values = profile
+                .points
+                .iter()
+                .map(|p: &PointMetrics| at_point(measure, p));
             (measure.word(), Packed::new(values))
         };
         let over_time = |measure: Measure| {
@@ -333,7 +354,10 @@ fn interval(epochs: usize) -> usize {
 /// A measure over time; of intervals the mean, but of the largest PDOP the largest.
 fn by_intervals(epochs: &[EpochMetrics], measure: Measure) -> Packed {
     let of_interval = |interval: &[EpochMetrics]| {
-        let values: Vec<f64> = interval.iter().filter_map(|e| at_epoch(measure, e)).collect();
+        let values: Vec<f64> = interval
+            .iter()
+            .filter_map(|e| at_epoch(measure, e))
+            .collect();
         match measure {
             Measure::MaxPdop => values.into_iter().reduce(f64::max),
             _ => (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64),
@@ -351,8 +375,13 @@ impl Orbit {
             Model::TwoBody => SecularRates::two_body(&first),
             _ => SecularRates::j2(&first),
         };
-        let raan = satellites.iter().step_by(per_plane).map(|s| s.elements.raan_rad);
-        let anomalies = satellites.iter().map(|s| s.elements.mean_anomaly_rad.to_degrees());
+        let raan = satellites
+            .iter()
+            .step_by(per_plane)
+            .map(|s| s.elements.raan_rad);
+        let anomalies = satellites
+            .iter()
+            .map(|s| s.elements.mean_anomaly_rad.to_degrees());
         Self {
             semi_major_axis_km: first.semi_major_axis_km,
             eccentricity: first.eccentricity,
@@ -378,7 +407,10 @@ impl RegionData {
             Region::Points { .. } => None,
         };
         let margin = step_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
-        let places = setup.sites.iter().map(|s| (s.latitude_deg, s.longitude_deg));
+        let places = setup
+            .sites
+            .iter()
+            .map(|s| (s.latitude_deg, s.longitude_deg));
         let bounds = Bounds::around(places, margin)?;
         let times: Vec<f64> = setup.grid.iter().collect();
         let starts = times.iter().step_by(interval(times.len()));

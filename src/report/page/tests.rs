@@ -1,1 +1,184 @@
+use super::*;
+use crate::report::figures::Baseline;
+use crate::report::run::{RunFiles, StoredMember, StoredMetrics};
+use crate::scenario::Scenario;
 
+const SCENARIO: &str = include_str!("../../../data/scenarios/paper.toml");
+
+fn evaluator() -> (Scenario, Evaluator) {
+    let small = ["region.step-deg=20", "time.step-s=7200"];
+    let scenario = Scenario::parse("paper", SCENARIO.as_bytes(), &small).unwrap();
+    let setup = scenario
+        .setup(&|_| Err(std::io::ErrorKind::NotFound.into()))
+        .unwrap();
+    (scenario, Evaluator::new(setup).unwrap())
+}
+
+fn member(n: usize, notation: &str) -> StoredMember {
+    StoredMember {
+        index: n + 1,
+        notation: notation.to_owned(),
+        design: notation.parse().ok(),
+        metrics: StoredMetrics::default(),
+        objectives: vec![
+            ("j-pos".to_owned(), 1.0 + n as f64),
+            ("j-cost".to_owned(), 30.0 - n as f64),
+        ],
+        membership: Some(0.5),
+        membership_sum: None,
+        chosen: n == 1,
+    }
+}
+
+fn run(scenario: Option<Scenario>, members: usize) -> StoredRun {
+    let mut run = StoredRun {
+        scenario,
+        ..StoredRun::default()
+    };
+    run.front.members = (0..members)
+        .map(|n| member(n, &format!("delta:{}:12/3/1@900", 40.0 + n as f64 / 1000.0)))
+        .collect();
+    run
+}
+
+fn page<'a>(run: &'a StoredRun, evaluator: Option<&'a Evaluator>) -> Page<'a> {
+    Page {
+        run,
+        scenario_toml: Some("a = \"<b>\""),
+        evaluator,
+        baselines: &[],
+        beside: &[],
+        fronts: &[],
+    }
+}
+
+fn written(page: &Page<'_>) -> String {
+    let mut bytes = Vec::new();
+    write(page, &mut bytes).unwrap();
+    String::from_utf8(bytes).unwrap()
+}
+
+/// The numbers of a page.
+fn data(html: &str) -> serde_json::Value {
+    let start = html.find("id=\"data\">").unwrap() + "id=\"data\">".len();
+    let end = start + html[start..].find("</script>").unwrap();
+    serde_json::from_str(&html[start..end]).unwrap()
+}
+
+#[test]
+fn the_page_carries_plotly_and_not_mathjax() {
+    let (scenario, evaluator) = evaluator();
+    let run = run(Some(scenario), 2);
+    let html = written(&page(&run, Some(&evaluator)));
+    assert!(
+        html.contains("* plotly.js v") && !html.contains("MathJax={}") && !html.contains("tex-svg")
+    );
+    // Plotly is 4.65 MB of it.
+    assert!(
+        (4_600_000..4_900_000).contains(&html.len()),
+        "{} bytes",
+        html.len()
+    );
+    assert_eq!(
+        html.matches("<script").count() - html.matches("\"<script").count(),
+        3 + html.matches("u003cscript").count()
+    );
+}
+
+#[test]
+fn the_same_run_has_the_same_bytes() {
+    let (scenario, evaluator) = evaluator();
+    let run = run(Some(scenario), 3);
+    let page = page(&run, Some(&evaluator));
+    assert!(written(&page) == written(&page));
+}
+
+#[test]
+fn texts_of_files_cannot_leave_their_place() {
+    let attack = "</script><img src=x onerror=alert(1)>";
+    let mut run = run(None, 1);
+    run.front.members.push(member(1, attack));
+    run.front.algorithm = Some(attack.to_owned());
+    run.front
+        .diagnostics
+        .push(("c".to_owned(), attack.to_owned()));
+    run.gaps.push(attack.to_owned());
+    let html = written(&page(&run, None));
+    assert!(!html.contains("<img"));
+    assert_eq!(data(&html)["front"]["notation"][1], attack);
+}
+
+#[test]
+fn gaps_leave_the_rest() {
+    let none = || Err("none".to_owned());
+    let nothing = StoredRun::read(&RunFiles {
+        scenario: none(),
+        front: none(),
+        history: none(),
+        validation: None,
+    });
+    let html = written(&page(&nothing, None));
+    assert!(html.contains("What is missing") && html.contains("front.json is missing"));
+    assert!(!html.contains("id=\"pareto\"") && html.contains("Conventions and provenance"));
+    let without_scenario = run(None, 2);
+    let html = written(&page(&without_scenario, None));
+    assert!(html.contains("id=\"pareto\""));
+    assert!(data(&html)["region"].is_null());
+}
+
+#[test]
+fn a_large_front_has_cuts_of_some_and_says_so() {
+    let (scenario, evaluator) = evaluator();
+    let run = run(Some(scenario), 10_000);
+    let page = page(&run, Some(&evaluator));
+    let places = members_with_cuts(&page);
+    assert_eq!(places.len(), MOST_CUTS + 1);
+    assert!(places.contains(&0) && places.contains(&1) && places.contains(&9999));
+    let summary = Summary::new(&page, &places);
+    assert!(
+        summary
+            .gaps
+            .iter()
+            .any(|gap| gap.contains("101 of the 10000"))
+    );
+    assert_eq!(words::members(&run, MOST_ROWS).len(), MOST_ROWS + 1);
+}
+
+#[test]
+fn every_member_of_the_papers_front_has_its_cuts() {
+    let cuts = CUTS_BYTES / payload::cut_bytes(1440, 143);
+    assert!(cuts >= 30, "{cuts}");
+}
+
+#[test]
+fn cuts_are_those_of_the_design() {
+    let (scenario, evaluator) = evaluator();
+    let run = run(Some(scenario.clone()), 2);
+    let design: Design = "delta:50:12/3/1@900".parse().unwrap();
+    let beside = vec![("beside".to_owned(), design)];
+    let baselines: Vec<_> = Baseline::evaluate("beside", &design, &evaluator, &scenario.goals())
+        .into_iter()
+        .collect();
+    let page = Page {
+        baselines: &baselines,
+        beside: &beside,
+        ..page(&run, Some(&evaluator))
+    };
+    let data = data(&written(&page));
+    let metrics = evaluator.design(&design).unwrap();
+    let cuts = &data["baselines"][0]["cuts"];
+    let largest = cuts["maps"].as_array().unwrap();
+    let largest = largest.iter().find(|pair| pair[0] == "max-pdop").unwrap();
+    // The packed row keeps its range in full.
+    assert_eq!(largest[1]["hi"].as_f64(), metrics.max_pdop);
+    assert_eq!(
+        data["baselines"][0]["objectives"].as_array().unwrap().len(),
+        2
+    );
+    let orbit = &cuts["orbit"];
+    assert_eq!(
+        (orbit["raan_deg"][1].as_f64(), orbit["per_plane"].as_u64()),
+        (Some(120.0), Some(4))
+    );
+    assert!(data["cuts"]["0"].is_object() && data["cuts"]["1"].is_object());
+}

@@ -96,12 +96,20 @@ fn setting(scenario: &Scenario) -> String {
         }
         Region::Points { file } => format!("the points of {file}"),
     };
-    let gnss: Vec<&str> = scenario.gnss.constellations.iter().map(|c| c.word()).collect();
+    let gnss: Vec<&str> = scenario
+        .gnss
+        .constellations
+        .iter()
+        .map(|c| c.word())
+        .collect();
     let gnss = if gnss.is_empty() && scenario.gnss.files.is_empty() {
         "no GNSS".to_owned()
     } else {
         let files = scenario.gnss.files.iter().map(String::as_str);
-        gnss.into_iter().chain(files).collect::<Vec<_>>().join(" and ")
+        gnss.into_iter()
+            .chain(files)
+            .collect::<Vec<_>>()
+            .join(" and ")
     };
     format!(
         "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
@@ -122,7 +130,9 @@ fn found(run: &StoredRun) -> String {
         n => format!("{n} designs, none of which is better than another in every objective"),
     };
     let algorithm = front.algorithm.as_deref().unwrap_or("The search");
-    let effort = front.evaluations.map(|n| format!(" evaluated {n} designs and"));
+    let effort = front
+        .evaluations
+        .map(|n| format!(" evaluated {n} designs and"));
     let seed = front.seed.map(|seed| format!(" (seed {seed})"));
     let mut text = format!(
         "{algorithm}{}{} found {members}.",
@@ -169,7 +179,8 @@ fn cost_note(run: &StoredRun) -> Option<String> {
     let scenario = run.scenario.as_ref()?;
     let minimized = &scenario.objectives.minimize;
     let counts = [Quantity::Satellites, Quantity::Planes, Quantity::LaunchCost];
-    let free = minimized.contains(&Quantity::JCost) && !counts.iter().any(|q| minimized.contains(q));
+    let free =
+        minimized.contains(&Quantity::JCost) && !counts.iter().any(|q| minimized.contains(q));
     free.then(|| {
         "j-cost, satellites per visible satellite, is one over the visible share of the constellation: \
          it hardly depends on how many satellites there are, so that satellites are free under these \
@@ -208,12 +219,19 @@ pub(super) fn members(run: &StoredRun, most: usize) -> Vec<Member> {
         places.push(chosen);
         places.sort_unstable();
     }
-    places.into_iter().map(|place| row(place, &all[place])).collect()
+    places
+        .into_iter()
+        .map(|place| row(place, &all[place]))
+        .collect()
 }
 
 fn row(place: usize, member: &StoredMember) -> Member {
     let metrics = &member.metrics;
-    let mut cells: Vec<String> = member.objectives.iter().map(|o| number(Some(o.1))).collect();
+    let mut cells: Vec<String> = member
+        .objectives
+        .iter()
+        .map(|o| number(Some(o.1)))
+        .collect();
     cells.extend(
         [
             metrics.mean_visible,
@@ -237,10 +255,18 @@ fn row(place: usize, member: &StoredMember) -> Member {
 /// The verdict of the validation.
 pub(super) fn validated(run: &StoredRun) -> Option<String> {
     let validation = run.validation.as_ref()?;
-    let gated = validation.checks.iter().filter(|check| check.gate.is_some());
-    let (gated, failed) = gated.fold((0, 0), |(n, f), check| (n + 1, f + usize::from(!check.passed)));
+    let gated = validation
+        .checks
+        .iter()
+        .filter(|check| check.gate.is_some());
+    let (gated, failed) = gated.fold((0, 0), |(n, f), check| {
+        (n + 1, f + usize::from(!check.passed))
+    });
     Some(match failed {
-        0 => format!("{}: all {gated} gates are kept.", validation.design.notation),
+        0 => format!(
+            "{}: all {gated} gates are kept.",
+            validation.design.notation
+        ),
         _ => format!(
             "{}: {failed} of {gated} gates are not kept.",
             validation.design.notation
@@ -250,7 +276,10 @@ pub(super) fn validated(run: &StoredRun) -> Option<String> {
 
 /// The checks of the validation.
 pub(super) fn checks(run: &StoredRun) -> Vec<CheckRow> {
-    let checks = run.validation.iter().flat_map(|validation| &validation.checks);
+    let checks = run
+        .validation
+        .iter()
+        .flat_map(|validation| &validation.checks);
     let row = checks.map(|check| CheckRow {
         name: check.name.clone(),
         verdict: match (check.gate, check.passed) {
@@ -304,7 +333,10 @@ pub(super) fn conventions(run: &StoredRun) -> Vec<(&'static str, String)> {
     }
     let by = run.front.version.as_deref().unwrap_or("unknown");
     let this = crate::report::VERSION;
-    rows.push(("Versions", format!("run by navwalker {by}; this page by navwalker {this}")));
+    rows.push((
+        "Versions",
+        format!("run by navwalker {by}; this page by navwalker {this}"),
+    ));
     rows.push((
         "Parts of this page",
         "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \
@@ -343,6 +375,11 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
 }
 
 fn run_names(scenario: &Scenario) -> String {
-    let names: Vec<&str> = scenario.objectives.minimize.iter().map(|q| q.word()).collect();
+    let names: Vec<&str> = scenario
+        .objectives
+        .minimize
+        .iter()
+        .map(|q| q.word())
+        .collect();
     names.join(", ")
 }

@@ -4,7 +4,7 @@ use crate::args::{Format, OptimizeArgs};
 use crate::progress::Progress;
 use crate::run::{Identity, RunDirectory};
 use crate::study::Study;
-use crate::{Status, output};
+use crate::{Status, chart, output};
 use anyhow::{Context, Result};
 use navwalker::optimize::{Search, Strategy};
 use navwalker::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
@@ -144,6 +144,9 @@ fn text(result: &OptimizeResult, scenario: &str) -> String {
         result.seed,
         table.to_text()
     );
+    if let Some(chart) = chart::front(result) {
+        text += &format!("\n{chart}");
+    }
     if let (Some(value), Some(reference)) =
         (result.hypervolume.value, &result.hypervolume.reference)
     {

@@ -1,6 +1,6 @@
 //! A measure over a region, with coastlines and a scale of colours.
 
-use super::{Area, Drawn, INK, Scale};
+use super::{Area, Drawn, INK, decimals, fine, font, line, signed};
 use crate::report::coastline;
 use crate::report::figures::MapChart;
 use plotters::prelude::*;
@@ -32,42 +32,33 @@ pub(super) fn height(chart: &MapChart, width: u32) -> u32 {
     whole.clamp(*HEIGHTS.start(), *HEIGHTS.end()) as u32
 }
 
-pub(super) fn draw<DB: DrawingBackend>(
-    root: &Area<DB>,
-    chart: &MapChart,
-    scale: Scale,
-) -> Drawn<DB> {
+pub(super) fn draw(root: &Area<'_>, chart: &MapChart) -> Drawn {
     let (width, _) = root.dim_in_pixel();
-    let (left, right) = root.split_horizontally(width - scale.of(SCALE_WIDTH));
+    let (left, right) = root.split_horizontally(width - fine(SCALE_WIDTH));
     let values = chart.cells.iter().filter_map(|cell| cell.2);
     let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
         (lo.min(x), hi.max(x))
     });
     let range = match (lo > hi, lo == hi) {
         (true, _) => 0.0..1.0,
-        (_, true) => lo - 0.5 * lo.abs().max(1e-3)..lo + 0.5 * lo.abs().max(1e-3),
+        (_, true) => lo - 0.01 * lo.abs().max(1e-3)..lo + 0.01 * lo.abs().max(1e-3),
         _ => lo..hi,
     };
-    region(&left, chart, &range, scale)?;
+    region(&left, chart, &range)?;
     if lo <= hi {
-        colours(&right, chart, &range, scale)?;
+        colours(&right, chart, &range)?;
     }
     Ok(())
 }
 
-fn region<DB: DrawingBackend>(
-    area: &Area<DB>,
-    chart: &MapChart,
-    range: &std::ops::Range<f64>,
-    scale: Scale,
-) -> Drawn<DB> {
+fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Drawn {
     let [south, north] = chart.bounds.latitude_deg;
     let [west, east] = chart.bounds.longitude_deg;
     let mut context = ChartBuilder::on(area)
-        .caption(&chart.title, scale.font(17.0))
-        .margin(scale.of(MARGIN))
-        .x_label_area_size(scale.of(X_LABELS))
-        .y_label_area_size(scale.of(Y_LABELS))
+        .caption(&chart.title, font(17))
+        .margin(fine(MARGIN))
+        .x_label_area_size(fine(X_LABELS))
+        .y_label_area_size(fine(Y_LABELS))
         .build_cartesian_2d(west..east, south..north)?;
     let paint = |value: Option<f64>| match value {
         Some(value) => ViridisRGB::get_color_normalized(value, range.start, range.end),
@@ -85,12 +76,12 @@ fn region<DB: DrawingBackend>(
         }
         None => {
             let dot = |&(x, y, value): &(f64, f64, Option<f64>)| {
-                Circle::new((x, y), scale.signed(5), paint(value).filled())
+                Circle::new((x, y), signed(5), paint(value).filled())
             };
             context.draw_series(chart.cells.iter().map(dot))?;
         }
     }
-    let coast = scale.line(BLACK, 1);
+    let coast = line(BLACK, 1);
     for line in coastline::within(&chart.bounds) {
         let points = line.into_iter().map(|[x, y]| {
             // A coast may leave the map with its last point.
@@ -101,29 +92,28 @@ fn region<DB: DrawingBackend>(
     context
         .configure_mesh()
         .disable_mesh()
+        .x_label_formatter(&|x| x.to_string())
+        .y_label_formatter(&|y| y.to_string())
         .x_desc("longitude (\u{b0} E)")
         .y_desc("latitude (\u{b0} N)")
-        .axis_style(scale.line(INK, 1))
-        .label_style(scale.font(12.0))
-        .axis_desc_style(scale.font(14.0))
+        .set_all_tick_mark_size(fine(4))
+        .axis_style(line(INK, 1))
+        .label_style(font(12))
+        .axis_desc_style(font(14))
         .draw()
 }
 
 /// Steps of the scale of colours.
 const STEPS: u32 = 128;
 
-fn colours<DB: DrawingBackend>(
-    area: &Area<DB>,
-    chart: &MapChart,
-    range: &std::ops::Range<f64>,
-    scale: Scale,
-) -> Drawn<DB> {
+fn colours(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Drawn {
     let mut context = ChartBuilder::on(area)
-        .margin_top(scale.of(TITLE + MARGIN / 2))
-        .margin_bottom(scale.of(X_LABELS + MARGIN))
-        .margin_right(scale.of(6))
-        .set_label_area_size(LabelAreaPosition::Right, scale.of(70))
+        .margin_top(fine(TITLE + MARGIN / 2))
+        .margin_bottom(fine(X_LABELS + MARGIN))
+        .margin_right(fine(6))
+        .set_label_area_size(LabelAreaPosition::Right, fine(64))
         .build_cartesian_2d(0.0..1.0, range.clone())?;
+    let digits = decimals(range) + 1;
     let step = (range.end - range.start) / f64::from(STEPS);
     let band = |n: u32| {
         let low = range.start + f64::from(n) * step;
@@ -136,8 +126,10 @@ fn colours<DB: DrawingBackend>(
         .disable_mesh()
         .disable_x_axis()
         .y_desc(&chart.label)
-        .axis_style(scale.line(INK, 1))
-        .label_style(scale.font(12.0))
-        .axis_desc_style(scale.font(13.0))
+        .y_label_formatter(&|value| format!("{value:.digits$}"))
+        .set_all_tick_mark_size(fine(4))
+        .axis_style(line(INK, 1))
+        .label_style(font(12))
+        .axis_desc_style(font(13))
         .draw()
 }

@@ -1,102 +1,137 @@
 //! Points and lines in a plane.
 
-use super::{Area, COLOURS, Drawn, GRID, INK, PlaneChart, Scale, padded};
+use super::{
+    Area, COLOURS, Drawn, GRID, INK, PlaneChart, decimals, fine, font, line, padded, signed,
+};
 use crate::report::figures::{Layer, Style};
 use plotters::coord::CoordTranslate;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-type Context<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+type Context<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Points from which on a line is drawn thin.
+const DENSE: usize = 400;
 
 const FAINT: RGBColor = RGBColor(200, 204, 210);
 const RULE: RGBColor = RGBColor(110, 110, 110);
 
-pub(super) fn draw<'a, DB: DrawingBackend + 'a>(
-    root: &'a Area<DB>,
-    chart: &PlaneChart,
-    scale: Scale,
-) -> Drawn<DB> {
+pub(super) fn draw(root: &Area<'_>, chart: &PlaneChart) -> Drawn {
     let points = || chart.layers.iter().flat_map(|layer| &layer.points);
+    let x = padded(points().map(|p| p.0));
+    let mut y = padded(points().map(|p| p.1));
+    let named = chart
+        .layers
+        .iter()
+        .filter(|layer| !layer.name.is_empty())
+        .count();
+    let (corner, is_free) = corner(points(), &x, &y);
+    if named > 0 && !is_free {
+        y.end += 0.06 * (named as f64 + 1.0) * (y.end - y.start);
+    }
+    let (x_decimals, y_decimals) = (decimals(&x), decimals(&y));
     let mut context = ChartBuilder::on(root)
-        .caption(&chart.title, scale.font(17.0))
-        .margin(scale.of(12))
-        .x_label_area_size(scale.of(48))
-        .y_label_area_size(scale.of(64))
-        .build_cartesian_2d(padded(points().map(|p| p.0)), padded(points().map(|p| p.1)))?;
+        .caption(&chart.title, font(17))
+        .margin(fine(12))
+        .x_label_area_size(fine(48))
+        .y_label_area_size(fine(64))
+        .build_cartesian_2d(x, y)?;
     context
         .configure_mesh()
         .x_desc(&chart.x)
         .y_desc(&chart.y)
         .x_labels(8)
         .y_labels(8)
-        .axis_style(scale.line(INK, 1))
-        .bold_line_style(scale.line(GRID, 1))
+        .x_label_formatter(&|x| format!("{x:.x_decimals$}"))
+        .y_label_formatter(&|y| format!("{y:.y_decimals$}"))
+        .set_all_tick_mark_size(fine(4))
+        .axis_style(line(INK, 1))
+        .bold_line_style(line(GRID, 1))
         .light_line_style(TRANSPARENT)
-        .label_style(scale.font(12.0))
-        .axis_desc_style(scale.font(14.0))
+        .label_style(font(12))
+        .axis_desc_style(font(14))
         .draw()?;
     for layer in &chart.layers {
-        draw_layer(&mut context, layer, scale)?;
+        draw_layer(&mut context, layer)?;
     }
-    if chart.layers.iter().any(|layer| !layer.name.is_empty()) {
-        legend(&mut context, scale)?;
+    if named > 0 {
+        legend(&mut context, corner)?;
     }
     Ok(())
 }
 
-fn draw_layer<'a, DB: DrawingBackend + 'a>(
-    context: &mut Context<'a, DB>,
-    layer: &Layer,
-    scale: Scale,
-) -> Drawn<DB> {
+/// The corner with the fewest points, and whether it has none: of equals the upper right.
+fn corner<'a>(
+    points: impl Iterator<Item = &'a (f64, f64)>,
+    x: &std::ops::Range<f64>,
+    y: &std::ops::Range<f64>,
+) -> (SeriesLabelPosition, bool) {
+    let corners = [
+        (SeriesLabelPosition::UpperRight, [true, true]),
+        (SeriesLabelPosition::LowerRight, [true, false]),
+        (SeriesLabelPosition::UpperLeft, [false, true]),
+        (SeriesLabelPosition::LowerLeft, [false, false]),
+    ];
+    let mut counts = [0_usize; 4];
+    for (px, py) in points {
+        let across = (px - x.start) / (x.end - x.start);
+        let up = (py - y.start) / (y.end - y.start);
+        for (count, (_, [right, upper])) in counts.iter_mut().zip(&corners) {
+            let near = |share: f64, end: bool| if end { share > 0.6 } else { share < 0.4 };
+            *count += usize::from(near(across, *right) && near(up, *upper));
+        }
+    }
+    let least = (0..4).min_by_key(|&n| counts[n]).unwrap_or(0);
+    if counts[least] == 0 {
+        (corners[least].0.clone(), true)
+    } else {
+        (SeriesLabelPosition::UpperRight, false)
+    }
+}
+
+fn draw_layer(context: &mut Context<'_, '_>, layer: &Layer) -> Drawn {
     let points = layer.points.iter().copied();
     match layer.style {
         Style::Line(n) => {
-            let style = scale.line(colour(n), 2);
+            // Many points would fill the plane with a bold line.
+            let width = if layer.points.len() > DENSE { 1 } else { 2 };
+            let style = line(colour(n), width);
             let drawn = context.draw_series(LineSeries::new(points, style))?;
             if !layer.name.is_empty() {
-                drawn.label(&layer.name).legend(move |(x, y)| {
-                    PathElement::new([(x, y), (x + scale.signed(18), y)], style)
-                });
+                drawn
+                    .label(&layer.name)
+                    .legend(move |(x, y)| PathElement::new([(x, y), (x + signed(18), y)], style));
             }
         }
         Style::Rule => {
-            let style = scale.line(RULE, 1);
-            let line = DashedLineSeries::new(points, scale.of(6), scale.of(4), style);
-            context.draw_series(line)?.label(&layer.name).legend(move |(x, y)| {
-                PathElement::new([(x, y), (x + scale.signed(18), y)], style)
-            });
+            let style = line(RULE, 1);
+            let line = DashedLineSeries::new(points, fine(6), fine(4), style);
+            context
+                .draw_series(line)?
+                .label(&layer.name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + signed(18), y)], style));
         }
-        Style::Faint => dots(context, layer, (FAINT, 2), scale)?,
-        Style::Dots(n) => dots(context, layer, (colour(n), 4), scale)?,
-        Style::Marks(n) => marks(context, layer, n, scale)?,
+        Style::Faint => dots(context, layer, (FAINT, 2))?,
+        Style::Dots(n) => dots(context, layer, (colour(n), 4))?,
+        Style::Marks(n) => marks(context, layer, n)?,
     }
     Ok(())
 }
 
-fn dots<'a, DB: DrawingBackend + 'a>(
-    context: &mut Context<'a, DB>,
-    layer: &Layer,
-    (colour, radius): (RGBColor, i32),
-    scale: Scale,
-) -> Drawn<DB> {
-    let dot = move |at| Circle::new(at, scale.signed(radius), colour.filled());
+fn dots(context: &mut Context<'_, '_>, layer: &Layer, (colour, radius): (RGBColor, i32)) -> Drawn {
+    let dot = move |at| Circle::new(at, signed(radius), colour.filled());
     let drawn = context.draw_series(layer.points.iter().copied().map(dot))?;
-    drawn.label(&layer.name).legend(move |(x, y)| {
-        Circle::new((x + scale.signed(9), y), scale.signed(radius), colour.filled())
-    });
+    drawn
+        .label(&layer.name)
+        .legend(move |(x, y)| Circle::new((x + signed(9), y), signed(radius), colour.filled()));
     Ok(())
 }
 
 /// Large marks: rings for the first set, then triangles and crosses in turn.
-fn marks<'a, DB: DrawingBackend + 'a>(
-    context: &mut Context<'a, DB>,
-    layer: &Layer,
-    n: usize,
-    scale: Scale,
-) -> Drawn<DB> {
-    let style = scale.line(colour(n + 1), 2);
-    let (size, half) = (scale.signed(7), scale.signed(9));
+fn marks(context: &mut Context<'_, '_>, layer: &Layer, n: usize) -> Drawn {
+    let style = line(colour(n + 1), 2);
+    let (size, half) = (signed(7), signed(9));
     let points = layer.points.iter().copied();
     if n == 0 {
         let ring = points.map(|at| Circle::new(at, size, style));
@@ -118,18 +153,18 @@ fn colour(n: usize) -> RGBColor {
     COLOURS[n % COLOURS.len()]
 }
 
-/// The legend in the corner that is least in the way.
-pub(super) fn legend<'a, DB: DrawingBackend + 'a, C: CoordTranslate>(
-    context: &mut ChartContext<'a, DB, C>,
-    scale: Scale,
-) -> Drawn<DB> {
+/// The legend in a corner.
+pub(super) fn legend<'a, 'b: 'a, C: CoordTranslate>(
+    context: &mut ChartContext<'a, SVGBackend<'b>, C>,
+    corner: SeriesLabelPosition,
+) -> Drawn {
     context
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .margin(scale.of(8))
-        .legend_area_size(scale.of(22))
+        .position(corner)
+        .margin(fine(8))
+        .legend_area_size(fine(22))
         .background_style(WHITE.mix(0.85))
-        .border_style(scale.line(GRID, 1))
-        .label_font(scale.font(12.0))
+        .border_style(line(GRID, 1))
+        .label_font(font(12))
         .draw()
 }

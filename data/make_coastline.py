@@ -2,8 +2,8 @@
 """Turns a land file of the npm package world-atlas (TopoJSON of Natural Earth) into coastlines.
 
     npm pack world-atlas@2.0.2 && tar xzf world-atlas-2.0.2.tgz
-    python3 make.py package/land-110m.json 0.20 > world-110m.txt
-    python3 make.py package/land-50m.json 0.05 > world-50m.txt
+    python3 data/make_coastline.py package/land-110m.json 0.20 > data/coastline/world-110m.txt
+    python3 data/make_coastline.py package/land-50m.json 0.05 > data/coastline/world-50m.txt
 
 The second argument is the tolerance of the simplification, degrees. A line of the result is a
 polyline: longitude and latitude in hundredths of a degree, point by point.

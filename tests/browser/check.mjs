@@ -1,0 +1,214 @@
+// Opens reports as a reader does: clicks designs and the globe, and measures.
+import assert from "node:assert/strict";
+import { statSync } from "node:fs";
+import { test } from "node:test";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const [work, shots] = process.argv.slice(2);
+
+const LOAD_MS = 2000;
+const FRAME_MS = 8;
+const PAGE_BYTES = 6e6;
+
+const browser = await chromium.launch({
+  executablePath: "/usr/bin/chromium",
+  args: ["--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking",
+    "--disable-component-update", "--no-first-run"],
+});
+
+/** Opens the report of a run; what must not happen is collected in `trouble`. */
+async function open(run, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
+  const page = await context.newPage();
+  const trouble = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type())) trouble.push(`console: ${message.text()}`);
+  });
+  page.on("pageerror", (error) => trouble.push(`error: ${error.stack}`));
+  page.on("dialog", (dialog) => { trouble.push(`dialog: ${dialog.message()}`); dialog.dismiss(); });
+  const url = pathToFileURL(`${work}/${run}/report.html`).href;
+  page.on("request", (request) => {
+    if (request.url() !== url && !/^(data|blob):/.test(request.url())) trouble.push(`request: ${request.url()}`);
+  });
+  const start = performance.now();
+  await page.goto(url, { waitUntil: "load" });
+  return { page, context, trouble, start };
+}
+
+/** Scrolls through the whole page, so that every figure is drawn. */
+async function scrollThrough(page) {
+  const height = await page.evaluate(() => document.documentElement.scrollHeight);
+  for (let y = 0; y < height + 1000; y += 500) {
+    await page.evaluate((to) => scrollTo(0, to), y);
+    await page.waitForTimeout(60);
+  }
+  await page.waitForTimeout(300);
+}
+
+async function wholePage(page, name) {
+  await scrollThrough(page);
+  await page.evaluate(() => scrollTo(0, 0));
+  await page.waitForTimeout(200);
+  await page.screenshot({ path: `${shots}/${name}.png`, fullPage: true });
+}
+
+const mapValues = (page, id) => page.evaluate((map) => JSON.stringify(document.getElementById(map).data[0].z), id);
+const place = (page) => page.evaluate(() => window.navwalker.state.place);
+
+test("the paper's report is light, loads fast and follows a click", async () => {
+  const bytes = statSync(`${work}/paper/report.html`).size;
+  // Other work on the machine only adds to a time, so that the least of some counts.
+  let loaded = Infinity;
+  for (let n = 0; n < 3; n++) {
+    const { page, context, start } = await open("paper");
+    await page.waitForSelector("#pareto .scatterlayer .trace", { state: "attached" });
+    loaded = Math.min(loaded, performance.now() - start);
+    await context.close();
+  }
+  const { page, context, trouble } = await open("paper");
+  console.log(`page ${(bytes / 1e6).toFixed(2)} MB, first figure after ${loaded.toFixed(0)} ms`);
+  assert.ok(bytes <= PAGE_BYTES, `${bytes} bytes`);
+  assert.ok(loaded < LOAD_MS, `${loaded} ms`);
+
+  await scrollThrough(page);
+  for (const id of ["pareto", "membership", "map-mean-visible", "map-mean-pdop", "map-p95-pdop", "map-max-pdop",
+    "map-availability", "cdf-visible", "series-max-pdop", "series-mean-pdop", "tail", "convergence", "parallel", "budget"]) {
+    assert.ok(await page.locator(`#${id} svg.main-svg`).count() > 0, `${id} is not drawn`);
+  }
+  const before = await place(page);
+  const maps = ["map-mean-visible", "map-mean-pdop", "map-p95-pdop", "map-max-pdop"];
+  const values = await Promise.all(maps.map((id) => mapValues(page, id)));
+  const picture = await page.locator("#map-mean-pdop").screenshot();
+  const curve = await page.evaluate(() => JSON.stringify(document.getElementById("series-max-pdop").data.at(-1).y));
+
+  // The first member of the front is its left end, which is not the choice.
+  const trace = await page.evaluate(() => document.getElementById("pareto").data.findIndex((t) => t.name === "front"));
+  await page.locator("#pareto").scrollIntoViewIfNeeded();
+  const point = page.locator("#pareto .scatterlayer .trace").nth(trace).locator("path.point").first();
+  const box = await point.boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 4 });
+  // The point under the pointer shows its name first, as for a reader.
+  await page.waitForSelector("#pareto .hoverlayer .hovertext");
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForFunction((old) => window.navwalker.state.place !== old, before);
+  const after = await place(page);
+  const notation = await page.locator("#choose option:checked").textContent();
+  assert.ok(notation.startsWith(`${after + 1}: `), notation);
+  await page.locator("#map-mean-pdop").scrollIntoViewIfNeeded();
+  await page.waitForTimeout(300);
+  for (const [n, id] of maps.entries()) assert.notEqual(await mapValues(page, id), values[n], `${id} did not follow`);
+  assert.ok(!picture.equals(await page.locator("#map-mean-pdop").screenshot()), "the picture of the map is the same");
+  assert.notEqual(await page.evaluate(() => JSON.stringify(document.getElementById("series-max-pdop").data.at(-1).y)), curve);
+
+  await page.locator("#next").click();
+  assert.equal(await place(page), after + 1);
+  await page.locator("#choose").selectOption(String(before));
+  assert.equal(await page.locator("#badge").isVisible(), true);
+  assert.deepEqual(trouble, []);
+  await wholePage(page, "desktop");
+  await context.close();
+});
+
+test("the page suits a phone, the dark and paper", async () => {
+  const phone = await open("paper", { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
+  await wholePage(phone.page, "phone");
+  // A page that is too wide makes the phone zoom out.
+  const width = await phone.page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(width <= 390, `the page is ${width} px wide`);
+  assert.deepEqual(phone.trouble, []);
+  await phone.context.close();
+
+  const dark = await open("paper", { colorScheme: "dark" });
+  await wholePage(dark.page, "dark");
+  assert.deepEqual(dark.trouble, []);
+  await dark.context.close();
+
+  const print = await open("paper");
+  await print.page.emulateMedia({ media: "print" });
+  await print.page.evaluate(() => dispatchEvent(new Event("beforeprint")));
+  await print.page.waitForTimeout(500);
+  await print.page.pdf({ path: `${shots}/print.pdf`, format: "A4" });
+  assert.deepEqual(print.trouble, []);
+  await print.context.close();
+});
+
+test("the globe keeps its pace with 300 satellites and tells the sky of a place", async () => {
+  const { page, context, trouble } = await open("many");
+  await page.locator("#globe").scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => window.navwalker.frames().length >= 100, null, { timeout: 30000 });
+  const frames = (await page.evaluate(() => window.navwalker.frames())).sort((a, b) => a - b);
+  const median = frames[Math.floor(frames.length / 2)];
+  console.log(`median ${median.toFixed(2)} ms of script a frame over ${frames.length} frames`);
+  assert.ok(median <= FRAME_MS, `${median} ms`);
+
+  const box = await page.locator("#globe").boundingBox();
+  const caption = () => page.locator("#sky-caption").textContent();
+  const before = await caption();
+  await page.mouse.click(box.x + box.width / 2 + 40, box.y + box.height / 2 + 40);
+  const where = (text) => text.split(":")[0];
+  assert.notEqual(where(await caption()), where(before));
+  await page.locator("#play").click();
+  const stopped = await page.evaluate(() => window.navwalker.frames().length);
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2 + 120, box.y + box.height / 2, { steps: 5 });
+  await page.mouse.up();
+  assert.ok(stopped > 0 && where(await caption()) !== where(before));
+  await page.screenshot({ path: `${shots}/globe.png` });
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test("three objectives over points can be turned", async () => {
+  const { page, context, trouble } = await open("points");
+  const title = () => page.evaluate(() => document.getElementById("pareto").layout.yaxis.title.text);
+  await page.waitForSelector("#pareto .scatterlayer .trace", { state: "attached" });
+  const before = await title();
+  await page.locator("#axes select").nth(1).selectOption("2");
+  assert.notEqual(await title(), before);
+  await wholePage(page, "points");
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test("an empty front says so", async () => {
+  const { page, context, trouble } = await open("empty");
+  assert.match(await page.locator("aside.gaps").textContent(), /no member/);
+  assert.equal(await page.locator("#pareto").count(), 0);
+  await wholePage(page, "empty");
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test("damage is named and hostile texts stay texts", async () => {
+  const { page, context, trouble } = await open("hostile");
+  const gaps = await page.locator("aside.gaps").textContent();
+  assert.match(gaps, /history\.json is damaged/);
+  assert.match(gaps, /1 of 3 front members cannot be read/);
+  await page.locator("#next").click();
+  await scrollThrough(page);
+  await page.locator("#pareto").scrollIntoViewIfNeeded();
+  const box = await page.locator("#pareto .nsewdrag").first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForTimeout(200);
+  await page.screenshot({ path: `${shots}/hostile.png` });
+  assert.equal(await page.evaluate(() => window.attacked), undefined);
+  assert.match(await page.locator("#choose option").nth(1).textContent(), /<script>/);
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test("ten thousand members still open and follow", async () => {
+  const { page, context, trouble, start } = await open("large");
+  await page.waitForSelector("#pareto .scatterlayer .trace", { state: "attached" });
+  console.log(`ten thousand members: first figure after ${(performance.now() - start).toFixed(0)} ms`);
+  await page.evaluate(() => window.navwalker.select(17));
+  assert.equal(await page.locator("#no-cuts").isVisible(), true);
+  await scrollThrough(page);
+  assert.match(await page.locator("aside.gaps").textContent(), /of the 10000 front members/);
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test.after(() => browser.close());

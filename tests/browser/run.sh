@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Opens the report of real runs in headless Chromium. Installs what it needs: Debian's chromium
+# and fonts, and playwright-core as pinned in package-lock.json.
+#
+#   tests/browser/run.sh [PROGRAM]
+#
+# Screenshots go to target/browser.
+set -euo pipefail
+cd "$(dirname "$0")"
+root=$(cd ../.. && pwd)
+program=${1:-$root/target/release/navwalker}
+shots=$root/target/browser
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+if ! command -v chromium >/dev/null || ! fc-list 2>/dev/null | grep -q DejaVu; then
+  apt-get update -qq
+  apt-get install -y -qq --no-install-recommends chromium fontconfig fonts-dejavu-core >/dev/null
+fi
+npm ci --silent --no-audit --no-fund
+
+rm -rf "$shots"
+mkdir -p "$shots"
+small=(--quiet --set region.step-deg=20 --set time.step-s=1200 --set optimizer.population=8
+  --set optimizer.generations=4)
+
+# The paper's study, with a validation and a design beside it.
+"$program" optimize paper --quiet --out "$work/paper" >/dev/null
+"$program" validate --quiet --run "$work/paper" --against sgp4 --out "$work/paper/validation" >/dev/null
+"$program" report "$work/paper" --compare star:86.4:180/12/1@925 >/dev/null
+
+# 300 satellites.
+"$program" optimize "${small[@]}" --set search.planes='[15, 15]' \
+  --set search.satellites-per-plane='[20, 20]' --out "$work/many" --report >/dev/null
+
+# Three objectives over points, on an ellipse of the Earth.
+printf 'latitude_deg,longitude_deg\n52,5\n48,11\n41,-4\n' > "$work/points.csv"
+printf '[region]\npoints = "%s"\n' "$work/points.csv" > "$work/points.toml"
+"$program" optimize "$work/points.toml" --quiet --set time.step-s=1200 --set optimizer.population=8 \
+  --set optimizer.generations=4 --set 'objectives.minimize=["mean-pdop", "satellites", "availability"]' \
+  --out "$work/points" --report >/dev/null
+
+# Nothing feasible, a damaged front with hostile texts, and a front of ten thousand.
+"$program" optimize "${small[@]}" --set 'objectives.constraints=["max-pdop <= 0.1"]' \
+  --out "$work/empty" --report >/dev/null || [ $? = 1 ]
+node hostile.mjs "$work/many" "$work/hostile" "$work/large"
+"$program" report --quiet "$work/hostile" >/dev/null
+"$program" report --quiet "$work/large" >/dev/null
+
+node check.mjs "$work" "$shots"
