@@ -168,7 +168,7 @@ fn figures_that_are_not_there_say_why() {
             &["--figure", "series", "--measure", "availability"],
             "figure series does not show availability",
         ),
-        (&["--figure", "mpa"], "did you mean \"map\"?"),
+        (&["--figure", "maps"], "did you mean \"map\"?"),
         (&["--figure", "map", "--pick", "99"], "not that one"),
         (&["--figure", "map", "--out", "map.gif"], "say it with --as"),
         (
