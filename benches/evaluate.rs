@@ -10,7 +10,7 @@ use navwalker::constellation::gnss::Preset;
 use navwalker::dop::{ClockGroup, Clocks, Geometry};
 use navwalker::earth::Surface;
 use navwalker::ephemeris::Ephemeris;
-use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
+use navwalker::evaluate::{Evaluator, InstructionSet, MetricOptions, Setup};
 use navwalker::frames::EarthRotation;
 use navwalker::ground::{Grid, Weighting};
 use navwalker::orbit::Model;
@@ -21,6 +21,8 @@ use navwalker::visibility::Mask;
 fn main() {
     divan::main();
 }
+
+const SOUND: &str = "the paper's scenario can be evaluated";
 
 const NOTATION: &str = "delta:55:182/13/1@925";
 
@@ -33,32 +35,32 @@ fn paper() -> Setup {
         weighting: Weighting::Equal,
     };
     Setup {
-        grid: TimeGrid::new(epoch, 86_400.0, 60.0).expect("the paper's scenario is sound"),
+        grid: TimeGrid::new(epoch, 86_400.0, 60.0).expect(SOUND),
         sites: region
             .sites(Surface::Sphere)
-            .expect("the paper's scenario is sound"),
-        mask: Mask::from_degrees(7.0).expect("the paper's scenario is sound"),
-        gnss_mask: Mask::from_degrees(7.0).expect("the paper's scenario is sound"),
+            .expect(SOUND),
+        mask: Mask::from_degrees(7.0).expect(SOUND),
+        gnss_mask: Mask::from_degrees(7.0).expect(SOUND),
         gnss: vec![Preset::BeiDou3],
         clocks: Clocks::PerSystem,
         pdop_cap: 100.0,
         model: Model::J2,
         metrics: MetricOptions {
             cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).expect("the paper's scenario is sound"),
+            cvar_level: Level::new(0.95).expect(SOUND),
             availability_pdop: 6.0,
         },
     }
 }
 
 fn design() -> Design {
-    NOTATION.parse().expect("the paper's scenario is sound")
+    NOTATION.parse().expect(SOUND)
 }
 
 /// Everything that no design changes, GNSS included.
 #[divan::bench(sample_count = 5)]
 fn setting_up() -> Evaluator {
-    Evaluator::new(paper()).expect("the paper's scenario is sound")
+    Evaluator::new(paper()).expect(SOUND)
 }
 
 /// 182 satellites at 1440 samples by the propagators, turned into the Earth-fixed frame.
@@ -66,14 +68,14 @@ fn setting_up() -> Evaluator {
 fn propagation(bencher: Bencher) {
     let grid = paper().grid;
     let ephemeris =
-        Ephemeris::of_design(&design(), Model::J2, grid).expect("the paper's scenario is sound");
+        Ephemeris::of_design(&design(), Model::J2, grid).expect(SOUND);
     bencher.bench_local(|| {
         for elapsed_s in grid.iter() {
             let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
             for satellite in ephemeris.satellites() {
                 let state = ephemeris
                     .state(satellite, elapsed_s)
-                    .expect("the paper's scenario is sound");
+                    .expect(SOUND);
                 black_box(rotation.to_earth_fixed(state.position_km));
             }
         }
@@ -85,14 +87,14 @@ fn propagation(bencher: Bencher) {
 fn visibility(bencher: Bencher) {
     let setup = paper();
     let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid)
-        .expect("the paper's scenario is sound");
+        .expect(SOUND);
     let positions: Vec<_> = ephemeris
         .satellites()
         .iter()
         .map(|s| {
             ephemeris
                 .state(s, 0.0)
-                .expect("the paper's scenario is sound")
+                .expect(SOUND)
                 .position_km
         })
         .collect();
@@ -133,20 +135,25 @@ fn statistics(bencher: Bencher) {
     let sample: Vec<f64> = (0..205_920)
         .map(|n| 1.0 + (f64::from(n) * 0.618_033_988_749_895).fract().powi(4))
         .collect();
-    let level = Level::new(0.95).expect("the paper's scenario is sound");
+    let level = Level::new(0.95).expect(SOUND);
     bencher
         .with_inputs(|| sample.clone())
         .bench_local_values(|mut values| summarize(&mut values, level));
 }
 
-/// A whole design by the definitions, one sample after the other.
+/// A whole design by the definitions, one sample after the other, GNSS included.
 #[divan::bench(sample_count = 5)]
 fn design_plain(bencher: Bencher) {
-    let evaluator = Evaluator::new(paper()).expect("the paper's scenario is sound");
+    let setup = paper();
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    bencher.bench_local(|| evaluator.plain(&ephemeris).expect(SOUND));
+}
+
+/// A whole design by the kernel.
+#[divan::bench(sample_count = 200, args = InstructionSet::ALL)]
+fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
+    let evaluator = Evaluator::with_instructions(paper(), instructions).expect(SOUND);
     let design = design();
-    bencher.bench_local(|| {
-        evaluator
-            .design(&design)
-            .expect("the paper's scenario is sound")
-    });
+    bencher.bench_local(|| evaluator.design(&design).expect(SOUND));
 }

@@ -5,9 +5,11 @@
 //! threads; the result of a design does not depend on which thread computes it.
 
 mod fixed;
+mod kernel;
 mod metrics;
 mod plain;
 
+pub use kernel::{InstructionSet, Retakes};
 pub use metrics::{MetricOptions, Metrics};
 
 use crate::constellation::Design;
@@ -19,7 +21,8 @@ use crate::ground::Site;
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::Mask;
-use fixed::FixedGeometry;
+use kernel::Kernel;
+use metrics::Evaluated;
 
 /// Everything that an evaluation depends on, but for the design.
 #[derive(Debug, Clone)]
@@ -50,22 +53,13 @@ impl Setup {
     pub fn sample_count(&self) -> usize {
         self.sites.len() * self.grid.len()
     }
-
-    /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take, bytes.
-    #[must_use]
-    pub fn memory_bytes(&self, threads: usize) -> u64 {
-        let samples = self.sample_count() as u64;
-        let fixed = samples * size_of::<fixed::FixedSample>() as u64;
-        let per_thread = samples * size_of::<f64>() as u64;
-        fixed + per_thread * threads as u64
-    }
 }
 
 /// Computes the metrics of designs under one [`Setup`].
 pub struct Evaluator {
     setup: Setup,
     rotations: Vec<EarthRotation>,
-    fixed: FixedGeometry,
+    kernel: Kernel,
 }
 
 impl Evaluator {
@@ -74,17 +68,29 @@ impl Evaluator {
     /// # Errors
     /// When a GNSS satellite cannot be propagated.
     pub fn new(setup: Setup) -> Result<Self, EphemerisError> {
+        Self::with_instructions(setup, InstructionSet::detect())
+    }
+
+    /// Like [`Evaluator::new`], on a given instruction set. The results are the same to the bit;
+    /// one that the processor lacks is replaced by [`InstructionSet::Baseline`].
+    ///
+    /// # Errors
+    /// When a GNSS satellite cannot be propagated.
+    pub fn with_instructions(
+        setup: Setup,
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
         let rotations: Vec<_> = setup
             .grid
             .iter()
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
-        let fixed = FixedGeometry::new(&setup, &rotations)?;
+        let kernel = Kernel::new(&setup, &rotations, instructions)?;
         Ok(Self {
             setup,
             rotations,
-            fixed,
+            kernel,
         })
     }
 
@@ -99,11 +105,17 @@ impl Evaluator {
     /// # Errors
     /// When the model cannot fly a satellite of the design.
     pub fn design(&self, design: &Design) -> Result<Metrics, EphemerisError> {
-        self.ephemeris(&Ephemeris::of_design(
-            design,
-            self.setup.model,
-            self.setup.grid,
-        )?)
+        Ok(self.design_counted(design)?.0)
+    }
+
+    /// The metrics of a design, and how many samples f32 could not hold.
+    ///
+    /// # Errors
+    /// When the model cannot fly a satellite of the design.
+    pub fn design_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
+        let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
+        let (evaluated, retakes) = self.kernel.evaluate(self, &ephemeris, Some(design))?;
+        Ok((self.metrics(&evaluated, &ephemeris), retakes))
     }
 
     /// The metrics of any satellites, on the grid of the setup.
@@ -111,12 +123,23 @@ impl Evaluator {
     /// # Errors
     /// When a satellite cannot be propagated.
     pub fn ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        let samples = plain::evaluate(self, ephemeris)?;
-        Ok(Metrics::from_samples(
-            samples,
-            self.setup.metrics,
-            ephemeris.satellites().len(),
-        ))
+        let (evaluated, _) = self.kernel.evaluate(self, ephemeris, None)?;
+        Ok(self.metrics(&evaluated, ephemeris))
+    }
+
+    /// The metrics of any satellites by the plain path, which the kernel is tested against: one
+    /// sample after the other, in f64, and about twenty times slower.
+    ///
+    /// # Errors
+    /// When a satellite cannot be propagated.
+    pub fn plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+        let evaluated = plain::evaluate(self, ephemeris)?;
+        Ok(self.metrics(&evaluated, ephemeris))
+    }
+
+    fn metrics(&self, evaluated: &Evaluated, ephemeris: &Ephemeris) -> Metrics {
+        let satellites = ephemeris.satellites().len();
+        Metrics::new(evaluated, self.setup.metrics, satellites)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The figures of merit of a constellation over points and times.
 
-use super::plain::Samples;
-use crate::stats::{Level, summarize};
+use crate::stats::{Level, Summary};
 use serde::Serialize;
 
 /// How samples are turned into metrics.
@@ -47,21 +46,29 @@ pub struct Metrics {
     pub j_cost: Option<f64>,
 }
 
+/// Counts over all samples, and the statistics of the solved ones.
+pub(super) struct Evaluated {
+    /// Points times times.
+    pub(super) samples: usize,
+    /// Visible LEO satellites, summed over all samples.
+    pub(super) visible: u64,
+    /// Solved samples.
+    pub(super) solved: u64,
+    /// Solved samples with PDOP at most the availability threshold.
+    pub(super) available: u64,
+    /// Statistics of the PDOP of the solved samples.
+    pub(super) summary: Option<Summary>,
+}
+
 impl Metrics {
-    pub(super) fn from_samples(
-        mut samples: Samples,
+    pub(super) fn new(
+        evaluated: &Evaluated,
         options: MetricOptions,
         satellites: usize,
     ) -> Self {
-        let count = samples.count as f64;
-        let available = samples
-            .pdop
-            .iter()
-            .filter(|&&pdop| pdop <= options.availability_pdop)
-            .count();
-        let solved = samples.pdop.len();
-        let summary = summarize(&mut samples.pdop, options.cvar_level);
-        let mean_visible = samples.visible as f64 / count;
+        let count = evaluated.samples as f64;
+        let mean_visible = evaluated.visible as f64 / count;
+        let summary = evaluated.summary;
         Self {
             mean_visible,
             mean_pdop: summary.map(|s| s.mean),
@@ -71,10 +78,10 @@ impl Metrics {
             p95_pdop: summary.map(|s| s.p95),
             p99_pdop: summary.map(|s| s.p99),
             max_pdop: summary.map(|s| s.max),
-            solved_fraction: solved as f64 / count,
-            availability: available as f64 / count,
+            solved_fraction: evaluated.solved as f64 / count,
+            availability: evaluated.available as f64 / count,
             j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
-            j_cost: (samples.visible > 0).then(|| satellites as f64 / mean_visible),
+            j_cost: (evaluated.visible > 0).then(|| satellites as f64 / mean_visible),
         }
     }
 }

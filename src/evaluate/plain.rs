@@ -1,30 +1,21 @@
-//! The plain path: one sample after the other, in f64, by the definitions.
+//! The plain path: one sample after the other, in f64, by the definitions. It is the reference
+//! that the kernel is tested against.
 
-use super::Evaluator;
+use super::fixed::FixedGeometry;
+use super::metrics::Evaluated;
+use super::{Evaluator, Setup};
 use crate::dop::ClockGroup;
 use crate::ephemeris::{Ephemeris, EphemerisError};
-
-/// What an evaluation leaves for the statistics.
-pub(super) struct Samples {
-    /// Visible LEO satellites, summed over all samples.
-    pub(super) visible: u64,
-    /// Points times times.
-    pub(super) count: usize,
-    /// PDOP of the solved samples, in no particular order.
-    pub(super) pdop: Vec<f64>,
-}
+use crate::stats::summarize;
 
 pub(super) fn evaluate(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-) -> Result<Samples, EphemerisError> {
+) -> Result<Evaluated, EphemerisError> {
     let setup = evaluator.setup();
-    let count = setup.sample_count();
-    let mut samples = Samples {
-        visible: 0,
-        count,
-        pdop: Vec::with_capacity(count),
-    };
+    let fixed = FixedGeometry::new(setup, &evaluator.rotations)?;
+    let mut visible = 0;
+    let mut pdop = Vec::with_capacity(setup.sample_count());
     let mut positions = Vec::with_capacity(ephemeris.satellites().len());
     for (k, elapsed_s) in setup.grid.iter().enumerate() {
         positions.clear();
@@ -32,19 +23,31 @@ pub(super) fn evaluate(
             let state = ephemeris.state(satellite, elapsed_s)?;
             positions.push(evaluator.rotations[k].to_earth_fixed(state.position_km));
         }
-        for (site, fixed) in setup.sites.iter().zip(evaluator.fixed.at(k)) {
+        for (site, fixed) in setup.sites.iter().zip(fixed.at(k)) {
             let mut leo = ClockGroup::default();
             for &position in &positions {
                 if let Some(unit) = setup.mask.line_of_sight(&site.local, position) {
                     leo.add(unit);
                 }
             }
-            samples.visible += u64::from(leo.count());
+            visible += u64::from(leo.count());
             leo += fixed.shared_clock;
             let mut geometry = fixed.own_clocks;
             geometry.add(&leo);
-            samples.pdop.extend(geometry.pdop(setup.pdop_cap));
+            pdop.extend(geometry.pdop(setup.pdop_cap));
         }
     }
-    Ok(samples)
+    Ok(evaluated(setup, visible, &mut pdop))
+}
+
+fn evaluated(setup: &Setup, visible: u64, pdop: &mut [f64]) -> Evaluated {
+    let options = setup.metrics;
+    let available = |pdop: &&f64| **pdop <= options.availability_pdop;
+    Evaluated {
+        samples: setup.sample_count(),
+        visible,
+        solved: pdop.len() as u64,
+        available: pdop.iter().filter(available).count() as u64,
+        summary: summarize(pdop, options.cvar_level),
+    }
 }

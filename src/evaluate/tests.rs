@@ -5,7 +5,7 @@ use crate::ground::{Grid, Weighting};
 use crate::stats::Level;
 use crate::time::Epoch;
 
-fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
+pub(super) fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     let grid = Grid {
         latitude_deg,
