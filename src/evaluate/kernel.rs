@@ -36,13 +36,14 @@
 mod candidates;
 mod fixed;
 mod flight;
+mod instructions;
 mod lanes;
 mod retake;
 mod sample;
 mod tally;
 mod tiles;
 
-pub use sample::InstructionSet;
+pub use instructions::InstructionSet;
 
 use super::metrics::Evaluated;
 use super::{Evaluator, Setup};
@@ -50,13 +51,13 @@ use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use fixed::Fixed;
+use fixed::{Fixed, FixedTiles};
 use flight::PatternFlight;
 use lanes::{Lanes, MaskTerms};
 use rayon::prelude::*;
-use sample::{Instant, Limits, Outcome, Scene, Workspace};
+use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
-use tally::{Counts, Found, Search};
+use tally::{Count, Counts, Find, Found, Merge, Search};
 use tiles::Tiles;
 
 /// Values of PDOP up to which they are kept between the two passes of the statistics; beyond, the
@@ -97,7 +98,6 @@ struct Flight<'a> {
 struct Tallies {
     visible: u64,
     available: u64,
-    sum: f64,
     retakes: Retakes,
 }
 
@@ -106,7 +106,6 @@ impl Tallies {
         Self {
             visible: self.visible + other.visible,
             available: self.available + other.available,
-            sum: self.sum + other.sum,
             retakes: Retakes {
                 near_mask: self.retakes.near_mask + other.retakes.near_mask,
                 large_pdop: self.retakes.large_pdop + other.retakes.large_pdop,
@@ -170,21 +169,23 @@ impl Kernel {
         let samples = evaluator.setup().grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new();
+        let mut sum = 0.0;
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
+            let first = values.len();
             let part = self.run(evaluator, flight, chunk, |tiles| {
-                counts.take(tiles);
                 values.extend_from_slice(tiles);
             })?;
             tallies = tallies.merged(part);
+            sum += self.count(&values[first..], &mut counts);
         }
-        let level = evaluator.setup().metrics.cvar_level;
-        let search = Search::new(&counts, level);
-        let summary = search.map(|search| search.summary(search.scan(&values), tallies.sum));
-        Ok((
-            evaluated(evaluator.setup(), tallies, &counts, summary),
-            tallies.retakes,
-        ))
+        let summary = Search::new(&counts, evaluator.setup().metrics.cvar_level).map(|search| {
+            let mut found = Found::new();
+            let tail = self.find(&values, &search, &mut found);
+            search.summary(&found, sum, tail)
+        });
+        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
+        Ok((evaluated, tallies.retakes))
     }
 
     /// Two passes over the samples, each on all threads; nothing is kept but counts.
@@ -194,60 +195,69 @@ impl Kernel {
         flight: Flight<'_>,
     ) -> Result<(Evaluated, Retakes), EphemerisError> {
         let chunks = self.chunks(evaluator.setup().grid.len());
-        let (counts, parts) = chunks
-            .par_iter()
-            .try_fold(
-                || (Counts::new(), Vec::new()),
-                |(mut counts, mut parts), chunk| {
-                    let part = self.run(evaluator, flight, chunk.clone(), |t| counts.take(t))?;
-                    parts.push(part);
-                    Ok((counts, parts))
-                },
-            )
-            .try_reduce(
-                || (Counts::new(), Vec::new()),
-                |(counts, mut parts), (more_counts, more_parts)| {
-                    parts.extend(more_parts);
-                    Ok((counts.merged(&more_counts), parts))
-                },
-            )?;
-        // Rayon keeps the order of the chunks, so that the sum does not depend on the threads.
-        let tallies = parts.into_iter().fold(Tallies::default(), Tallies::merged);
+        let (counts, parts) = self.pass(evaluator, flight, &chunks, Counts::new, |tiles, counts| {
+            self.count(tiles, counts)
+        })?;
+        // The order of the chunks is kept, so that the sum does not depend on the threads.
+        let tallies = parts.iter().fold(Tallies::default(), |all, part| all.merged(part.0));
+        let sum = parts.iter().map(|part| part.1).sum();
         let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
             Some(search) => {
-                let found = self.search(evaluator, flight, &chunks, &search)?;
-                Some(search.summary(found, tallies.sum))
+                let (found, parts) =
+                    self.pass(evaluator, flight, &chunks, Found::new, |tiles, found| {
+                        self.find(tiles, &search, found)
+                    })?;
+                let tail = parts.iter().map(|part| part.1).sum();
+                Some(search.summary(&found, sum, tail))
             }
             None => None,
         };
-        Ok((
-            evaluated(evaluator.setup(), tallies, &counts, summary),
-            tallies.retakes,
-        ))
+        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
+        Ok((evaluated, tallies.retakes))
     }
 
-    /// The second pass over the samples.
-    fn search(
+    /// One pass over the samples on all threads. `note` takes the values of a sample into an
+    /// accumulator of integers, in any order, and returns a sum, which is kept for each chunk.
+    fn pass<A: Merge + Send>(
         &self,
         evaluator: &Evaluator,
         flight: Flight<'_>,
         chunks: &[Range<usize>],
-        search: &Search,
-    ) -> Result<Found, EphemerisError> {
-        let look_through = |chunk: &Range<usize>| {
-            let mut found = Found::default();
-            self.run(evaluator, flight, chunk.clone(), |tiles| {
-                found.add(search.scan(tiles));
-            })?;
-            Ok(found)
-        };
-        let parts: Vec<Found> = chunks
+        new: impl Fn() -> A + Sync,
+        note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
+    ) -> Result<(A, Vec<(Tallies, f64)>), EphemerisError> {
+        chunks
             .par_iter()
-            .map(look_through)
-            .collect::<Result<_, EphemerisError>>()?;
-        let mut found = Found::default();
-        parts.into_iter().for_each(|part| found.add(part));
-        Ok(found)
+            .try_fold(
+                || (new(), Vec::new()),
+                |(mut all, mut parts), chunk| {
+                    let mut sum = 0.0;
+                    let tallies = self.run(evaluator, flight, chunk.clone(), |tiles| {
+                        sum += note(tiles, &mut all);
+                    })?;
+                    parts.push((tallies, sum));
+                    Ok((all, parts))
+                },
+            )
+            .try_reduce(
+                || (new(), Vec::new()),
+                |(all, mut parts), (more, more_parts)| {
+                    parts.extend(more_parts);
+                    Ok((all.merged(&more), parts))
+                },
+            )
+    }
+
+    fn count(&self, tiles: &[Lanes<f32>], counts: &mut Counts) -> f64 {
+        self.instructions.run(Count { tiles, counts })
+    }
+
+    fn find(&self, tiles: &[Lanes<f32>], search: &Search, found: &mut Found) -> f64 {
+        self.instructions.run(Find {
+            tiles,
+            search,
+            found,
+        })
     }
 
     /// Pieces of the time grid that do not depend on the threads.
@@ -269,7 +279,7 @@ impl Kernel {
     ) -> Result<Tallies, EphemerisError> {
         let mut work = Workspace::new(flight.ephemeris.satellites().len());
         let mut outcome = Outcome::new(self.scene.tiles.tiles.len());
-        let mut room = Vec::new();
+        let mut room = FixedTiles::default();
         let mut tallies = Tallies::default();
         for k in chunk {
             let elapsed_s = evaluator.setup().grid.elapsed_s(k);
@@ -282,8 +292,13 @@ impl Kernel {
             let pattern = flight
                 .pattern
                 .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
-            let input = Instant { pattern, fixed };
-            sample::evaluate(self.instructions, &self.scene, input, &mut work, &mut outcome);
+            self.instructions.run(Sample {
+                scene: &self.scene,
+                pattern,
+                fixed,
+                work: &mut work,
+                outcome: &mut outcome,
+            });
             tallies.retakes.near_mask += outcome.doubts.len() as u64;
             tallies.retakes.large_pdop += outcome.doubled;
             let sky = retake::Sky {
@@ -294,7 +309,6 @@ impl Kernel {
             retake::settle(evaluator.setup(), &self.scene, &sky, fixed, &mut outcome)?;
             tallies.visible += outcome.visible;
             tallies.available += outcome.available;
-            tallies.sum += tally::sum(&outcome.pdop);
             take(&outcome.pdop);
         }
         Ok(tallies)

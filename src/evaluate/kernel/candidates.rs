@@ -1,6 +1,6 @@
 //! Satellites that a cap of ground points may see.
 
-use super::flight::{BLOCK, Positions};
+use super::flight::{BLOCK, PositionBlock, Positions};
 use super::tiles::{Cap, Horizon};
 
 /// Satellites in f32, which are tested together, one for each bit of a word.
@@ -42,20 +42,34 @@ impl Block {
     pub(super) fn inside(&self, cap: &Cap, slack_km: f32) -> u64 {
         let bound = cap.bound - slack_km;
         let [x, y, z] = cap.centre;
-        let mut hits = [0_u8; BLOCK];
-        for n in 0..BLOCK {
+        let bit = |n: usize, place: usize| {
             let reach = self.x[n] * x + self.y[n] * y + self.z[n] * z + self.q[n] * cap.sine;
-            hits[n] = u8::from(reach >= bound);
+            if reach >= bound { 1_u32 << place } else { 0 }
+        };
+        // Lanes of words whose bits do not overlap: vector comparisons give no word by themselves.
+        let (mut low, mut high) = ([0; QUARTER], [0; QUARTER]);
+        for l in 0..QUARTER {
+            low[l] = bit(l, l) | bit(QUARTER + l, QUARTER + l);
+            high[l] = bit(2 * QUARTER + l, l) | bit(3 * QUARTER + l, QUARTER + l);
         }
-        let mut word = 0;
-        for (n, eight) in hits.as_chunks::<8>().0.iter().enumerate() {
-            // The product gathers the lowest bits of eight bytes in its highest byte.
-            let bits = u64::from_le_bytes(*eight).wrapping_mul(0x0102_0408_1020_4080) >> 56;
-            word |= bits << (8 * n);
+        let joined = |lanes: [u32; QUARTER]| u64::from(lanes.iter().fold(0, |all, bits| all | bits));
+        joined(low) | joined(high) << (2 * QUARTER)
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, from: &PositionBlock, reach2: f64, first: usize) {
+        for n in 0..BLOCK {
+            let (x, y, z) = (from.x[n], from.y[n], from.z[n]);
+            let beyond = (x * x + y * y + z * z - reach2) as f32;
+            (self.x[n], self.y[n], self.z[n]) = (x as f32, y as f32, z as f32);
+            self.q[n] = if beyond > 0.0 { beyond.sqrt() } else { 0.0 };
+            self.index[n] = (first + n) as u32;
         }
-        word
     }
 }
+
+/// Satellites of a block that one vector register holds, at most.
+const QUARTER: usize = BLOCK / 4;
 
 /// The numbers of the bits that are set, in increasing order.
 #[inline(always)]
@@ -67,32 +81,6 @@ pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
             n
         })
     })
-}
-
-/// What bounds the rounding of all satellites of one sample.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Extent {
-    nearest_km: f64,
-    farthest_km: f64,
-}
-
-impl Extent {
-    /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
-    /// number in it, and as much again.
-    pub(super) fn cap_slack_km(self) -> f32 {
-        self.farthest_km as f32 * (16.0 * f32::EPSILON)
-    }
-
-    /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
-    /// were rounded by half a unit in each of three components, over the shortest range; and
-    /// eight roundings of the sine itself.
-    pub(super) fn sine_slack(self, horizon: &Horizon) -> f32 {
-        let rounding_km = self.farthest_km * f64::from(f32::EPSILON) * 3_f64.sqrt();
-        let range_km = horizon.range_at_mask_km(self.nearest_km);
-        let slack = rounding_km / range_km + 4.0 * f64::from(f32::EPSILON);
-        // Satellites on the ground leave nothing to f32.
-        slack.min(2.0) as f32
-    }
 }
 
 /// A list of satellites.
@@ -118,26 +106,11 @@ impl Candidates {
 
     /// All satellites.
     #[inline(always)]
-    pub(super) fn fill(&mut self, positions: &Positions, horizon: &Horizon) -> Extent {
-        let reach2 = horizon.reach2();
-        let (mut low2, mut high2) = (f64::INFINITY, 0.0_f64);
+    pub(super) fn fill(&mut self, positions: &Positions, horizon: &Horizon) {
         for (number, (to, from)) in self.blocks.iter_mut().zip(&positions.blocks).enumerate() {
-            for n in 0..BLOCK {
-                let (x, y, z) = (from.x[n], from.y[n], from.z[n]);
-                let radius2 = x * x + y * y + z * z;
-                low2 = if radius2 < low2 { radius2 } else { low2 };
-                high2 = if radius2 > high2 { radius2 } else { high2 };
-                (to.x[n], to.y[n], to.z[n]) = (x as f32, y as f32, z as f32);
-                let beyond = (radius2 - reach2) as f32;
-                to.q[n] = if beyond > 0.0 { beyond.sqrt() } else { 0.0 };
-                to.index[n] = (number * BLOCK + n) as u32;
-            }
+            to.fill(from, horizon.reach2, number * BLOCK);
         }
         self.count = positions.count;
-        Extent {
-            nearest_km: low2.sqrt(),
-            farthest_km: high2.sqrt(),
-        }
     }
 
     /// Those of `others` that the cap may see something of.

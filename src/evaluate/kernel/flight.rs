@@ -29,6 +29,9 @@ pub(super) struct PositionBlock {
 pub(super) struct Positions {
     pub(super) blocks: Vec<PositionBlock>,
     pub(super) count: usize,
+    /// Smallest and largest distance from the centre of the Earth, km.
+    pub(super) nearest_km: f64,
+    pub(super) farthest_km: f64,
 }
 
 impl Positions {
@@ -41,6 +44,8 @@ impl Positions {
         Self {
             blocks: vec![nowhere; count.div_ceil(BLOCK)],
             count,
+            nearest_km: 0.0,
+            farthest_km: 0.0,
         }
     }
 
@@ -58,9 +63,13 @@ impl Positions {
         elapsed_s: f64,
         rotation: EarthRotation,
     ) -> Result<(), EphemerisError> {
+        (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
         for (n, satellite) in ephemeris.satellites().iter().enumerate() {
             let state = ephemeris.state(satellite, elapsed_s)?;
             let position = rotation.to_earth_fixed(state.position_km);
+            let radius_km = position.norm();
+            self.nearest_km = self.nearest_km.min(radius_km);
+            self.farthest_km = self.farthest_km.max(radius_km);
             let block = &mut self.blocks[n / BLOCK];
             let place = n % BLOCK;
             (block.x[place], block.y[place], block.z[place]) = (position.x, position.y, position.z);
@@ -104,6 +113,23 @@ impl PatternBlock {
             sin_latitude: angle(latitude, f64::sin),
         }
     }
+
+    #[inline(always)]
+    fn fly(&self, orbit: &PatternFlight, turn: &Turn, to: &mut PositionBlock) {
+        let (a, sin_i, cos_i) = (orbit.semi_major_axis_km, orbit.sin_i, orbit.cos_i);
+        for n in 0..BLOCK {
+            let (cos_o, sin_o) = (self.cos_node[n], self.sin_node[n]);
+            let (cos_u, sin_u) = (self.cos_latitude[n], self.sin_latitude[n]);
+            let cos_node = cos_o * turn.cos_node - sin_o * turn.sin_node;
+            let sin_node = sin_o * turn.cos_node + cos_o * turn.sin_node;
+            let along = a * (cos_u * turn.cos_latitude - sin_u * turn.sin_latitude);
+            let ahead = a * (sin_u * turn.cos_latitude + cos_u * turn.sin_latitude);
+            let level = ahead * cos_i;
+            to.x[n] = cos_node * along - sin_node * level;
+            to.y[n] = sin_node * along + cos_node * level;
+            to.z[n] = ahead * sin_i;
+        }
+    }
 }
 
 impl PatternFlight {
@@ -145,22 +171,12 @@ impl PatternFlight {
 
     /// Positions at a sample.
     #[inline(always)]
-    pub(super) fn fly(&self, turn: Turn, positions: &mut Positions) {
-        let (a, sin_i, cos_i) = (self.semi_major_axis_km, self.sin_i, self.cos_i);
+    pub(super) fn fly(&self, turn: &Turn, positions: &mut Positions) {
         for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
-            for n in 0..BLOCK {
-                let (cos_o, sin_o) = (from.cos_node[n], from.sin_node[n]);
-                let (cos_u, sin_u) = (from.cos_latitude[n], from.sin_latitude[n]);
-                let cos_node = cos_o * turn.cos_node - sin_o * turn.sin_node;
-                let sin_node = sin_o * turn.cos_node + cos_o * turn.sin_node;
-                let along = a * (cos_u * turn.cos_latitude - sin_u * turn.sin_latitude);
-                let ahead = a * (sin_u * turn.cos_latitude + cos_u * turn.sin_latitude);
-                let level = ahead * cos_i;
-                to.x[n] = cos_node * along - sin_node * level;
-                to.y[n] = sin_node * along + cos_node * level;
-                to.z[n] = ahead * sin_i;
-            }
+            from.fly(self, turn, to);
         }
+        positions.nearest_km = self.semi_major_axis_km;
+        positions.farthest_km = self.semi_major_axis_km;
     }
 }
 

@@ -32,6 +32,8 @@ pub(super) trait Real:
     const NO_SOLUTION: Self;
 
     fn of(value: f64) -> Self;
+    /// A number of satellites.
+    fn count(count: u32) -> Self;
     /// A number from its f32 nearest and what that leaves over.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
@@ -49,6 +51,12 @@ impl Real for f32 {
     #[inline(always)]
     fn of(value: f64) -> Self {
         value as Self
+    }
+
+    #[inline(always)]
+    fn count(count: u32) -> Self {
+        // Signed conversion is one instruction everywhere; there are fewer than 2^24.
+        count as i32 as Self
     }
 
     #[inline(always)]
@@ -81,6 +89,11 @@ impl Real for f64 {
     #[inline(always)]
     fn of(value: f64) -> Self {
         value
+    }
+
+    #[inline(always)]
+    fn count(count: u32) -> Self {
+        Self::from(count)
     }
 
     #[inline(always)]
@@ -144,7 +157,7 @@ pub(super) struct Sums<R> {
     pub(super) y: Lanes<R>,
     pub(super) z: Lanes<R>,
     /// Visible satellites.
-    pub(super) count: Lanes<R>,
+    pub(super) count: Lanes<u32>,
     /// How close the sine of the nearest decision came to the mask.
     pub(super) margin: Lanes<R>,
 }
@@ -162,7 +175,7 @@ impl<R: Real> Sums<R> {
             x: zero,
             y: zero,
             z: zero,
-            count: zero,
+            count: Lanes([0; LANES]),
             margin: Lanes([R::ONE; LANES]),
         }
     }
@@ -185,7 +198,7 @@ impl<R: Real> Sums<R> {
             let nearest = self.margin.0[l];
             self.margin.0[l] = if margin < nearest { margin } else { nearest };
             let scale = if seen { inverse } else { R::ZERO };
-            self.count.0[l] += if seen { R::ONE } else { R::ZERO };
+            self.count.0[l] += u32::from(seen);
             let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
             self.x.0[l] += vx;
             self.y.0[l] += vy;
@@ -199,87 +212,101 @@ impl<R: Real> Sums<R> {
     }
 }
 
-/// The GNSS part of the normal matrix at the points of a tile, one sample: f32 and remainder,
-/// which together hold 48 bits.
+/// The GNSS part of the normal matrix at the points of a tile: (x, x), (y, y), (z, z), (x, y),
+/// (x, z), (y, z).
+pub(super) type Normal = [Lanes<f32>; 6];
+
+/// The GNSS part at the points of a tile, one sample. Each number is an f32 and a remainder,
+/// which together hold 48 bits; f32 lanes read the first alone.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FixedTile {
-    /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
-    pub(super) normal: [Split; 6],
-    /// Σ v of the satellites that share their clock with the design.
-    pub(super) sum: [Split; 3],
-    /// Their number.
-    pub(super) count: Lanes<f32>,
+pub(super) struct FixedTile<'a> {
+    pub(super) normal: &'a Normal,
+    pub(super) remainder: &'a Normal,
     /// Satellites less clocks of the systems with clocks of their own.
-    pub(super) surplus: Lanes<f32>,
+    pub(super) surplus: &'a [u8; LANES],
+    pub(super) shared: &'a SharedClock,
 }
 
-/// Numbers as their f32 nearest and what that leaves over.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Split {
-    high: Lanes<f32>,
-    low: Lanes<f32>,
+/// The GNSS satellites that share their clock with the design.
+#[derive(Debug, Clone)]
+pub(super) struct SharedClock {
+    /// Σ v, and its remainder.
+    pub(super) sum: [Lanes<f32>; 3],
+    pub(super) remainder: [Lanes<f32>; 3],
+    pub(super) count: Lanes<u32>,
 }
 
-impl Split {
-    pub(super) const ZERO: Self = Self {
-        high: Lanes([0.0; LANES]),
-        low: Lanes([0.0; LANES]),
+pub(super) const ZERO: Lanes<f32> = Lanes([0.0; LANES]);
+
+impl SharedClock {
+    pub(super) const NONE: Self = Self {
+        sum: [ZERO; 3],
+        remainder: [ZERO; 3],
+        count: Lanes([0; LANES]),
     };
-
-    pub(super) fn of(values: &Lanes<f64>) -> Self {
-        let high = values.0.map(|value| value as f32);
-        let low = std::array::from_fn(|l| (values.0[l] - f64::from(high[l])) as f32);
-        Self {
-            high: Lanes(high),
-            low: Lanes(low),
-        }
-    }
 
     #[inline(always)]
-    pub(super) fn at<R: Real>(&self, lane: usize) -> R {
-        R::joined(self.high.0[lane], self.low.0[lane])
+    pub(super) fn sum<R: Real>(&self, axis: usize, lane: usize) -> R {
+        R::joined(self.sum[axis].0[lane], self.remainder[axis].0[lane])
     }
 }
 
-impl FixedTile {
-    pub(super) const NONE: Self = Self {
-        normal: [Split::ZERO; 6],
-        sum: [Split::ZERO; 3],
-        count: Lanes([0.0; LANES]),
-        surplus: Lanes([0.0; LANES]),
+impl FixedTile<'_> {
+    /// No GNSS.
+    pub(super) const NONE: Self = FixedTile {
+        normal: &[ZERO; 6],
+        remainder: &[ZERO; 6],
+        surplus: &[0; LANES],
+        shared: &SharedClock::NONE,
     };
+
+    #[inline(always)]
+    pub(super) fn normal<R: Real>(&self, element: usize, lane: usize) -> R {
+        R::joined(
+            self.normal[element].0[lane],
+            self.remainder[element].0[lane],
+        )
+    }
+}
+
+/// Numbers as the f32 nearest to each and what that leaves over.
+pub(super) fn split(values: &Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
+    let nearest = values.0.map(|value| value as f32);
+    let remainder = std::array::from_fn(|l| (values.0[l] - f64::from(nearest[l])) as f32);
+    (Lanes(nearest), Lanes(remainder))
 }
 
 /// PDOP at the points of a tile, and satellites less clock states.
 pub(super) struct Solution<R> {
     /// [`Real::NO_SOLUTION`] where the position block is not positive definite.
     pub(super) pdop: Lanes<R>,
-    pub(super) surplus: Lanes<R>,
+    pub(super) surplus: Lanes<u32>,
 }
 
 impl<R: Real> Solution<R> {
     /// From the sums over the design and the GNSS part.
     #[inline(always)]
-    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile) -> Self {
+    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
         let mut solution = Self {
             pdop: Lanes([R::ZERO; LANES]),
-            surplus: Lanes([R::ZERO; LANES]),
+            surplus: Lanes([0; LANES]),
         };
         for l in 0..LANES {
-            let count = sums.count.0[l] + R::of(f64::from(fixed.count.0[l]));
-            let clocks = if count > R::ZERO { R::ONE } else { R::ZERO };
-            solution.surplus.0[l] = R::of(f64::from(fixed.surplus.0[l])) + count - clocks;
-            let scale = R::ONE / if count > R::ZERO { count } else { R::ONE };
-            let x = sums.x.0[l] + fixed.sum[0].at::<R>(l);
-            let y = sums.y.0[l] + fixed.sum[1].at::<R>(l);
-            let z = sums.z.0[l] + fixed.sum[2].at::<R>(l);
-            let squares_zz = sums.count.0[l] - sums.xx.0[l] - sums.yy.0[l];
-            let xx = fixed.normal[0].at::<R>(l) + (sums.xx.0[l] - x * x * scale);
-            let yy = fixed.normal[1].at::<R>(l) + (sums.yy.0[l] - y * y * scale);
-            let zz = fixed.normal[2].at::<R>(l) + (squares_zz - z * z * scale);
-            let xy = fixed.normal[3].at::<R>(l) + (sums.xy.0[l] - x * y * scale);
-            let xz = fixed.normal[4].at::<R>(l) + (sums.xz.0[l] - x * z * scale);
-            let yz = fixed.normal[5].at::<R>(l) + (sums.yz.0[l] - y * z * scale);
+            let design = sums.count.0[l];
+            let count = design + fixed.shared.count.0[l];
+            let clocks = u32::from(count > 0);
+            solution.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
+            let scale = R::ONE / R::count(count + 1 - clocks);
+            let x = sums.x.0[l] + fixed.shared.sum::<R>(0, l);
+            let y = sums.y.0[l] + fixed.shared.sum::<R>(1, l);
+            let z = sums.z.0[l] + fixed.shared.sum::<R>(2, l);
+            let squares_zz = R::count(design) - sums.xx.0[l] - sums.yy.0[l];
+            let xx = fixed.normal::<R>(0, l) + (sums.xx.0[l] - x * x * scale);
+            let yy = fixed.normal::<R>(1, l) + (sums.yy.0[l] - y * y * scale);
+            let zz = fixed.normal::<R>(2, l) + (squares_zz - z * z * scale);
+            let xy = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
+            let xz = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
+            let yz = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
             let minor_zz = xx * yy - xy * xy;
             let minor_yy = xx * zz - xz * xz;
             let minor_xx = yy * zz - yz * yz;

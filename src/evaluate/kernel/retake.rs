@@ -1,8 +1,9 @@
 //! Samples in which a satellite is too close to the mask for f32: once more by the definitions.
 
 use super::super::Setup;
+use super::fixed::FixedSample;
 use super::lanes::FixedTile;
-use super::sample::{Doubt, Outcome, Scene, UNSOLVED};
+use super::sample::{Doubt, Outcome, POSITION_STATES, Scene, UNSOLVED};
 use crate::dop::Symmetric3;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -20,13 +21,13 @@ pub(super) fn settle(
     setup: &Setup,
     scene: &Scene,
     sky: &Sky<'_>,
-    fixed: &[FixedTile],
+    fixed: FixedSample<'_>,
     outcome: &mut Outcome,
 ) -> Result<(), EphemerisError> {
     for doubt in std::mem::take(&mut outcome.doubts) {
         let site = scene.tiles.tiles[doubt.tile].members[doubt.lane];
-        let fixed = fixed.get(doubt.tile).unwrap_or(&FixedTile::NONE);
-        let (visible, pdop) = sample(setup, site as usize, sky, fixed, &doubt)?;
+        let fixed = fixed.tile(doubt.tile);
+        let (visible, pdop) = sample(setup, site as usize, sky, &fixed, &doubt)?;
         outcome.visible += visible;
         let pdop = pdop.filter(|&pdop| pdop <= setup.pdop_cap);
         let available = pdop.is_some_and(|pdop| pdop <= setup.metrics.availability_pdop);
@@ -42,14 +43,14 @@ fn sample(
     setup: &Setup,
     site: usize,
     sky: &Sky<'_>,
-    fixed: &FixedTile,
+    fixed: &FixedTile<'_>,
     doubt: &Doubt,
 ) -> Result<(u64, Option<f64>), EphemerisError> {
     let local = &setup.sites[site].local;
-    let part = |split: &super::lanes::Split| split.at::<f64>(doubt.lane);
-    let [xx, yy, zz, xy, xz, yz] = fixed.normal.each_ref().map(part);
+    let [xx, yy, zz, xy, xz, yz] =
+        std::array::from_fn(|element| fixed.normal::<f64>(element, doubt.lane));
     let mut normal = Symmetric3 { xx, yy, zz, xy, xz, yz };
-    let mut sum = Vector3::from(fixed.sum.each_ref().map(part));
+    let mut sum = Vector3::from_fn(|axis, _| fixed.shared.sum::<f64>(axis, doubt.lane));
     let mut visible = 0_u32;
     for &n in &doubt.satellites {
         let satellite = &sky.ephemeris.satellites()[n as usize];
@@ -61,13 +62,13 @@ fn sample(
             visible += 1;
         }
     }
-    let in_group = f64::from(visible) + f64::from(fixed.count.0[doubt.lane]);
-    let mut surplus = f64::from(fixed.surplus.0[doubt.lane]);
-    if in_group > 0.0 {
-        normal += Symmetric3::outer(sum, -1.0 / in_group);
-        surplus += in_group - 1.0;
+    let in_group = visible + fixed.shared.count.0[doubt.lane];
+    let mut surplus = u32::from(fixed.surplus[doubt.lane]);
+    if in_group > 0 {
+        normal += Symmetric3::outer(sum, -1.0 / f64::from(in_group));
+        surplus += in_group - 1;
     }
-    let pdop = (surplus >= 3.0)
+    let pdop = (surplus >= POSITION_STATES)
         .then(|| normal.trace_of_inverse())
         .flatten()
         .map(f64::sqrt);

@@ -1,71 +1,17 @@
 //! One sample: all points, all satellites. The code that is compiled for each instruction set.
 
 use super::candidates::{Block, Candidates, bits};
+use super::fixed::FixedSample;
 use super::flight::{PatternFlight, Positions, Turn};
+use super::instructions::Work;
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, Solution, Sums};
-use super::tiles::{Tile, Tiles};
-use multiversion::multiversion;
+use super::tiles::{Horizon, Tile, Tiles};
 
 /// Stands for an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
 
 /// Least surplus of satellites over clock states: one satellite for each component of position.
-const POSITION_STATES: u8 = 3;
-
-/// The vector instructions that the kernel runs on.
-///
-/// All give the same bits; [`InstructionSet::detect`] finds the fastest one that there is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum InstructionSet {
-    /// AVX-512 of Ice Lake and later: sixteen points at once.
-    Avx512,
-    /// AVX2: eight points at once.
-    Avx2,
-    /// What every processor of the target has; SSE2 on x86-64: four points at once.
-    Baseline,
-}
-
-impl std::fmt::Display for InstructionSet {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.pad(match self {
-            Self::Avx512 => "AVX-512",
-            Self::Avx2 => "AVX2",
-            Self::Baseline => "baseline",
-        })
-    }
-}
-
-impl InstructionSet {
-    /// Every instruction set, the widest first.
-    pub const ALL: [Self; 3] = [Self::Avx512, Self::Avx2, Self::Baseline];
-
-    /// Whether the processor has it.
-    #[must_use]
-    pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        match self {
-            Self::Avx512 => {
-                is_x86_feature_detected!("avx512bw")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512vl")
-                    && is_x86_feature_detected!("avx512vbmi2")
-            }
-            Self::Avx2 => is_x86_feature_detected!("avx2"),
-            Self::Baseline => true,
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        matches!(self, Self::Baseline)
-    }
-
-    /// The widest one that the processor has.
-    #[must_use]
-    pub fn detect() -> Self {
-        Self::ALL
-            .into_iter()
-            .find(|set| set.is_available())
-            .unwrap_or(Self::Baseline)
-    }
-}
+pub(super) const POSITION_STATES: u32 = 3;
 
 /// Where f32 is good enough.
 #[derive(Debug, Clone, Copy)]
@@ -153,68 +99,65 @@ impl Outcome {
     }
 }
 
-/// The input of one sample.
-#[derive(Clone, Copy)]
-pub(super) struct Instant<'a> {
+/// One sample to be evaluated.
+pub(super) struct Sample<'a> {
+    pub(super) scene: &'a Scene,
     /// The pattern to fly; without one the positions are there already.
     pub(super) pattern: Option<(&'a PatternFlight, Turn)>,
-    /// The GNSS part, one for each tile; none without GNSS.
-    pub(super) fixed: &'a [FixedTile],
+    /// The GNSS part.
+    pub(super) fixed: FixedSample<'a>,
+    pub(super) work: &'a mut Workspace,
+    pub(super) outcome: &'a mut Outcome,
 }
 
-/// Evaluates one sample with the given instructions.
-pub(super) fn evaluate(
-    instructions: InstructionSet,
-    scene: &Scene,
-    instant: Instant<'_>,
-    work: &mut Workspace,
-    outcome: &mut Outcome,
-) {
-    match instructions {
-        InstructionSet::Avx512 => evaluate_avx512(scene, instant, work, outcome),
-        InstructionSet::Avx2 => evaluate_avx2(scene, instant, work, outcome),
-        InstructionSet::Baseline => evaluate_here(scene, instant, work, outcome),
+impl Work for Sample<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        if let Some((pattern, turn)) = &self.pattern {
+            pattern.fly(turn, &mut self.work.positions);
+        }
+        evaluate(self.scene, &self.fixed, self.work, self.outcome);
     }
-}
-
-#[multiversion(targets("x86_64+avx512f+avx512bw+avx512dq+avx512vl+bmi1+bmi2+lzcnt"))]
-fn evaluate_avx512(scene: &Scene, instant: Instant<'_>, work: &mut Workspace, out: &mut Outcome) {
-    evaluate_here(scene, instant, work, out);
-}
-
-#[multiversion(targets("x86_64+avx2+bmi1+bmi2+lzcnt"))]
-fn evaluate_avx2(scene: &Scene, instant: Instant<'_>, work: &mut Workspace, out: &mut Outcome) {
-    evaluate_here(scene, instant, work, out);
 }
 
 #[inline(always)]
-fn evaluate_here(scene: &Scene, instant: Instant<'_>, work: &mut Workspace, out: &mut Outcome) {
-    if let Some((pattern, turn)) = instant.pattern {
-        pattern.fly(turn, &mut work.positions);
-    }
+fn evaluate(scene: &Scene, fixed: &FixedSample<'_>, work: &mut Workspace, out: &mut Outcome) {
     let horizon = &scene.tiles.horizon;
-    let extent = work.all.fill(&work.positions, horizon);
-    let (slack_km, sine_slack) = (extent.cap_slack_km(), extent.sine_slack(horizon));
-    (out.visible, out.available, out.doubled) = (0, 0, 0);
+    work.all.fill(&work.positions, horizon);
+    let slack_km = Horizon::cap_slack_km(&work.positions);
+    let sine_slack = horizon.sine_slack(&work.positions);
+    out.doubled = 0;
     out.doubts.clear();
+    let (mut visible, mut available) = ([0; LANES], [0; LANES]);
     for group in &scene.tiles.groups {
         work.near.select(&work.all, &group.cap, slack_km);
         for number in group.tiles.clone() {
             let tile = &scene.tiles.tiles[number];
-            let fixed = instant.fixed.get(number).unwrap_or(&FixedTile::NONE);
+            let fixed = fixed.tile(number);
             let sums = single_sums(scene, tile, slack_km, work);
-            let verdict = Verdict::new(&sums, fixed, &scene.limits, sine_slack);
+            let verdict = Verdict::new(&sums, &fixed, &scene.limits, sine_slack);
+            for l in 0..LANES {
+                visible[l] += verdict.visible.0[l];
+                available[l] += verdict.available.0[l];
+            }
             out.pdop[number] = verdict.pdop;
-            out.visible += u64::from(verdict.visible);
-            out.available += u64::from(verdict.available);
-            if verdict.any_doubtful {
+            if any(&verdict.doubtful) {
                 doubt(number, &verdict, work, out);
             }
-            if verdict.any_coarse {
-                compute_again(scene, number, fixed, &verdict, work, out);
+            if any(&verdict.coarse) {
+                available[0] += compute_again(scene, number, &fixed, &verdict, work, out);
             }
         }
     }
+    out.visible = visible.into_iter().map(u64::from).sum();
+    out.available = available.into_iter().map(u64::from).sum();
+}
+
+#[inline(always)]
+fn any(lanes: &Lanes<u32>) -> bool {
+    lanes.0.iter().fold(0, |all, lane| all | lane) != 0
 }
 
 /// The sums of a tile in f32. Keeps which satellites were looked at.
@@ -230,47 +173,42 @@ fn single_sums(scene: &Scene, tile: &Tile, slack_km: f32, work: &mut Workspace) 
     sums
 }
 
-/// What f32 says about the points of a tile.
+/// What f32 says about the points of a tile; 0 or 1 where it is yes or no.
 struct Verdict {
     pdop: Lanes<f32>,
     /// Too close to the mask for f32.
-    doubtful: [bool; LANES],
+    doubtful: Lanes<u32>,
     /// PDOP too large for f32, or too close to a threshold.
-    coarse: [bool; LANES],
-    any_doubtful: bool,
-    any_coarse: bool,
-    visible: u32,
-    available: u32,
+    coarse: Lanes<u32>,
+    /// Visible satellites where there is no doubt.
+    visible: Lanes<u32>,
+    /// Available, and neither doubtful nor coarse.
+    available: Lanes<u32>,
 }
 
 impl Verdict {
     #[inline(always)]
-    fn new(sums: &Sums<f32>, fixed: &FixedTile, limits: &Limits, sine_slack: f32) -> Self {
+    fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits, sine_slack: f32) -> Self {
         let solution = Solution::new(sums, fixed);
+        let zero = Lanes([0; LANES]);
         let mut verdict = Self {
             pdop: Lanes([UNSOLVED; LANES]),
-            doubtful: [false; LANES],
-            coarse: [false; LANES],
-            any_doubtful: false,
-            any_coarse: false,
-            visible: 0,
-            available: 0,
+            doubtful: zero,
+            coarse: zero,
+            visible: zero,
+            available: zero,
         };
-        let enough = f32::from(POSITION_STATES);
         for l in 0..LANES {
             let pdop = solution.pdop.0[l];
-            let doubtful = sums.margin.0[l] <= sine_slack;
-            let counted = solution.surplus.0[l] >= enough;
-            let fine = limits.holds_in_single(pdop);
-            let coarse = counted & !fine & !doubtful;
-            verdict.pdop.0[l] = if counted { pdop } else { UNSOLVED };
-            verdict.doubtful[l] = doubtful;
-            verdict.coarse[l] = coarse;
-            verdict.any_doubtful |= doubtful;
-            verdict.any_coarse |= coarse;
-            verdict.visible += if doubtful { 0 } else { sums.count.0[l] as u32 };
-            let available = counted & fine & !doubtful & (pdop <= limits.available as f32);
-            verdict.available += u32::from(available);
+            let sure = u32::from(sums.margin.0[l] > sine_slack);
+            let counted = u32::from(solution.surplus.0[l] >= POSITION_STATES);
+            let fine = u32::from(limits.holds_in_single(pdop));
+            let reached = u32::from(pdop <= limits.available as f32);
+            verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
+            verdict.doubtful.0[l] = 1 - sure;
+            verdict.coarse.0[l] = counted & (1 - fine) & sure;
+            verdict.visible.0[l] = sums.count.0[l] * sure;
+            verdict.available.0[l] = counted & fine & sure & reached;
         }
         verdict
     }
@@ -282,7 +220,7 @@ fn doubt(number: usize, verdict: &Verdict, work: &Workspace, out: &mut Outcome) 
     let satellites: Vec<u32> = looked_at(work)
         .map(|(block, n)| block.index(n) as u32)
         .collect();
-    for lane in (0..LANES).filter(|&lane| verdict.doubtful[lane]) {
+    for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
         out.pdop[number].0[lane] = UNSOLVED;
         out.doubts.push(Doubt {
             tile: number,
@@ -297,16 +235,17 @@ fn looked_at(work: &Workspace) -> impl Iterator<Item = (&Block, usize)> {
     blocks.flat_map(|(block, &word)| bits(word).map(move |n| (block, n)))
 }
 
-/// Takes the tile again in f64, for the points that f32 is too coarse for.
+/// Takes the tile again in f64, for the points that f32 is too coarse for. Returns how many of
+/// them are available.
 #[inline(always)]
 fn compute_again(
     scene: &Scene,
     number: usize,
-    fixed: &FixedTile,
+    fixed: &FixedTile<'_>,
     verdict: &Verdict,
     work: &Workspace,
     out: &mut Outcome,
-) {
+) -> u32 {
     let mut sums = Sums::<f64>::zero();
     for (block, &word) in work.near.blocks().iter().zip(&work.words) {
         for n in bits(word) {
@@ -315,11 +254,13 @@ fn compute_again(
         }
     }
     let solution = Solution::new(&sums, fixed);
-    for lane in (0..LANES).filter(|&lane| verdict.coarse[lane]) {
+    let mut available = 0;
+    for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
         let pdop = solution.pdop.0[lane];
         let solved = pdop < f64::NO_SOLUTION && pdop <= scene.limits.cap;
         out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
-        out.available += u64::from(solved && pdop <= scene.limits.available);
+        available += u32::from(solved && pdop <= scene.limits.available);
         out.doubled += 1;
     }
+    available
 }

@@ -1,217 +1,254 @@
-//! Statistics of a stream of PDOP values in two passes, without keeping the values.
+//! Statistics of a stream of PDOP values in two passes, without keeping or sorting the values.
 //!
-//! The first pass counts values in narrow buckets and sums them. The counts say in which bucket
-//! each order statistic lies; the second pass collects the values of those few buckets, and sums
-//! what lies above the bucket of the value-at-risk. The result is exact, whatever the order of
-//! the values: counts are integers, and sums are made in blocks of samples that do not depend on
-//! who makes them.
+//! The first pass counts values by their leading bits and sums them. The counts say with which
+//! leading bits each order statistic begins; the second pass counts the trailing bits of the
+//! values that begin so, and sums the values beyond the value-at-risk's. That gives every order
+//! statistic and the tail exactly, in memory that does not depend on how many values there are.
+//!
+//! Counts are integers and do not depend on the order of the values; sums are made in pieces
+//! that do not depend on who makes them.
 
+use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::sample::UNSOLVED;
 use crate::stats::{Level, Summary, quantile_rank};
 
-/// Bits of an f32 that a bucket does not look at: it keeps 13 of the 23 of the fraction.
-const IGNORED_BITS: u32 = 10;
-/// Values below 2^-7 and from 2^17 on share the first and the last bucket.
-const FIRST: u32 = (127 - 7) << (23 - IGNORED_BITS);
-const BUCKETS: usize = 24 << (23 - IGNORED_BITS);
+/// Bits of an f32 that the first pass does not look at: it sees 11 of the 23 of the fraction.
+const TRAILING_BITS: u32 = 12;
 
-/// The bucket of a positive value; larger values have the same or a later one.
-fn bucket(value: f32) -> usize {
-    ((value.to_bits() >> IGNORED_BITS).saturating_sub(FIRST) as usize).min(BUCKETS - 1)
+/// Places begin at 2^-7: n satellites give a PDOP of 3/√n or more, which is above that up to
+/// 147 000 satellites. The place behind the last holds what is unsolved.
+const FIRST: u32 = (127 - 7) << (23 - TRAILING_BITS);
+const UNSOLVED_PLACE: u32 = (255 << (23 - TRAILING_BITS)) - FIRST;
+
+/// The place of a value in the first pass; larger values have the same or a later one.
+#[inline(always)]
+fn place(value: f32) -> u32 {
+    let leading = value.to_bits() >> TRAILING_BITS;
+    leading.max(FIRST) - FIRST
 }
 
-/// Least value of a bucket, and what its values are less than.
-fn edges(bucket: usize) -> (f32, f32) {
-    let edge = |number: usize| f32::from_bits((number as u32 + FIRST) << IGNORED_BITS);
-    let start = if bucket == 0 { 0.0 } else { edge(bucket) };
-    let end = if bucket == BUCKETS - 1 {
-        UNSOLVED
-    } else {
-        edge(bucket + 1)
-    };
-    (start, end)
+/// The value of a place with some trailing bits.
+fn value(place: u32, trailing: usize) -> f64 {
+    f64::from(f32::from_bits(
+        (place + FIRST) << TRAILING_BITS | trailing as u32,
+    ))
 }
 
-/// First pass: how many values there are in each bucket, and the largest.
+/// What passes over different pieces leave, put together.
+pub(super) trait Merge {
+    fn merged(self, other: &Self) -> Self;
+}
+
+/// First pass: how many values there are in each place.
 pub(super) struct Counts {
-    buckets: Vec<u64>,
-    solved: u64,
-    max: f32,
+    places: Vec<u64>,
+    values: u64,
 }
 
 impl Counts {
     pub(super) fn new() -> Self {
         Self {
-            buckets: vec![0; BUCKETS],
-            solved: 0,
-            max: 0.0,
+            places: vec![0; UNSOLVED_PLACE as usize + 1],
+            values: 0,
         }
-    }
-
-    /// Counts the solved values of some tiles.
-    pub(super) fn take(&mut self, tiles: &[Lanes<f32>]) {
-        for &value in tiles.iter().flat_map(|tile| &tile.0) {
-            if value < UNSOLVED {
-                self.buckets[bucket(value)] += 1;
-                self.solved += 1;
-                self.max = self.max.max(value);
-            }
-        }
-    }
-
-    pub(super) fn merged(mut self, other: &Self) -> Self {
-        for (mine, theirs) in self.buckets.iter_mut().zip(&other.buckets) {
-            *mine += theirs;
-        }
-        self.solved += other.solved;
-        self.max = self.max.max(other.max);
-        self
     }
 
     /// Solved values.
     pub(super) fn solved(&self) -> u64 {
-        self.solved
+        self.values - self.places[UNSOLVED_PLACE as usize]
     }
 
-    /// The bucket of the order statistic of a rank (from 1), and how many values of the bucket
-    /// come before it.
-    fn locate(&self, rank: usize) -> (usize, usize) {
+    /// Where the order statistic of a rank (from 1) lies.
+    fn locate(&self, rank: u64) -> Wanted {
         let mut before = rank - 1;
-        for (number, &count) in self.buckets.iter().enumerate() {
-            if before < count as usize {
-                return (number, before);
+        let mut places = (0..).zip(&self.places);
+        let place = places.find_map(|(place, &count)| {
+            let here = before < count;
+            before -= if here { 0 } else { count };
+            here.then_some(place)
+        });
+        Wanted {
+            place: place.unwrap_or(UNSOLVED_PLACE),
+            rank,
+            before,
+        }
+    }
+}
+
+impl Merge for Counts {
+    fn merged(mut self, other: &Self) -> Self {
+        add(&mut self.places, &other.places);
+        self.values += other.values;
+        self
+    }
+}
+
+fn add(mine: &mut [u64], theirs: &[u64]) {
+    for (mine, theirs) in mine.iter_mut().zip(theirs) {
+        *mine += theirs;
+    }
+}
+
+/// The first pass over some tiles; its output is the sum of the solved values.
+pub(super) struct Count<'a> {
+    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) counts: &'a mut Counts,
+}
+
+impl Work for Count<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let mut sums = [0.0; LANES];
+        for tile in self.tiles {
+            let mut places = [0; LANES];
+            for l in 0..LANES {
+                let value = tile.0[l];
+                places[l] = place(value);
+                sums[l] += f64::from(if value < UNSOLVED { value } else { 0.0 });
             }
-            before -= count as usize;
+            for place in places {
+                self.counts.places[place as usize] += 1;
+            }
         }
-        (BUCKETS - 1, 0)
+        self.counts.values += (self.tiles.len() * LANES) as u64;
+        sums.iter().sum()
     }
 }
 
-/// The sum of the solved values of some tiles.
-pub(super) fn sum(tiles: &[Lanes<f32>]) -> f64 {
-    let mut sums = [0.0; LANES];
-    for tile in tiles {
-        for (sum, &value) in sums.iter_mut().zip(&tile.0) {
-            let solved = value < UNSOLVED;
-            *sum += f64::from(if solved { value } else { 0.0 });
-        }
-    }
-    sums.iter().sum()
-}
-
-/// Where an order statistic lies: in a bucket, at a place (from 0) of its sorted values.
+/// An order statistic: its place, its rank among all, and how many values of the place come
+/// before it.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
-    start: f32,
-    end: f32,
-    place: usize,
+    place: u32,
+    rank: u64,
+    before: u64,
 }
 
-impl Wanted {
-    fn new(counts: &Counts, level: f64, solved: usize) -> Self {
-        let (bucket, place) = counts.locate(quantile_rank(level, solved));
-        let (start, end) = edges(bucket);
-        Self { start, end, place }
-    }
+/// Order statistics that are searched for: median, 95 %, 99 %, largest, value-at-risk.
+const WANTED: usize = 5;
+const VALUE_AT_RISK: usize = 4;
 
-    fn includes(&self, value: f32) -> bool {
-        (value >= self.start) & (value < self.end)
-    }
-}
-
-/// Second pass: what to look for.
+/// What the second pass looks for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
     level: Level,
-    solved: usize,
-    max: f32,
-    /// Median, 95 %, 99 %, value-at-risk.
-    wanted: [Wanted; 4],
+    solved: u64,
+    wanted: [Wanted; WANTED],
 }
 
-/// What a second pass over some tiles finds.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Found {
-    /// The values in the bucket of each order statistic.
-    values: [Vec<f32>; 4],
-    /// Sum and number of the values beyond the bucket of the value-at-risk.
-    tail: f64,
-    beyond: u64,
+/// Second pass: trailing bits of the values in the wanted places.
+pub(super) struct Found([Vec<u64>; WANTED]);
+
+impl Found {
+    pub(super) fn new() -> Self {
+        Self(std::array::from_fn(|_| vec![0; 1 << TRAILING_BITS]))
+    }
+}
+
+impl Merge for Found {
+    fn merged(mut self, other: &Self) -> Self {
+        for (mine, theirs) in self.0.iter_mut().zip(&other.0) {
+            add(mine, theirs);
+        }
+        self
+    }
+}
+
+/// The second pass over some tiles; its output is the sum of the solved values in places beyond
+/// that of the value-at-risk.
+pub(super) struct Find<'a> {
+    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) search: &'a Search,
+    pub(super) found: &'a mut Found,
+}
+
+impl Work for Find<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let wanted = self.search.wanted.map(|wanted| wanted.place);
+        let mut tail = [0.0; LANES];
+        for tile in self.tiles {
+            let mut hits = 0;
+            for l in 0..LANES {
+                let place = place(tile.0[l]);
+                let beyond = (place > wanted[VALUE_AT_RISK]) & (place < UNSOLVED_PLACE);
+                tail[l] += f64::from(if beyond { tile.0[l] } else { 0.0 });
+                for wanted in wanted {
+                    hits |= u32::from(place == wanted);
+                }
+            }
+            if hits != 0 {
+                note(tile, &wanted, self.found);
+            }
+        }
+        tail.iter().sum()
+    }
+}
+
+/// Counts the trailing bits of the values in wanted places.
+fn note(tile: &Lanes<f32>, wanted: &[u32; WANTED], found: &mut Found) {
+    for (counts, &wanted) in found.0.iter_mut().zip(wanted) {
+        for value in tile.0.iter().filter(|&&value| place(value) == wanted) {
+            counts[(value.to_bits() % (1 << TRAILING_BITS)) as usize] += 1;
+        }
+    }
 }
 
 impl Search {
     /// `None` when no value is solved.
     pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
-        let solved = usize::try_from(counts.solved).ok().filter(|&n| n > 0)?;
-        let levels = [0.50, 0.95, 0.99, level.get()];
-        Some(Self {
+        let solved = counts.solved();
+        let ranked = |q: f64| counts.locate(quantile_rank(q, solved as usize) as u64);
+        (solved > 0).then(|| Self {
             level,
             solved,
-            max: counts.max,
-            wanted: levels.map(|q| Wanted::new(counts, q, solved)),
+            wanted: [
+                ranked(0.50),
+                ranked(0.95),
+                ranked(0.99),
+                counts.locate(solved),
+                ranked(level.get()),
+            ],
         })
     }
 
-    /// Looks through some tiles.
-    pub(super) fn scan(&self, tiles: &[Lanes<f32>]) -> Found {
-        let mut found = Found::default();
-        let tail_start = self.wanted[3].end;
-        let mut tail = [0.0; LANES];
-        let mut beyond = [0_u32; LANES];
-        for tile in tiles {
-            let mut any = false;
-            for l in 0..LANES {
-                let value = tile.0[l];
-                let in_tail = (value >= tail_start) & (value < UNSOLVED);
-                tail[l] += f64::from(if in_tail { value } else { 0.0 });
-                beyond[l] += u32::from(in_tail);
-                any |= self.wanted.iter().any(|wanted| wanted.includes(value));
-            }
-            if any {
-                for (values, wanted) in found.values.iter_mut().zip(&self.wanted) {
-                    values.extend(tile.0.iter().filter(|&&value| wanted.includes(value)));
-                }
-            }
-        }
-        found.tail = tail.iter().sum();
-        found.beyond = beyond.into_iter().map(u64::from).sum();
-        found
-    }
-
-    /// The statistics, from the finds of all tiles and the sum of all values.
-    pub(super) fn summary(&self, mut found: Found, sum: f64) -> Summary {
-        let [p50, p95, p99, value_at_risk] = std::array::from_fn(|n| {
-            let values = &mut found.values[n];
-            values.sort_unstable_by(f32::total_cmp);
-            // The first pass has counted the value, so that it is there.
-            values
-                .get(self.wanted[n].place)
-                .map_or(f64::NAN, |&value| f64::from(value))
+    /// The statistics, from the finds of all tiles, the sum of all values and that of those
+    /// beyond the place of the value-at-risk.
+    pub(super) fn summary(&self, found: &Found, sum: f64, tail: f64) -> Summary {
+        let [p50, p95, p99, max, value_at_risk] = std::array::from_fn(|n| {
+            let Wanted { place, before, .. } = self.wanted[n];
+            let mut passed = 0;
+            let trailing = found.0[n].iter().position(|count| {
+                passed += count;
+                passed > before
+            });
+            trailing.map_or(f64::NAN, |trailing| value(place, trailing))
         });
-        let nearby = found.values[3].iter().map(|&value| f64::from(value));
-        let excess = found.tail - found.beyond as f64 * value_at_risk
-            + nearby
-                .map(|value| (value - value_at_risk).max(0.0))
-                .sum::<f64>();
+        let Wanted {
+            place,
+            rank,
+            before,
+        } = self.wanted[VALUE_AT_RISK];
+        let counts = &found.0[VALUE_AT_RISK];
+        let in_place: u64 = counts.iter().sum();
+        let beyond = self.solved - (rank - 1 - before) - in_place;
+        let nearby = counts.iter().enumerate().map(|(trailing, &count)| {
+            (value(place, trailing) - value_at_risk).max(0.0) * count as f64
+        });
+        let excess = tail - beyond as f64 * value_at_risk + nearby.sum::<f64>();
         let share = (1.0 - self.level.get()) * self.solved as f64;
         Summary {
             mean: sum / self.solved as f64,
             p50,
             p95,
             p99,
-            max: f64::from(self.max),
+            max,
             cvar: value_at_risk + excess / share,
         }
-    }
-}
-
-impl Found {
-    pub(super) fn add(&mut self, other: Self) {
-        for (mine, theirs) in self.values.iter_mut().zip(other.values) {
-            mine.extend(theirs);
-        }
-        self.tail += other.tail;
-        self.beyond += other.beyond;
     }
 }

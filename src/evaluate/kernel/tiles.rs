@@ -17,6 +17,7 @@
 //! the radius, makes this hold for points of an ellipsoid too; it never leaves out a satellite
 //! that is visible.
 
+use super::flight::Positions;
 use super::lanes::{LANES, Lanes, SiteLanes};
 use crate::ground::Site;
 use crate::visibility::Mask;
@@ -62,11 +63,15 @@ pub(super) struct Tiles {
 /// What bounds the sight of all points together.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Horizon {
-    /// Smallest and largest distance of a point from the centre of the Earth, km.
-    nearest_km: f64,
+    /// Largest distance of a point from the centre of the Earth, km.
     farthest_km: f64,
-    /// Least and largest elevation over the horizon of the sphere of what is at the mask, radians.
-    mask_rad: [f64; 2],
+    /// Least elevation over the horizon of the sphere of what is at the mask, radians; and sine
+    /// and cosine of the largest.
+    least_mask_rad: f64,
+    sin_most: f64,
+    cos_most: f64,
+    /// k², km²: what is nearer to the centre than k is nowhere visible.
+    pub(super) reach2: f64,
 }
 
 impl Horizon {
@@ -80,24 +85,41 @@ impl Horizon {
             tilt = tilt.max(site.local.origin_km.cross(&site.local.up).norm() / radius);
         }
         let (mask_rad, tilt_rad) = (mask.degrees().to_radians(), tilt.min(1.0).asin());
+        let (sin_most, cos_most) = (mask_rad + tilt_rad).min(FRAC_PI_2).sin_cos();
         Self {
-            nearest_km,
             farthest_km,
-            mask_rad: [mask_rad - tilt_rad, (mask_rad + tilt_rad).min(FRAC_PI_2)],
+            least_mask_rad: mask_rad - tilt_rad,
+            sin_most,
+            cos_most,
+            reach2: (nearest_km * (mask_rad - tilt_rad).cos()).powi(2),
         }
-    }
-
-    /// k², km²: what is nearer to the centre than k is nowhere visible.
-    pub(super) fn reach2(&self) -> f64 {
-        (self.nearest_km * self.mask_rad[0].cos()).powi(2)
     }
 
     /// Smallest distance from a point to a satellite at the mask that is `radius_km` from the
     /// centre; 0 for one that is not above all points.
-    pub(super) fn range_at_mask_km(&self, radius_km: f64) -> f64 {
-        let (sin, cos) = self.mask_rad[1].sin_cos();
-        let beyond = (radius_km.powi(2) - (self.farthest_km * cos).powi(2)).max(0.0);
-        (beyond.sqrt() - self.farthest_km * sin).max(0.0)
+    fn range_at_mask_km(&self, radius_km: f64) -> f64 {
+        let beyond = radius_km.powi(2) - (self.farthest_km * self.cos_most).powi(2);
+        (beyond.max(0.0).sqrt() - self.farthest_km * self.sin_most).max(0.0)
+    }
+
+    /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
+    /// were rounded by half a unit in each of three components, over the shortest range; and
+    /// eight roundings of the sine itself.
+    #[inline(always)]
+    pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
+        const ROOT_3: f64 = 1.732_050_807_568_877_2;
+        let rounding_km = positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3;
+        let range_km = self.range_at_mask_km(positions.nearest_km);
+        let slack = rounding_km / range_km + 4.0 * f64::from(f32::EPSILON);
+        // Satellites on the ground leave nothing to f32.
+        slack.min(2.0) as f32
+    }
+
+    /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
+    /// number in it, and as much again.
+    #[inline(always)]
+    pub(super) fn cap_slack_km(positions: &Positions) -> f32 {
+        positions.farthest_km as f32 * (16.0 * f32::EPSILON)
     }
 
     fn cap(&self, sites: &[Site], members: &[u32]) -> Cap {
@@ -113,11 +135,11 @@ impl Horizon {
         if radius > 1.2 {
             return Cap::EVERYTHING;
         }
-        let angle = radius - self.mask_rad[0];
+        let angle = radius - self.least_mask_rad;
         Cap {
             centre: centre.map(|x| x as f32).into(),
             sine: angle.sin() as f32,
-            bound: (self.reach2().sqrt() * angle.cos()) as f32,
+            bound: (self.reach2.sqrt() * angle.cos()) as f32,
         }
     }
 }
