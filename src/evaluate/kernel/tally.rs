@@ -174,10 +174,10 @@ impl Work for Find<'_> {
         let mut tail = [0.0; LANES];
         for tile in self.tiles {
             let mut hits = 0;
-            for l in 0..LANES {
-                let place = place(tile.0[l]);
+            for (value, tail) in tile.0.iter().zip(&mut tail) {
+                let place = place(*value);
                 let beyond = (place > wanted[VALUE_AT_RISK]) & (place < UNSOLVED_PLACE);
-                tail[l] += f64::from(if beyond { tile.0[l] } else { 0.0 });
+                *tail += f64::from(if beyond { *value } else { 0.0 });
                 for wanted in wanted {
                     hits |= u32::from(place == wanted);
                 }
