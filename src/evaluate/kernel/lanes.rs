@@ -37,10 +37,9 @@ pub(super) trait Real:
     /// A number from its f32 nearest and what that leaves over.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
-    fn magnitude(self) -> Self;
     /// Whether a satellite at this height over the horizon plane and this squared range is at or
-    /// above the mask; `sine` is height over range.
-    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> bool;
+    /// above the mask, and whether it may be; `sine` is height over range.
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> (bool, bool);
 }
 
 impl Real for f32 {
@@ -69,15 +68,10 @@ impl Real for f32 {
         self.sqrt()
     }
 
+    /// What may be but need not be above the mask is looked at again.
     #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-
-    /// Good enough, because decisions close to the mask are taken again.
-    #[inline(always)]
-    fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> bool {
-        sine >= mask.sine
+    fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> (bool, bool) {
+        (sine >= mask.sine + mask.slack, sine >= mask.sine - mask.slack)
     }
 }
 
@@ -106,15 +100,11 @@ impl Real for f64 {
         self.sqrt()
     }
 
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-
     /// The comparison of [`Mask::line_of_sight`], operation by operation.
     #[inline(always)]
-    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, _sine: Self) -> bool {
-        (height >= 0.0) & (height * height >= mask.sine2 * range2) & (range2 > 0.0)
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, _sine: Self) -> (bool, bool) {
+        let seen = (height >= 0.0) & (height * height >= mask.sine2 * range2) & (range2 > 0.0);
+        (seen, seen)
     }
 }
 
@@ -123,6 +113,8 @@ impl Real for f64 {
 pub(super) struct MaskTerms<R> {
     sine: R,
     sine2: R,
+    /// By how much a sine may be wrong; 0 in f64, which is exact as the plain path is.
+    slack: R,
 }
 
 impl<R: Real> MaskTerms<R> {
@@ -130,7 +122,13 @@ impl<R: Real> MaskTerms<R> {
         Self {
             sine: R::of(mask.degrees().to_radians().sin()),
             sine2: R::of(mask.sine_squared()),
+            slack: R::ZERO,
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn with_slack(self, slack: R) -> Self {
+        Self { slack, ..self }
     }
 }
 
@@ -158,8 +156,8 @@ pub(super) struct Sums<R> {
     pub(super) z: Lanes<R>,
     /// Visible satellites.
     pub(super) count: Lanes<u32>,
-    /// How close the sine of the nearest decision came to the mask.
-    pub(super) margin: Lanes<R>,
+    /// Satellites that may be visible.
+    pub(super) possible: Lanes<u32>,
 }
 
 impl<R: Real> Sums<R> {
@@ -176,7 +174,7 @@ impl<R: Real> Sums<R> {
             y: zero,
             z: zero,
             count: Lanes([0; LANES]),
-            margin: Lanes([R::ONE; LANES]),
+            possible: Lanes([0; LANES]),
         }
     }
 
@@ -193,11 +191,9 @@ impl<R: Real> Sums<R> {
             let range2 = dx * dx + dy * dy + dz * dz;
             let inverse = R::ONE / range2.root();
             let sine = height * inverse;
-            let seen = R::above(mask, height, range2, sine);
-            let margin = (sine - mask.sine).magnitude();
-            let nearest = self.margin.0[l];
-            self.margin.0[l] = if margin < nearest { margin } else { nearest };
+            let (seen, possible) = R::above(mask, height, range2, sine);
             let scale = if seen { inverse } else { R::ZERO };
+            self.possible.0[l] += u32::from(possible);
             self.count.0[l] += u32::from(seen);
             let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
             self.x.0[l] += vx;

@@ -20,3 +20,38 @@ fn probe() {
     }
     }
 }
+
+#[test]
+fn probe_count() {
+    use super::candidates::Candidates;
+    use super::flight::{PatternFlight, Positions};
+    use super::tiles::{Horizon, Tiles};
+    use crate::frames::EarthRotation;
+    let setup = setup([3.0, 54.0], Surface::Sphere);
+    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+    let flight = PatternFlight::new(&design, setup.model).unwrap();
+    let tiles = Tiles::new(&setup.sites, setup.mask);
+    for t in &tiles.tiles {
+        let mut v: Vec<(i32, i32)> = t.members.iter().map(|&m| (setup.sites[m as usize].latitude_deg as i32, setup.sites[m as usize].longitude_deg as i32)).collect();
+        v.sort();
+        println!("{:?}", v);
+    }
+    let mut positions = Positions::new(182);
+    let mut all = Candidates::with_capacity(182);
+    let mut near = Candidates::with_capacity(182);
+    let (mut tests, mut region) = (0, 0);
+    for e in setup.grid.iter() {
+        let rotation = EarthRotation::from_gmst(setup.grid.epoch().gmst_rad(e));
+        flight.fly(&flight.turn(e, rotation), &mut positions);
+        all.fill(&positions, &tiles.horizon);
+        let slack = Horizon::cap_slack_km(&positions);
+        for g in &tiles.groups {
+            near.select(&all, &g.cap, slack);
+            region += near.blocks().iter().map(|b| b.inside(&g.cap, slack).count_ones()).sum::<u32>();
+            for t in &tiles.tiles[g.tiles.clone()] {
+                tests += near.blocks().iter().map(|b| b.inside(&t.cap, slack).count_ones()).sum::<u32>();
+            }
+        }
+    }
+    println!("tests {tests} region {region} per sample {} {}", tests as f64 / 1440., region as f64 / 1440.);
+}
