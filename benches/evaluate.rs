@@ -36,9 +36,7 @@ fn paper() -> Setup {
     };
     Setup {
         grid: TimeGrid::new(epoch, 86_400.0, 60.0).expect(SOUND),
-        sites: region
-            .sites(Surface::Sphere)
-            .expect(SOUND),
+        sites: region.sites(Surface::Sphere).expect(SOUND),
         mask: Mask::from_degrees(7.0).expect(SOUND),
         gnss_mask: Mask::from_degrees(7.0).expect(SOUND),
         gnss: vec![Preset::BeiDou3],
@@ -67,15 +65,12 @@ fn setting_up() -> Evaluator {
 #[divan::bench(sample_count = 10)]
 fn propagation(bencher: Bencher) {
     let grid = paper().grid;
-    let ephemeris =
-        Ephemeris::of_design(&design(), Model::J2, grid).expect(SOUND);
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, grid).expect(SOUND);
     bencher.bench_local(|| {
         for elapsed_s in grid.iter() {
             let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
             for satellite in ephemeris.satellites() {
-                let state = ephemeris
-                    .state(satellite, elapsed_s)
-                    .expect(SOUND);
+                let state = ephemeris.state(satellite, elapsed_s).expect(SOUND);
                 black_box(rotation.to_earth_fixed(state.position_km));
             }
         }
@@ -86,17 +81,11 @@ fn propagation(bencher: Bencher) {
 #[divan::bench(sample_count = 100)]
 fn visibility(bencher: Bencher) {
     let setup = paper();
-    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid)
-        .expect(SOUND);
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
     let positions: Vec<_> = ephemeris
         .satellites()
         .iter()
-        .map(|s| {
-            ephemeris
-                .state(s, 0.0)
-                .expect(SOUND)
-                .position_km
-        })
+        .map(|s| ephemeris.state(s, 0.0).expect(SOUND).position_km)
         .collect();
     bencher.bench_local(|| {
         for site in &setup.sites {

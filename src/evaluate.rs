@@ -53,6 +53,13 @@ impl Setup {
     pub fn sample_count(&self) -> usize {
         self.sites.len() * self.grid.len()
     }
+
+    /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take, bytes; it does not
+    /// grow beyond a limit with points times samples.
+    #[must_use]
+    pub fn memory_bytes(&self, threads: usize) -> u64 {
+        kernel::memory_bytes(self, threads) as u64
+    }
 }
 
 /// Computes the metrics of designs under one [`Setup`].

@@ -61,11 +61,7 @@ pub(super) struct Evaluated {
 }
 
 impl Metrics {
-    pub(super) fn new(
-        evaluated: &Evaluated,
-        options: MetricOptions,
-        satellites: usize,
-    ) -> Self {
+    pub(super) fn new(evaluated: &Evaluated, options: MetricOptions, satellites: usize) -> Self {
         let count = evaluated.samples as f64;
         let mean_visible = evaluated.visible as f64 / count;
         let summary = evaluated.summary;

@@ -52,7 +52,8 @@ impl Block {
             low[l] = bit(l, l) | bit(QUARTER + l, QUARTER + l);
             high[l] = bit(2 * QUARTER + l, l) | bit(3 * QUARTER + l, QUARTER + l);
         }
-        let joined = |lanes: [u32; QUARTER]| u64::from(lanes.iter().fold(0, |all, bits| all | bits));
+        let joined =
+            |lanes: [u32; QUARTER]| u64::from(lanes.iter().fold(0, |all, bits| all | bits));
         joined(low) | joined(high) << (2 * QUARTER)
     }
 

@@ -57,7 +57,7 @@ pub(super) struct Workspace {
 impl Workspace {
     pub(super) fn new(satellites: usize) -> Self {
         let all = Candidates::with_capacity(satellites);
-        let blocks = satellites.div_ceil(BLOCK);
+        let blocks = satellites.div_ceil(BLOCK).max(1);
         Self {
             positions: Positions::new(satellites),
             near: all.clone(),
@@ -164,7 +164,15 @@ fn evaluate(scene: &Scene, fixed: &FixedSample<'_>, work: &mut Workspace, out: &
                 doubt(number, &verdict, looked, out);
             }
             if any(&verdict.coarse) {
-                available[0] += compute_again(scene, number, &fixed, &verdict, &work.positions, looked, out);
+                available[0] += compute_again(
+                    scene,
+                    number,
+                    &fixed,
+                    &verdict,
+                    &work.positions,
+                    looked,
+                    out,
+                );
             }
         }
     }
@@ -188,13 +196,16 @@ struct Looked<'a> {
 impl<'a> Looked<'a> {
     #[inline(always)]
     fn sums(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
-        let mut sums = Sums::zero();
+        let mut all = Sums::zero();
         for (block, &word) in self.blocks.iter().zip(self.words) {
+            let mut sums = Sums::zero();
             for n in bits(word) {
                 sums.add(sites, block.position(n), mask);
             }
+            // Sums of sums: hundreds of visible satellites one by one would cost f32 a digit.
+            all.merge(&sums);
         }
-        sums
+        all
     }
 
     /// The number of each among all satellites.

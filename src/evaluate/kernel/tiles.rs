@@ -244,12 +244,9 @@ fn middle(points: usize) -> usize {
 fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
     let origin = |m: u32| sites[m as usize].local.origin_km;
     let sum: Vector3<f64> = members.iter().map(|&m| origin(m)).sum();
-    let along = |key: &dyn Fn(Vector3<f64>) -> f64| {
-        members.iter().map(|&m| (m, key(origin(m)))).collect()
-    };
-    let eastwards = |p: Vector3<f64>| {
-        (sum.x * p.y - sum.y * p.x).atan2(sum.x * p.x + sum.y * p.y)
-    };
+    let along =
+        |key: &dyn Fn(Vector3<f64>) -> f64| members.iter().map(|&m| (m, key(origin(m)))).collect();
+    let eastwards = |p: Vector3<f64>| (sum.x * p.y - sum.y * p.x).atan2(sum.x * p.x + sum.y * p.y);
     [
         along(&|p| p.x),
         along(&|p| p.y),
