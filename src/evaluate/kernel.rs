@@ -31,7 +31,7 @@
 //!
 //! # Statistics
 //!
-//! Values are never sorted, and beyond [`KEPT_VALUES`] not even kept ([`tally`]).
+//! Values are never sorted, and and beyond a number of them not even kept ([`tally`]).
 
 mod candidates;
 mod fixed;
@@ -50,26 +50,52 @@ use super::{Evaluator, Setup};
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
-use crate::ground::Site;
 use crate::stats::Summary;
 use fixed::{Fixed, FixedTiles};
 use flight::PatternFlight;
-use lanes::{Lanes, MaskTerms};
+use lanes::{LANES, Lanes, MaskTerms};
 use rayon::prelude::*;
 use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
 use tally::{Count, Counts, Find, Found, Merge, Search};
 use tiles::Tiles;
 
-/// Values of PDOP up to which they are kept between the two passes of the statistics; beyond, the
-/// second pass computes them again.
-const KEPT_VALUES: usize = 4 << 20;
+/// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
+/// not grow with points times samples.
+#[derive(Debug, Clone, Copy)]
+struct Keep {
+    /// Values of PDOP between the two passes of the statistics of one design.
+    values: usize,
+    /// Bytes of the GNSS part between designs.
+    fixed_bytes: usize,
+}
+
+impl Default for Keep {
+    fn default() -> Self {
+        Self {
+            values: 4 << 20,
+            fixed_bytes: 256 << 20,
+        }
+    }
+}
 
 /// Values of PDOP that are made in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
 
 /// PDOP up to which f32 is trusted.
 const SINGLE_BELOW: f32 = 2.0;
+
+/// Memory of a kernel and of `threads` evaluations at a time, bytes.
+pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
+    let keep = Keep::default();
+    let tiles = setup.sites.len().div_ceil(LANES) * setup.grid.len();
+    let values = (tiles * LANES).min(keep.values) * size_of::<f32>();
+    let fixed = match tiles * FixedTiles::bytes(setup.clocks) {
+        bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
+        bytes => bytes,
+    };
+    fixed + threads * (values + Counts::BYTES + Found::BYTES)
+}
 
 /// Samples that were taken again in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,6 +111,7 @@ pub(super) struct Kernel {
     scene: Scene,
     fixed: Fixed,
     instructions: InstructionSet,
+    kept_values: usize,
 }
 
 /// Satellites, and the pattern behind them if there is a fast way to fly it.
@@ -116,21 +143,22 @@ impl Tallies {
 }
 
 impl Kernel {
-    /// Memory that the kernel and `threads` concurrent evaluations take at most, bytes.
-    pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> u64 {
-        let values = setup.sample_count().next_multiple_of(lanes::LANES);
-        let per_thread = values.min(KEPT_VALUES) * size_of::<f32>();
-        let tiles = setup.sites.len() * size_of::<Site>() * 2;
-        (Fixed::bytes(values) + tiles + per_thread * threads) as u64
-    }
-
     pub(super) fn new(
         setup: &Setup,
         rotations: &[EarthRotation],
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
+        Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
+    }
+
+    fn keeping_at_most(
+        keep: Keep,
+        setup: &Setup,
+        rotations: &[EarthRotation],
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask);
-        let fixed = Fixed::new(setup, &tiles, rotations)?;
+        let fixed = Fixed::new(setup, &tiles, rotations, keep.fixed_bytes)?;
         let scene = Scene {
             tiles,
             single: MaskTerms::new(setup.mask),
@@ -145,6 +173,7 @@ impl Kernel {
             scene,
             fixed,
             instructions,
+            kept_values: keep.values,
         })
     }
 
@@ -161,7 +190,7 @@ impl Kernel {
             ephemeris,
             pattern: pattern.as_ref(),
         };
-        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= KEPT_VALUES {
+        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= self.kept_values {
             self.keeping(evaluator, flight)
         } else {
             self.streaming(evaluator, flight)

@@ -2,6 +2,7 @@
 
 pub(crate) mod evaluate;
 pub(crate) mod export;
+pub(crate) mod lint;
 pub(crate) mod optimize;
 pub(crate) mod scenario;
 pub(crate) mod validate;
