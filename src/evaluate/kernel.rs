@@ -161,7 +161,7 @@ impl Kernel {
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask);
-        let fixed = Fixed::new(setup, &tiles, rotations, keep.fixed_bytes)?;
+        let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
         let scene = Scene {
             tiles,
             single: MaskTerms::new(setup.mask),

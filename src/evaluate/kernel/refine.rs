@@ -7,9 +7,9 @@
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 
-/// Relative distance within which the order of two f32 values means nothing: four times the error
-/// of one.
-const WINDOW: f64 = 4e-6;
+/// Relative distance within which the order of two f32 values means nothing: more than twice the
+/// error of one.
+const WINDOW: f64 = 2e-6;
 
 /// More values than this in a window are so dense that the order does not matter.
 const CROWD: usize = 256;
@@ -43,6 +43,15 @@ impl Window {
         }
     }
 
+    /// Notes the places of a tile that are inside, up to a crowd.
+    fn note(&mut self, number: usize, tile: &Lanes<f32>) {
+        if self.places.len() <= CROWD {
+            let inside = |l: &usize| tile.0[*l] >= self.start && tile.0[*l] <= self.end;
+            let lanes = (0..LANES).filter(inside);
+            self.places.extend(lanes.map(|lane| (number, lane)));
+        }
+    }
+
     /// The order statistic among the values of the places, computed again.
     pub(super) fn pick(&self, mut values: Vec<f32>) -> Option<f64> {
         values.sort_unstable_by(f32::total_cmp);
@@ -63,21 +72,25 @@ impl<const N: usize> Work for Surround<'_, N> {
     #[inline(always)]
     fn run(self) -> [Window; N] {
         let mut windows = self.ranked.map(Window::new);
-        for window in &mut windows {
-            let (start, end) = (window.start, window.end);
-            for (number, tile) in self.tiles.iter().enumerate() {
-                let (mut below, mut inside) = (0, 0);
-                for &value in &tile.0 {
-                    below += u32::from(value < start);
-                    inside |= u32::from((value >= start) & (value <= end));
-                }
-                window.below += u64::from(below);
-                if inside != 0 && window.places.len() <= CROWD {
-                    let lanes = 0..LANES;
-                    let hits = lanes.filter(|&l| tile.0[l] >= start && tile.0[l] <= end);
-                    window.places.extend(hits.map(|lane| (number, lane)));
+        let starts = windows.each_ref().map(|window| window.start);
+        let ends = windows.each_ref().map(|window| window.end);
+        let mut below = [[0_u32; LANES]; N];
+        for (number, tile) in self.tiles.iter().enumerate() {
+            let mut inside = 0;
+            for (l, &value) in tile.0.iter().enumerate() {
+                for w in 0..N {
+                    below[w][l] += u32::from(value < starts[w]);
+                    inside |= u32::from((value >= starts[w]) & (value <= ends[w]));
                 }
             }
+            if inside != 0 {
+                windows
+                    .iter_mut()
+                    .for_each(|window| window.note(number, tile));
+            }
+        }
+        for (window, below) in windows.iter_mut().zip(below) {
+            window.below = below.into_iter().map(u64::from).sum();
             if window.places.len() > CROWD {
                 window.places.clear();
             }
