@@ -2,12 +2,16 @@
 
 mod csv;
 mod diagnostics;
+mod reproduction;
 mod results;
 mod table;
 mod validation;
 
 pub use csv::{CsvError, checks_csv, front_csv, history_csv, metrics_csv};
 pub use diagnostics::{Diagnostic, diagnose};
+pub use reproduction::{
+    ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
+};
 pub use results::{
     DesignSummary, EvaluateResult, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
     ValidateResult,
