@@ -10,7 +10,7 @@ use crate::search::{DesignSpace, Goals};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
-use crate::visibility::{Mask, MaskError};
+use crate::visibility::{Mask, MaskError, MaskTable, MaskTableError};
 use std::io;
 use thiserror::Error;
 
@@ -45,6 +45,9 @@ pub enum SetupError {
     /// A mask out of range.
     #[error("visibility: {0}")]
     Mask(#[from] MaskError),
+    /// A skyline with gaps.
+    #[error("visibility.mask-table: {0}")]
+    MaskTable(#[from] MaskTableError),
     /// A tail level out of range.
     #[error("objectives.cvar-level: {0}")]
     Level(#[from] LevelError),
@@ -86,6 +89,7 @@ impl Scenario {
             sites: self.sites(read)?,
             mask: Mask::from_degrees(self.visibility.mask_deg)?,
             gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
+            skyline: self.skyline()?,
             gnss: self
                 .gnss
                 .constellations
@@ -94,6 +98,7 @@ impl Scenario {
                 .map(System::from)
                 .collect(),
             clocks: self.gnss.clocks,
+            observation_weights: self.visibility.weighting,
             pdop_cap: self.visibility.pdop_cap,
             model: self.propagation.model,
             metrics: MetricOptions {
@@ -102,6 +107,20 @@ impl Scenario {
                 availability_pdop: self.objectives.availability_pdop,
             },
         })
+    }
+
+    fn skyline(&self) -> Result<Option<MaskTable>, MaskTableError> {
+        let vertices: Vec<(f64, f64)> = self
+            .visibility
+            .mask_table
+            .iter()
+            .map(|point| (point.azimuth_deg, point.mask_deg))
+            .collect();
+        if vertices.is_empty() {
+            Ok(None)
+        } else {
+            MaskTable::new(vertices).map(Some)
+        }
     }
 
     fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
