@@ -183,7 +183,9 @@ fn searches_table(study: &Reproduction) -> Table {
 
 fn expected(line: &Line) -> String {
     match line.expected {
-        Expected::Value { value, tolerance } => format!("{value} ± {}", round(tolerance)),
+        Expected::Value { value, tolerance } => {
+            format!("{} ± {}", round(value), round(tolerance))
+        }
         Expected::AtLeast(bound) => format!(">= {bound}"),
         Expected::MoreThan(bound) => format!("> {bound}"),
     }

@@ -131,7 +131,8 @@ pub struct RowResult {
     pub paper_mean_pdop: f64,
     /// Ours as printed.
     pub as_printed: Value,
-    /// The inclination at which N̄ is the paper's, degrees, if there is one near.
+    /// Where the printed inclination does not give the paper's N̄: the nearest that does, degrees, if
+    /// there is one.
     pub fitting_inclination_deg: Option<f64>,
     /// Ours at that inclination, or as printed where there is none.
     pub at_fitting: Value,
@@ -197,6 +198,7 @@ pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
         rows: &rows,
         mask_fit: &mask_fit,
         printed: &printed,
+        fitted: &fitted,
         at_fitting: &at_fitting,
         alternatives: &sensitivity[1..],
         searches: &searches,
@@ -280,10 +282,16 @@ fn measure(
     })
 }
 
-/// The inclination that fits each row, where the printed one does not give N̄ to its last digit.
+/// The inclination that fits each row, where the printed one does not give its N̄.
 fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperError> {
     let sky = Evaluator::new(fit::sky(setup))?;
-    let fit = |row: &Row| fit::fitting_inclination(&sky, row);
+    let fit = |row: &Row| {
+        let printed = sky.design(&row.design)?.mean_visible;
+        if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
+            return Ok(None);
+        }
+        fit::fitting_inclination(&sky, row)
+    };
     rows.par_iter().map(fit).collect()
 }
 

@@ -115,6 +115,17 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
+    /// Run this many seeds, from the one of the scenario upwards, and report their spread.
+    ///
+    /// Each seed is a run of its own in DIR/seed-N; DIR gets the table of all as seeds.csv and
+    /// seeds.json. What is printed is the front of the first seed and the table.
+    #[arg(long, value_name = "N")]
+    pub(crate) seeds: Option<NonZeroUsize>,
+
+    /// Say how many front members the front of this other run dominates, such as an exhaustive one.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) sweep: Option<PathBuf>,
+
     /// Go on from the checkpoint of the run directory.
     #[arg(long)]
     pub(crate) resume: bool,

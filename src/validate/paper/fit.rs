@@ -14,8 +14,8 @@ const CLOSE: f64 = 5e-4;
 const MOST_STEPS: usize = 20;
 
 /// Steps and reach of the walk away from a printed inclination, degrees.
-const WALK_STEP_DEG: f64 = 2.0;
-const WALK_STEPS: u32 = 15;
+const WALK_STEP_DEG: f64 = 2.5;
+const WALK_STEPS: u32 = 4;
 
 /// Masks between which a row's own mask is sought, degrees.
 const MASKS_DEG: [f64; 2] = [0.0, 30.0];
@@ -78,7 +78,7 @@ pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, 
 }
 
 /// The inclination nearest to the printed one at which the row's N̄ comes out, in steps of a
-/// tenth of a degree as the paper prints them; `None` when there is none within 30°.
+/// tenth of a degree as the paper prints them; `None` when there is none within 10°.
 pub(super) fn fitting_inclination(
     evaluator: &Evaluator,
     row: &Row,
