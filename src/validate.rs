@@ -1,5 +1,6 @@
 //! Checks against standards that this library did not write: residuals, budgets and gates.
 
+pub mod paper;
 pub mod residuals;
 pub mod sgp4;
 

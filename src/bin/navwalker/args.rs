@@ -60,6 +60,15 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
+    /// Repeat the study that this program implements: its tables and figures, ours beside theirs.
+    ///
+    /// Every statement of the paper is judged by a computed rule: met, met under another assumption
+    /// (one changed at a time), or not met. DIR gets the report and the data of each figure.
+    ///
+    /// Example: navwalker reproduce --set visibility.mask-deg=10
+    #[command(verbatim_doc_comment)]
+    Reproduce(ReproduceArgs),
+
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
@@ -115,6 +124,17 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
+    /// Run this many seeds, from the one of the scenario upwards, and report their spread.
+    ///
+    /// Each seed is a run of its own in DIR/seed-N; DIR gets the table of all as seeds.csv and
+    /// seeds.json. What is printed is the front of the first seed and the table.
+    #[arg(long, value_name = "N")]
+    pub(crate) seeds: Option<NonZeroUsize>,
+
+    /// Say how many front members the front of this other run dominates, such as an exhaustive one.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) sweep: Option<PathBuf>,
+
     /// Go on from the checkpoint of the run directory.
     #[arg(long)]
     pub(crate) resume: bool,
@@ -152,6 +172,41 @@ pub(crate) struct EvaluateArgs {
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+}
+
+/// The form of a study on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyFormat {
+    /// Tables to read.
+    Text,
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header: the statements.
+    Csv,
+    /// Markdown, for an appendix.
+    Markdown,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    /// Where the report and the data of the figures go.
+    #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
+    pub(crate) out: PathBuf,
+
+    /// Seed of the searches; the same as `--set optimizer.seed=N`.
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Replace a directory that holds something else.
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: StudyFormat,
 }
 
 /// Which design of a run to take.
