@@ -7,7 +7,7 @@
 use divan::{Bencher, black_box};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::Preset;
-use navwalker::dop::{ClockGroup, Clocks, Geometry};
+use navwalker::dop::{ClockGroup, Clocks, Geometry, ObservationWeights};
 use navwalker::earth::Surface;
 use navwalker::ephemeris::Ephemeris;
 use navwalker::evaluate::{Evaluator, InstructionSet, MetricOptions, Setup};
@@ -112,7 +112,7 @@ fn pdop(bencher: Bencher) {
         let mut geometry = Geometry::default();
         for system in [&directions[..8], &directions[8..]] {
             let mut group = ClockGroup::default();
-            black_box(system).iter().for_each(|&v| group.add(v));
+            black_box(system).iter().for_each(|&v| group.add(v, 1.0));
             geometry.add(&group);
         }
         geometry.pdop(100.0)

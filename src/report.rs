@@ -8,7 +8,7 @@ mod seeds;
 mod table;
 mod validation;
 
-pub use csv::{CsvError, checks_csv, front_csv, history_csv, metrics_csv};
+pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
 pub use diagnostics::{Diagnostic, at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,

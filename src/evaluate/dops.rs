@@ -27,6 +27,29 @@ pub struct DopStatistics {
     pub solved_fraction: f64,
 }
 
+impl DopStatistics {
+    /// Each dilution by name: GDOP, PDOP, HDOP, VDOP, and the TDOP of each clock.
+    #[must_use]
+    pub fn named(&self) -> Vec<(String, Option<Summary>)> {
+        let fixed = [
+            ("GDOP", self.gdop),
+            ("PDOP", self.pdop),
+            ("HDOP", self.hdop),
+            ("VDOP", self.vdop),
+        ];
+        let mut named: Vec<_> = fixed
+            .into_iter()
+            .map(|(name, summary)| (name.to_owned(), summary))
+            .collect();
+        named.extend(
+            self.tdop
+                .iter()
+                .map(|clock| (format!("TDOP {}", clock.system), clock.tdop)),
+        );
+        named
+    }
+}
+
 /// The dilution of precision of one clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClockDop {

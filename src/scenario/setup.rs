@@ -1,9 +1,10 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
 use super::{Algorithm, Region, Scenario};
-use crate::constellation::gnss::System;
+use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
+use crate::formats::{ReadError, tle};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals};
@@ -20,6 +21,14 @@ const SWEEP_BATCH: usize = 256;
 /// Why a scenario cannot be set up although each of its values is in range.
 #[derive(Debug, Error)]
 pub enum SetupError {
+    /// A GNSS file gives no system.
+    #[error("gnss.files: {file}")]
+    GnssFile {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: GnssFileError,
+    },
     /// The points file cannot be read.
     #[error("region.points: cannot read {file}")]
     PointsFile {
@@ -56,6 +65,20 @@ pub enum SetupError {
     ReferenceDesign(#[from] NotationError),
 }
 
+/// Why a file of element sets gives no system.
+#[derive(Debug, Error)]
+pub enum GnssFileError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// A line of it is wrong.
+    #[error(transparent)]
+    Format(#[from] ReadError),
+    /// Its sets make no system.
+    #[error(transparent)]
+    Sets(#[from] ElementSetError),
+}
+
 impl Scenario {
     /// The samples in time.
     ///
@@ -90,13 +113,7 @@ impl Scenario {
             mask: Mask::from_degrees(self.visibility.mask_deg)?,
             gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
             skyline: self.skyline()?,
-            gnss: self
-                .gnss
-                .constellations
-                .iter()
-                .copied()
-                .map(System::from)
-                .collect(),
+            gnss: self.systems(read)?,
             clocks: self.gnss.clocks,
             observation_weights: self.visibility.weighting,
             pdop_cap: self.visibility.pdop_cap,
@@ -107,6 +124,33 @@ impl Scenario {
                 availability_pdop: self.objectives.availability_pdop,
             },
         })
+    }
+
+    /// The presets, and then a system for each file, named by the file.
+    fn systems(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<System>, SetupError> {
+        let mut systems: Vec<System> = self
+            .gnss
+            .constellations
+            .iter()
+            .copied()
+            .map(System::from)
+            .collect();
+        for file in &self.gnss.files {
+            let error = |source| SetupError::GnssFile {
+                file: file.clone(),
+                source,
+            };
+            let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
+            let sets = tle::read(bytes.as_slice()).map_err(|source| error(source.into()))?;
+            let name = file.rsplit('/').next().unwrap_or(file);
+            let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+            let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
+            systems.push(system.into());
+        }
+        Ok(systems)
     }
 
     fn skyline(&self) -> Result<Option<MaskTable>, MaskTableError> {

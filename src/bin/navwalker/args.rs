@@ -2,7 +2,10 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
+use navwalker::formats::CcsdsVersion;
 use navwalker::formats::export::Product;
+use navwalker::formats::metadata::ElementChoice;
+use navwalker::formats::sp3::Version as Sp3Version;
 use navwalker::frames::Frame;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -59,6 +62,12 @@ pub(crate) enum Command {
     /// Example: navwalker reproduce --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
+
+    /// Check files against the standard of their format: TLE, OMM, OEM, SP3, STK ephemeris.
+    ///
+    /// Example: navwalker lint constellation.tle oem/*.oem
+    #[command(verbatim_doc_comment)]
+    Lint(LintArgs),
 
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
@@ -148,6 +157,18 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "NOTATION")]
     pub(crate) design: Design,
 
+    /// Add GDOP, HDOP, VDOP and the TDOP of each system: mean and tail.
+    #[arg(long)]
+    pub(crate) dops: bool,
+
+    /// Write metrics per instant and per point into this directory: epochs.csv and points.csv.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) series: Option<PathBuf>,
+
+    /// Replace a series directory that holds something.
+    #[arg(long, requires = "series")]
+    pub(crate) force: bool,
+
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
@@ -231,15 +252,6 @@ pub(crate) struct DesignArgs {
     pub(crate) pick: Pick,
 }
 
-/// What stands in the mean motion slot of element sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Slot {
-    /// dM/dt of secular J2: what the slot means.
-    Kozai,
-    /// sqrt(mu/a^3): drifts by up to 400 km a day; for comparisons only.
-    Kepler,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
@@ -248,7 +260,8 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// Products, separated by commas: tle, oem, csv, and tle-states for comparing another SGP4.
+    /// Products, separated by commas: tle, omm, oem, sp3, stk, csv, and others; see the error of a
+    /// wrong name for the list.
     #[arg(
         long = "as",
         value_name = "PRODUCTS",
@@ -274,9 +287,22 @@ pub(crate) struct ExportArgs {
     )]
     pub(crate) frame: Frame,
 
-    /// How the mean motion of element sets is made.
-    #[arg(long, value_enum, default_value = "kozai")]
-    pub(crate) tle_theory: Slot,
+    /// How element sets are made: kozai (the J2 mean elements), fit (least squares of SGP4 to the
+    /// trajectory), or kepler (the common mistake, for comparisons).
+    #[arg(long, value_name = "THEORY", default_value = "kozai")]
+    pub(crate) tle_theory: ElementChoice,
+
+    /// Version of CCSDS messages: 2.0 or 3.0.
+    #[arg(long, value_name = "VERSION", default_value = "2.0")]
+    pub(crate) ccsds_version: CcsdsVersion,
+
+    /// Version of SP3: c or d.
+    #[arg(long, value_name = "VERSION", default_value = "d")]
+    pub(crate) sp3_version: Sp3Version,
+
+    /// Letter of the satellite ids of SP3.
+    #[arg(long, value_name = "LETTER", default_value = "L")]
+    pub(crate) sp3_letter: char,
 }
 
 /// The form of a validation on stdout.
@@ -313,6 +339,21 @@ pub(crate) struct ValidateArgs {
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: ReportFormat,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LintArgs {
+    /// The files.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Check against this format instead of the one that the file shows.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) format: Option<navwalker::formats::lint::Format>,
+
+    /// Form of the result on stdout.
+    #[arg(long = "format", value_enum, default_value = "text")]
+    pub(crate) output: Format,
 }
 
 #[derive(Debug, Args)]

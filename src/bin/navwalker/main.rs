@@ -54,6 +54,7 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Export(args) => commands::export::run(&args),
+        Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),
         Command::Scenario(args) => commands::scenario::run(&args),
     }
