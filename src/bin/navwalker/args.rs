@@ -54,6 +54,12 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
+    /// Check files against the standard of their format: TLE, OMM, OEM, SP3, STK ephemeris.
+    ///
+    /// Example: navwalker lint constellation.tle oem/*.oem
+    #[command(verbatim_doc_comment)]
+    Lint(LintArgs),
+
     /// Repeat the study that this program implements: its tables and figures, ours beside theirs.
     ///
     /// Every statement of the paper is judged by a computed rule: met, met under another assumption
@@ -62,12 +68,6 @@ pub(crate) enum Command {
     /// Example: navwalker reproduce --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
-
-    /// Check files against the standard of their format: TLE, OMM, OEM, SP3, STK ephemeris.
-    ///
-    /// Example: navwalker lint constellation.tle oem/*.oem
-    #[command(verbatim_doc_comment)]
-    Lint(LintArgs),
 
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
