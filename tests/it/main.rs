@@ -4,4 +4,5 @@
 
 mod cli;
 mod reference;
+mod study;
 mod tidy;

@@ -39,22 +39,13 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// How far `found` is from being right, 0 when it is; `None` for what is not a number.
-    fn distance(self, found: f64) -> Option<f64> {
-        let distance = match self {
-            Self::Value { value, tolerance } => {
-                let difference = (found - value).abs();
-                if difference <= tolerance {
-                    0.0
-                } else {
-                    difference
-                }
-            }
-            Self::AtLeast(bound) => (bound - found).max(0.0),
-            Self::MoreThan(bound) if found > bound => 0.0,
-            Self::MoreThan(bound) => (bound - found).max(f64::MIN_POSITIVE),
-        };
-        distance.is_finite().then_some(distance)
+    /// Whether `found` is what the paper says; what is not a number never is.
+    pub(super) fn holds(self, found: f64) -> bool {
+        match self {
+            Self::Value { value, tolerance } => (found - value).abs() <= tolerance,
+            Self::AtLeast(bound) => found >= bound,
+            Self::MoreThan(bound) => found > bound,
+        }
     }
 }
 
@@ -94,7 +85,7 @@ pub(super) fn judge(
     ours: Option<f64>,
     others: &[Otherwise<'_>],
 ) -> Line {
-    let right = |found: Option<f64>| found.and_then(|x| expected.distance(x)) == Some(0.0);
+    let right = |found: Option<f64>| found.is_some_and(|found| expected.holds(found));
     let away = |other: &&Otherwise<'_>| match (expected, other.found) {
         (Expected::Value { value, .. }, Some(found)) => (found - value).abs(),
         // Beyond a bound all are right alike.

@@ -98,6 +98,7 @@ pub(super) fn lines(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
     let mut lines = table1(evidence);
     lines.extend(mask(evidence));
     lines.extend(table2(evidence));
+    lines.extend(whole_table2(evidence));
     lines.extend(pareto(evidence));
     lines.extend(percentages(evidence)?);
     lines.extend(figure2(evidence));
@@ -152,9 +153,23 @@ fn mask(evidence: &Evidence<'_>) -> Option<Line> {
     Some(judge(texts, expected, ours, &[]))
 }
 
+/// What a row prints: N̄ and mean PDOP.
+fn printed(row: &Row) -> [Expected; 2] {
+    let visible = Expected::Value {
+        value: row.mean_visible,
+        tolerance: VISIBLE_TOLERANCE,
+    };
+    let pdop = Expected::Value {
+        value: row.mean_pdop,
+        tolerance: row.mean_pdop * PDOP_TOLERANCE_PERCENT / 100.0,
+    };
+    [visible, pdop]
+}
+
 fn table2(evidence: &Evidence<'_>) -> Vec<Line> {
     let mut lines = Vec::new();
     for (n, (row, fitted)) in evidence.rows.iter().zip(evidence.fitted).enumerate() {
+        let [visible, pdop] = printed(row);
         let name = row.name();
         let inclination_deg = fitted.unwrap_or(row.design.inclination_deg());
         let fitting = format!("inclination {inclination_deg}°");
@@ -163,18 +178,31 @@ fn table2(evidence: &Evidence<'_>) -> Vec<Line> {
             let texts = ["Table II", &statement, ""];
             evidence.judge_fitted(texts, expected, &fitting, |values| of(&values[n]))
         };
-        let visible = Expected::Value {
-            value: row.mean_visible,
-            tolerance: VISIBLE_TOLERANCE,
-        };
-        let pdop = Expected::Value {
-            value: row.mean_pdop,
-            tolerance: row.mean_pdop * PDOP_TOLERANCE_PERCENT / 100.0,
-        };
         lines.push(judge("visible", visible, |value| Some(value.mean_visible)));
         lines.push(judge("mean PDOP", pdop, |value| value.mean_pdop));
     }
     lines
+}
+
+/// Whether one assumption gives a whole column: an assumption that suits one row may fail another.
+fn whole_table2(evidence: &Evidence<'_>) -> [Line; 2] {
+    let share = |values: &[Value], which: usize| {
+        let rows = evidence.rows.iter().zip(values);
+        percent(rows.map(|(row, value)| {
+            let found = [Some(value.mean_visible), value.mean_pdop][which];
+            found.is_some_and(|found| printed(row)[which].holds(found))
+        }))
+    };
+    let line = |statement, which| {
+        let texts = ["Table II", statement, "%"];
+        evidence.judge(texts, Expected::AtLeast(100.0), |values| {
+            share(values, which)
+        })
+    };
+    [
+        line("rows whose visible satellites come out together", 0),
+        line("rows whose mean PDOP comes out together", 1),
+    ]
 }
 
 /// Table II is headed "Pareto-optimal solutions".
