@@ -1,5 +1,6 @@
 //! Results as people and programs read them.
 
+mod certificate;
 mod csv;
 mod diagnostics;
 mod reproduction;
@@ -8,6 +9,7 @@ mod seeds;
 mod table;
 mod validation;
 
+pub use certificate::{Certificate, Missed};
 pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
 pub use diagnostics::{Diagnostic, at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{

@@ -1,6 +1,6 @@
 //! The objects that `--format json` prints and that run directories hold.
 
-use super::{Diagnostic, VERSION, diagnose, dominated_by};
+use super::{Certificate, Diagnostic, VERSION, diagnose, dominated_by};
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
@@ -160,6 +160,9 @@ pub struct OptimizeResult {
     pub generations: [u64; 2],
     /// What the program notices.
     pub diagnostics: Vec<Diagnostic>,
+    /// What a sweep of the same problem says of the front, when it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
@@ -192,21 +195,25 @@ impl OptimizeResult {
             seed: scenario.optimizer.seed,
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
+            certificate: None,
             scenario: scenario.into(),
             version: VERSION,
             history: search.history().to_vec(),
         }
     }
 
-    /// Notes how many front members another front dominates: points of `objectives`, as they are
-    /// minimised.
-    pub fn compare(&mut self, objectives: &[Quantity], sweep: &[Vec<f64>]) {
-        let point = |member: &FrontMember| {
-            let values = objectives.iter().zip(&member.objectives);
-            values.map(|(q, (_, value))| q.minimised(*value)).collect()
+    /// Holds the front against a sweep of the same problem.
+    pub fn certify(&mut self, sweep: &Self, objectives: &[Quantity]) {
+        let points = |result: &Self| -> Vec<Vec<f64>> {
+            let point = |member: &FrontMember| {
+                let values = objectives.iter().zip(&member.objectives);
+                values.map(|(q, (_, value))| q.minimised(*value)).collect()
+            };
+            result.front.iter().map(point).collect()
         };
-        let front: Vec<Vec<f64>> = self.front.iter().map(point).collect();
-        self.diagnostics.extend(dominated_by(&front, sweep));
+        self.diagnostics
+            .extend(dominated_by(&points(self), &points(sweep)));
+        self.certificate = Some(Certificate::new(self, sweep, objectives));
     }
 
     /// The pick of the fuzzy decision.

@@ -53,34 +53,26 @@ fn several_seeds_are_several_runs() {
 }
 
 #[test]
-fn a_front_is_compared_with_a_sweep() {
+fn a_front_is_certified_by_a_sweep() {
     let directory = TempDir::new().unwrap();
     let place = directory.path();
-    let sweep = [
+    // Random search with eight draws, which the sweep beats easily.
+    let certified = [
         "--out",
-        "sweep",
-        "--set",
-        "optimizer.algorithm=exhaustive",
+        "random",
+        "--certify",
+        "--format",
+        "json",
         "--set",
         "search.altitude-step-km=300",
         "--set",
         "search.inclination-step-deg=2",
-    ];
-    assert_eq!(ran(place, &optimize(&sweep)).status, 0);
-    // Random search with eight draws, which the sweep beats easily.
-    let compared = [
-        "--out",
-        "random",
-        "--sweep",
-        "sweep",
-        "--format",
-        "json",
         "--set",
         "optimizer.algorithm=random",
         "--set",
         "optimizer.generations=1",
     ];
-    let random = ran(place, &optimize(&compared));
+    let random = ran(place, &optimize(&certified));
     assert_eq!(random.status, 0, "{}", random.stderr);
     let value: Value = serde_json::from_str(&random.stdout).unwrap();
     assert!(
@@ -88,20 +80,20 @@ fn a_front_is_compared_with_a_sweep() {
         "{:?}",
         codes(&value)
     );
-    // A front in other objectives cannot be compared.
-    let others = [
-        "--sweep",
-        "sweep",
-        "--set",
-        "objectives.minimize=[\"planes\"]",
-    ];
-    let refused = ran(place, &optimize(&others));
-    assert_eq!(refused.status, 2);
+    let certificate = &value["certificate"];
+    let number = |name: &str| certificate[name].as_f64().unwrap();
+    assert!(number("exact_hypervolume") > number("found_hypervolume"));
+    let distances = certificate["distances"].as_array().unwrap();
+    assert_eq!(distances.len(), value["front"].as_array().unwrap().len());
     assert!(
-        refused.stderr.contains("has no objective planes"),
-        "{}",
-        refused.stderr
+        distances
+            .iter()
+            .any(|distance| distance.as_f64().unwrap() > 0.0)
     );
+    assert!(certificate["missed"]["members"].as_u64().unwrap() > 0);
+    // The sweep is a run of its own, which a second certificate takes up again.
+    assert!(place.join("random-sweep/front.json").exists());
+    assert_eq!(ran(place, &optimize(&certified)).stdout, random.stdout);
 }
 
 #[test]

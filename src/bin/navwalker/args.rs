@@ -89,7 +89,7 @@ pub(crate) enum Command {
 }
 
 /// Which study a command works on.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario.
     #[arg(value_name = "SCENARIO", default_value = "paper")]
@@ -111,7 +111,7 @@ pub(crate) enum Format {
     Csv,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct OptimizeArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
@@ -131,9 +131,12 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seeds: Option<NonZeroUsize>,
 
-    /// Say how many front members the front of this other run dominates, such as an exhaustive one.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) sweep: Option<PathBuf>,
+    /// Also sweep the whole search space on the scenario's steps and hold the front against the
+    /// exact one: both hypervolumes, the distance of each member, and what was missed.
+    ///
+    /// The sweep is a run of its own in DIR-sweep, which is resumed when it is there.
+    #[arg(long)]
+    pub(crate) certify: bool,
 
     /// Go on from the checkpoint of the run directory.
     #[arg(long)]

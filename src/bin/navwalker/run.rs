@@ -208,20 +208,6 @@ fn stored_front(directory: &Path) -> Result<(PathBuf, Vec<StoredMember>)> {
     Ok((path, stored.front))
 }
 
-/// The front of a run in the given objectives, as they are minimised.
-pub(crate) fn front_points(directory: &Path, objectives: &[Quantity]) -> Result<Vec<Vec<f64>>> {
-    let (path, members) = stored_front(directory)?;
-    let value = |member: &StoredMember, quantity: &Quantity| {
-        let value = member.objectives.get(&quantity.to_string());
-        let value = value
-            .and_then(serde_json::Value::as_f64)
-            .with_context(|| format!("{} has no objective {quantity}", path.display()))?;
-        Ok(quantity.minimised(value))
-    };
-    let point = |member: &StoredMember| objectives.iter().map(|q| value(member, q)).collect();
-    members.iter().map(point).collect()
-}
-
 /// The design that `pick` names in the front of a run.
 pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<Design> {
     let (path, members) = stored_front(directory)?;

@@ -4,13 +4,14 @@ mod seeds;
 
 use crate::args::{Format, OptimizeArgs};
 use crate::progress::Progress;
-use crate::run::{self, Identity, RunDirectory};
+use crate::run::{Identity, RunDirectory};
 use crate::study::Study;
 use crate::{Status, output};
 use anyhow::{Context, Result};
 use navwalker::evaluate::Evaluator;
 use navwalker::optimize::{Search, Strategy};
 use navwalker::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
+use navwalker::scenario::Algorithm;
 use navwalker::search::DesignProblem;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -19,18 +20,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
     let study = Study::load(&args.study, seed.as_slice())?;
-    let sweep = match &args.sweep {
-        Some(directory) => run::front_points(directory, &study.scenario.objectives.minimize)?,
-        None => Vec::new(),
-    };
     match args.seeds {
-        Some(count) => seeds::run(args, study, count, &sweep),
-        None => one(args, &study, &sweep),
+        Some(count) => seeds::run(args, study, count),
+        None => one(args, &study),
     }
 }
 
 /// The search with the seed of the scenario.
-fn one(args: &OptimizeArgs, study: &Study, sweep: &[Vec<f64>]) -> Result<Status> {
+fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     let scenario = &study.scenario;
     let default_out = || {
         PathBuf::from(format!(
@@ -43,7 +40,17 @@ fn one(args: &OptimizeArgs, study: &Study, sweep: &[Vec<f64>]) -> Result<Status>
     let directory = open(args, study, &out)?;
     let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
-    let ended = search(args, study, &evaluator, &directory, &interrupted, sweep)?;
+    let Some(sweep) = sweep(args, study, &evaluator, &out, &interrupted)? else {
+        return Ok(Status::Interrupted);
+    };
+    let ended = search(
+        args,
+        study,
+        &evaluator,
+        &directory,
+        &interrupted,
+        sweep.as_ref(),
+    )?;
     let result = &ended.result;
     output::result(&match args.format {
         Format::Text => text(result, &scenario.name),
@@ -57,6 +64,34 @@ fn one(args: &OptimizeArgs, study: &Study, sweep: &[Vec<f64>]) -> Result<Status>
     }
     hint_what_next(result, &shown);
     Ok(status(result))
+}
+
+/// The result of the sweep that certifies, if one is asked for; `None` when it was interrupted.
+pub(super) fn sweep(
+    args: &OptimizeArgs,
+    study: &Study,
+    evaluator: &Evaluator,
+    out: &Path,
+    interrupted: &AtomicBool,
+) -> Result<Option<Option<OptimizeResult>>> {
+    if !args.certify {
+        return Ok(Some(None));
+    }
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    let place = out.with_file_name(name);
+    let study = study.with_algorithm(Algorithm::Exhaustive);
+    let args = OptimizeArgs {
+        resume: true,
+        ..args.clone()
+    };
+    let directory = open(&args, &study, &place)?;
+    let ended = search(&args, &study, evaluator, &directory, interrupted, None)?;
+    if !ended.is_done {
+        hint_resume(&ended.result, &place.display().to_string());
+        return Ok(None);
+    }
+    Ok(Some(Some(ended.result)))
 }
 
 /// The run directory of a study.
@@ -79,7 +114,7 @@ pub(super) fn search(
     evaluator: &Evaluator,
     directory: &RunDirectory,
     interrupted: &AtomicBool,
-    sweep: &[Vec<f64>],
+    sweep: Option<&OptimizeResult>,
 ) -> Result<Ended> {
     let scenario = &study.scenario;
     let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals())?;
@@ -92,7 +127,9 @@ pub(super) fn search(
     }
     progress.finish();
     let mut result = OptimizeResult::new(&problem, &search, scenario);
-    result.compare(&scenario.objectives.minimize, sweep);
+    if let Some(sweep) = sweep {
+        result.certify(sweep, &scenario.objectives.minimize);
+    }
     directory.finish(scenario, &search, &result)?;
     Ok(Ended {
         result,
@@ -137,7 +174,7 @@ fn start(
         ));
         return Ok(search);
     }
-    if args.resume {
+    if args.resume && !args.certify {
         output::hint("no checkpoint to resume from; starting anew");
     }
     Ok(study
@@ -200,6 +237,9 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
             "* chosen by fuzzy decision: {}, the largest least membership ({:.3}) over the objectives\n",
             chosen.design.notation, chosen.membership
         );
+    }
+    if let Some(certificate) = &result.certificate {
+        text += &certificate.to_text();
     }
     for diagnostic in &result.diagnostics {
         text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);

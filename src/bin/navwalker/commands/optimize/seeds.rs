@@ -1,6 +1,6 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{Ended, hint_resume, interrupt_flag, open, search, status, text};
+use super::{Ended, hint_resume, interrupt_flag, open, search, status, sweep, text};
 use crate::args::{Format, OptimizeArgs};
 use crate::study::Study;
 use crate::{Status, files, output};
@@ -17,12 +17,7 @@ const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
 /// What the run directories of the seeds start with.
 const RUN: &str = "seed-";
 
-pub(super) fn run(
-    args: &OptimizeArgs,
-    mut study: Study,
-    count: NonZeroUsize,
-    sweep: &[Vec<f64>],
-) -> Result<Status> {
+pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) -> Result<Status> {
     let first = study.scenario.optimizer.seed;
     let last = u64::try_from(count.get() - 1)
         .ok()
@@ -38,13 +33,22 @@ pub(super) fn run(
     }
     let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
+    let Some(sweep) = sweep(args, &study, &evaluator, &out, &interrupted)? else {
+        return Ok(Status::Interrupted);
+    };
     let mut results = Vec::new();
     for seed in first..=last {
         study.scenario.optimizer.seed = seed;
         let place = out.join(format!("{RUN}{seed}"));
         let directory = open(args, &study, &place)?;
-        let Ended { result, is_done } =
-            search(args, &study, &evaluator, &directory, &interrupted, sweep)?;
+        let Ended { result, is_done } = search(
+            args,
+            &study,
+            &evaluator,
+            &directory,
+            &interrupted,
+            sweep.as_ref(),
+        )?;
         if !is_done {
             hint_resume(&result, &place.display().to_string());
             return Ok(Status::Interrupted);
