@@ -7,7 +7,7 @@ use anyhow::{Result, bail};
 use navwalker::report::{
     ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
 };
-use navwalker::validate::{Findings, sgp4::against_sgp4};
+use navwalker::validate::{Findings, Subject, sgp4::against_sgp4};
 
 /// The targets that can be named.
 const TARGETS: [&str; 1] = ["sgp4"];
@@ -27,7 +27,8 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         files::require_vacant(directory, false)?;
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
-    let findings: Findings = against_sgp4(&design, study.scenario.time_grid()?)?;
+    let evaluator = study.evaluator()?;
+    let findings: Findings = against_sgp4(&Subject::new(design, &evaluator))?;
     let result = ValidateResult::new(&design, findings, &study.scenario);
     if let Some(directory) = &args.out {
         let staged = files::StagedDirectory::new(directory)?;
