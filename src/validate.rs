@@ -3,13 +3,17 @@
 //! What is on trial are the [`Parts`] of the library; a [`Subject`] is a design in a study, with
 //! the parts that fly and see it. A target (a standard) takes a subject and gives [`Findings`].
 
+pub mod analytic;
 mod decisions;
 pub mod distribution;
+mod eccentricity;
 pub mod geodesic;
+pub mod numerical;
 pub mod residuals;
 pub mod sgp4;
 
 use crate::constellation::{Design, Satellite, Slot};
+use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
 use crate::evaluate::{Evaluator, Setup};
@@ -113,6 +117,8 @@ pub struct Parts {
     pub gmst_rad: fn(Epoch, f64) -> f64,
     /// East, north and up at a latitude and longitude, radians.
     pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
+    /// The clock states that are solved for, by those that are meant.
+    pub clocks: fn(Clocks) -> Clocks,
     /// Elevation and azimuth of an Earth-fixed position, radians.
     pub look_angles: fn(&LocalFrame, nalgebra::Vector3<f64>) -> (f64, f64),
 }
@@ -126,6 +132,7 @@ impl Default for Parts {
             cancelling_perigee_deg: 270.0,
             gmst_rad: Epoch::gmst_rad,
             local_frame: LocalFrame::new,
+            clocks: |meant| meant,
             look_angles: LocalFrame::look_angles,
         }
     }
@@ -212,6 +219,9 @@ pub enum ValidateError {
     /// An element does not fit a TLE.
     #[error(transparent)]
     Tle(#[from] crate::formats::tle::TleFieldError),
+    /// An integration fails.
+    #[error(transparent)]
+    Integration(#[from] numerical::integrator::IntegrationError),
     /// There is no identity for a satellite.
     #[error(transparent)]
     Identity(#[from] crate::formats::metadata::IdentityError),

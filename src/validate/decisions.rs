@@ -288,8 +288,8 @@ fn metric_checks(
     [first, second]: &[Metrics; 2],
     gates: Option<DecisionGates>,
 ) -> Vec<Check> {
-    // Flips of both signs cancel: at most half of them are left in the mean.
-    let visible_gate = gates.map(|gates| 0.5 * gates.flips * gates.satellites);
+    // Each flip changes a count by one.
+    let visible_gate = gates.map(|gates| gates.flips * gates.satellites);
     // A satellite more or less among n changes PDOP by about its 1/n.
     let relative = gates
         .map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
@@ -298,7 +298,7 @@ fn metric_checks(
         ["change of mean visible satellites", "1", "mean"],
         second.mean_visible - first.mean_visible,
         visible_gate,
-        "half of the bound on flips, as flips of both signs cancel",
+        "the bound on flips: each changes a count by one, and flips of both signs cancel",
     )];
     let pdop = [
         ("mean-pdop", first.mean_pdop, second.mean_pdop, Some(1.0)),

@@ -5,10 +5,10 @@
 //! eccentricity that J3 forces, and (d) second-order secular terms. Each has a closed form at e = 0,
 //! from which the gates are made, so that they follow the inclination and altitude of the design.
 
-mod causes;
+pub(super) mod causes;
 mod element_sets;
 mod frozen;
-mod rates;
+pub(super) mod rates;
 mod verification;
 
 use super::decisions::{DecisionGates, Seen, flip_gate};

@@ -19,23 +19,23 @@ const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// Closed forms of the causes, for one orbit; all at e = 0 (M-30 to M-35).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Causes {
+pub(in crate::validate) struct Causes {
     /// Constant shift of the radius, km.
-    pub(super) radius_shift_km: f64,
+    pub(in crate::validate) radius_shift_km: f64,
     /// Amplitudes of the short-period terms, km.
-    pub(super) short_period_km: [f64; 3],
+    pub(in crate::validate) short_period_km: [f64; 3],
     /// Amplitude of the radial effect of the frozen eccentricity, km; in-track is twice that.
-    pub(super) frozen_km: f64,
+    pub(in crate::validate) frozen_km: f64,
     /// Bound on the in-track rate of second-order terms, km/day.
-    pub(super) second_order_km_per_day: f64,
+    pub(in crate::validate) second_order_km_per_day: f64,
     /// In-track rate of sqrt(μ/a³) in the Kozai slot, km/day.
-    pub(super) kepler_slot_km_per_day: f64,
+    pub(in crate::validate) kepler_slot_km_per_day: f64,
     /// Share of first-order sizes that the eccentricity adds.
-    pub(super) eccentric_factor: f64,
+    pub(in crate::validate) eccentric_factor: f64,
 }
 
 impl Causes {
-    pub(super) fn of(orbit: &MeanElements) -> Self {
+    pub(in crate::validate) fn of(orbit: &MeanElements) -> Self {
         let (sin_i, cos_i) = orbit.inclination_rad.sin_cos();
         let a = orbit.semi_major_axis_km;
         let e = orbit.eccentricity;
@@ -75,7 +75,7 @@ impl Causes {
     }
 
     /// Bounds on the RMS of mean J2 against SGP4 over a span, km.
-    pub(super) fn rms_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
+    pub(in crate::validate) fn rms_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
         let frozen = match zonals {
             ZonalHarmonics::Full => self.frozen_km / SQRT_2,
             ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
@@ -94,7 +94,7 @@ impl Causes {
     }
 
     /// The bounds that are left when the short-period theory of J2 is flown too.
-    pub(super) fn osculating_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
+    pub(in crate::validate) fn osculating_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
         let mut without = *self;
         // SGP4 floors the eccentricity at 1e-6, 7 m; first-order terms are good to J2 of their size.
         without.radius_shift_km = 0.02;
@@ -105,7 +105,7 @@ impl Causes {
     /// Bound on the slope of the mean in-track difference, km/day: second order, and for spans so
     /// short that the mean over the constellation is not yet a mean over the orbit, the periodic
     /// part.
-    pub(super) fn growth_gate_km_per_day(&self, days: f64) -> f64 {
+    pub(in crate::validate) fn growth_gate_km_per_day(&self, days: f64) -> f64 {
         let periodic = self.short_period_km[1] + 2.0 * self.frozen_km;
         let leftover = 0.02 * periodic / days.min(1.0);
         self.eccentric_factor * (self.second_order_km_per_day + leftover)
@@ -113,6 +113,6 @@ impl Causes {
 }
 
 /// Whether SGP4 flies its deep-space theory for an orbit.
-pub(super) fn is_deep_space(orbit: &MeanElements) -> bool {
+pub(in crate::validate) fn is_deep_space(orbit: &MeanElements) -> bool {
     TAU / orbit.kepler_mean_motion_rad_s() >= DEEP_SPACE_PERIOD_S
 }

