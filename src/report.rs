@@ -6,7 +6,7 @@ mod results;
 mod table;
 mod validation;
 
-pub use csv::{CsvError, checks_csv, front_csv, history_csv, metrics_csv};
+pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
 pub use diagnostics::{Diagnostic, diagnose};
 pub use results::{
     DesignSummary, EvaluateResult, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,

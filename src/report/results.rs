@@ -2,7 +2,7 @@
 
 use super::{Diagnostic, VERSION, diagnose};
 use crate::constellation::Design;
-use crate::evaluate::Metrics;
+use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
 use crate::scenario::Scenario;
 use crate::search::DesignProblem;
@@ -78,6 +78,9 @@ pub struct EvaluateResult {
     pub design: DesignSummary,
     /// Its metrics.
     pub metrics: Metrics,
+    /// All dilutions of precision, when they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dops: Option<DopStatistics>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
@@ -87,10 +90,16 @@ pub struct EvaluateResult {
 impl EvaluateResult {
     /// The result of one design.
     #[must_use]
-    pub fn new(design: &Design, metrics: Metrics, scenario: &Scenario) -> Self {
+    pub fn new(
+        design: &Design,
+        metrics: Metrics,
+        dops: Option<DopStatistics>,
+        scenario: &Scenario,
+    ) -> Self {
         Self {
             design: design.into(),
             metrics,
+            dops,
             scenario: scenario.into(),
             version: VERSION,
         }

@@ -131,8 +131,8 @@ pub struct Visibility {
     pub mask_deg: f64,
     /// Lowest elevation of a visible GNSS satellite, degrees.
     pub gnss_mask_deg: f64,
-    /// Skyline by rising azimuth, or empty: linear between its points and from the last to the
-    /// first across north; where it is higher than a mask it counts instead.
+    /// Skyline by azimuth rising from 0 to 360, or empty: linear between its points; where it is
+    /// higher than a mask it counts instead.
     pub mask_table: Vec<MaskPoint>,
     /// How a line of sight counts in the solution.
     pub weighting: ObservationWeights,
@@ -143,7 +143,7 @@ pub struct Visibility {
 /// One point of a skyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaskPoint {
-    /// Azimuth from north over east, degrees, 0 to below 360.
+    /// Azimuth from north over east, degrees, 0 to 360.
     pub azimuth_deg: f64,
     /// Lowest elevation of a visible satellite there, degrees.
     pub mask_deg: f64,

@@ -1,16 +1,17 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
 use super::{Algorithm, Region, Scenario};
-use crate::constellation::gnss::System;
+use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
+use crate::formats::{ReadError, tle};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, LaunchCost};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
-use crate::visibility::{Mask, MaskError};
+use crate::visibility::{Mask, MaskError, MaskTable, MaskTableError};
 use std::io;
 use thiserror::Error;
 
@@ -20,6 +21,14 @@ const SWEEP_BATCH: usize = 256;
 /// Why a scenario cannot be set up although each of its values is in range.
 #[derive(Debug, Error)]
 pub enum SetupError {
+    /// A GNSS file gives no system.
+    #[error("gnss.files: {file}")]
+    GnssFile {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: GnssFileError,
+    },
     /// The points file cannot be read.
     #[error("region.points: cannot read {file}")]
     PointsFile {
@@ -45,12 +54,29 @@ pub enum SetupError {
     /// A mask out of range.
     #[error("visibility: {0}")]
     Mask(#[from] MaskError),
+    /// A skyline with gaps.
+    #[error("visibility.mask-table: {0}")]
+    MaskTable(#[from] MaskTableError),
     /// A tail level out of range.
     #[error("objectives.cvar-level: {0}")]
     Level(#[from] LevelError),
     /// The reference design is no design.
     #[error("reference-design: {0}")]
     ReferenceDesign(#[from] NotationError),
+}
+
+/// Why a file of element sets gives no system.
+#[derive(Debug, Error)]
+pub enum GnssFileError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// A line of it is wrong.
+    #[error(transparent)]
+    Format(#[from] ReadError),
+    /// Its sets make no system.
+    #[error(transparent)]
+    Sets(#[from] ElementSetError),
 }
 
 impl Scenario {
@@ -86,14 +112,10 @@ impl Scenario {
             sites: self.sites(read)?,
             mask: Mask::from_degrees(self.visibility.mask_deg)?,
             gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
-            gnss: self
-                .gnss
-                .constellations
-                .iter()
-                .copied()
-                .map(System::from)
-                .collect(),
+            skyline: self.skyline()?,
+            gnss: self.systems(read)?,
             clocks: self.gnss.clocks,
+            observation_weights: self.visibility.weighting,
             pdop_cap: self.visibility.pdop_cap,
             model: self.propagation.model,
             metrics: MetricOptions {
@@ -102,6 +124,47 @@ impl Scenario {
                 availability_pdop: self.objectives.availability_pdop,
             },
         })
+    }
+
+    /// The presets, and then a system for each file, named by the file.
+    fn systems(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<System>, SetupError> {
+        let mut systems: Vec<System> = self
+            .gnss
+            .constellations
+            .iter()
+            .copied()
+            .map(System::from)
+            .collect();
+        for file in &self.gnss.files {
+            let error = |source| SetupError::GnssFile {
+                file: file.clone(),
+                source,
+            };
+            let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
+            let sets = tle::read(bytes.as_slice()).map_err(|source| error(source.into()))?;
+            let name = file.rsplit('/').next().unwrap_or(file);
+            let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+            let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
+            systems.push(system.into());
+        }
+        Ok(systems)
+    }
+
+    fn skyline(&self) -> Result<Option<MaskTable>, MaskTableError> {
+        let vertices: Vec<(f64, f64)> = self
+            .visibility
+            .mask_table
+            .iter()
+            .map(|point| (point.azimuth_deg, point.mask_deg))
+            .collect();
+        if vertices.is_empty() {
+            Ok(None)
+        } else {
+            MaskTable::new(vertices).map(Some)
+        }
     }
 
     fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {

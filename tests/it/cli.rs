@@ -227,7 +227,7 @@ fn a_scenario_too_large_for_memory_is_refused_before_it_starts() {
         "--set",
         "time.step-s=86.4",
         "--set",
-        "gnss.clocks=shared",
+        "region.weights=cos-latitude",
     ]);
     assert!(stderr.contains("GiB"), "{stderr}");
 }

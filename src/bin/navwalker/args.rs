@@ -128,6 +128,18 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "NOTATION")]
     pub(crate) design: Design,
 
+    /// Add GDOP, HDOP, VDOP and the TDOP of each system: mean and tail.
+    #[arg(long)]
+    pub(crate) dops: bool,
+
+    /// Write metrics per instant and per point into this directory: epochs.csv and points.csv.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) series: Option<PathBuf>,
+
+    /// Replace a series directory that holds something.
+    #[arg(long, requires = "series")]
+    pub(crate) force: bool,
+
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,

@@ -4,6 +4,7 @@ use crate::args::{DesignArgs, Pick, StudyArgs};
 use crate::{output, run};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
+use navwalker::constellation::gnss::System;
 use navwalker::evaluate::{Evaluator, Setup};
 use navwalker::scenario::{Scenario, builtin};
 use std::fs;
@@ -63,6 +64,13 @@ impl Study {
         let read = |file: &str| fs::read(self.directory.join(file));
         let setup = self.scenario.setup(&read)?;
         check_memory(&setup)?;
+        for system in &setup.gnss {
+            if let System::Sets(sets) = system
+                && let Some(stale) = sets.stale(setup.grid)
+            {
+                output::warning(&stale.to_string());
+            }
+        }
         Ok(setup)
     }
 

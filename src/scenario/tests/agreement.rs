@@ -23,9 +23,9 @@ fn the_canonical_text_has_every_key_and_parses_back() {
 #[test]
 fn spelling_does_not_move_the_canonical_text() {
     let one = "[time]\nduration-h = 24.0\n[region]\nlongitude-deg = [160, -155]\nstep-deg = [5, 5.0]\n\
-               [visibility]\nmask-table = [[-0.0, 1e1]]\n[search]\nphasing = [2, 2]";
+               [visibility]\nmask-table = [[-0.0, 1e1], [360, 10]]\n[search]\nphasing = [2, 2]";
     let two = "[search]\nphasing = 2\n[region]\nstep-deg = 5\nlongitude-deg = [160.0, 205]\n\
-               [visibility]\nmask-table = [[0, 10]]\n[time]\nduration-h = 2.4e1";
+               [visibility]\nmask-table = [[0, 10], [3.6e2, 10]]\n[time]\nduration-h = 2.4e1";
     let (one, two) = (parse(one, &[]).unwrap(), parse(two, &[]).unwrap());
     assert_eq!(one.to_toml(), two.to_toml());
     assert_eq!(one.hash(), two.hash());
@@ -47,7 +47,7 @@ fn the_hash_moves_with_everything_that_is_computed() {
         "region.points=a.csv",
         "visibility.mask-deg=8",
         "visibility.gnss-mask-deg=8",
-        "visibility.mask-table=[[0, 10]]",
+        "visibility.mask-table=[[0, 10], [360, 10]]",
         "visibility.weighting=sine-elevation",
         "visibility.pdop-cap=10",
         "gnss.constellations=[]",

@@ -64,6 +64,12 @@ fn visibility() -> impl Strategy<Value = Visibility> {
     let table = vec(point, 0..5).prop_map(|mut points: Vec<(f64, f64)>| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points.dedup_by_key(|point| point.0);
+        // Once around the horizon, with one mask in the north.
+        if let Some(first) = points.first_mut() {
+            first.0 = 0.0;
+            let north = first.1;
+            points.push((360.0, north));
+        }
         let point = |(azimuth_deg, mask_deg)| MaskPoint {
             azimuth_deg,
             mask_deg,
