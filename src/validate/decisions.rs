@@ -60,9 +60,7 @@ impl Seen<'_> {
             self.evaluator.ephemeris(self.first)?,
             self.evaluator.ephemeris(self.second)?,
         ];
-        findings
-            .checks
-            .extend(metric_checks(name, &metrics, gates));
+        findings.checks.extend(metric_checks(name, &metrics, gates));
         self.passes(name, &mut findings)?;
         Ok(findings)
     }
@@ -83,7 +81,11 @@ impl Seen<'_> {
                 let a = rotation.to_earth_fixed(self.first.state(a, elapsed_s)?.position_km);
                 let b = rotation.to_earth_fixed(self.second.state(b, elapsed_s)?.position_km);
                 for site in &setup.sites {
-                    let seen = |target| setup.mask.line_of_sight(&site.local, target).is_some();
+                    let seen = |target| {
+                        setup
+                            .line_of_sight(setup.mask, &site.local, target)
+                            .is_some()
+                    };
                     counts.flips += u64::from(seen(a) != seen(b));
                 }
                 counts.decisions += setup.sites.len() as u64;
@@ -291,8 +293,7 @@ fn metric_checks(
     // Each flip changes a count by one.
     let visible_gate = gates.map(|gates| gates.flips * gates.satellites);
     // A satellite more or less among n changes PDOP by about its 1/n.
-    let relative = gates
-        .map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
+    let relative = gates.map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
     let mut checks = vec![Check::new(
         &format!("{name}/mean-visible"),
         ["change of mean visible satellites", "1", "mean"],

@@ -72,7 +72,11 @@ mod tests {
     fn quantiles_are_of_the_sizes() {
         let residuals: Vec<_> = (1..=200)
             .map(|n| Residual {
-                value: if n % 2 == 0 { f64::from(n) } else { -f64::from(n) },
+                value: if n % 2 == 0 {
+                    f64::from(n)
+                } else {
+                    -f64::from(n)
+                },
                 input: n,
             })
             .collect();
@@ -80,6 +84,9 @@ mod tests {
         assert_eq!((found.n, found.median, found.q95), (200, 100.0, 190.0));
         assert_eq!((found.q99, found.max), (198.0, 200.0));
         assert_eq!(found.worst, "200");
-        assert_eq!(Distribution::of("a", ["q", "km"], &[], i32::to_string), None);
+        assert_eq!(
+            Distribution::of("a", ["q", "km"], &[], i32::to_string),
+            None
+        );
     }
 }

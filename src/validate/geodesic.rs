@@ -149,7 +149,9 @@ fn taught_elevation_deg(earth: &Geodesic, case: &Case) -> f64 {
     let radius = 1.0 / (cos_a * cos_a / meridian + sin_a * sin_a / prime_vertical);
     let arc = way_m / 1e3 / radius;
     let (sin, cos) = arc.sin_cos();
-    (cos - radius / (radius + case.height_km)).atan2(sin).to_degrees()
+    (cos - radius / (radius + case.height_km))
+        .atan2(sin)
+        .to_degrees()
 }
 
 /// Everything that geodesics say about the stations and the footprint of a design.
@@ -190,16 +192,48 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
         }
     }
     let mut findings = Findings::default();
-    let judge = "two constructions of one plane: GeographicLib's 15 nm over the arm of 1 km, and rounding";
+    let judge =
+        "two constructions of one plane: GeographicLib's 15 nm over the arm of 1 km, and rounding";
     let teacher = "a circle of the curvature along the azimuth in place of the ellipsoid: good over the way to a low satellite";
-    let limits = "the way to a high satellite is long, and the curvature method does not hold there";
+    let limits =
+        "the way to a high satellite is long, and the curvature method does not hold there";
     for (name, quantity, residuals, gate, reason) in [
-        ("elevation", "elevation", &elevations, Some(ANGLE_GATE_DEG), judge),
-        ("azimuth", "azimuth times cos(elevation)", &azimuths, Some(ANGLE_GATE_DEG), judge),
-        ("curvature-method/low", "elevation by the curvature method", &low, Some(TEACHER_GATE_DEG), teacher),
-        ("curvature-method/high", "elevation by the curvature method", &high, None, limits),
+        (
+            "elevation",
+            "elevation",
+            &elevations,
+            Some(ANGLE_GATE_DEG),
+            judge,
+        ),
+        (
+            "azimuth",
+            "azimuth times cos(elevation)",
+            &azimuths,
+            Some(ANGLE_GATE_DEG),
+            judge,
+        ),
+        (
+            "curvature-method/low",
+            "elevation by the curvature method",
+            &low,
+            Some(TEACHER_GATE_DEG),
+            teacher,
+        ),
+        (
+            "curvature-method/high",
+            "elevation by the curvature method",
+            &high,
+            None,
+            limits,
+        ),
     ] {
-        findings.add(&format!("geographiclib/{name}"), [quantity, "deg"], residuals, gate, reason);
+        findings.add(
+            &format!("geographiclib/{name}"),
+            [quantity, "deg"],
+            residuals,
+            gate,
+            reason,
+        );
     }
     findings
 }
@@ -217,7 +251,8 @@ impl Findings {
         let found = Distribution::of(name, [quantity, unit], residuals, I::to_string);
         if let Some(found) = found {
             let text = [quantity, unit, "max"];
-            self.checks.push(Check::new(name, text, found.max, gate, reason));
+            self.checks
+                .push(Check::new(name, text, found.max, gate, reason));
             self.distributions.push(found);
         }
     }

@@ -140,7 +140,11 @@ fn conservation_checks(tracks: &[Track]) -> Vec<Check> {
         .map(|(name, n)| {
             Check::new(
                 &format!("numerical/conserved/{name}"),
-                [&format!("relative change of the {name} over 30 days"), "1", "max"],
+                [
+                    &format!("relative change of the {name} over 30 days"),
+                    "1",
+                    "max",
+                ],
                 largest(n),
                 Some(1e-10),
                 "a zonal field conserves both; 1e-10 of the energy is 1e-6 km of semi-major axis",
@@ -173,11 +177,16 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
     let second_order = causes.eccentric_factor * causes.second_order_km_per_day;
     let name = |quantity: &str| format!("numerical/{days}-days/{quantity}");
     let rms = rms_after_fit(tracks, days);
-    let fitted_a_m = -2.0 / 3.0 * drift / (orbit.kepler_mean_motion_rad_s() * SECONDS_PER_DAY) * 1e3;
+    let fitted_a_m =
+        -2.0 / 3.0 * drift / (orbit.kepler_mean_motion_rad_s() * SECONDS_PER_DAY) * 1e3;
     vec![
         Check::new(
             &name("in-track-drift"),
-            ["in-track drift of the integration from mean J2", "km/day", "mean slope"],
+            [
+                "in-track drift of the integration from mean J2",
+                "km/day",
+                "mean slope",
+            ],
             drift,
             // δa of a few J2² a at the start drifts by 3/2 n δa.
             Some(6.0 * second_order),
@@ -185,7 +194,11 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("fitted-mean-a"),
-            ["mean semi-major axis of the integration less that of the elements", "m", "mean"],
+            [
+                "mean semi-major axis of the integration less that of the elements",
+                "m",
+                "mean",
+            ],
             fitted_a_m,
             None,
             "the drift read as the starting element that it comes from",
@@ -199,14 +212,22 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("in-track-after-fit"),
-            ["in-track difference from J2 with short-period terms, mean a fitted", "km", "rms"],
+            [
+                "in-track difference from J2 with short-period terms, mean a fitted",
+                "km",
+                "rms",
+            ],
             rms[1],
             Some(gate_after_fit_km(&causes, &orbit, days)),
             "first-order terms are good to J2 of their size; the perigee of the O(J2^2) eccentricity turns; long-period terms of order e J2",
         ),
         Check::new(
             &name("cross-track-after-fit"),
-            ["cross-track difference from J2 with short-period terms", "km", "rms"],
+            [
+                "cross-track difference from J2 with short-period terms",
+                "km",
+                "rms",
+            ],
             rms[2],
             Some(gate_after_fit_km(&causes, &orbit, days) + second_order * days),
             "second-order secular terms of the node, growing with time",

@@ -96,12 +96,7 @@ impl Flights {
                 &self.mean_j2,
                 &self.kepler_slot,
             ),
-            (
-                "sgp4-no-j3j4/sgp4-no-j3",
-                "J4",
-                &self.no_j3j4,
-                &self.no_j3,
-            ),
+            ("sgp4-no-j3j4/sgp4-no-j3", "J4", &self.no_j3j4, &self.no_j3),
             (
                 "sgp4/sgp4-egm96",
                 "gravity constants: mu, R and J2 of EGM96 in place of WGS-72",
@@ -259,7 +254,8 @@ impl Scale {
     fn radius_check(&self, without_j3j4: &BudgetLine) -> Check {
         let causes = &self.causes;
         // Terms of relative order J2 of the short-period theory, SGP4's floor of e, and e itself.
-        let bound = 0.03 + 0.02 * causes.radius_shift_km.abs()
+        let bound = 0.03
+            + 0.02 * causes.radius_shift_km.abs()
             + (causes.eccentric_factor - 1.0) * causes.short_period_km[0];
         Check::new(
             "sgp4/radius-shift/closed-form",

@@ -1,7 +1,7 @@
 //! Small studies for the tests of this module.
 
 use crate::constellation::gnss::System;
-use crate::dop::Clocks;
+use crate::dop::{Clocks, ObservationWeights};
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, MetricOptions, Setup};
 use crate::ground::{Grid, PointWeights};
@@ -23,8 +23,10 @@ pub(super) fn setup(grid: TimeGrid) -> Setup {
         sites: points.sites(Surface::Wgs84).unwrap(),
         mask: Mask::from_degrees(10.0).unwrap(),
         gnss_mask: Mask::from_degrees(10.0).unwrap(),
+        skyline: None,
         gnss: vec![System::from(crate::constellation::gnss::Preset::Beidou3)],
         clocks: Clocks::PerSystem,
+        observation_weights: ObservationWeights::Unit,
         pdop_cap: 100.0,
         model: Model::J2,
         metrics: MetricOptions {

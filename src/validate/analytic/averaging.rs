@@ -23,8 +23,7 @@ fn averaged([a, e, i]: [f64; 3]) -> f64 {
             let r = parameter / (1.0 + e * f.cos());
             // The argument of perigee averages out of sin² (ω + f); a quarter turn more shows it.
             let s2 = i.sin().powi(2) * (0.7 + f).sin().powi(2);
-            let potential =
-                -MU_KM3_S2 / r * J2 * (RADIUS_KM / r).powi(2) * 0.5 * (3.0 * s2 - 1.0);
+            let potential = -MU_KM3_S2 / r * J2 * (RADIUS_KM / r).powi(2) * 0.5 * (3.0 * s2 - 1.0);
             // dM = (r/a)²/sqrt(1 - e²) df
             potential * (r / a).powi(2) / (1.0 - e * e).sqrt()
         })

@@ -127,7 +127,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         ),
         Check::new(
             "analytic/mean-visible",
-            ["mean visible satellites of the study over quadrature, less 1", "1", "mean"],
+            [
+                "mean visible satellites of the study over quadrature, less 1",
+                "1",
+                "mean",
+            ],
             found / expected - 1.0,
             Some(finite_span(subject)),
             "a finite span misses at most a pass or two of each satellite's revolutions; satellites that are spread share the error",

@@ -69,7 +69,11 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     };
     Some(Check::new(
         "analytic/symmetry/turn",
-        ["distance of the pattern, turned and shifted, from itself", "km", "max"],
+        [
+            "distance of the pattern, turned and shifted, from itself",
+            "km",
+            "max",
+        ],
         moved.map(nearest).fold(0.0, f64::max),
         Some(1e-6),
         "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
@@ -95,7 +99,11 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     };
     Ok(Check::new(
         "analytic/symmetry/order",
-        ["change of the metrics when satellites are reordered", "1", "max"],
+        [
+            "change of the metrics when satellites are reordered",
+            "1",
+            "max",
+        ],
         pairs.into_iter().map(change).fold(0.0, f64::max),
         Some(1e-6),
         "sums in another order: rounding only, of single precision where the fast path takes it",
@@ -122,7 +130,11 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     Ok(largest_gain.is_finite().then(|| {
         Check::new(
             "analytic/mask",
-            ["gain of mean visible satellites when the mask is raised", "1", "max"],
+            [
+                "gain of mean visible satellites when the mask is raised",
+                "1",
+                "max",
+            ],
             largest_gain.max(0.0),
             Some(0.0),
             "what is above a higher mask is above the lower one",

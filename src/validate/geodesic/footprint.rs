@@ -23,8 +23,7 @@ fn edge_m(subject: &Subject<'_>, earth: &Geodesic, latitude: f64, bearing: f64) 
     for _ in 0..50 {
         let middle = 0.5 * (near + far);
         let (lat, lon): (f64, f64) = earth.direct(latitude, 0.0, bearing, middle);
-        let local =
-            (subject.parts.local_frame)(Surface::Wgs84, lat.to_radians(), lon.to_radians());
+        let local = (subject.parts.local_frame)(Surface::Wgs84, lat.to_radians(), lon.to_radians());
         if (subject.parts.look_angles)(&local, satellite).0 > mask_rad {
             near = middle;
         } else {
@@ -67,7 +66,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         ),
         Check::new(
             "geographiclib/footprint/geodesic-polygon",
-            ["area of the footprint by a geodesic polygon over that of the cap, less 1", "1", "max"],
+            [
+                "area of the footprint by a geodesic polygon over that of the cap, less 1",
+                "1",
+                "max",
+            ],
             worst,
             // Radii of curvature are between R (1 - 2f) and R (1 + f); at a fixed height the area
             // goes with the first power of the radius.

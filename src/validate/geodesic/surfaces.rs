@@ -22,7 +22,10 @@ type Frames = fn(f64, f64) -> LocalFrame;
 
 fn setup_with(setup: &Setup, frame: Frames) -> Setup {
     let moved = |site: &Site| Site {
-        local: frame(site.latitude_deg.to_radians(), site.longitude_deg.to_radians()),
+        local: frame(
+            site.latitude_deg.to_radians(),
+            site.longitude_deg.to_radians(),
+        ),
         ..*site
     };
     Setup {
@@ -66,7 +69,11 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
                 ));
             }
         };
-        add("mean-visible", Some(right.mean_visible), Some(wrong.mean_visible));
+        add(
+            "mean-visible",
+            Some(right.mean_visible),
+            Some(wrong.mean_visible),
+        );
         add("mean-pdop", right.mean_pdop, wrong.mean_pdop);
         add("max-pdop", right.max_pdop, wrong.max_pdop);
     }

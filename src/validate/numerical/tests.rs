@@ -33,7 +33,9 @@ fn validate_an_eccentric_design() {
 /// Kepler's ellipse comes back to its start after each period.
 #[test]
 fn validate_the_integrator_on_two_bodies() {
-    let elements = "delta:55:1/1/0@925,e=0.1".parse::<crate::constellation::Design>().unwrap();
+    let elements = "delta:55:1/1/0@925,e=0.1"
+        .parse::<crate::constellation::Design>()
+        .unwrap();
     let orbit = elements.satellites()[0].elements;
     let start = crate::orbit::j2::SecularOrbit::two_body(&orbit).state(0.0);
     let period_s = TAU / orbit.kepler_mean_motion_rad_s();

@@ -94,11 +94,17 @@ impl Causes {
     }
 
     /// The bounds that are left when the short-period theory of J2 is flown too.
-    pub(in crate::validate) fn osculating_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
+    pub(in crate::validate) fn osculating_gates_km(
+        &self,
+        zonals: ZonalHarmonics,
+        days: f64,
+    ) -> [f64; 3] {
         let mut without = *self;
         // SGP4 floors the eccentricity at 1e-6, 7 m; first-order terms are good to J2 of their size.
         without.radius_shift_km = 0.02;
-        without.short_period_km = self.short_period_km.map(|amplitude| 0.01 * amplitude + 0.02);
+        without.short_period_km = self
+            .short_period_km
+            .map(|amplitude| 0.01 * amplitude + 0.02);
         without.rms_gates_km(zonals, days)
     }
 

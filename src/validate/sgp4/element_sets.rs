@@ -2,7 +2,8 @@
 
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
 use crate::formats::metadata::Object;
-use crate::formats::tle;
+use crate::formats::{element_set, tle};
+use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::validate::residuals::{BudgetLine, compare};
 use crate::validate::{Check, Findings, Subject, ValidateError};
@@ -27,11 +28,14 @@ pub(super) struct Written {
 impl Written {
     pub(super) fn new(subject: &Subject<'_>) -> Result<Self, ValidateError> {
         let epoch = subject.epoch();
+        let rounded = tle::rounded_epoch(epoch);
+        let since_s = rounded.seconds_since(epoch);
         let (mut flown, mut unrounded) = (Vec::new(), Vec::new());
         for (index, satellite) in subject.satellites().iter().enumerate() {
             let name = object_name(satellite.slot);
             let object = Object::numbered(&name, index, epoch)?;
-            let set = tle::element_set(satellite, &object, epoch, subject.parts.slot);
+            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
+            let set = element_set(&elements, &object, rounded, subject.parts.slot);
             let fly = |set: &::sgp4::Elements| match Sgp4Orbit::from_element_set(set, epoch) {
                 Ok(orbit) => Ok(Flown {
                     name: name.clone(),
@@ -123,10 +127,13 @@ fn sidereal_check(subject: &Subject<'_>) -> Check {
     });
     Check::new(
         "sgp4/sidereal-time",
-        ["shift of the Earth by SGP4's own sidereal time", "km", "max"],
+        [
+            "shift of the Earth by SGP4's own sidereal time",
+            "km",
+            "max",
+        ],
         apart[0].max(apart[1]),
         Some(0.05),
         "the expression of AFSPC mode (1970) and IAU 1982 differ by some 1e-6 rad this century",
     )
 }
-

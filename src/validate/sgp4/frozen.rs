@@ -27,9 +27,15 @@ fn vector(
         let turn = k as f64 / SAMPLES as f64;
         let at_s = period_s * turn;
         let u = orbit.mean_argument_of_latitude_rad() + TAU * turn;
-        samples.push((u, radius(with.state_at(at_s)?) - radius(without.state_at(at_s)?)));
+        samples.push((
+            u,
+            radius(with.state_at(at_s)?) - radius(without.state_at(at_s)?),
+        ));
     }
-    Ok(eccentricity_vector(samples.into_iter(), orbit.semi_major_axis_km))
+    Ok(eccentricity_vector(
+        samples.into_iter(),
+        orbit.semi_major_axis_km,
+    ))
 }
 
 /// The frozen eccentricity against its closed form, and what is left when an element set carries it
@@ -67,7 +73,11 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
-            ["e left when the set carries the frozen e at the cancelling w", "1", "fit"],
+            [
+                "e left when the set carries the frozen e at the cancelling w",
+                "1",
+                "fit",
+            ],
             left[0].hypot(left[1]),
             Some(0.1 * frozen + floor),
             "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",

@@ -111,7 +111,13 @@ fn deep_space_is_reported_only() {
     let findings = found("delta:55:4/2/1@20000".parse().unwrap());
     let budget = |check: &&Check| check.name.starts_with("sgp4/mean-j2");
     assert!(findings.passed());
-    assert!(findings.checks.iter().filter(budget).all(|check| check.gate.is_none()));
+    assert!(
+        findings
+            .checks
+            .iter()
+            .filter(budget)
+            .all(|check| check.gate.is_none())
+    );
 }
 
 /// The published verification set: every state of it, in both modes.

@@ -74,7 +74,9 @@ fn published() -> Vec<Expected> {
 }
 
 fn of_mode(mode: &str) -> Vec<Expected> {
-    let rows = MODES.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let rows = MODES
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
     rows.filter(|fields| fields.len() == 9 && fields[0] == mode)
         .filter_map(|f| row(f[1].parse().ok()?, [f[2], f[3], f[4], f[5]]))
         .collect()
@@ -127,7 +129,13 @@ pub fn against_the_verification_set() -> Findings {
     for (name, expected, mode, gate, reason) in [
         ("published", published(), Sgp4Mode::Improved, 1e-5, sidereal),
         ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 1e-6, rounding),
-        ("improved", of_mode("improved"), Sgp4Mode::Improved, 1e-5, sidereal),
+        (
+            "improved",
+            of_mode("improved"),
+            Sgp4Mode::Improved,
+            1e-5,
+            sidereal,
+        ),
     ] {
         let name = format!("sgp4/verification/{name}");
         let name = name.as_str();
@@ -135,7 +143,11 @@ pub fn against_the_verification_set() -> Findings {
         let max = residuals.iter().map(|one| one.value).fold(0.0, f64::max);
         findings.checks.push(Check::new(
             name,
-            ["distance of the sgp4 crate from the verification set", "km", "max"],
+            [
+                "distance of the sgp4 crate from the verification set",
+                "km",
+                "max",
+            ],
             max,
             Some(gate),
             reason,
