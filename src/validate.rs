@@ -7,6 +7,7 @@ pub mod analytic;
 mod decisions;
 pub mod distribution;
 mod eccentricity;
+pub mod file;
 pub mod geodesic;
 pub mod numerical;
 pub mod residuals;
@@ -20,7 +21,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::frames::LocalFrame;
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::MeanMotionSlot;
-use crate::orbit::{MeanElements, PropagationError, Propagator};
+use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use distribution::Distribution;
@@ -72,6 +73,41 @@ impl Check {
     }
 }
 
+/// A crate that validations lean on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Judge {
+    /// Its name.
+    pub name: &'static str,
+    /// The version that is built in.
+    pub version: &'static str,
+    /// What it judges.
+    pub role: &'static str,
+}
+
+/// The crates whose word counts, in the versions that the lock file pins.
+pub const JUDGES: [Judge; 4] = [
+    Judge {
+        name: "sgp4",
+        version: "2.4.0",
+        role: "SGP4 in AFSPC and improved mode",
+    },
+    Judge {
+        name: "geographiclib-rs",
+        version: "0.2.7",
+        role: "geodesics on the ellipsoid",
+    },
+    Judge {
+        name: "differential-equations",
+        version: "0.7.0",
+        role: "numerical integration, DOP853",
+    },
+    Judge {
+        name: "sofars",
+        version: "0.6.2",
+        role: "sidereal time, precession and nutation",
+    },
+];
+
 /// What a validation found.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Findings {
@@ -83,6 +119,9 @@ pub struct Findings {
     /// How residuals are distributed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub distributions: Vec<Distribution>,
+    /// Comparisons with the ephemerides of other programs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<file::FileComparison>,
 }
 
 impl Findings {
@@ -97,6 +136,7 @@ impl Findings {
         self.checks.append(&mut other.checks);
         self.budget.append(&mut other.budget);
         self.distributions.append(&mut other.distributions);
+        self.files.append(&mut other.files);
     }
 }
 
@@ -204,6 +244,14 @@ impl<'a> Subject<'a> {
         Ok(Ephemeris::new(self.grid(), satellites?))
     }
 
+    /// The design flown by the model of the study.
+    fn fly_model(&self) -> Result<Ephemeris, EphemerisError> {
+        match self.setup().model {
+            Model::J2 => self.fly_mean_j2(),
+            model => Ephemeris::of_design(&self.design, model, self.grid()),
+        }
+    }
+
     /// The design flown by mean J2.
     fn fly_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
         self.fly(|elements| Ok((self.parts.mean_j2)(elements)))
@@ -219,6 +267,9 @@ pub enum ValidateError {
     /// An element does not fit a TLE.
     #[error(transparent)]
     Tle(#[from] crate::formats::tle::TleFieldError),
+    /// A file cannot be compared.
+    #[error(transparent)]
+    File(#[from] file::FileError),
     /// An integration fails.
     #[error(transparent)]
     Integration(#[from] numerical::integrator::IntegrationError),

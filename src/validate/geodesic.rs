@@ -78,21 +78,26 @@ fn geodetic_position_km([latitude_deg, longitude_deg]: [f64; 2], height_km: f64)
     )
 }
 
-fn cases(earth: &Geodesic) -> Vec<Case> {
+fn stations() -> impl Iterator<Item = [f64; 2]> {
+    LATITUDES_DEG.iter().flat_map(|&latitude| {
+        LONGITUDES_DEG
+            .iter()
+            .map(move |&longitude| [latitude, longitude])
+    })
+}
+
+/// The satellites that are looked at from a station.
+fn cases_of(earth: &Geodesic, station_deg: [f64; 2]) -> Vec<Case> {
+    let [latitude, longitude] = station_deg;
     let mut cases = Vec::new();
-    for latitude in LATITUDES_DEG {
-        for longitude in LONGITUDES_DEG {
-            for (way, bearing) in pairs(&WAYS_DEG, &BEARINGS_DEG) {
-                let way_m = way.to_radians() * RADIUS_KM * 1e3;
-                let (below_lat, below_lon): (f64, f64) =
-                    earth.direct(latitude, longitude, bearing, way_m);
-                cases.extend(HEIGHTS_KM.map(|height_km| Case {
-                    station_deg: [latitude, longitude],
-                    below_deg: [below_lat, below_lon],
-                    height_km,
-                }));
-            }
-        }
+    for (way, bearing) in pairs(&WAYS_DEG, &BEARINGS_DEG) {
+        let way_m = way.to_radians() * RADIUS_KM * 1e3;
+        let (below_lat, below_lon): (f64, f64) = earth.direct(latitude, longitude, bearing, way_m);
+        cases.extend(HEIGHTS_KM.map(|height_km| Case {
+            station_deg,
+            below_deg: [below_lat, below_lon],
+            height_km,
+        }));
     }
     cases
 }
@@ -170,25 +175,27 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
     let earth = Geodesic::wgs84();
     let (mut elevations, mut azimuths) = (Vec::new(), Vec::new());
     let (mut low, mut high) = (Vec::new(), Vec::new());
-    for case in cases(&earth) {
-        let [latitude, longitude] = case.station_deg.map(f64::to_radians);
+    for station_deg in stations() {
+        let [latitude, longitude] = station_deg.map(f64::to_radians);
         let ours = (subject.parts.local_frame)(Surface::Wgs84, latitude, longitude);
-        let target = geodetic_position_km(case.below_deg, case.height_km);
-        let (elevation, azimuth) = (subject.parts.look_angles)(&ours, target);
-        let horizon = Horizon::new(&earth, case.station_deg);
-        let [judged, judged_azimuth] = horizon.look_angles_deg(target);
-        let turn = (azimuth.to_degrees() - judged_azimuth + 540.0).rem_euclid(360.0) - 180.0;
-        let residual = |value| Residual { value, input: case };
-        elevations.push(residual(elevation.to_degrees() - judged));
-        azimuths.push(residual(turn * judged.to_radians().cos()));
-        if elevation >= 0.0 {
+        let horizon = Horizon::new(&earth, station_deg);
+        for case in cases_of(&earth, station_deg) {
+            let target = geodetic_position_km(case.below_deg, case.height_km);
+            let (elevation, azimuth) = (subject.parts.look_angles)(&ours, target);
+            let [judged, judged_azimuth] = horizon.look_angles_deg(target);
+            let turn = (azimuth.to_degrees() - judged_azimuth + 540.0).rem_euclid(360.0) - 180.0;
+            let residual = |value| Residual { value, input: case };
+            elevations.push(residual(elevation.to_degrees() - judged));
+            azimuths.push(residual(turn * judged.to_radians().cos()));
+            if judged < 0.0 {
+                continue;
+            }
             let taught = residual(elevation.to_degrees() - taught_elevation_deg(&earth, &case));
-            let orbit = if case.height_km <= LOW_ORBIT_KM {
-                &mut low
+            if case.height_km <= LOW_ORBIT_KM {
+                low.push(taught);
             } else {
-                &mut high
-            };
-            orbit.push(taught);
+                high.push(taught);
+            }
         }
     }
     let mut findings = Findings::default();

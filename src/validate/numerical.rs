@@ -207,8 +207,8 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
             &name("node-rate"),
             ["node rate less its closed form", "deg/day", "mean slope"],
             node,
-            Some((second_order / a).to_degrees()),
-            "second-order secular terms of J2: at most (2 + 12 cos^4 i) J2^2 n",
+            Some((second_order / a / orbit.inclination_rad.sin().max(1e-3)).to_degrees()),
+            "second-order secular terms of J2: at most (2 + 12 cos^4 i) J2^2 n, over sin i",
         ),
         Check::new(
             &name("in-track-after-fit"),

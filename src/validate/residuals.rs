@@ -21,7 +21,7 @@ pub struct Ric {
 }
 
 impl Ric {
-    fn from_vector(v: Vector3<f64>) -> Self {
+    pub(super) fn from_vector(v: Vector3<f64>) -> Self {
         Self {
             radial: v.x,
             in_track: v.y,

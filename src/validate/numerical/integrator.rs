@@ -8,10 +8,15 @@ use crate::earth::{MU_KM3_S2, RADIUS_KM};
 use crate::frames::State;
 use differential_equations::prelude::*;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// Relative and absolute (km, km/s) tolerance of a step.
 const TOLERANCE: f64 = 1e-13;
+
+/// Steps in a revolution, at least: longer steps would be exact at their ends, but not in between,
+/// where the dense output is of one order less.
+const STEPS_PER_REVOLUTION: f64 = 128.0;
 
 /// More steps than 30 days of the lowest orbit take.
 const MAX_STEPS: usize = 5_000_000;
@@ -84,12 +89,14 @@ impl Zonals {
             *rate = [y[3], y[4], y[5], pull.x, pull.y, pull.z];
         };
         let (r, v) = (start.position_km, start.velocity_km_s);
+        let revolution_s = TAU * (r.norm().powi(3) / MU_KM3_S2).sqrt();
         let solution = IVP::ode_from_fn(derivative, 0.0, span_s, [r.x, r.y, r.z, v.x, v.y, v.z])
             .t_eval(times_s)
             .method(
                 ExplicitRungeKutta::dop853()
                     .rtol(TOLERANCE)
                     .atol(TOLERANCE)
+                    .h_max(revolution_s / STEPS_PER_REVOLUTION)
                     .max_steps(MAX_STEPS),
             )
             .solve()
