@@ -76,7 +76,7 @@ impl Setup {
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
         if self.suits_kernel() {
-            return Kernel::memory_bytes(self, threads);
+            return kernel::memory_bytes(self, threads) as u64;
         }
         let samples = self.sample_count() as u64;
         let fixed = samples * size_of::<fixed::FixedSample>() as u64;

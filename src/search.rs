@@ -65,14 +65,21 @@ impl DesignSpace {
             integer("satellites-per-plane", self.satellites_per_plane),
             real("inclination-deg", self.inclination_deg),
             real("altitude-km", self.altitude_km),
-            integer("phasing", self.phasing),
+            integer("phasing", self.cut_phasing()),
         ])
     }
 
-    /// Cuts the phasing at P - 1, and brings inclination and altitude to their resolution, so that
+    /// The phasings that occur: each limit cut for the planes that cut it most, or least.
+    fn cut_phasing(&self) -> [u32; 2] {
+        let cut = |n: usize| self.phasing[n].min(self.planes[n].saturating_sub(1));
+        [cut(0), cut(1)]
+    }
+
+    /// Keeps the phasing between its limits, both cut at P - 1, and brings inclination and altitude to their resolution, so that
     /// a design is written in few digits and equal designs are equal vectors.
     fn repair(&self, genome: &mut [f64]) {
-        genome[PHASING] = genome[PHASING].min(genome[PLANES] - 1.0);
+        let lowest = f64::from(self.phasing[0]);
+        genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
         let [south, north] = self.inclination_deg;
         genome[INCLINATION] =
             round_decimal(genome[INCLINATION], INCLINATION_DECIMALS).clamp(south, north);
@@ -239,6 +246,50 @@ mod tests {
         let before = genome.clone();
         space().repair(&mut genome);
         assert_eq!(genome, before);
+    }
+
+    #[test]
+    fn phasing_stays_between_limits_that_are_cut() {
+        let narrow = DesignSpace {
+            phasing: [3, 20],
+            planes: [2, 8],
+            ..space()
+        };
+        let vectors = narrow.vectors().unwrap();
+        assert_eq!(vectors.variables()[PHASING].kind.bounds(), (1.0, 7.0));
+        for (planes, phasing, repaired) in [(2.0, 5.0, 1.0), (8.0, 1.0, 3.0), (8.0, 7.0, 7.0)] {
+            let mut genome = vec![planes, 11.0, 50.0, 925.0, phasing];
+            narrow.repair(&mut genome);
+            assert_eq!(genome[PHASING], repaired);
+            assert_eq!(vectors.check(&genome), Ok(()));
+        }
+    }
+
+    #[test]
+    fn validate_launch_cost_by_hand() {
+        let design: Design = "delta:50:100/5/1@500".parse().unwrap();
+        let cost = LaunchCost {
+            per_satellite: 2.0,
+            per_plane: 7.0,
+            per_1000_km: 0.3,
+        };
+        let metrics = Metrics {
+            mean_visible: 0.0,
+            mean_pdop: None,
+            cvar_pdop: None,
+            cvar_level: 0.95,
+            p50_pdop: None,
+            p95_pdop: None,
+            p99_pdop: None,
+            max_pdop: None,
+            solved_fraction: 0.0,
+            availability: 0.0,
+            j_pos: None,
+            j_cost: None,
+        };
+        // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
+        let value = Quantity::LaunchCost.value(&design, &metrics, &cost);
+        assert!((value.unwrap() - 265.0).abs() < 1e-12);
     }
 
     #[test]

@@ -10,6 +10,7 @@ mod eccentricity;
 pub mod file;
 pub mod geodesic;
 pub mod numerical;
+pub mod paper;
 pub mod residuals;
 pub mod sgp4;
 

@@ -25,19 +25,21 @@
 //! - a decision so close to the mask that rounding might turn it is taken again with the positions
 //!   and the comparison of the plain path ([`retake`]), so that visible satellites are counted
 //!   exactly;
-//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes.
+//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
+//!   around each order statistic ([`refine`]).
 //!
 //! Both are counted in [`Retakes`].
 //!
 //! # Statistics
 //!
-//! Values are never sorted, and beyond [`KEPT_VALUES`] not even kept ([`tally`]).
+//! Values are never sorted, and and beyond a number of them not even kept ([`tally`]).
 
 mod candidates;
 mod fixed;
 mod flight;
 mod instructions;
 mod lanes;
+mod refine;
 mod retake;
 mod sample;
 mod tally;
@@ -50,26 +52,53 @@ use super::{Evaluator, Setup};
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
-use crate::ground::Site;
 use crate::stats::Summary;
 use fixed::{Fixed, FixedTiles};
 use flight::PatternFlight;
-use lanes::{Lanes, MaskTerms};
+use lanes::{LANES, Lanes, MaskTerms};
 use rayon::prelude::*;
+use refine::{Ranked, Surround};
 use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
 use tally::{Count, Counts, Find, Found, Merge, Search};
 use tiles::Tiles;
 
-/// Values of PDOP up to which they are kept between the two passes of the statistics; beyond, the
-/// second pass computes them again.
-const KEPT_VALUES: usize = 4 << 20;
+/// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
+/// not grow with points times samples.
+#[derive(Debug, Clone, Copy)]
+struct Keep {
+    /// Values of PDOP between the two passes of the statistics of one design.
+    values: usize,
+    /// Bytes of the GNSS part between designs.
+    fixed_bytes: usize,
+}
+
+impl Default for Keep {
+    fn default() -> Self {
+        Self {
+            values: 4 << 20,
+            fixed_bytes: 256 << 20,
+        }
+    }
+}
 
 /// Values of PDOP that are made in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
 
-/// PDOP up to which f32 is trusted.
+/// PDOP up to which f32 is trusted at most.
 const SINGLE_BELOW: f32 = 2.0;
+
+/// Memory of a kernel and of `threads` evaluations at a time, bytes.
+pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
+    let keep = Keep::default();
+    let tiles = setup.sites.len().div_ceil(LANES) * setup.grid.len();
+    let values = (tiles * LANES).min(keep.values) * size_of::<f32>();
+    let fixed = match tiles * FixedTiles::bytes(setup.clocks) {
+        bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
+        bytes => bytes,
+    };
+    fixed + threads * (values + Counts::BYTES + Found::BYTES)
+}
 
 /// Samples that were taken again in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,6 +114,7 @@ pub(super) struct Kernel {
     scene: Scene,
     fixed: Fixed,
     instructions: InstructionSet,
+    kept_values: usize,
 }
 
 /// Satellites, and the pattern behind them if there is a fast way to fly it.
@@ -116,21 +146,22 @@ impl Tallies {
 }
 
 impl Kernel {
-    /// Memory that the kernel and `threads` concurrent evaluations take at most, bytes.
-    pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> u64 {
-        let values = setup.sample_count().next_multiple_of(lanes::LANES);
-        let per_thread = values.min(KEPT_VALUES) * size_of::<f32>();
-        let tiles = setup.sites.len() * size_of::<Site>() * 2;
-        (Fixed::bytes(values) + tiles + per_thread * threads) as u64
-    }
-
     pub(super) fn new(
         setup: &Setup,
         rotations: &[EarthRotation],
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
+        Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
+    }
+
+    fn keeping_at_most(
+        keep: Keep,
+        setup: &Setup,
+        rotations: &[EarthRotation],
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask);
-        let fixed = Fixed::new(setup, &tiles, rotations)?;
+        let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
         let scene = Scene {
             tiles,
             single: MaskTerms::new(setup.mask),
@@ -145,6 +176,7 @@ impl Kernel {
             scene,
             fixed,
             instructions,
+            kept_values: keep.values,
         })
     }
 
@@ -161,7 +193,7 @@ impl Kernel {
             ephemeris,
             pattern: pattern.as_ref(),
         };
-        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= KEPT_VALUES {
+        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= self.kept_values {
             self.keeping(evaluator, flight)
         } else {
             self.streaming(evaluator, flight)
@@ -181,19 +213,68 @@ impl Kernel {
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(evaluator, flight, chunk, |tiles| {
+            let part = self.run(evaluator, flight, chunk, self.scene.limits, |tiles| {
                 values.extend_from_slice(tiles);
             })?;
             tallies = tallies.merged(part);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = Search::new(&counts, evaluator.setup().metrics.cvar_level).map(|search| {
-            let mut found = Found::new();
-            let tail = self.find(&values, &search, &mut found);
-            search.summary(&found, sum, tail)
-        });
+        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+            Some(search) => {
+                let mut found = Found::new();
+                let tail = self.find(&values, &search, &mut found);
+                let mut summary = search.summary(&found, sum, tail);
+                self.refine(evaluator, flight, &values, &search, &mut summary)?;
+                Some(summary)
+            }
+            None => None,
+        };
         let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
         Ok((evaluated, tallies.retakes))
+    }
+
+    /// Takes the order statistics again in f64.
+    fn refine(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+        values: &[Lanes<f32>],
+        search: &Search,
+        summary: &mut Summary,
+    ) -> Result<(), EphemerisError> {
+        let statistics = [
+            &mut summary.p50,
+            &mut summary.p95,
+            &mut summary.p99,
+            &mut summary.max,
+        ];
+        let mut numbers = 0..;
+        let ranked = statistics.each_ref().map(|value| Ranked {
+            rank: search.rank(numbers.next().unwrap_or(0)),
+            value: **value,
+        });
+        let windows = self.instructions.run(Surround {
+            tiles: values,
+            ranked,
+        });
+        let exact = Limits {
+            single_below: 0.0,
+            ..self.scene.limits
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        for (statistic, window) in statistics.into_iter().zip(&windows) {
+            let mut again = Vec::with_capacity(window.places.len());
+            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
+                let k = together[0].0 / tiles;
+                self.run(evaluator, flight, k..k + 1, exact, |sample| {
+                    again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
+                })?;
+            }
+            if let Some(value) = window.pick(again) {
+                *statistic = value;
+            }
+        }
+        Ok(())
     }
 
     /// Two passes over the samples, each on all threads; nothing is kept but counts.
@@ -243,9 +324,15 @@ impl Kernel {
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
                     let mut sum = 0.0;
-                    let tallies = self.run(evaluator, flight, chunk.clone(), |tiles| {
-                        sum += note(tiles, &mut all);
-                    })?;
+                    let tallies = self.run(
+                        evaluator,
+                        flight,
+                        chunk.clone(),
+                        self.scene.limits,
+                        |tiles| {
+                            sum += note(tiles, &mut all);
+                        },
+                    )?;
                     parts.push((tallies, sum));
                     Ok((all, parts))
                 },
@@ -286,6 +373,7 @@ impl Kernel {
         evaluator: &Evaluator,
         flight: Flight<'_>,
         chunk: Range<usize>,
+        limits: Limits,
         mut take: impl FnMut(&[Lanes<f32>]),
     ) -> Result<Tallies, EphemerisError> {
         let mut work = Workspace::new(flight.ephemeris.satellites().len());
@@ -305,6 +393,7 @@ impl Kernel {
                 .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
             self.instructions.run(Sample {
                 scene: &self.scene,
+                limits,
                 pattern,
                 fixed,
                 work: &mut work,

@@ -1,12 +1,12 @@
 //! The objects that `--format json` prints and that run directories hold.
 
-use super::{Diagnostic, VERSION, diagnose};
+use super::{Diagnostic, VERSION, diagnose, dominated_by};
 use crate::constellation::Design;
 use crate::earth;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
 use crate::scenario::Scenario;
-use crate::search::DesignProblem;
+use crate::search::{DesignProblem, Quantity};
 use crate::validate::{Findings, JUDGES, Judge};
 use rayon::prelude::*;
 use serde::ser::SerializeMap;
@@ -183,7 +183,7 @@ impl OptimizeResult {
         let progress = search.progress();
         let reference = scenario.minimised_reference();
         Self {
-            diagnostics: diagnose(&front, problem.designs()),
+            diagnostics: diagnose(problem, search, &front, &individuals),
             front,
             evaluations: progress.evaluations,
             hypervolume: Hypervolume {
@@ -197,6 +197,17 @@ impl OptimizeResult {
             version: VERSION,
             history: search.history().to_vec(),
         }
+    }
+
+    /// Notes how many front members another front dominates: points of `objectives`, as they are
+    /// minimised.
+    pub fn compare(&mut self, objectives: &[Quantity], sweep: &[Vec<f64>]) {
+        let point = |member: &FrontMember| {
+            let values = objectives.iter().zip(&member.objectives);
+            values.map(|(q, (_, value))| q.minimised(*value)).collect()
+        };
+        let front: Vec<Vec<f64>> = self.front.iter().map(point).collect();
+        self.diagnostics.extend(dominated_by(&front, sweep));
     }
 
     /// The pick of the fuzzy decision.

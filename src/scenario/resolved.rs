@@ -4,7 +4,8 @@ use chrono::{DateTime, Utc};
 
 use super::Constraint;
 use super::{
-    Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Surface,
+    Algorithm, Clocks, LaunchCost, Model, ObservationWeights, Pattern, PointWeights, Preset,
+    Quantity, Surface,
 };
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -173,6 +174,8 @@ pub struct Objectives {
     pub constraints: Vec<Constraint>,
     /// The PDOP up to which a sample counts as available.
     pub availability_pdop: f64,
+    /// Parameters of `launch-cost`.
+    pub launch_cost: LaunchCost,
     /// One number for each objective, in its own unit. `None` when it was not given and the
     /// objectives have no usual one.
     pub hypervolume_reference: Option<Vec<f64>>,
@@ -231,6 +234,10 @@ pub struct Optimizer {
     pub crossover_probability: f64,
     /// Probability that a variable is mutated.
     pub mutation_probability: f64,
+    /// Distribution index of simulated binary crossover.
+    pub crossover_index: f64,
+    /// Distribution index of polynomial mutation.
+    pub mutation_index: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }

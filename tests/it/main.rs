@@ -5,4 +5,5 @@
 mod cli;
 mod evidence;
 mod reference;
+mod study;
 mod tidy;

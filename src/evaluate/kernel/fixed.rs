@@ -2,21 +2,19 @@
 
 use super::super::Setup;
 use super::flight::Positions;
+use super::instructions::{InstructionSet, Work};
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, split};
 use super::tiles::{Tile, Tiles};
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
-/// Bytes up to which the GNSS part is kept between designs; beyond, it is made again sample by
-/// sample, so that memory does not grow with points times samples.
-const KEPT_BYTES: usize = 256 << 20;
-
 /// The GNSS part of all samples.
 pub(super) struct Fixed {
     systems: Vec<Ephemeris>,
     clocks: Clocks,
     mask: MaskTerms<f64>,
+    instructions: InstructionSet,
     /// Empty when there is no GNSS or it does not fit.
     kept: FixedTiles,
 }
@@ -33,7 +31,13 @@ pub(super) struct FixedTiles {
 
 impl FixedTiles {
     /// Bytes for each tile and sample.
-    const BYTES: usize = 2 * size_of::<Normal>() + LANES;
+    pub(super) fn bytes(clocks: Clocks) -> usize {
+        let shared = match clocks {
+            Clocks::PerSystem => 0,
+            Clocks::Shared => size_of::<SharedClock>(),
+        };
+        2 * size_of::<Normal>() + LANES + shared
+    }
 
     fn clear(&mut self) {
         self.normals.clear();
@@ -56,7 +60,7 @@ impl FixedTiles {
                 normal,
                 remainder: &self.remainders[n],
                 surplus: &self.surpluses[n],
-                shared: self.shared.get(n).unwrap_or(&SharedClock::NONE),
+                shared: self.shared.get(n),
             })
     }
 }
@@ -76,15 +80,12 @@ impl<'a> FixedSample<'a> {
 }
 
 impl Fixed {
-    /// Bytes that are kept for so many lanes, over all samples.
-    pub(super) fn bytes(lanes: usize) -> usize {
-        (lanes / LANES * FixedTiles::BYTES).min(KEPT_BYTES)
-    }
-
+    /// Keeps the samples if they fit into `kept_bytes`.
     pub(super) fn new(
         setup: &Setup,
         tiles: &Tiles,
         rotations: &[EarthRotation],
+        (instructions, kept_bytes): (InstructionSet, usize),
     ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
         let mut fixed = Self {
@@ -95,10 +96,11 @@ impl Fixed {
                 .collect(),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
+            instructions,
             kept: FixedTiles::default(),
         };
         let count = tiles.tiles.len() * setup.grid.len();
-        if !fixed.systems.is_empty() && count * FixedTiles::BYTES <= KEPT_BYTES {
+        if !fixed.systems.is_empty() && count * FixedTiles::bytes(setup.clocks) <= kept_bytes {
             let mut kept = FixedTiles::default();
             kept.reserve(count);
             for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
@@ -139,60 +141,92 @@ impl Fixed {
             positions.ask(system, elapsed_s, rotation)?;
             systems.push(positions);
         }
-        for tile in &tiles.tiles {
-            self.push_tile(tile, &systems, to);
-        }
+        self.instructions.run(Make {
+            fixed: self,
+            tiles: &tiles.tiles,
+            systems: &systems,
+            to,
+        });
         Ok(())
     }
 
+    #[inline(always)]
     fn push_tile(&self, tile: &Tile, systems: &[Positions], to: &mut FixedTiles) {
-        let zero = Lanes([0.0; LANES]);
-        let (mut normal, mut sum) = ([zero; 6], [zero; 3]);
-        let (mut count, mut surplus) = ([0; LANES], [0_u8; LANES]);
-        for positions in systems {
+        let mut normal = [Lanes([0.0; LANES]); 6];
+        let mut surplus = [0_u8; LANES];
+        let groups: &[&[Positions]] = match self.clocks {
+            Clocks::PerSystem => &systems.chunks(1).collect::<Vec<_>>(),
+            Clocks::Shared => &[systems],
+        };
+        for group in groups {
             let mut sums = Sums::<f64>::zero();
-            for n in 0..positions.count {
-                sums.add(&tile.double, positions.at(n), &self.mask);
+            for positions in *group {
+                for n in 0..positions.count {
+                    sums.add(&tile.double, positions.at(n), &self.mask);
+                }
             }
-            for l in 0..LANES {
-                let (x, y, z, seen) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
-                let zz = f64::from(seen) - sums.xx.0[l] - sums.yy.0[l];
-                // A clock of its own is eliminated here, a shared one with the design.
-                let scale = match self.clocks {
-                    Clocks::PerSystem => 1.0 / f64::from(seen.max(1)),
-                    Clocks::Shared => 0.0,
-                };
-                normal[0].0[l] += sums.xx.0[l] - x * x * scale;
-                normal[1].0[l] += sums.yy.0[l] - y * y * scale;
-                normal[2].0[l] += zz - z * z * scale;
-                normal[3].0[l] += sums.xy.0[l] - x * y * scale;
-                normal[4].0[l] += sums.xz.0[l] - x * z * scale;
-                normal[5].0[l] += sums.yz.0[l] - y * z * scale;
-                match self.clocks {
-                    Clocks::PerSystem => {
+            add_group(&sums, &mut normal);
+            match self.clocks {
+                Clocks::PerSystem => {
+                    for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
                         let spare = u8::try_from(seen.saturating_sub(1)).unwrap_or(u8::MAX);
-                        surplus[l] = surplus[l].saturating_add(spare);
-                    }
-                    Clocks::Shared => {
-                        sum[0].0[l] += x;
-                        sum[1].0[l] += y;
-                        sum[2].0[l] += z;
-                        count[l] += seen;
+                        *surplus = surplus.saturating_add(spare);
                     }
                 }
+                Clocks::Shared => to.shared.push(shared_clock(&sums)),
             }
         }
         let parts = normal.each_ref().map(split);
         to.normals.push(parts.map(|(nearest, _)| nearest));
         to.remainders.push(parts.map(|(_, remainder)| remainder));
         to.surpluses.push(surplus);
-        if self.clocks == Clocks::Shared {
-            let parts = sum.each_ref().map(split);
-            to.shared.push(SharedClock {
-                sum: parts.map(|(nearest, _)| nearest),
-                remainder: parts.map(|(_, remainder)| remainder),
-                count: Lanes(count),
-            });
+    }
+}
+
+/// The GNSS part of one sample, to be made from the positions of each system.
+struct Make<'a> {
+    fixed: &'a Fixed,
+    tiles: &'a [Tile],
+    systems: &'a [Positions],
+    to: &'a mut FixedTiles,
+}
+
+impl Work for Make<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for tile in self.tiles {
+            self.fixed.push_tile(tile, self.systems, self.to);
         }
+    }
+}
+
+/// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
+#[inline(always)]
+fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
+    for l in 0..LANES {
+        let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
+        let zz = f64::from(count) - sums.xx.0[l] - sums.yy.0[l];
+        let scale = 1.0 / f64::from(count.max(1));
+        normal[0].0[l] += sums.xx.0[l] - x * x * scale;
+        normal[1].0[l] += sums.yy.0[l] - y * y * scale;
+        normal[2].0[l] += zz - z * z * scale;
+        normal[3].0[l] += sums.xy.0[l] - x * y * scale;
+        normal[4].0[l] += sums.xz.0[l] - x * z * scale;
+        normal[5].0[l] += sums.yz.0[l] - y * z * scale;
+    }
+}
+
+#[inline(always)]
+fn shared_clock(sums: &Sums<f64>) -> SharedClock {
+    let parts = [&sums.x, &sums.y, &sums.z].map(|sum| {
+        let mean = |l: usize| sum.0[l] / f64::from(sums.count.0[l].max(1));
+        split(&Lanes(std::array::from_fn(mean)))
+    });
+    SharedClock {
+        mean: parts.map(|(nearest, _)| nearest),
+        remainder: parts.map(|(_, remainder)| remainder),
+        count: sums.count,
     }
 }

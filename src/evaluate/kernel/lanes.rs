@@ -37,10 +37,9 @@ pub(super) trait Real:
     /// A number from its f32 nearest and what that leaves over.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
-    fn magnitude(self) -> Self;
     /// Whether a satellite at this height over the horizon plane and this squared range is at or
-    /// above the mask; `sine` is height over range.
-    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> bool;
+    /// above the mask, and whether it may be; `sine` is height over range.
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> (bool, bool);
 }
 
 impl Real for f32 {
@@ -69,15 +68,13 @@ impl Real for f32 {
         self.sqrt()
     }
 
+    /// What may be but need not be above the mask is looked at again.
     #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-
-    /// Good enough, because decisions close to the mask are taken again.
-    #[inline(always)]
-    fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> bool {
-        sine >= mask.sine
+    fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> (bool, bool) {
+        (
+            sine >= mask.sine + mask.slack,
+            sine >= mask.sine - mask.slack,
+        )
     }
 }
 
@@ -106,15 +103,11 @@ impl Real for f64 {
         self.sqrt()
     }
 
-    #[inline(always)]
-    fn magnitude(self) -> Self {
-        self.abs()
-    }
-
     /// The comparison of [`Mask::line_of_sight`], operation by operation.
     #[inline(always)]
-    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, _sine: Self) -> bool {
-        (height >= 0.0) & (height * height >= mask.sine2 * range2) & (range2 > 0.0)
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, _sine: Self) -> (bool, bool) {
+        let seen = (height >= 0.0) & (height * height >= mask.sine2 * range2) & (range2 > 0.0);
+        (seen, seen)
     }
 }
 
@@ -123,6 +116,8 @@ impl Real for f64 {
 pub(super) struct MaskTerms<R> {
     sine: R,
     sine2: R,
+    /// By how much a sine may be wrong; 0 in f64, which is exact as the plain path is.
+    slack: R,
 }
 
 impl<R: Real> MaskTerms<R> {
@@ -130,7 +125,13 @@ impl<R: Real> MaskTerms<R> {
         Self {
             sine: R::of(mask.degrees().to_radians().sin()),
             sine2: R::of(mask.sine_squared()),
+            slack: R::ZERO,
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn with_slack(self, slack: R) -> Self {
+        Self { slack, ..self }
     }
 }
 
@@ -158,8 +159,8 @@ pub(super) struct Sums<R> {
     pub(super) z: Lanes<R>,
     /// Visible satellites.
     pub(super) count: Lanes<u32>,
-    /// How close the sine of the nearest decision came to the mask.
-    pub(super) margin: Lanes<R>,
+    /// Satellites that may be visible.
+    pub(super) possible: Lanes<u32>,
 }
 
 impl<R: Real> Sums<R> {
@@ -176,7 +177,23 @@ impl<R: Real> Sums<R> {
             y: zero,
             z: zero,
             count: Lanes([0; LANES]),
-            margin: Lanes([R::ONE; LANES]),
+            possible: Lanes([0; LANES]),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn merge(&mut self, other: &Self) {
+        for l in 0..LANES {
+            self.xx.0[l] += other.xx.0[l];
+            self.yy.0[l] += other.yy.0[l];
+            self.xy.0[l] += other.xy.0[l];
+            self.xz.0[l] += other.xz.0[l];
+            self.yz.0[l] += other.yz.0[l];
+            self.x.0[l] += other.x.0[l];
+            self.y.0[l] += other.y.0[l];
+            self.z.0[l] += other.z.0[l];
+            self.count.0[l] += other.count.0[l];
+            self.possible.0[l] += other.possible.0[l];
         }
     }
 
@@ -193,11 +210,9 @@ impl<R: Real> Sums<R> {
             let range2 = dx * dx + dy * dy + dz * dz;
             let inverse = R::ONE / range2.root();
             let sine = height * inverse;
-            let seen = R::above(mask, height, range2, sine);
-            let margin = (sine - mask.sine).magnitude();
-            let nearest = self.margin.0[l];
-            self.margin.0[l] = if margin < nearest { margin } else { nearest };
+            let (seen, possible) = R::above(mask, height, range2, sine);
             let scale = if seen { inverse } else { R::ZERO };
+            self.possible.0[l] += u32::from(possible);
             self.count.0[l] += u32::from(seen);
             let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
             self.x.0[l] += vx;
@@ -224,14 +239,16 @@ pub(super) struct FixedTile<'a> {
     pub(super) remainder: &'a Normal,
     /// Satellites less clocks of the systems with clocks of their own.
     pub(super) surplus: &'a [u8; LANES],
-    pub(super) shared: &'a SharedClock,
+    /// The GNSS satellites that share their clock with the design, if any do.
+    pub(super) shared: Option<&'a SharedClock>,
 }
 
-/// The GNSS satellites that share their clock with the design.
+/// GNSS satellites that share their clock with the design; what they contribute on their own is
+/// part of the normal matrix already.
 #[derive(Debug, Clone)]
 pub(super) struct SharedClock {
-    /// Σ v, and its remainder.
-    pub(super) sum: [Lanes<f32>; 3],
+    /// Σ v / n, and its remainder.
+    pub(super) mean: [Lanes<f32>; 3],
     pub(super) remainder: [Lanes<f32>; 3],
     pub(super) count: Lanes<u32>,
 }
@@ -239,15 +256,9 @@ pub(super) struct SharedClock {
 pub(super) const ZERO: Lanes<f32> = Lanes([0.0; LANES]);
 
 impl SharedClock {
-    pub(super) const NONE: Self = Self {
-        sum: [ZERO; 3],
-        remainder: [ZERO; 3],
-        count: Lanes([0; LANES]),
-    };
-
     #[inline(always)]
-    pub(super) fn sum<R: Real>(&self, axis: usize, lane: usize) -> R {
-        R::joined(self.sum[axis].0[lane], self.remainder[axis].0[lane])
+    pub(super) fn mean<R: Real>(&self, axis: usize, lane: usize) -> R {
+        R::joined(self.mean[axis].0[lane], self.remainder[axis].0[lane])
     }
 }
 
@@ -257,7 +268,7 @@ impl FixedTile<'_> {
         normal: &[ZERO; 6],
         remainder: &[ZERO; 6],
         surplus: &[0; LANES],
-        shared: &SharedClock::NONE,
+        shared: None,
     };
 
     #[inline(always)]
@@ -287,34 +298,92 @@ impl<R: Real> Solution<R> {
     /// From the sums over the design and the GNSS part.
     #[inline(always)]
     pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
-        let mut solution = Self {
-            pdop: Lanes([R::ZERO; LANES]),
+        let mut system = NormalLanes::new(sums, fixed);
+        if let Some(shared) = fixed.shared {
+            system.join_clocks(sums, shared);
+        }
+        Self {
+            pdop: system.pdop(),
+            surplus: system.surplus,
+        }
+    }
+}
+
+/// The normal matrix of the position at the points of a tile.
+struct NormalLanes<R> {
+    /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
+    matrix: [Lanes<R>; 6],
+    /// Satellites less clock states.
+    surplus: Lanes<u32>,
+}
+
+impl<R: Real> NormalLanes<R> {
+    /// The GNSS part and Σ v vᵀ - (Σ v)(Σ v)ᵀ / n of the design.
+    #[inline(always)]
+    fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
+        let mut system = Self {
+            matrix: [Lanes([R::ZERO; LANES]); 6],
             surplus: Lanes([0; LANES]),
         };
         for l in 0..LANES {
-            let design = sums.count.0[l];
-            let count = design + fixed.shared.count.0[l];
+            let count = sums.count.0[l];
             let clocks = u32::from(count > 0);
-            solution.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
+            system.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
             let scale = R::ONE / R::count(count + 1 - clocks);
-            let x = sums.x.0[l] + fixed.shared.sum::<R>(0, l);
-            let y = sums.y.0[l] + fixed.shared.sum::<R>(1, l);
-            let z = sums.z.0[l] + fixed.shared.sum::<R>(2, l);
-            let squares_zz = R::count(design) - sums.xx.0[l] - sums.yy.0[l];
-            let xx = fixed.normal::<R>(0, l) + (sums.xx.0[l] - x * x * scale);
-            let yy = fixed.normal::<R>(1, l) + (sums.yy.0[l] - y * y * scale);
-            let zz = fixed.normal::<R>(2, l) + (squares_zz - z * z * scale);
-            let xy = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
-            let xz = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
-            let yz = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
+            let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
+            let (xx, yy) = (sums.xx.0[l], sums.yy.0[l]);
+            let zz = R::count(count) - xx - yy;
+            let matrix = &mut system.matrix;
+            matrix[0].0[l] = fixed.normal::<R>(0, l) + (xx - x * x * scale);
+            matrix[1].0[l] = fixed.normal::<R>(1, l) + (yy - y * y * scale);
+            matrix[2].0[l] = fixed.normal::<R>(2, l) + (zz - z * z * scale);
+            matrix[3].0[l] = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
+            matrix[4].0[l] = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
+            matrix[5].0[l] = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
+        }
+        system
+    }
+
+    /// Makes one clock of the design's and the GNSS's: two groups of n and m satellites that
+    /// become one gain n m / (n + m) δ δᵀ, δ the difference of their mean unit vectors (Chan,
+    /// Golub and LeVeque, *Amer. Statist.* 37 (1983) 242). Nothing is cancelled by this, as it
+    /// would be by the sums of both groups together.
+    #[inline(always)]
+    fn join_clocks(&mut self, sums: &Sums<R>, shared: &SharedClock) {
+        for l in 0..LANES {
+            let (n, m) = (sums.count.0[l], shared.count.0[l]);
+            let both = u32::from((n > 0) & (m > 0));
+            self.surplus.0[l] += m - u32::from(m > 0) + both;
+            let gain = R::count(n * m) / R::count((n + m).max(1));
+            let scale = R::ONE / R::count(n.max(1));
+            let x = sums.x.0[l] * scale - shared.mean::<R>(0, l);
+            let y = sums.y.0[l] * scale - shared.mean::<R>(1, l);
+            let z = sums.z.0[l] * scale - shared.mean::<R>(2, l);
+            self.matrix[0].0[l] += gain * x * x;
+            self.matrix[1].0[l] += gain * y * y;
+            self.matrix[2].0[l] += gain * z * z;
+            self.matrix[3].0[l] += gain * x * y;
+            self.matrix[4].0[l] += gain * x * z;
+            self.matrix[5].0[l] += gain * y * z;
+        }
+    }
+
+    /// [`Real::NO_SOLUTION`] where the matrix is not positive definite.
+    #[inline(always)]
+    fn pdop(&self) -> Lanes<R> {
+        let mut lanes = Lanes([R::NO_SOLUTION; LANES]);
+        let matrix = &self.matrix;
+        for l in 0..LANES {
+            let (xx, yy, zz) = (matrix[0].0[l], matrix[1].0[l], matrix[2].0[l]);
+            let (xy, xz, yz) = (matrix[3].0[l], matrix[4].0[l], matrix[5].0[l]);
             let minor_zz = xx * yy - xy * xy;
             let minor_yy = xx * zz - xz * xz;
             let minor_xx = yy * zz - yz * yz;
             let determinant = xx * minor_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
             let definite = (xx > R::ZERO) & (minor_zz > R::ZERO) & (determinant > R::ZERO);
             let pdop = ((minor_xx + minor_yy + minor_zz) / determinant).root();
-            solution.pdop.0[l] = if definite { pdop } else { R::NO_SOLUTION };
+            lanes.0[l] = if definite { pdop } else { R::NO_SOLUTION };
         }
-        solution
+        lanes
     }
 }

@@ -57,7 +57,14 @@ fn sample(
         xz,
         yz,
     };
-    let mut sum = Vector3::from_fn(|axis, _| fixed.shared.sum::<f64>(axis, doubt.lane));
+    let (mut sum, mut in_group) = (Vector3::zeros(), 0);
+    if let Some(shared) = fixed.shared {
+        in_group = shared.count.0[doubt.lane];
+        let mean = Vector3::from_fn(|axis, _| shared.mean::<f64>(axis, doubt.lane));
+        sum = mean * f64::from(in_group);
+        // Undoes the elimination of the GNSS clock, which becomes that of the design.
+        normal += Symmetric3::outer(mean, f64::from(in_group));
+    }
     let mut visible = 0_u32;
     for &n in &doubt.satellites {
         let satellite = &sky.ephemeris.satellites()[n as usize];
@@ -69,7 +76,7 @@ fn sample(
             visible += 1;
         }
     }
-    let in_group = visible + fixed.shared.count.0[doubt.lane];
+    in_group += visible;
     let mut surplus = u32::from(fixed.surplus[doubt.lane]);
     if in_group > 0 {
         normal += Symmetric3::outer(sum, -1.0 / f64::from(in_group));

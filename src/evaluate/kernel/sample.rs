@@ -2,10 +2,10 @@
 
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
-use super::flight::{PatternFlight, Positions, Turn};
+use super::flight::{BLOCK, PatternFlight, Positions, Turn};
 use super::instructions::Work;
-use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, Solution, Sums};
-use super::tiles::{Horizon, Tile, Tiles};
+use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, SiteLanes, Solution, Sums};
+use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
 
 /// Stands for an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
@@ -29,6 +29,14 @@ impl Limits {
     const BAND: f32 = 1e-5;
 
     #[inline(always)]
+    fn capped(self, single_below: f32) -> Self {
+        Self {
+            single_below: self.single_below.min(single_below),
+            ..self
+        }
+    }
+
+    #[inline(always)]
     fn holds_in_single(&self, pdop: f32) -> bool {
         let available = self.available as f32;
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
@@ -48,16 +56,21 @@ pub(super) struct Workspace {
     pub(super) positions: Positions,
     all: Candidates,
     near: Candidates,
+    /// Words of a tile.
+    blocks: usize,
+    /// Which satellites the tiles of a group may see, tile by tile.
     words: Vec<u64>,
 }
 
 impl Workspace {
     pub(super) fn new(satellites: usize) -> Self {
         let all = Candidates::with_capacity(satellites);
+        let blocks = satellites.div_ceil(BLOCK).max(1);
         Self {
             positions: Positions::new(satellites),
             near: all.clone(),
-            words: vec![0; satellites.div_ceil(super::flight::BLOCK)],
+            blocks,
+            words: vec![0; blocks * TILES_IN_GROUP],
             all,
         }
     }
@@ -102,6 +115,8 @@ impl Outcome {
 /// One sample to be evaluated.
 pub(super) struct Sample<'a> {
     pub(super) scene: &'a Scene,
+    /// Those of the scene, or narrower ones.
+    pub(super) limits: Limits,
     /// The pattern to fly; without one the positions are there already.
     pub(super) pattern: Option<(&'a PatternFlight, Turn)>,
     /// The GNSS part.
@@ -118,36 +133,69 @@ impl Work for Sample<'_> {
         if let Some((pattern, turn)) = &self.pattern {
             pattern.fly(turn, &mut self.work.positions);
         }
-        evaluate(self.scene, &self.fixed, self.work, self.outcome);
+        evaluate(
+            self.scene,
+            self.limits,
+            &self.fixed,
+            self.work,
+            self.outcome,
+        );
     }
 }
 
 #[inline(always)]
-fn evaluate(scene: &Scene, fixed: &FixedSample<'_>, work: &mut Workspace, out: &mut Outcome) {
+fn evaluate(
+    scene: &Scene,
+    limits: Limits,
+    fixed: &FixedSample<'_>,
+    work: &mut Workspace,
+    out: &mut Outcome,
+) {
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
     let slack_km = Horizon::cap_slack_km(&work.positions);
-    let sine_slack = horizon.sine_slack(&work.positions);
+    let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
+    let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     let (mut visible, mut available) = ([0; LANES], [0; LANES]);
     for group in &scene.tiles.groups {
         work.near.select(&work.all, &group.cap, slack_km);
+        let blocks = work.near.blocks();
+        let tiles = &scene.tiles.tiles[group.tiles.clone()];
+        for (tile, words) in tiles.iter().zip(work.words.chunks_exact_mut(work.blocks)) {
+            for (block, word) in blocks.iter().zip(words) {
+                *word = block.inside(&tile.cap, slack_km);
+            }
+        }
         for number in group.tiles.clone() {
-            let tile = &scene.tiles.tiles[number];
+            let place = number - group.tiles.start;
+            let words = &work.words[place * work.blocks..(place + 1) * work.blocks];
+            let looked = Looked {
+                blocks: work.near.blocks(),
+                words,
+            };
             let fixed = fixed.tile(number);
-            let sums = single_sums(scene, tile, slack_km, work);
-            let verdict = Verdict::new(&sums, &fixed, &scene.limits, sine_slack);
+            let sums = looked.sums(&scene.tiles.tiles[number].single, &mask);
+            let verdict = Verdict::new(&sums, &fixed, &limits);
             for l in 0..LANES {
                 visible[l] += verdict.visible.0[l];
                 available[l] += verdict.available.0[l];
             }
             out.pdop[number] = verdict.pdop;
             if any(&verdict.doubtful) {
-                doubt(number, &verdict, work, out);
+                doubt(number, &verdict, looked, out);
             }
             if any(&verdict.coarse) {
-                available[0] += compute_again(scene, number, &fixed, &verdict, work, out);
+                available[0] += compute_again(
+                    scene,
+                    number,
+                    &fixed,
+                    &verdict,
+                    &work.positions,
+                    looked,
+                    out,
+                );
             }
         }
     }
@@ -160,17 +208,35 @@ fn any(lanes: &Lanes<u32>) -> bool {
     lanes.0.iter().fold(0, |all, lane| all | lane) != 0
 }
 
-/// The sums of a tile in f32. Keeps which satellites were looked at.
-#[inline(always)]
-fn single_sums(scene: &Scene, tile: &Tile, slack_km: f32, work: &mut Workspace) -> Sums<f32> {
-    let mut sums = Sums::zero();
-    for (block, word) in work.near.blocks().iter().zip(&mut work.words) {
-        *word = block.inside(&tile.cap, slack_km);
-        for n in bits(*word) {
-            sums.add(&tile.single, block.position(n), &scene.single);
+/// The satellites that a tile may see.
+#[derive(Clone, Copy)]
+struct Looked<'a> {
+    blocks: &'a [Block],
+    /// A bit for each satellite of the block.
+    words: &'a [u64],
+}
+
+impl<'a> Looked<'a> {
+    #[inline(always)]
+    fn sums(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
+        let mut all = Sums::zero();
+        for (block, &word) in self.blocks.iter().zip(self.words) {
+            let mut sums = Sums::zero();
+            for n in bits(word) {
+                sums.add(sites, block.position(n), mask);
+            }
+            // Sums of sums: hundreds of visible satellites one by one would cost f32 a digit.
+            all.merge(&sums);
         }
+        all
     }
-    sums
+
+    /// The number of each among all satellites.
+    #[inline(always)]
+    fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
+        let blocks = self.blocks.iter().zip(self.words);
+        blocks.flat_map(|(block, &word)| bits(word).map(|n| block.index(n)))
+    }
 }
 
 /// What f32 says about the points of a tile; 0 or 1 where it is yes or no.
@@ -188,7 +254,7 @@ struct Verdict {
 
 impl Verdict {
     #[inline(always)]
-    fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits, sine_slack: f32) -> Self {
+    fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
         let solution = Solution::new(sums, fixed);
         let zero = Lanes([0; LANES]);
         let mut verdict = Self {
@@ -200,7 +266,7 @@ impl Verdict {
         };
         for l in 0..LANES {
             let pdop = solution.pdop.0[l];
-            let sure = u32::from(sums.margin.0[l] > sine_slack);
+            let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
             let counted = u32::from(solution.surplus.0[l] >= POSITION_STATES);
             let fine = u32::from(limits.holds_in_single(pdop));
             let reached = u32::from(pdop <= limits.available as f32);
@@ -216,10 +282,8 @@ impl Verdict {
 
 /// Leaves the doubtful points of a tile to be looked at again.
 #[inline(never)]
-fn doubt(number: usize, verdict: &Verdict, work: &Workspace, out: &mut Outcome) {
-    let satellites: Vec<u32> = looked_at(work)
-        .map(|(block, n)| block.index(n) as u32)
-        .collect();
+fn doubt(number: usize, verdict: &Verdict, looked: Looked<'_>, out: &mut Outcome) {
+    let satellites: Vec<u32> = looked.satellites().map(|n| n as u32).collect();
     for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
         out.pdop[number].0[lane] = UNSOLVED;
         out.doubts.push(Doubt {
@@ -230,11 +294,6 @@ fn doubt(number: usize, verdict: &Verdict, work: &Workspace, out: &mut Outcome) 
     }
 }
 
-fn looked_at(work: &Workspace) -> impl Iterator<Item = (&Block, usize)> {
-    let blocks = work.near.blocks().iter().zip(&work.words);
-    blocks.flat_map(|(block, &word)| bits(word).map(move |n| (block, n)))
-}
-
 /// Takes the tile again in f64, for the points that f32 is too coarse for. Returns how many of
 /// them are available.
 #[inline(always)]
@@ -243,14 +302,15 @@ fn compute_again(
     number: usize,
     fixed: &FixedTile<'_>,
     verdict: &Verdict,
-    work: &Workspace,
+    positions: &Positions,
+    looked: Looked<'_>,
     out: &mut Outcome,
 ) -> u32 {
     let mut sums = Sums::<f64>::zero();
-    for (block, &word) in work.near.blocks().iter().zip(&work.words) {
+    let sites = &scene.tiles.tiles[number].double;
+    for (block, &word) in looked.blocks.iter().zip(looked.words) {
         for n in bits(word) {
-            let position = work.positions.at(block.index(n));
-            sums.add(&scene.tiles.tiles[number].double, position, &scene.double);
+            sums.add(sites, positions.at(block.index(n)), &scene.double);
         }
     }
     let solution = Solution::new(&sums, fixed);

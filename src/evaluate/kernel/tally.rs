@@ -47,6 +47,9 @@ pub(super) struct Counts {
 }
 
 impl Counts {
+    /// Memory that it takes.
+    pub(super) const BYTES: usize = (UNSOLVED_PLACE as usize + 1) * size_of::<u64>();
+
     pub(super) fn new() -> Self {
         Self {
             places: vec![0; UNSOLVED_PLACE as usize + 1],
@@ -143,6 +146,9 @@ pub(super) struct Search {
 pub(super) struct Found([Vec<u64>; WANTED]);
 
 impl Found {
+    /// Memory that it takes.
+    pub(super) const BYTES: usize = WANTED * (size_of::<u64>() << TRAILING_BITS);
+
     pub(super) fn new() -> Self {
         Self(std::array::from_fn(|_| vec![0; 1 << TRAILING_BITS]))
     }
@@ -174,10 +180,10 @@ impl Work for Find<'_> {
         let mut tail = [0.0; LANES];
         for tile in self.tiles {
             let mut hits = 0;
-            for (value, tail) in tile.0.iter().zip(&mut tail) {
-                let place = place(*value);
+            for (tail, &value) in tail.iter_mut().zip(&tile.0) {
+                let place = place(value);
                 let beyond = (place > wanted[VALUE_AT_RISK]) & (place < UNSOLVED_PLACE);
-                *tail += f64::from(if beyond { *value } else { 0.0 });
+                *tail += f64::from(if beyond { value } else { 0.0 });
                 for wanted in wanted {
                     hits |= u32::from(place == wanted);
                 }
@@ -215,6 +221,11 @@ impl Search {
                 ranked(level.get()),
             ],
         })
+    }
+
+    /// The rank of an order statistic: median, 95 %, 99 %, largest.
+    pub(super) fn rank(&self, number: usize) -> u64 {
+        self.wanted[number].rank
     }
 
     /// The statistics, from the finds of all tiles, the sum of all values and that of those

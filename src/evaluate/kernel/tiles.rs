@@ -1,8 +1,9 @@
 //! Ground points in tiles of neighbours, and tiles in groups.
 //!
-//! A tile fills the lanes. Points are split in two along the longest side of their bounding box
-//! until a tile is left, so that any set of points, a grid or not, gives compact tiles, and all
-//! tiles but the last are full.
+//! A tile fills the lanes. Points are split in two until a tile is left, so that any set of points,
+//! a grid or not, gives compact tiles, and all tiles but the last of each group are full. Many
+//! points are split across the longest side of their bounding box; few where it leaves the least
+//! to be looked at, because a satellite that sees any point of a tile is looked at for all of them.
 //!
 //! A satellite at r sees the points within the angle ψ(r) = acos(k / r) - m of the point below it,
 //! k = g cos m, for points at distance g from the centre and an elevation m over the horizon of
@@ -22,10 +23,10 @@ use super::lanes::{LANES, Lanes, SiteLanes};
 use crate::ground::Site;
 use crate::visibility::Mask;
 use nalgebra::Vector3;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Tiles that are culled together first.
-const TILES_IN_GROUP: usize = 32;
+pub(super) const TILES_IN_GROUP: usize = 32;
 
 /// The test of a cap against a satellite: `x`, `y`, `z`, `q` coefficients and the bound.
 #[derive(Debug, Clone, Copy)]
@@ -103,16 +104,22 @@ impl Horizon {
     }
 
     /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
-    /// were rounded by half a unit in each of three components, over the shortest range; and
-    /// eight roundings of the sine itself.
+    /// were rounded, over the shortest range; and eight roundings of the sine itself.
     #[inline(always)]
     pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
-        const ROOT_3: f64 = 1.732_050_807_568_877_2;
-        let rounding_km = positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3;
         let range_km = self.range_at_mask_km(positions.nearest_km);
-        let slack = rounding_km / range_km + 4.0 * f64::from(f32::EPSILON);
+        let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
         // Satellites on the ground leave nothing to f32.
         slack.min(2.0) as f32
+    }
+
+    /// PDOP up to which f32 holds six digits. A line of sight is turned by the rounding of the
+    /// positions over the range, most in the zenith, and PDOP magnifies that by its square at
+    /// most; the constant was found by trial, with twice as much left (seven digits at 925 km).
+    #[inline(always)]
+    pub(super) fn single_below(&self, positions: &Positions) -> f32 {
+        let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
+        (5e-6 * range_km / rounding_km(positions)).sqrt() as f32
     }
 
     /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
@@ -122,25 +129,64 @@ impl Horizon {
         positions.farthest_km as f32 * (16.0 * f32::EPSILON)
     }
 
-    fn cap(&self, sites: &[Site], members: &[u32]) -> Cap {
-        let units = members
-            .iter()
-            .map(|&m| sites[m as usize].local.origin_km.normalize());
-        let sum: Vector3<f64> = units.clone().sum();
-        let Some(centre) = sum.try_normalize(1e-6) else {
+    fn cap(&self, circle: Option<Circle>) -> Cap {
+        // Caps near a hemisphere and beyond are not worth a test.
+        let Some(circle) = circle.filter(|circle| circle.radius_rad < 1.2) else {
             return Cap::EVERYTHING;
         };
-        let radius = units.map(|u| u.angle(&centre)).fold(0.0_f64, f64::max);
-        // Caps near a hemisphere and beyond are not worth a test.
-        if radius > 1.2 {
-            return Cap::EVERYTHING;
-        }
-        let angle = radius - self.least_mask_rad;
+        let angle = circle.radius_rad - self.least_mask_rad;
         Cap {
-            centre: centre.map(|x| x as f32).into(),
+            centre: circle.centre.map(|x| x as f32).into(),
             sine: angle.sin() as f32,
             bound: (self.reach2.sqrt() * angle.cos()) as f32,
         }
+    }
+}
+
+/// How far two positions that were rounded to f32 may be displaced: half a unit in each of the
+/// three components.
+#[inline(always)]
+fn rounding_km(positions: &Positions) -> f64 {
+    const ROOT_3: f64 = 1.732_050_807_568_877_2;
+    positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3
+}
+
+/// A circle on the sphere around some points.
+#[derive(Debug, Clone, Copy)]
+struct Circle {
+    centre: Vector3<f64>,
+    radius_rad: f64,
+}
+
+impl Circle {
+    /// Nearly the smallest: the centre is moved towards the farthest point by smaller and smaller
+    /// steps (Bădoiu and Clarkson, *SODA* 2003, p. 801). `None` for points all around the Earth.
+    fn around(sites: &[Site], members: &[u32]) -> Option<Self> {
+        let units: Vec<_> = members
+            .iter()
+            .map(|&m| sites[m as usize].local.origin_km.normalize())
+            .collect();
+        let sum: Vector3<f64> = units.iter().sum();
+        let mut centre = sum.try_normalize(1e-6)?;
+        let mut best: Option<Self> = None;
+        for step in 2..64 {
+            let nearness = |unit: &&Vector3<f64>| unit.dot(&centre);
+            let farthest = units
+                .iter()
+                .min_by(|a, b| nearness(a).total_cmp(&nearness(b)))?;
+            let radius_rad = farthest.angle(&centre);
+            if best.is_none_or(|best| radius_rad < best.radius_rad) {
+                best = Some(Self { centre, radius_rad });
+            }
+            centre = (centre + (farthest - centre) / f64::from(step)).try_normalize(1e-6)?;
+        }
+        best
+    }
+
+    /// What grows with the number of satellites that see something of the circle: the area that
+    /// they can be over, if each sees a circle of 0.4 rad (that of 1000 km and 7°).
+    fn cost(circle: Option<Self>) -> f64 {
+        circle.map_or(2.0, |circle| 1.0 - (circle.radius_rad + 0.4).min(PI).cos())
     }
 }
 
@@ -171,55 +217,92 @@ impl Tiles {
     }
 
     fn split(&mut self, sites: &[Site], members: &mut [u32]) {
-        let count = members.len().div_ceil(LANES);
-        if count <= TILES_IN_GROUP {
-            let first = self.tiles.len();
-            let cap = self.horizon.cap(sites, members);
-            self.split_group(sites, members);
-            let tiles = first..self.tiles.len();
-            self.groups.push(Group { tiles, cap });
+        if members.len() > TILES_IN_GROUP * LANES {
+            sort_along(&keys(sites, members)[longest_side(sites, members)], members);
+            let (left, right) = members.split_at_mut(middle(members.len()));
+            self.split(sites, left);
+            self.split(sites, right);
             return;
         }
-        let (left, right) = halves(sites, members);
-        self.split(sites, left);
-        self.split(sites, right);
+        let first = self.tiles.len();
+        self.split_group(sites, members);
+        self.groups.push(Group {
+            tiles: first..self.tiles.len(),
+            cap: self.horizon.cap(Circle::around(sites, members)),
+        });
     }
 
     fn split_group(&mut self, sites: &[Site], members: &mut [u32]) {
-        if members.len() <= LANES {
-            self.tiles.push(Tile {
-                single: site_lanes(sites, members, |x| x as f32, f32::NAN),
-                double: site_lanes(sites, members, |x| x, f64::NAN),
-                cap: self.horizon.cap(sites, members),
-                members: members.to_vec(),
-            });
+        if members.len() > LANES {
+            cut_well(sites, members);
+            let (left, right) = members.split_at_mut(middle(members.len()));
+            self.split_group(sites, left);
+            self.split_group(sites, right);
             return;
         }
-        let (left, right) = halves(sites, members);
-        self.split_group(sites, left);
-        self.split_group(sites, right);
+        self.tiles.push(Tile {
+            single: site_lanes(sites, members, |x| x as f32, f32::NAN),
+            double: site_lanes(sites, members, |x| x, f64::NAN),
+            cap: self.horizon.cap(Circle::around(sites, members)),
+            members: members.to_vec(),
+        });
     }
 }
 
-/// The members on both sides of a cut across the longest side of their bounding box, the left a
-/// whole number of tiles.
-fn halves<'a>(sites: &[Site], members: &'a mut [u32]) -> (&'a mut [u32], &'a mut [u32]) {
-    let position = |m: u32| sites[m as usize].local.origin_km;
-    let first = position(members[0]);
-    let (mut low, mut high) = (first, first);
-    for &m in &*members {
-        low = low.inf(&position(m));
-        high = high.sup(&position(m));
+/// The points on the left of a cut: a whole number of tiles.
+fn middle(points: usize) -> usize {
+    points.div_ceil(LANES).div_ceil(2) * LANES
+}
+
+/// What points can be ordered by: x, y, z and the longitude, counted from the middle one.
+fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
+    let origin = |m: u32| sites[m as usize].local.origin_km;
+    let sum: Vector3<f64> = members.iter().map(|&m| origin(m)).sum();
+    let along =
+        |key: &dyn Fn(Vector3<f64>) -> f64| members.iter().map(|&m| (m, key(origin(m)))).collect();
+    let eastwards = |p: Vector3<f64>| (sum.x * p.y - sum.y * p.x).atan2(sum.x * p.x + sum.y * p.y);
+    [
+        along(&|p| p.x),
+        along(&|p| p.y),
+        along(&|p| p.z),
+        along(&eastwards),
+    ]
+}
+
+/// The axis along which the bounding box of the points is longest.
+fn longest_side(sites: &[Site], members: &[u32]) -> usize {
+    let points = members.iter().map(|&m| sites[m as usize].local.origin_km);
+    let low = points.clone().reduce(|a, b| a.inf(&b));
+    let high = points.reduce(|a, b| a.sup(&b));
+    low.zip(high).map_or(0, |(low, high)| (high - low).imax())
+}
+
+/// Orders points by a key; ties by the order of the points, so that it does not depend on the sort.
+fn sort_along(key: &[(u32, f64)], members: &mut [u32]) {
+    let mut ordered = key.to_vec();
+    ordered.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    for (member, (m, _)) in members.iter_mut().zip(ordered) {
+        *member = m;
     }
-    let axis = (high - low).imax();
-    let cut = members.len().div_ceil(LANES).div_ceil(2) * LANES;
-    // Ties are broken by the order of the points, so that the tiles do not depend on the sort.
-    members.sort_unstable_by(|&a, &b| {
-        position(a)[axis]
-            .total_cmp(&position(b)[axis])
-            .then(a.cmp(&b))
+}
+
+/// Orders points so that the two halves have the smallest circles.
+fn cut_well(sites: &[Site], members: &mut [u32]) {
+    let cut = middle(members.len());
+    let cost = |members: &[u32]| {
+        let (left, right) = members.split_at(cut);
+        left.len() as f64 * Circle::cost(Circle::around(sites, left))
+            + right.len() as f64 * Circle::cost(Circle::around(sites, right))
+    };
+    let orders = keys(sites, members).map(|key| {
+        let mut order = members.to_vec();
+        sort_along(&key, &mut order);
+        order
     });
-    members.split_at_mut(cut)
+    let best = orders.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    if let Some(best) = best {
+        members.copy_from_slice(best);
+    }
 }
 
 fn site_lanes<R: Copy>(
