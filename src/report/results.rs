@@ -2,11 +2,12 @@
 
 use super::{Certificate, Diagnostic, VERSION, diagnose, dominated_by};
 use crate::constellation::Design;
+use crate::earth;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
 use crate::scenario::Scenario;
 use crate::search::{DesignProblem, Quantity};
-use crate::validate::Findings;
+use crate::validate::{Findings, JUDGES, Judge};
 use rayon::prelude::*;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -274,19 +275,57 @@ pub struct ValidateResult {
     pub passed: bool,
     /// The study.
     pub scenario: ScenarioStamp,
+    /// The targets, in the order in which they were asked for.
+    pub against: Vec<String>,
+    /// What every number rests on.
+    pub basis: Basis,
     /// Version of the program.
     pub version: &'static str,
+}
+
+/// Constants and crates behind a validation. There is no random number in it, and no seed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Basis {
+    /// Gravitational parameter, km³/s².
+    pub mu_km3_s2: f64,
+    /// Equatorial radius, km.
+    pub radius_km: f64,
+    /// Second zonal harmonic.
+    pub j2: f64,
+    /// Flattening of the ellipsoid.
+    pub flattening: f64,
+    /// The crates whose word counts.
+    pub judges: [Judge; 4],
+}
+
+impl Default for Basis {
+    fn default() -> Self {
+        Self {
+            mu_km3_s2: earth::MU_KM3_S2,
+            radius_km: earth::RADIUS_KM,
+            j2: earth::J2,
+            flattening: earth::FLATTENING,
+            judges: JUDGES,
+        }
+    }
 }
 
 impl ValidateResult {
     /// The result of validating one design.
     #[must_use]
-    pub fn new(design: &Design, findings: Findings, scenario: &Scenario) -> Self {
+    pub fn new(
+        design: &Design,
+        against: Vec<String>,
+        findings: Findings,
+        scenario: &Scenario,
+    ) -> Self {
         Self {
             design: design.into(),
             passed: findings.passed(),
             findings,
             scenario: scenario.into(),
+            against,
+            basis: Basis::default(),
             version: VERSION,
         }
     }
