@@ -249,6 +249,10 @@ impl Resolver<'_, '_> {
         let inclination_deg = self.value(&table::INCLINATION_DEG);
         let altitude_km = self.value(&table::ALTITUDE_KM);
         let phasing = self.phasing(planes);
+        let eccentricity = self.value(&table::ECCENTRICITY);
+        let arg_perigee_deg = self.value(&table::ARG_PERIGEE_DEG);
+        let eccentricity_step = self.value(&table::ECCENTRICITY_STEP);
+        let arg_perigee_step_deg = self.value(&table::ARG_PERIGEE_STEP_DEG);
         let inclination_step_deg = self.value(&table::INCLINATION_STEP_DEG);
         let altitude_step_km = self.value(&table::ALTITUDE_STEP_KM);
         let space = SearchSpace {
@@ -258,6 +262,10 @@ impl Resolver<'_, '_> {
             inclination_deg: inclination_deg?,
             altitude_km: altitude_km?,
             phasing: phasing?,
+            eccentricity: eccentricity?,
+            arg_perigee_deg: arg_perigee_deg?,
+            eccentricity_step: eccentricity_step?,
+            arg_perigee_step_deg: arg_perigee_step_deg?,
             inclination_step_deg: inclination_step_deg?,
             altitude_step_km: altitude_step_km?,
         };

@@ -196,10 +196,18 @@ pub struct SearchSpace {
     pub altitude_km: [f64; 2],
     /// Walker's F (for a lattice N_c) before it is cut; see [`SearchSpace::phasing_for`].
     pub phasing: [u32; 2],
+    /// Eccentricity, lowest and highest.
+    pub eccentricity: [f64; 2],
+    /// Argument of perigee, degrees.
+    pub arg_perigee_deg: [f64; 2],
     /// Step of an exhaustive search in inclination, degrees.
     pub inclination_step_deg: f64,
     /// Step of an exhaustive search in altitude, km.
     pub altitude_step_km: f64,
+    /// Step of an exhaustive search in eccentricity.
+    pub eccentricity_step: f64,
+    /// Step of an exhaustive search in argument of perigee, degrees.
+    pub arg_perigee_step_deg: f64,
 }
 
 impl SearchSpace {
@@ -218,6 +226,8 @@ impl SearchSpace {
             * whole(self.phasing)
             * count(self.inclination_deg, self.inclination_step_deg)
             * count(self.altitude_km, self.altitude_step_km)
+            * count(self.eccentricity, self.eccentricity_step)
+            * count(self.arg_perigee_deg, self.arg_perigee_step_deg)
     }
 }
 

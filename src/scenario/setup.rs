@@ -200,6 +200,8 @@ impl Scenario {
             inclination_deg: self.search.inclination_deg,
             altitude_km: self.search.altitude_km,
             phasing: self.search.phasing,
+            eccentricity: self.search.eccentricity,
+            arg_perigee_deg: self.search.arg_perigee_deg,
         }
     }
 
@@ -262,13 +264,12 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: vec![
-                    1.0,
-                    1.0,
+                steps: self.design_space().steps([
                     self.search.inclination_step_deg,
                     self.search.altitude_step_km,
-                    1.0,
-                ],
+                    self.search.eccentricity_step,
+                    self.search.arg_perigee_step_deg,
+                ]),
                 batch: SWEEP_BATCH,
                 hypervolume_reference,
             }),

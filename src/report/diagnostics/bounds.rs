@@ -105,6 +105,8 @@ mod tests {
             inclination_deg: [40.0, 60.0],
             altitude_km: [400.0, 1000.0],
             phasing: [1, 1],
+            eccentricity: [0.0, 0.0],
+            arg_perigee_deg: [0.0, 0.0],
         };
         let front = [
             "delta:45:225/15/1@1000",

@@ -158,8 +158,15 @@ fn search() -> impl Strategy<Value = SearchSpace> {
         1.0..1e3,
         1.0..1e3,
     );
-    (whole, real).prop_map(
-        |((planes, satellites_per_plane, mut phasing, pattern), real)| {
+    let ellipse = (
+        rising(0.0..=0.89),
+        rising(0.0..=360.0),
+        0.001..1.0,
+        1.0..360.0,
+    );
+    (whole, real, ellipse).prop_map(
+        |((planes, satellites_per_plane, mut phasing, pattern), real, ellipse)| {
+            let (eccentricity, arg_perigee_deg, eccentricity_step, arg_perigee_step_deg) = ellipse;
             let (inclination_deg, altitude_km, inclination_step_deg, altitude_step_km) = real;
             phasing[0] = phasing[0].min(planes[1] - 1);
             SearchSpace {
@@ -169,8 +176,12 @@ fn search() -> impl Strategy<Value = SearchSpace> {
                 inclination_deg,
                 altitude_km,
                 phasing,
+                eccentricity,
+                arg_perigee_deg,
                 inclination_step_deg,
                 altitude_step_km,
+                eccentricity_step,
+                arg_perigee_step_deg,
             }
         },
     )

@@ -170,6 +170,32 @@ pub(in crate::scenario) static PHASING: Key<Interval<Integer<u32>>> = Key {
     of: |s| Some(s.search.phasing),
 };
 
+pub(in crate::scenario) static ECCENTRICITY: Key<Interval<Number>> = Key {
+    section: "search",
+    name: "eccentricity",
+    unit: "",
+    meaning: "Eccentricity; a variable of the search where the limits differ",
+    rule: Interval {
+        of: Number::from_below(0.0, 0.9),
+        or_single: true,
+    },
+    otherwise: Otherwise::Value(|| [0.0, 0.0]),
+    of: |s| Some(s.search.eccentricity),
+};
+
+pub(in crate::scenario) static ARG_PERIGEE_DEG: Key<Interval<Number>> = Key {
+    section: "search",
+    name: "arg-perigee-deg",
+    unit: "deg",
+    meaning: "Argument of perigee; a variable of the search where the limits differ",
+    rule: Interval {
+        of: Number::from_to(0.0, 360.0),
+        or_single: true,
+    },
+    otherwise: Otherwise::Value(|| [0.0, 0.0]),
+    of: |s| Some(s.search.arg_perigee_deg),
+};
+
 pub(in crate::scenario) static INCLINATION_STEP_DEG: Key<Number> = Key {
     section: "search",
     name: "inclination-step-deg",
@@ -188,6 +214,26 @@ pub(in crate::scenario) static ALTITUDE_STEP_KM: Key<Number> = Key {
     rule: Number::above(0.0),
     otherwise: Otherwise::Value(|| 50.0),
     of: |s| Some(s.search.altitude_step_km),
+};
+
+pub(in crate::scenario) static ECCENTRICITY_STEP: Key<Number> = Key {
+    section: "search",
+    name: "eccentricity-step",
+    unit: "",
+    meaning: "Step of an exhaustive search in eccentricity",
+    rule: Number::above(0.0),
+    otherwise: Otherwise::Value(|| 0.005),
+    of: |s| Some(s.search.eccentricity_step),
+};
+
+pub(in crate::scenario) static ARG_PERIGEE_STEP_DEG: Key<Number> = Key {
+    section: "search",
+    name: "arg-perigee-step-deg",
+    unit: "deg",
+    meaning: "Step of an exhaustive search in argument of perigee",
+    rule: Number::above(0.0),
+    otherwise: Otherwise::Value(|| 30.0),
+    of: |s| Some(s.search.arg_perigee_step_deg),
 };
 
 pub(in crate::scenario) static ALGORITHM: Key<OneOf<Algorithm>> = Key {
