@@ -268,6 +268,9 @@ pub enum ValidateError {
     /// An element does not fit a TLE.
     #[error(transparent)]
     Tle(#[from] crate::formats::tle::TleFieldError),
+    /// The study of the paper cannot be repeated.
+    #[error(transparent)]
+    Paper(#[from] paper::PaperError),
     /// A file cannot be compared.
     #[error(transparent)]
     File(#[from] file::FileError),

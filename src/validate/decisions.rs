@@ -114,7 +114,7 @@ impl Seen<'_> {
             .map(|(a, b)| self.pass_shifts(&sites, a, b))
             .collect::<Result<_, _>>()?;
         let shifts: Vec<Shift> = shifts.into_iter().flatten().collect();
-        let kinds: [(&str, &str, fn(&Shift) -> f64); 3] = [
+        let kinds: [(&str, &str, Measure); 3] = [
             ("rise", "shift of the rise", |shift| shift.rise_s),
             ("set", "shift of the set", |shift| shift.set_s),
             ("duration", "change of the duration of a pass", |shift| {
@@ -180,6 +180,9 @@ fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     let place = |k: usize| k * (all.len() - 1) / (most - 1).max(1);
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
+
+/// What is measured of a shift.
+type Measure = fn(&Shift) -> f64;
 
 /// How a pass moved.
 struct Shift {

@@ -331,8 +331,8 @@ pub(crate) struct ValidateArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, all,
-    /// or files and directories of another program (OEM, OMM, TLE, SP3, STK .e; anything with a
+    /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
+    /// all, or files and directories of another program (OEM, OMM, TLE, SP3, STK .e; anything with a
     /// `.` or `/` in its path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,

@@ -103,7 +103,8 @@ fn the_design_itself_needs_no_explanation() {
 /// What is exported comes back: each format by its own reader, in its own frame.
 #[test]
 fn exported_files_are_the_design() {
-    struct Kept(Rc<RefCell<Vec<(String, Vec<u8>)>>>, usize);
+    type Files = Rc<RefCell<Vec<(String, Vec<u8>)>>>;
+    struct Kept(Files, usize);
     impl Write for Kept {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             self.0.borrow_mut()[self.1].1.extend_from_slice(bytes);
@@ -218,4 +219,25 @@ fn a_file_that_breaks_its_format_is_named() {
         .unwrap_err()
         .to_string();
     assert!(error.starts_with("x.oem: line 1"), "{error}");
+}
+
+/// Orekit integrates J2 from the design's elements, which it takes as osculating: the comparison
+/// says so, and what is left is that of two integrators.
+#[test]
+fn validate_an_ephemeris_of_orekit() {
+    const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
+    let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
+    let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
+    let findings = against_file(&subject, "orekit", &read("orekit.oem", OREKIT).unwrap()).unwrap();
+    assert!(findings.passed(), "{:#?}", findings.checks);
+    let comparison = &findings.files[0];
+    assert_eq!(
+        (comparison.matched_by.as_str(), comparison.satellites.len()),
+        ("place", 8)
+    );
+    let explanation = comparison.explanation.as_ref().unwrap();
+    assert_eq!(explanation.convention, "elements-taken-as-osculating");
+    // Both integrate to well below a metre in six hours; the file has 1e-9 km.
+    assert!(explanation.after_km < 1e-6, "{explanation:?}");
+    assert!(explanation.before_km > 10.0, "{explanation:?}");
 }

@@ -78,11 +78,15 @@ impl Written {
             exact,
             &self.unrounded,
         )?;
-        let mut findings = Findings::default();
-        findings.checks = vec![digits_check(subject, &digits), epoch_check(&epoch)];
-        findings.checks.push(sidereal_check(subject));
-        findings.budget = vec![digits, epoch];
-        Ok(findings)
+        Ok(Findings {
+            checks: vec![
+                digits_check(subject, &digits),
+                epoch_check(&epoch),
+                sidereal_check(subject),
+            ],
+            budget: vec![digits, epoch],
+            ..Findings::default()
+        })
     }
 }
 

@@ -1,17 +1,19 @@
 //! `navwalker validate`.
 
 use crate::args::{ReportFormat, ValidateArgs};
-use crate::study::study_and_design;
+use crate::study::{Study, study_and_design};
 use crate::{Status, files, output};
 use anyhow::{Context, Result, bail};
 use navwalker::formats::manifest::{FILE_NAME, Manifest};
 use navwalker::report::{
     ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
 };
+use navwalker::scenario::{Scenario, builtin};
 use navwalker::validate::analytic::against_closed_forms;
 use navwalker::validate::file::{Comparand, against_file, read};
 use navwalker::validate::geodesic::against_geodesics;
 use navwalker::validate::numerical::against_integration;
+use navwalker::validate::paper::against_paper;
 use navwalker::validate::sgp4::against_sgp4;
 use navwalker::validate::{Findings, Subject, ValidateError};
 use std::collections::BTreeMap;
@@ -22,16 +24,21 @@ use std::path::{Path, PathBuf};
 type Standard = fn(&Subject<'_>) -> Result<Findings, ValidateError>;
 
 /// The standards that can be named.
-const STANDARDS: [(&str, Standard); 4] = [
+const STANDARDS: [(&str, Standard); 5] = [
     ("sgp4", against_sgp4),
     ("geographiclib", against_geodesics),
     ("numerical", against_integration),
     ("analytic", against_closed_forms),
+    ("paper", |subject| {
+        Ok(against_paper(subject.evaluator.setup())?)
+    }),
 ];
 
 /// A standard, or files of another program.
 enum Target {
     Standard(Standard),
+    /// Every standard that there is for the study.
+    All,
     Files(PathBuf),
 }
 
@@ -42,7 +49,7 @@ fn targets(typed: &[String]) -> Result<Vec<Target>> {
         if let Some((_, standard)) = STANDARDS.iter().find(|(known, _)| known == name) {
             targets.push(Target::Standard(*standard));
         } else if name == "all" {
-            targets.extend(STANDARDS.map(|(_, standard)| Target::Standard(standard)));
+            targets.push(Target::All);
         } else if name.contains(['.', '/', '\\']) {
             targets.push(Target::Files(PathBuf::from(name)));
         } else {
@@ -67,6 +74,11 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     for target in &targets {
         match target {
             Target::Standard(standard) => findings.append(standard(&subject)?),
+            Target::All => {
+                for standard in standards_for(&study)? {
+                    findings.append(standard(&subject)?);
+                }
+            }
             Target::Files(path) => {
                 for (source, comparands) in comparisons(path)? {
                     findings.append(against_file(&subject, &source, &comparands)?);
@@ -84,6 +96,20 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     } else {
         Status::Failed
     })
+}
+
+/// All standards; the tables of the paper only for its own study, as no other has its mask.
+fn standards_for(study: &Study) -> Result<Vec<Standard>> {
+    let ours = &study.scenario;
+    let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
+    let sees_the_same = ours.time == paper.time
+        && ours.earth == paper.earth
+        && ours.region == paper.region
+        && ours.visibility == paper.visibility
+        && ours.gnss == paper.gnss;
+    let applies = |name: &str| name != "paper" || sees_the_same;
+    let standards = STANDARDS.into_iter().filter(|(name, _)| applies(name));
+    Ok(standards.map(|(_, standard)| standard).collect())
 }
 
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
