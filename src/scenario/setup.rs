@@ -4,6 +4,8 @@ use super::{Algorithm, Region, Scenario};
 use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
+use crate::formats::lint::Format;
+use crate::formats::omm::{self, Notation};
 use crate::formats::{ReadError, tle};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
@@ -63,6 +65,20 @@ pub enum SetupError {
     /// The reference design is no design.
     #[error("reference-design: {0}")]
     ReferenceDesign(#[from] NotationError),
+}
+
+/// The element sets of a file, in the format that it shows: TLE, or OMM in any syntax.
+fn element_sets(file: &str, bytes: &[u8]) -> Result<Vec<sgp4::Elements>, ReadError> {
+    let notation = match Format::of(bytes, Some(file)) {
+        Format::Omm => Notation::Kvn,
+        Format::OmmXml => Notation::Xml,
+        Format::OmmJson => Notation::Json,
+        Format::OmmCsv => Notation::Csv,
+        // What is neither is refused by the first rule of TLE that it breaks.
+        _ => return tle::read(bytes),
+    };
+    let messages = omm::read(bytes, notation)?;
+    Ok(messages.into_iter().map(|message| message.set).collect())
 }
 
 /// Why a file of element sets gives no system.
@@ -144,7 +160,7 @@ impl Scenario {
                 source,
             };
             let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
-            let sets = tle::read(bytes.as_slice()).map_err(|source| error(source.into()))?;
+            let sets = element_sets(file, &bytes).map_err(|source| error(source.into()))?;
             let name = file.rsplit('/').next().unwrap_or(file);
             let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
             let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;

@@ -525,3 +525,48 @@ fn a_closed_pipe_ends_quietly() {
         (Some(0), b"".as_slice())
     );
 }
+
+/// A system from element sets gives the same metrics whichever format carries the full digits.
+#[test]
+fn gnss_files_are_tle_or_omm() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let export = [
+        "export",
+        "--design",
+        "delta:56:24/3/1@21528",
+        "--as",
+        "tle,omm-xml,omm-json,omm-csv",
+        "--out",
+        "gnss",
+    ];
+    assert_eq!(ran(place, &export).status, 0);
+    let visible = |file: &str| {
+        let set = format!("gnss.files=[\"gnss/{file}\"]");
+        let design = [
+            "evaluate",
+            "--quiet",
+            "--design",
+            "delta:55:24/6/1@925",
+            "--format",
+            "json",
+        ];
+        let small = [
+            "--set",
+            "time.step-s=1200",
+            "--set",
+            "gnss.constellations=[]",
+            "--set",
+            &set,
+        ];
+        let ran = ran(place, &[design.as_slice(), &small].concat());
+        assert_eq!(ran.status, 0, "{file}: {}", ran.stderr);
+        let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+        value["metrics"]["mean_pdop"].as_f64().unwrap()
+    };
+    let json = visible("omm.json");
+    assert_eq!(visible("omm.xml"), json);
+    assert_eq!(visible("omm.csv"), json);
+    // A TLE's digits move a satellite by metres: 1e-6 of its distance.
+    assert!((visible("constellation.tle") / json - 1.0).abs() < 1e-5);
+}
