@@ -164,7 +164,7 @@ pub struct GnssSetup {
 /// What is minimized, and under which constraints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Objectives {
-    /// One or more, no one twice; those that are [`Quantity::maximized`] are maximized.
+    /// One or more, no one twice; those that are [`Quantity::is_maximised`] are maximized.
     pub minimize: Vec<Quantity>,
     /// Weight of the tail in `j-pos`, at least 0.
     pub cvar_weight: f64,
