@@ -1,14 +1,14 @@
 //! Position dilution of precision with one clock state per clock group.
 //!
-//! Unit-weight least squares with three position states and one clock state for each group of
+//! Least squares with three position states and one clock state for each group of
 //! systems that share a clock. A clock drops out by the Schur complement: a group of n visible
 //! satellites with unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix
-//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19). No matrix of the
-//! size of the satellites is built.
+//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19; with weights M-28).
+//! No matrix of the size of the satellites is built.
 
 mod family;
 
-pub use family::{DopFamily, ObservationWeights, WeightedGroup};
+pub use family::{DopFamily, ObservationWeights};
 
 use crate::words::words;
 use nalgebra::Vector3;
@@ -108,29 +108,28 @@ impl AddAssign for Symmetric3 {
     }
 }
 
-/// The visible satellites that share one clock.
+/// The observations that share one clock, each with its weight in least squares.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClockGroup {
-    /// Σ v vᵀ.
+    /// Σ w v vᵀ.
     squares: Symmetric3,
-    /// Σ v.
+    /// Σ w v.
     sum: Vector3<f64>,
+    /// Σ w.
+    weight: f64,
     /// Satellites.
     count: u32,
 }
 
 impl ClockGroup {
-    /// Adds a visible satellite by its unit vector.
-    pub fn add(&mut self, unit: Vector3<f64>) {
-        self.squares += Symmetric3::outer(unit, 1.0);
-        self.sum += unit;
-        self.count += 1;
-    }
-
-    /// Satellites in the group.
-    #[must_use]
-    pub fn count(&self) -> u32 {
-        self.count
+    /// Adds a visible satellite by its unit vector; a weight that is not positive adds nothing.
+    pub fn add(&mut self, unit: Vector3<f64>, weight: f64) {
+        if weight > 0.0 {
+            self.squares += Symmetric3::outer(unit, weight);
+            self.sum += unit * weight;
+            self.weight += weight;
+            self.count += 1;
+        }
     }
 }
 
@@ -138,6 +137,7 @@ impl AddAssign for ClockGroup {
     fn add_assign(&mut self, other: Self) {
         self.squares += other.squares;
         self.sum += other.sum;
+        self.weight += other.weight;
         self.count += other.count;
     }
 }
@@ -157,7 +157,7 @@ impl Geometry {
             return;
         }
         self.normal += group.squares;
-        self.normal += Symmetric3::outer(group.sum, -1.0 / f64::from(group.count));
+        self.normal += Symmetric3::outer(group.sum, -1.0 / group.weight);
         self.satellites += group.count;
         self.clocks += 1;
     }

@@ -6,24 +6,30 @@
 
 mod dops;
 mod fixed;
+mod kernel;
 mod metrics;
 mod plain;
 mod series;
 
-pub use dops::{ClockDop, DopOptions, DopStatistics};
+pub use dops::{ClockDop, DopStatistics};
+pub use kernel::{InstructionSet, Retakes};
 pub use metrics::{MetricOptions, Metrics};
 pub use series::{EpochMetrics, PointMetrics, Series};
 
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
-use crate::dop::Clocks;
+use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::EarthRotation;
+use crate::frames::{EarthRotation, LocalFrame};
 use crate::ground::Site;
 use crate::orbit::Model;
 use crate::time::TimeGrid;
-use crate::visibility::Mask;
+use crate::visibility::{Mask, MaskTable};
 use fixed::FixedGeometry;
+use kernel::Kernel;
+use metrics::Evaluated;
+use nalgebra::Vector3;
+use std::sync::OnceLock;
 
 /// Everything that an evaluation depends on, but for the design.
 #[derive(Debug, Clone)]
@@ -36,10 +42,14 @@ pub struct Setup {
     pub mask: Mask,
     /// Elevation mask of the GNSS satellites.
     pub gnss_mask: Mask,
+    /// A skyline that every satellite must clear besides its mask, the same at all points.
+    pub skyline: Option<MaskTable>,
     /// GNSS in view, each with a clock of its own if clocks are per system.
     pub gnss: Vec<System>,
     /// Clock states.
     pub clocks: Clocks,
+    /// How observations count in least squares.
+    pub observation_weights: ObservationWeights,
     /// PDOP above which a sample counts as unsolved.
     pub pdop_cap: f64,
     /// Theory that flies the LEO design.
@@ -62,13 +72,44 @@ impl Setup {
         pairs.all(|pair| pair[0].weight == pair[1].weight)
     }
 
-    /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take, bytes.
+    /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take at most, bytes.
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
+        if self.suits_kernel() {
+            return kernel::memory_bytes(self, threads) as u64;
+        }
         let samples = self.sample_count() as u64;
         let fixed = samples * size_of::<fixed::FixedSample>() as u64;
-        let per_thread = samples * size_of::<f64>() as u64;
+        let per_thread = samples * size_of::<crate::stats::Weighted>() as u64;
         fixed + per_thread * threads as u64
+    }
+
+    /// The kernel counts every point and every observation the same, under one elevation.
+    fn suits_kernel(&self) -> bool {
+        self.has_equal_weights()
+            && self.skyline.is_none()
+            && self.observation_weights == ObservationWeights::Unit
+    }
+
+    /// The unit vector to a satellite (Earth-fixed, km) that clears the mask and the skyline.
+    #[must_use]
+    pub fn line_of_sight(
+        &self,
+        mask: Mask,
+        site: &LocalFrame,
+        target_km: Vector3<f64>,
+    ) -> Option<Vector3<f64>> {
+        let clears = |unit: &Vector3<f64>| {
+            self.skyline
+                .as_ref()
+                .is_none_or(|skyline| skyline.clears(site, *unit))
+        };
+        mask.line_of_sight(site, target_km).filter(clears)
+    }
+
+    /// The weight of an observation along a unit vector.
+    fn observation_weight(&self, site: &LocalFrame, unit: Vector3<f64>) -> f64 {
+        self.observation_weights.weight(unit.dot(&site.up))
     }
 }
 
@@ -76,7 +117,10 @@ impl Setup {
 pub struct Evaluator {
     setup: Setup,
     rotations: Vec<EarthRotation>,
-    fixed: FixedGeometry,
+    /// For the setups that it suits.
+    kernel: Option<Kernel>,
+    /// For the plain path, made when it is first asked for.
+    fixed: OnceLock<FixedGeometry>,
 }
 
 impl Evaluator {
@@ -85,16 +129,33 @@ impl Evaluator {
     /// # Errors
     /// When a GNSS satellite cannot be propagated.
     pub fn new(setup: Setup) -> Result<Self, EphemerisError> {
+        Self::with_instructions(setup, InstructionSet::detect())
+    }
+
+    /// Like [`Evaluator::new`], on a given instruction set. The results are the same to the bit;
+    /// one that the processor lacks is replaced by [`InstructionSet::Baseline`].
+    ///
+    /// # Errors
+    /// When a GNSS satellite cannot be propagated.
+    pub fn with_instructions(
+        setup: Setup,
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
         let rotations: Vec<_> = setup
             .grid
             .iter()
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
-        let fixed = FixedGeometry::new(&setup, &rotations)?;
+        let kernel = setup
+            .suits_kernel()
+            .then(|| Kernel::new(&setup, &rotations, instructions))
+            .transpose()?;
+        let fixed = OnceLock::new();
         Ok(Self {
             setup,
             rotations,
+            kernel,
             fixed,
         })
     }
@@ -110,11 +171,16 @@ impl Evaluator {
     /// # Errors
     /// When the model cannot fly a satellite of the design.
     pub fn design(&self, design: &Design) -> Result<Metrics, EphemerisError> {
-        self.ephemeris(&Ephemeris::of_design(
-            design,
-            self.setup.model,
-            self.setup.grid,
-        )?)
+        Ok(self.design_counted(design)?.0)
+    }
+
+    /// The metrics of a design, and how many samples f32 could not hold.
+    ///
+    /// # Errors
+    /// When the model cannot fly a satellite of the design.
+    pub fn design_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
+        let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
+        self.counted(&ephemeris, Some(design))
     }
 
     /// The metrics of any satellites, on the grid of the setup.
@@ -122,15 +188,43 @@ impl Evaluator {
     /// # Errors
     /// When a satellite cannot be propagated.
     pub fn ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        let satellites = ephemeris.satellites().len();
-        let options = self.setup.metrics;
-        if self.setup.has_equal_weights() {
-            let samples = plain::evaluate(self, ephemeris)?;
-            Ok(Metrics::from_samples(samples, options, satellites))
-        } else {
-            let samples = plain::evaluate_weighted(self, ephemeris)?;
-            Ok(Metrics::from_weighted(samples, options, satellites))
+        Ok(self.counted(ephemeris, None)?.0)
+    }
+
+    fn counted(
+        &self,
+        ephemeris: &Ephemeris,
+        design: Option<&Design>,
+    ) -> Result<(Metrics, Retakes), EphemerisError> {
+        let Some(kernel) = &self.kernel else {
+            return Ok((self.plain(ephemeris)?, Retakes::default()));
+        };
+        let (evaluated, retakes) = kernel.evaluate(self, ephemeris, design)?;
+        Ok((self.metrics(&evaluated, ephemeris), retakes))
+    }
+
+    /// The metrics of any satellites by the plain path, which the kernel is tested against: one
+    /// sample after the other, in f64, and about twenty times slower.
+    ///
+    /// # Errors
+    /// When a satellite cannot be propagated.
+    pub fn plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+        let evaluated = plain::evaluate(self, ephemeris)?;
+        Ok(self.metrics(&evaluated, ephemeris))
+    }
+
+    /// The GNSS part of the plain path.
+    fn fixed(&self) -> Result<&FixedGeometry, EphemerisError> {
+        if let Some(fixed) = self.fixed.get() {
+            return Ok(fixed);
         }
+        let made = FixedGeometry::new(&self.setup, &self.rotations)?;
+        Ok(self.fixed.get_or_init(|| made))
+    }
+
+    fn metrics(&self, evaluated: &Evaluated, ephemeris: &Ephemeris) -> Metrics {
+        let satellites = ephemeris.satellites().len();
+        Metrics::new(evaluated, self.setup.metrics, satellites)
     }
 }
 

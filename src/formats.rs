@@ -8,18 +8,28 @@ pub mod csv;
 mod element_set;
 pub mod export;
 pub mod finding;
+pub mod fit;
 pub mod interpolation;
+mod json;
 mod kvn;
 mod lines;
+pub mod lint;
 pub mod manifest;
 pub mod metadata;
 pub mod oem;
+pub mod omm;
 pub mod sampled;
+pub mod sp3;
+mod spread;
 pub mod stamp;
+pub mod stk;
 pub mod tle;
 pub mod trajectory;
+mod xml;
 
 pub use element_set::element_set;
+pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};
+pub use spread::Spread;
 
 use crate::ephemeris::EphemerisError;
 use std::io;
@@ -37,6 +47,9 @@ pub enum WriteError {
     /// An element does not fit the columns of a TLE.
     #[error(transparent)]
     Tle(#[from] tle::TleFieldError),
+    /// SP3 does not hold the satellites.
+    #[error(transparent)]
+    Sp3(#[from] sp3::Sp3Error),
     /// There is no name for a satellite.
     #[error(transparent)]
     Identity(#[from] metadata::IdentityError),

@@ -1,5 +1,6 @@
 //! Results as people and programs read them.
 
+mod certificate;
 pub mod coastline;
 mod csv;
 mod diagnostics;
@@ -8,17 +9,24 @@ pub mod figures;
 #[cfg(feature = "figures")]
 pub mod page;
 pub mod profile;
+mod reproduction;
 mod results;
 pub mod run;
+mod seeds;
 mod table;
 mod validation;
 
-pub use csv::{CsvError, checks_csv, front_csv, history_csv, metrics_csv};
-pub use diagnostics::{Diagnostic, diagnose};
+pub use certificate::{Certificate, Missed};
+pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
+pub use diagnostics::{Diagnostic, at_bounds, diagnose, dominated_by, seed_spread};
+pub use reproduction::{
+    ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
+};
 pub use results::{
     DesignSummary, EvaluateResult, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
     ValidateResult,
 };
+pub use seeds::{SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
 pub use validation::{checks_junit, validation_markdown, validation_text};
 

@@ -43,6 +43,11 @@ impl Mask {
         self.degrees
     }
 
+    /// The square of the sine of the elevation, which decisions compare with.
+    pub(crate) fn sine_squared(self) -> f64 {
+        self.sin2
+    }
+
     /// The unit vector from the site to the satellite (Earth-fixed, km) when the satellite is
     /// visible: its elevation over the local horizon is at least the mask (M-16).
     ///

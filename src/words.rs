@@ -1,6 +1,6 @@
 //! Enums that are spelled by a fixed set of words, in files, notation and results.
 //!
-//! [`words`] declares one: the word that its `Display` writes is the one that its `FromStr`
+//! The macro `words!` declares one: the word that its `Display` writes is the one that its `FromStr`
 //! takes, and an unknown word is answered with the nearest.
 
 use std::fmt;

@@ -4,10 +4,9 @@
 //! inverse normal matrix is turned to east, north and up as a whole, so that horizontal and
 //! vertical parts are those of the local horizon, whatever the orientation of the axes.
 
-use super::Symmetric3;
+use super::{ClockGroup, Symmetric3};
 use crate::frames::LocalFrame;
 use crate::words::words;
-use nalgebra::Vector3;
 
 words! {
     /// How observations count in least squares.
@@ -28,31 +27,6 @@ impl ObservationWeights {
         match self {
             Self::Unit => 1.0,
             Self::SineElevation => sin_elevation * sin_elevation,
-        }
-    }
-}
-
-/// The weighted observations that share one clock.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct WeightedGroup {
-    /// Σ w v vᵀ.
-    squares: Symmetric3,
-    /// Σ w v.
-    sum: Vector3<f64>,
-    /// Σ w.
-    weight: f64,
-    /// Satellites.
-    count: u32,
-}
-
-impl WeightedGroup {
-    /// Adds a visible satellite by its unit vector; a weight that is not positive adds nothing.
-    pub fn add(&mut self, unit: Vector3<f64>, weight: f64) {
-        if weight > 0.0 {
-            self.squares += Symmetric3::outer(unit, weight);
-            self.sum += unit * weight;
-            self.weight += weight;
-            self.count += 1;
         }
     }
 }
@@ -79,7 +53,7 @@ impl DopFamily {
     ///
     /// `None` when unsolved, by the rule of [`super::Geometry::pdop`].
     #[must_use]
-    pub fn of(groups: &[WeightedGroup], site: &LocalFrame, cap: f64) -> Option<Self> {
+    pub fn of(groups: &[ClockGroup], site: &LocalFrame, cap: f64) -> Option<Self> {
         let mut normal = Symmetric3::default();
         let (mut satellites, mut clocks) = (0, 0);
         for group in groups.iter().filter(|group| group.count > 0) {
@@ -98,7 +72,7 @@ impl DopFamily {
             return None;
         }
         // A clock has the variance 1/W + sᵀ Q s / W², s = Σ w v, W = Σ w
-        let clock2 = |group: &WeightedGroup| {
+        let clock2 = |group: &ClockGroup| {
             let spread = position.quadratic(group.sum) / (group.weight * group.weight);
             (group.count > 0).then(|| 1.0 / group.weight + spread)
         };
@@ -117,11 +91,11 @@ impl DopFamily {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ClockGroup, Geometry};
+    use super::super::Geometry;
     use super::*;
     use crate::earth::Surface;
     use crate::words::Word;
-    use nalgebra::DMatrix;
+    use nalgebra::{DMatrix, Vector3};
     use proptest::prelude::*;
 
     /// Direction over the horizon of a site.
@@ -135,9 +109,9 @@ mod tests {
         site: &LocalFrame,
         sky: &[Vec<(f64, f64)>],
         weights: ObservationWeights,
-    ) -> Vec<WeightedGroup> {
+    ) -> Vec<ClockGroup> {
         let group = |satellites: &Vec<(f64, f64)>| {
-            let mut group = WeightedGroup::default();
+            let mut group = ClockGroup::default();
             for &place in satellites {
                 let unit = direction(site, place);
                 group.add(unit, weights.weight(unit.dot(&site.up)));
@@ -215,9 +189,9 @@ mod tests {
     #[test]
     fn a_satellite_without_weight_is_not_there() {
         let site = LocalFrame::new(Surface::Sphere, 0.0, 0.0);
-        let mut group = WeightedGroup::default();
+        let mut group = ClockGroup::default();
         group.add(site.east, ObservationWeights::SineElevation.weight(0.0));
-        assert_eq!(group, WeightedGroup::default());
+        assert_eq!(group, ClockGroup::default());
     }
 
     fn sky(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<(f64, f64)>> {
@@ -274,7 +248,7 @@ mod tests {
             let mut geometry = Geometry::default();
             for satellites in &sky {
                 let mut group = ClockGroup::default();
-                satellites.iter().for_each(|&place| group.add(direction(&site, place)));
+                satellites.iter().for_each(|&place| group.add(direction(&site, place), 1.0));
                 geometry.add(&group);
             }
             let pdop = geometry.pdop(20.0);

@@ -6,7 +6,7 @@ fn geometry(groups: &[Vec<Vector3<f64>>]) -> Geometry {
     let mut geometry = Geometry::default();
     for group in groups {
         let mut clock = ClockGroup::default();
-        group.iter().for_each(|v| clock.add(*v));
+        group.iter().for_each(|v| clock.add(*v, 1.0));
         geometry.add(&clock);
     }
     geometry

@@ -1,22 +1,13 @@
 //! All dilutions of precision of a constellation with its GNSS, by the plain path.
 
-use super::{Evaluator, plain};
-use crate::dop::{Clocks, DopFamily, ObservationWeights, WeightedGroup};
+use super::{Evaluator, Setup, plain};
+use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::LocalFrame;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
-use crate::visibility::{Mask, MaskTable};
+use crate::visibility::Mask;
 use nalgebra::Vector3;
 use serde::Serialize;
-
-/// What [`Evaluator::dops`] adds to the setup.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DopOptions {
-    /// How observations count.
-    pub weights: ObservationWeights,
-    /// A skyline that satellites must clear besides the masks of the setup, the same at all points.
-    pub skyline: Option<MaskTable>,
-}
 
 /// Statistics of the dilutions of precision over the solved samples, by the weights of their
 /// points; `None` where there is no sample.
@@ -34,6 +25,29 @@ pub struct DopStatistics {
     pub tdop: Vec<ClockDop>,
     /// Share of the samples that are solved.
     pub solved_fraction: f64,
+}
+
+impl DopStatistics {
+    /// Each dilution by name: GDOP, PDOP, HDOP, VDOP, and the TDOP of each clock.
+    #[must_use]
+    pub fn named(&self) -> Vec<(String, Option<Summary>)> {
+        let fixed = [
+            ("GDOP", self.gdop),
+            ("PDOP", self.pdop),
+            ("HDOP", self.hdop),
+            ("VDOP", self.vdop),
+        ];
+        let mut named: Vec<_> = fixed
+            .into_iter()
+            .map(|(name, summary)| (name.to_owned(), summary))
+            .collect();
+        named.extend(
+            self.tdop
+                .iter()
+                .map(|clock| (format!("TDOP {}", clock.system), clock.tdop)),
+        );
+        named
+    }
 }
 
 /// The dilution of precision of one clock.
@@ -67,15 +81,11 @@ struct Collected {
 impl Evaluator {
     /// Every dilution of precision of any satellites together with the GNSS of the setup.
     ///
-    /// With unit weights and no skyline PDOP is that of the metrics.
+    /// PDOP is that of the metrics.
     ///
     /// # Errors
     /// When a satellite cannot be propagated.
-    pub fn dops(
-        &self,
-        ephemeris: &Ephemeris,
-        options: &DopOptions,
-    ) -> Result<DopStatistics, EphemerisError> {
+    pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
         let setup = self.setup();
         let systems: Vec<_> = setup
             .gnss
@@ -96,9 +106,9 @@ impl Evaluator {
             }
             for site in &setup.sites {
                 groups.clear();
-                groups.resize(clocks.len(), WeightedGroup::default());
+                groups.resize(clocks.len(), ClockGroup::default());
                 for view in &views {
-                    view.observe(&site.local, options, &mut groups[view.clock]);
+                    view.observe(setup, &site.local, &mut groups[view.clock]);
                 }
                 let dops = DopFamily::of(&groups, &site.local, setup.pdop_cap);
                 collected.add(dops.as_ref(), site.weight);
@@ -131,14 +141,10 @@ impl<'a> View<'a> {
         }
     }
 
-    fn observe(&self, site: &LocalFrame, options: &DopOptions, group: &mut WeightedGroup) {
-        let clears = |unit: &Vector3<f64>| {
-            let skyline = options.skyline.as_ref();
-            skyline.is_none_or(|skyline| skyline.clears(site, *unit))
-        };
+    fn observe(&self, setup: &Setup, site: &LocalFrame, group: &mut ClockGroup) {
         for &position in &self.positions {
-            if let Some(unit) = self.mask.line_of_sight(site, position).filter(clears) {
-                group.add(unit, options.weights.weight(site.up.dot(&unit)));
+            if let Some(unit) = setup.line_of_sight(self.mask, site, position) {
+                group.add(unit, setup.observation_weight(site, unit));
             }
         }
     }

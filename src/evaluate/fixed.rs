@@ -55,8 +55,8 @@ fn add_system(
         for (site, sample) in setup.sites.iter().zip(row) {
             let mut group = ClockGroup::default();
             for &position in &positions {
-                if let Some(unit) = setup.gnss_mask.line_of_sight(&site.local, position) {
-                    group.add(unit);
+                if let Some(unit) = setup.line_of_sight(setup.gnss_mask, &site.local, position) {
+                    group.add(unit, setup.observation_weight(&site.local, unit));
                 }
             }
             match setup.clocks {

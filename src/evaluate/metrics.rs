@@ -1,7 +1,6 @@
 //! The figures of merit of a constellation over points and times.
 
-use super::plain::{Samples, WeightedSamples};
-use crate::stats::{Level, Summary, summarize, summarize_weighted};
+use crate::stats::{Level, Summary};
 use serde::Serialize;
 
 /// How samples are turned into metrics.
@@ -48,63 +47,34 @@ pub struct Metrics {
     pub j_cost: Option<f64>,
 }
 
+/// What an evaluation leaves of its samples, each counted with the weight of its point.
+pub(super) struct Evaluated {
+    /// Mean number of visible LEO satellites.
+    pub(super) mean_visible: f64,
+    /// Share of samples that are solved.
+    pub(super) solved: f64,
+    /// Share of samples that are solved with PDOP at most the availability threshold.
+    pub(super) available: f64,
+    /// Statistics of the PDOP of the solved samples.
+    pub(super) summary: Option<Summary>,
+}
+
 impl Metrics {
-    pub(super) fn from_samples(
-        mut samples: Samples,
-        options: MetricOptions,
-        satellites: usize,
-    ) -> Self {
-        let count = samples.count as f64;
-        let available = samples
-            .pdop
-            .iter()
-            .filter(|&&pdop| pdop <= options.availability_pdop)
-            .count();
-        let solved = samples.pdop.len();
-        let summary = summarize(&mut samples.pdop, options.cvar_level);
-        Self::assembled(
-            samples.visible as f64 / count,
-            summary,
-            [solved as f64 / count, available as f64 / count],
-            options,
-            satellites,
-        )
-    }
-
-    pub(super) fn from_weighted(
-        mut samples: WeightedSamples,
-        options: MetricOptions,
-        satellites: usize,
-    ) -> Self {
-        let share_up_to = |bound: f64| {
-            let within = samples.pdop.iter().filter(|x| x.value <= bound);
-            within.fold(0.0, |sum, x| sum + x.weight) / samples.weight
-        };
-        let shares = [f64::INFINITY, options.availability_pdop].map(share_up_to);
-        let summary = summarize_weighted(&mut samples.pdop, options.cvar_level);
-        let mean_visible = samples.visible / samples.weight;
-        Self::assembled(mean_visible, summary, shares, options, satellites)
-    }
-
-    fn assembled(
-        mean_visible: f64,
-        pdop: Option<Summary>,
-        [solved_fraction, availability]: [f64; 2],
-        options: MetricOptions,
-        satellites: usize,
-    ) -> Self {
+    pub(super) fn new(evaluated: &Evaluated, options: MetricOptions, satellites: usize) -> Self {
+        let mean_visible = evaluated.mean_visible;
+        let summary = evaluated.summary;
         Self {
             mean_visible,
-            mean_pdop: pdop.map(|s| s.mean),
-            cvar_pdop: pdop.map(|s| s.cvar),
+            mean_pdop: summary.map(|s| s.mean),
+            cvar_pdop: summary.map(|s| s.cvar),
             cvar_level: options.cvar_level.get(),
-            p50_pdop: pdop.map(|s| s.p50),
-            p95_pdop: pdop.map(|s| s.p95),
-            p99_pdop: pdop.map(|s| s.p99),
-            max_pdop: pdop.map(|s| s.max),
-            solved_fraction,
-            availability,
-            j_pos: pdop.map(|s| s.mean + options.cvar_weight * s.cvar),
+            p50_pdop: summary.map(|s| s.p50),
+            p95_pdop: summary.map(|s| s.p95),
+            p99_pdop: summary.map(|s| s.p99),
+            max_pdop: summary.map(|s| s.max),
+            solved_fraction: evaluated.solved,
+            availability: evaluated.available,
+            j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
             j_cost: (mean_visible > 0.0).then(|| satellites as f64 / mean_visible),
         }
     }

@@ -1,30 +1,12 @@
-//! The plain path: one sample after the other, in f64, by the definitions.
+//! The plain path: one sample after the other, in f64, by the definitions. It is the reference
+//! that the kernel is tested against, and serves the setups that the kernel does not.
 
-use super::Evaluator;
+use super::metrics::Evaluated;
+use super::{Evaluator, Setup};
 use crate::dop::ClockGroup;
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::stats::Weighted;
+use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
 use nalgebra::Vector3;
-
-/// What an evaluation leaves for the statistics.
-pub(super) struct Samples {
-    /// Visible LEO satellites, summed over all samples.
-    pub(super) visible: u64,
-    /// Points times times.
-    pub(super) count: usize,
-    /// PDOP of the solved samples, in no particular order.
-    pub(super) pdop: Vec<f64>,
-}
-
-/// The same for points whose weights differ.
-pub(super) struct WeightedSamples {
-    /// Visible LEO satellites times weight, summed over all samples.
-    pub(super) visible: f64,
-    /// Weights, summed over all samples.
-    pub(super) weight: f64,
-    /// PDOP of the solved samples.
-    pub(super) pdop: Vec<Weighted>,
-}
 
 /// One point at one time.
 pub(super) struct Sample {
@@ -41,38 +23,38 @@ pub(super) struct Sample {
 pub(super) fn evaluate(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-) -> Result<Samples, EphemerisError> {
-    let count = evaluator.setup().sample_count();
-    let mut samples = Samples {
-        visible: 0,
-        count,
-        pdop: Vec::with_capacity(count),
-    };
-    visit(evaluator, ephemeris, |sample| {
-        samples.visible += u64::from(sample.visible);
-        samples.pdop.extend(sample.pdop);
-    })?;
-    Ok(samples)
-}
-
-pub(super) fn evaluate_weighted(
-    evaluator: &Evaluator,
-    ephemeris: &Ephemeris,
-) -> Result<WeightedSamples, EphemerisError> {
+) -> Result<Evaluated, EphemerisError> {
     let setup = evaluator.setup();
-    let mut samples = WeightedSamples {
-        visible: 0.0,
-        weight: 0.0,
-        pdop: Vec::with_capacity(setup.sample_count()),
-    };
+    let mut visible = 0.0;
+    let mut total = 0.0;
+    let mut pdop = Vec::with_capacity(setup.sample_count());
     visit(evaluator, ephemeris, |sample| {
         let weight = setup.sites[sample.site].weight;
-        samples.visible += weight * f64::from(sample.visible);
-        samples.weight += weight;
-        let pdop = sample.pdop.map(|value| Weighted { value, weight });
-        samples.pdop.extend(pdop);
+        visible += weight * f64::from(sample.visible);
+        total += weight;
+        pdop.extend(sample.pdop.map(|value| Weighted { value, weight }));
     })?;
-    Ok(samples)
+    let share_up_to = |bound: f64| {
+        let within = pdop.iter().filter(|sample| sample.value <= bound);
+        within.fold(0.0, |sum, sample| sum + sample.weight) / total
+    };
+    Ok(Evaluated {
+        mean_visible: visible / total,
+        solved: share_up_to(f64::INFINITY),
+        available: share_up_to(setup.metrics.availability_pdop),
+        summary: summary(setup, pdop),
+    })
+}
+
+/// Equal weights need no sorting.
+fn summary(setup: &Setup, mut pdop: Vec<Weighted>) -> Option<Summary> {
+    let level = setup.metrics.cvar_level;
+    if setup.has_equal_weights() {
+        let mut values: Vec<f64> = pdop.iter().map(|sample| sample.value).collect();
+        summarize(&mut values, level)
+    } else {
+        summarize_weighted(&mut pdop, level)
+    }
 }
 
 /// Calls `see` for every sample, time by time and point by point.
@@ -82,17 +64,20 @@ pub(super) fn visit(
     mut see: impl FnMut(Sample),
 ) -> Result<(), EphemerisError> {
     let setup = evaluator.setup();
+    let fixed = evaluator.fixed()?;
     let mut positions = Vec::with_capacity(ephemeris.satellites().len());
     for time in 0..setup.grid.len() {
         earth_fixed(evaluator, ephemeris, time, &mut positions)?;
-        for (site, fixed) in evaluator.fixed.at(time).iter().enumerate() {
+        for (site, fixed) in fixed.at(time).iter().enumerate() {
+            let local = &setup.sites[site].local;
             let mut leo = ClockGroup::default();
+            let mut visible = 0;
             for &position in &positions {
-                if let Some(unit) = setup.mask.line_of_sight(&setup.sites[site].local, position) {
-                    leo.add(unit);
+                if let Some(unit) = setup.line_of_sight(setup.mask, local, position) {
+                    leo.add(unit, setup.observation_weight(local, unit));
+                    visible += 1;
                 }
             }
-            let visible = leo.count();
             leo += fixed.shared_clock;
             let mut geometry = fixed.own_clocks;
             geometry.add(&leo);

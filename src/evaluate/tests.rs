@@ -8,7 +8,7 @@ use crate::ground::{Grid, PointWeights};
 use crate::stats::Level;
 use crate::time::Epoch;
 
-fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
+pub(super) fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     let grid = Grid {
         latitude_deg,
@@ -23,6 +23,8 @@ fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
         gnss_mask: Mask::from_degrees(7.0).unwrap(),
         gnss: vec![Preset::Beidou3.into()],
         clocks: Clocks::PerSystem,
+        skyline: None,
+        observation_weights: ObservationWeights::Unit,
         pdop_cap: 100.0,
         model: Model::J2,
         metrics: MetricOptions {

@@ -4,6 +4,7 @@
 //! as the neutral truth for every other file. Syntax: RFC 4180, with a bare line feed.
 
 use super::WriteError;
+use super::finding::Findings;
 use super::metadata::Object;
 use super::sampled::Sampled;
 use super::stamp::{SecondDigits, calendar};
@@ -12,7 +13,7 @@ use crate::ephemeris::Ephemeris;
 use crate::frames::{Frame, State};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
-use std::io::{self, Write};
+use std::io::{self, BufRead, Write};
 
 /// Columns of the table of elements: mean elements at the epoch, in TEME.
 const ELEMENTS: [&str; 14] = [
@@ -119,6 +120,37 @@ pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), W
     Ok(())
 }
 
+/// Most bytes of a table that are read: a field of that length would have to be kept.
+const MAX_TABLE: u64 = 1 << 28;
+
+/// A reader of tables: the first row is the header, blanks around fields do not matter.
+pub(super) fn bounded<R: BufRead>(input: R) -> ::csv::Reader<io::Take<R>> {
+    ::csv::ReaderBuilder::new()
+        .trim(::csv::Trim::All)
+        .from_reader(input.take(MAX_TABLE))
+}
+
+/// Turns a row that cannot be read into a finding.
+pub(super) fn report(error: ::csv::Error, findings: &mut Findings) -> io::Result<()> {
+    let line = error
+        .position()
+        .map_or(1, |position| position.line() as usize);
+    match error.into_kind() {
+        ::csv::ErrorKind::Io(error) => return Err(error),
+        ::csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => {
+            let message = format!("the row has {len} fields; the header has {expected_len}");
+            findings.error((line, 1), "csv-fields", message);
+        }
+        ::csv::ErrorKind::Utf8 { .. } => {
+            findings.error((line, 1), "character", "the row is not UTF-8");
+        }
+        other => findings.error((line, 1), "csv-syntax", format!("{other:?}")),
+    }
+    Ok(())
+}
+
 /// Position to 1e-9 km and velocity to 1e-12 km/s.
 fn fields(state: &State) -> impl Iterator<Item = String> {
     let (r, v) = (state.position_km, state.velocity_km_s);
@@ -128,7 +160,7 @@ fn fields(state: &State) -> impl Iterator<Item = String> {
 }
 
 /// The writer gives rows of equal length, so that only the output can fail.
-fn io_error(error: ::csv::Error) -> io::Error {
+pub(super) fn io_error(error: ::csv::Error) -> io::Error {
     match error.into_kind() {
         ::csv::ErrorKind::Io(error) => error,
         kind => io::Error::other(format!("{kind:?}")),

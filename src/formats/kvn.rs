@@ -3,8 +3,11 @@
 
 use super::finding::Findings;
 use super::lines::Line;
-use super::stamp;
+use super::metadata::Metadata;
+use super::stamp::{self, SecondDigits, calendar};
+use crate::words::{Word, words};
 use chrono::NaiveDateTime;
+use std::io::{self, Write};
 
 /// Longest line (7.3.2).
 const LINE: usize = 254;
@@ -12,17 +15,127 @@ const LINE: usize = 254;
 /// Most digits of a number (7.5.6, 7.5.7).
 const DIGITS: usize = 16;
 
+words! {
+    /// A version of the Orbit Data Messages.
+    Version {
+        /// CCSDS 502.0-B-2: what most readers know.
+        V2 = "2.0",
+        /// CCSDS 502.0-B-3.
+        V3 = "3.0",
+    }
+}
+
+/// The header of a message (tables 3-1, 4-1 and 5-2, which are alike).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// Version of the message.
+    pub version: Version,
+    /// Comments behind the version.
+    pub comments: Vec<String>,
+    /// Classification (version 3).
+    pub classification: Option<String>,
+    /// When the message was made, UTC.
+    pub creation_date: NaiveDateTime,
+    /// Who made it.
+    pub originator: String,
+    /// Identifier of the message (version 3).
+    pub message_id: Option<String>,
+}
+
+impl Header {
+    /// The header of a file that `metadata` describes.
+    ///
+    /// Version 3 too goes without `MESSAGE_ID`, which is optional and which some readers refuse.
+    pub(super) fn new(version: Version, metadata: &Metadata) -> Self {
+        Self {
+            version,
+            comments: metadata.comments(),
+            classification: None,
+            creation_date: metadata.creation.utc().naive_utc(),
+            originator: metadata.originator.clone(),
+            message_id: None,
+        }
+    }
+
+    /// Writes the header, whose first keyword is `version_key`.
+    pub(super) fn write(&self, out: &mut impl Write, version_key: &str) -> io::Result<()> {
+        writeln!(out, "{version_key} = {}", self.version)?;
+        write_comments(out, &self.comments)?;
+        for (key, value) in self.pairs() {
+            writeln!(out, "{key} = {value}")?;
+        }
+        Ok(())
+    }
+
+    /// The keywords behind the comments.
+    pub(super) fn pairs(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let digits = SecondDigits::of_stamp(self.creation_date);
+        [
+            ("CLASSIFICATION", self.classification.clone()),
+            ("CREATION_DATE", Some(calendar(self.creation_date, digits))),
+            ("ORIGINATOR", Some(self.originator.clone())),
+            ("MESSAGE_ID", self.message_id.clone()),
+        ]
+        .into_iter()
+        .filter_map(|(key, value)| Some((key, value?)))
+    }
+
+    /// The header from its keywords; `block` holds the version under `version_key`.
+    pub(super) fn read(block: &Block, version_key: &str, findings: &mut Findings) -> Option<Self> {
+        let text = block.text(version_key)?;
+        // Version 1.0 differs from 2.0 in nothing that is read here.
+        let known = if text == "1.0" { "2.0" } else { &text };
+        let Ok(version) = Version::from_word(known) else {
+            let message = format!("version '{text}' is not 1.0, 2.0 or 3.0");
+            findings.error(block.place(version_key), "ccsds-version", message);
+            return None;
+        };
+        Some(Self {
+            version,
+            comments: block.comments.clone(),
+            classification: block.text("CLASSIFICATION"),
+            creation_date: block.stamp("CREATION_DATE", findings)?,
+            originator: block.text("ORIGINATOR")?,
+            message_id: block.text("MESSAGE_ID"),
+        })
+    }
+}
+
+/// Writes comment lines.
+pub(super) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
+    comments
+        .iter()
+        .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
+}
+
+/// Whether a keyword must be there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Need {
+    Mandatory,
+    /// Mandatory in the standard, but so often missing that a reader goes on.
+    Expected,
+    Optional,
+}
+
 /// A keyword of a table, and whether it must be there.
 pub(super) struct Keyword {
-    pub(super) name: &'static str,
-    pub(super) mandatory: bool,
+    name: &'static str,
+    need: Need,
 }
 
 /// A keyword that must be there.
 pub(super) const fn must(name: &'static str) -> Keyword {
     Keyword {
         name,
-        mandatory: true,
+        need: Need::Mandatory,
+    }
+}
+
+/// A keyword that must be there by the standard, without which a reader goes on.
+pub(super) const fn should(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        need: Need::Expected,
     }
 }
 
@@ -30,7 +143,7 @@ pub(super) const fn must(name: &'static str) -> Keyword {
 pub(super) const fn may(name: &'static str) -> Keyword {
     Keyword {
         name,
-        mandatory: false,
+        need: Need::Optional,
     }
 }
 
@@ -92,7 +205,10 @@ struct Placed {
 pub(super) struct Block {
     table: &'static [Keyword],
     values: Vec<Option<Placed>>,
+    /// Which keywords have come in, with a value or without.
+    seen: Vec<bool>,
     last: Option<usize>,
+    ordered: bool,
     /// Comments among the keywords.
     pub(super) comments: Vec<String>,
 }
@@ -102,13 +218,28 @@ impl Block {
         Self {
             table,
             values: table.iter().map(|_| None).collect(),
+            seen: vec![false; table.len()],
             last: None,
+            ordered: true,
             comments: Vec::new(),
+        }
+    }
+
+    /// A block whose keywords may come in any order.
+    pub(super) fn unordered(table: &'static [Keyword]) -> Self {
+        Self {
+            ordered: false,
+            ..Self::new(table)
         }
     }
 
     fn index(&self, key: &str) -> Option<usize> {
         self.table.iter().position(|keyword| keyword.name == key)
+    }
+
+    /// Whether a keyword belongs to the table.
+    pub(super) fn knows(&self, key: &str) -> bool {
+        self.index(key).is_some()
     }
 
     /// Whether no keyword has come in yet.
@@ -123,19 +254,22 @@ impl Block {
             findings.error(pair.key_place, "ccsds-keyword", message);
             return;
         };
-        if self.values[index].is_some() {
+        if std::mem::replace(&mut self.seen[index], true) {
             let message = format!("{} is given twice", pair.key);
             findings.error(pair.key_place, "ccsds-repeated", message);
             return;
         }
-        if let Some(last) = self.last.filter(|last| *last > index) {
+        if let Some(last) = self.last.filter(|last| self.ordered && *last > index) {
             let message = format!("{} stands after {}", pair.key, self.table[last].name);
             findings.warning(pair.key_place, "ccsds-order", message);
         }
         self.last = self.last.max(Some(index));
         if pair.value.is_empty() {
             let message = format!("{} has no value", pair.key);
-            findings.error(pair.value_place, "ccsds-empty", message);
+            match self.table[index].need {
+                Need::Mandatory => findings.error(pair.value_place, "ccsds-empty", message),
+                _ => findings.warning(pair.value_place, "ccsds-empty", message),
+            }
             return;
         }
         self.values[index] = Some(Placed {
@@ -146,10 +280,12 @@ impl Block {
 
     /// Reports the mandatory keywords that have not come in.
     pub(super) fn finish(&self, place: (usize, usize), findings: &mut Findings) {
-        for (keyword, value) in self.table.iter().zip(&self.values) {
-            if keyword.mandatory && value.is_none() {
-                let message = format!("{} is mandatory and missing", keyword.name);
-                findings.error(place, "ccsds-missing", message);
+        for (keyword, seen) in self.table.iter().zip(&self.seen) {
+            let message = || format!("{} is mandatory and missing", keyword.name);
+            match keyword.need {
+                Need::Mandatory if !seen => findings.error(place, "ccsds-missing", message()),
+                Need::Expected if !seen => findings.warning(place, "ccsds-missing", message()),
+                _ => {}
             }
         }
     }
@@ -168,15 +304,20 @@ impl Block {
         self.placed(key).map(|value| value.text.clone())
     }
 
-    /// A text value that [`Self::finish`] has found, or nothing.
-    pub(super) fn text_or_empty(&self, key: &str) -> String {
-        self.text(key).unwrap_or_default()
-    }
-
     /// A time; a finding if it is none.
     pub(super) fn stamp(&self, key: &str, findings: &mut Findings) -> Option<NaiveDateTime> {
         let value = self.placed(key)?;
         read_stamp(&value.text, value.place, findings)
+    }
+
+    /// A number, behind which its unit in brackets may stand; a finding if it is none.
+    pub(super) fn number(&self, key: &str, findings: &mut Findings) -> Option<f64> {
+        let value = self.placed(key)?;
+        let text = match value.text.split_once('[') {
+            Some((number, unit)) if unit.ends_with(']') => number.trim_end(),
+            _ => &value.text,
+        };
+        read_number(text, value.place, findings)
     }
 
     /// A count; a finding if it is none.
@@ -213,15 +354,19 @@ pub(super) fn read_number(
 ) -> Option<f64> {
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
-    // Rust would also take "inf", "nan", ".5" and "5.".
+    // Rust would also take "inf" and "nan".
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
-    let all_digits = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    let all_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
     let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
     let Some(value) = value.filter(|_| all_digits(whole) && all_digits(decimals)) else {
         let message = format!("'{text}' is not a number");
         findings.error(place, "ccsds-number", message);
         return None;
     };
+    if whole.is_empty() || decimals.is_empty() {
+        let message = format!("'{text}' needs a digit on both sides of its point (7.5.6)");
+        findings.warning(place, "ccsds-point", message);
+    }
     let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();
     if digits > DIGITS {
         let message = format!("the number has {digits} digits; {DIGITS} are allowed");

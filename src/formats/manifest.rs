@@ -104,6 +104,10 @@ pub struct Loss {
     pub quantisation_max_km: Option<f64>,
     /// The same, root mean square of the worst satellite, km.
     pub quantisation_rms_km: Option<f64>,
+    /// SGP4 of the element sets against the model that is flown, largest distance, km.
+    pub theory_max_km: Option<f64>,
+    /// The same, root mean square of the worst satellite, km.
+    pub theory_rms_km: Option<f64>,
     /// By interpolation halfway between samples, largest distance, km.
     pub interpolation_max_km: Option<f64>,
     /// What else a reader should know, in a sentence.

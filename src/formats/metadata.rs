@@ -6,8 +6,8 @@ use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::ephemeris::Flown;
 use crate::frames::Frame;
 use crate::orbit::Model;
-use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
+use crate::words::words;
 use chrono::Datelike;
 use std::fmt;
 use std::str::FromStr;
@@ -182,24 +182,39 @@ fn piece_letters(index: usize) -> String {
     letters.iter().rev().collect()
 }
 
+words! {
+    /// How SGP4 element sets are made from a design.
+    ElementChoice {
+        /// The J2 mean elements with dM/dt of secular J2 in the mean motion slot.
+        Kozai = "kozai",
+        /// The same with sqrt(mu/a^3) there, which drifts by up to 400 km a day.
+        Kepler = "kepler",
+        /// Fitted to the flown trajectory over the span of the study.
+        Fit = "fit",
+    }
+}
+
 /// What the numbers of a file were computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Theory {
     /// States of the model that the scenario flies.
     Flown(Model),
-    /// An SGP4 element set made from the design's J2 mean elements.
-    Sgp4Elements(MeanMotionSlot),
+    /// An SGP4 element set made from the design.
+    Sgp4Elements(ElementChoice),
 }
 
 impl fmt::Display for Theory {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flown(model) => model.fmt(formatter),
-            Self::Sgp4Elements(MeanMotionSlot::Kozai) => {
+            Self::Sgp4Elements(ElementChoice::Kozai) => {
                 formatter.pad("SGP4 elements, Kozai mean motion dM/dt of secular J2")
             }
-            Self::Sgp4Elements(MeanMotionSlot::Kepler) => {
+            Self::Sgp4Elements(ElementChoice::Kepler) => {
                 formatter.pad("SGP4 elements, Kepler mean motion sqrt(mu/a^3) in the Kozai slot")
+            }
+            Self::Sgp4Elements(ElementChoice::Fit) => {
+                formatter.pad("SGP4 elements fitted to the flown trajectory")
             }
         }
     }
@@ -322,7 +337,7 @@ mod tests {
                 creation: epoch(),
                 frame,
                 time_system: TimeSystem::Utc,
-                theory: Theory::Sgp4Elements(MeanMotionSlot::Kepler),
+                theory: Theory::Sgp4Elements(ElementChoice::Kepler),
                 subject: vec!["Design: delta:55:182/13/1@925".to_owned()],
             };
             for line in metadata.comments() {

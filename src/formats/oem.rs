@@ -10,6 +10,7 @@ pub use read::{parse, read};
 
 use super::WriteError;
 use super::interpolation::Hermite;
+use super::kvn::{Header, Version, write_comments};
 use super::metadata::{Metadata, Object};
 use super::sampled::Sampled;
 use super::stamp::{SecondDigits, calendar};
@@ -17,7 +18,6 @@ use super::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_
 use crate::ephemeris::Flown;
 use crate::frames::{Frame, State};
 use crate::time::TimeGrid;
-use crate::words::words;
 use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
@@ -26,15 +26,8 @@ use std::io::{self, Write};
 pub(super) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
 
-words! {
-    /// A version of the message.
-    Version {
-        /// CCSDS 502.0-B-2: what most readers know.
-        V2 = "2.0",
-        /// CCSDS 502.0-B-3.
-        V3 = "3.0",
-    }
-}
+/// Keyword of the version.
+const VERSION: &str = "CCSDS_OEM_VERS";
 
 /// A whole message.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,23 +36,6 @@ pub struct Oem {
     pub header: Header,
     /// The segments, in the order of the file.
     pub segments: Vec<Segment>,
-}
-
-/// The header of a message (table 5-2).
-#[derive(Debug, Clone, PartialEq)]
-pub struct Header {
-    /// Version of the message.
-    pub version: Version,
-    /// Comments behind the version.
-    pub comments: Vec<String>,
-    /// Classification (version 3).
-    pub classification: Option<String>,
-    /// When the message was made, UTC.
-    pub creation_date: NaiveDateTime,
-    /// Who made it.
-    pub originator: String,
-    /// Identifier of the message (version 3).
-    pub message_id: Option<String>,
 }
 
 /// The metadata of a segment (table 5-3).
@@ -119,7 +95,7 @@ impl Oem {
     /// # Errors
     /// When the output does not take the bytes.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        write_header(out, &self.header)?;
+        self.header.write(out, VERSION)?;
         for segment in &self.segments {
             let digits = segment.digits();
             write_metadata(out, &segment.metadata, digits)?;
@@ -187,16 +163,8 @@ pub fn write(
     (sampled, satellite): (&Sampled<'_>, &Flown),
     hermite: Option<Hermite>,
 ) -> Result<(), WriteError> {
-    let header = Header {
-        version,
-        comments: metadata.comments(),
-        classification: None,
-        creation_date: metadata.creation.utc().naive_utc(),
-        originator: metadata.originator.clone(),
-        message_id: None,
-    };
     let digits = SecondDigits::of_grid(&sampled.grid());
-    write_header(out, &header)?;
+    Header::new(version, metadata).write(out, VERSION)?;
     let segment = segment_metadata(metadata, object, sampled.grid(), hermite);
     write_metadata(out, &segment, digits)?;
     for sample in sampled.states(satellite) {
@@ -247,28 +215,6 @@ pub(super) fn segment_metadata(
         stop_time: stamp(grid.elapsed_s(grid.len() - 1)),
         interpolation: hermite.map(|hermite| ("HERMITE".to_owned(), hermite.degree)),
     }
-}
-
-fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
-    comments
-        .iter()
-        .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
-}
-
-fn write_header(out: &mut impl Write, header: &Header) -> io::Result<()> {
-    writeln!(out, "CCSDS_OEM_VERS = {}", header.version)?;
-    write_comments(out, &header.comments)?;
-    if let Some(classification) = &header.classification {
-        writeln!(out, "CLASSIFICATION = {classification}")?;
-    }
-    let digits = SecondDigits::of_stamp(header.creation_date);
-    let creation = calendar(header.creation_date, digits);
-    writeln!(out, "CREATION_DATE = {creation}")?;
-    writeln!(out, "ORIGINATOR = {}", header.originator)?;
-    if let Some(id) = &header.message_id {
-        writeln!(out, "MESSAGE_ID = {id}")?;
-    }
-    Ok(())
 }
 
 fn write_metadata(

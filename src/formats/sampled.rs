@@ -69,6 +69,15 @@ impl<'a> Sampled<'a> {
         rotation.apply(teme)
     }
 
+    /// The state of a satellite at sample `k`.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State, EphemerisError> {
+        let teme = self.ephemeris.state(satellite, self.grid().elapsed_s(k))?;
+        Ok(self.rotated(k, teme))
+    }
+
     /// The states of a satellite at every instant of the grid.
     pub fn states(
         &self,
@@ -76,9 +85,8 @@ impl<'a> Sampled<'a> {
     ) -> impl ExactSizeIterator<Item = Result<(Epoch, State), EphemerisError>> {
         let grid = self.grid();
         (0..grid.len()).map(move |k| {
-            let elapsed_s = grid.elapsed_s(k);
-            let teme = self.ephemeris.state(satellite, elapsed_s)?;
-            Ok((grid.epoch().plus_seconds(elapsed_s), self.rotated(k, teme)))
+            let at = grid.epoch().plus_seconds(grid.elapsed_s(k));
+            Ok((at, self.state_at(satellite, k)?))
         })
     }
 }

@@ -10,12 +10,8 @@ mod read;
 pub use read::{Record, parse, read};
 
 use super::WriteError;
-use super::metadata::{CatalogNumber, IdentityError, Object};
-use crate::constellation::Satellite;
-use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
-use crate::orbit::{PropagationError, Propagator};
-use crate::time::{Epoch, TimeGrid};
+use super::metadata::{CatalogNumber, IdentityError};
+use crate::time::Epoch;
 use chrono::{Datelike, NaiveDateTime, Timelike};
 use std::io::Write;
 use thiserror::Error;
@@ -78,20 +74,6 @@ pub fn rounded_epoch(epoch: Epoch) -> Epoch {
 
 fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
     i64::from(stamp.num_seconds_from_midnight()) * 1_000_000_000 + i64::from(stamp.nanosecond())
-}
-
-/// The element set of a satellite for a TLE: its mean elements carried by secular J2 from
-/// `epoch` to the step of 1e-8 day next to it, with all digits.
-#[must_use]
-pub fn element_set(
-    satellite: &Satellite,
-    object: &Object,
-    epoch: Epoch,
-    slot: MeanMotionSlot,
-) -> sgp4::Elements {
-    let rounded = rounded_epoch(epoch);
-    let elements = SecularOrbit::j2(&satellite.elements).elements_at(rounded.seconds_since(epoch));
-    super::element_set(&elements, object, rounded, slot)
 }
 
 /// Writes one element set: its name, if it has one, and its two lines.
@@ -313,38 +295,6 @@ fn counter(field: &'static str, value: u64, most: u64) -> Result<u64, TleFieldEr
         value: value as f64,
         bound: "the number has too many digits",
     })
-}
-
-/// What the digits of a TLE cost: distance between SGP4 from the unrounded element set and
-/// SGP4 from the set as read back.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct QuantisationLoss {
-    /// Largest distance over the span, km.
-    pub max_km: f64,
-    /// Root mean square distance over the span, km.
-    pub rms_km: f64,
-}
-
-/// The loss by quantisation over the samples of `grid`.
-///
-/// # Errors
-/// When SGP4 has no state for one of the sets.
-pub fn quantisation_loss(
-    unrounded: &sgp4::Elements,
-    read_back: &sgp4::Elements,
-    grid: TimeGrid,
-) -> Result<QuantisationLoss, PropagationError> {
-    let exact = Sgp4Orbit::from_element_set(unrounded, grid.epoch())?;
-    let rounded = Sgp4Orbit::from_element_set(read_back, grid.epoch())?;
-    let (mut max_km, mut sum) = (0.0_f64, 0.0);
-    for elapsed_s in grid.iter() {
-        let apart =
-            exact.state_at(elapsed_s)?.position_km - rounded.state_at(elapsed_s)?.position_km;
-        max_km = max_km.max(apart.norm());
-        sum += apart.norm_squared();
-    }
-    let rms_km = (sum / grid.len() as f64).sqrt();
-    Ok(QuantisationLoss { max_km, rms_km })
 }
 
 #[cfg(test)]

@@ -1,10 +1,12 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::{DesignSummary, OptimizeResult};
-use crate::evaluate::Metrics;
+use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::Record;
+use crate::stats::Summary;
 use crate::validate::Check;
 use ::csv::Writer;
+use serde::Serialize;
 
 /// Why a table cannot be written; a table in memory always can.
 pub type CsvError = ::csv::Error;
@@ -71,11 +73,11 @@ fn metrics_cells(metrics: &Metrics) -> Vec<String> {
 }
 
 /// The shortest digits that read back; empty for a metric without a value.
-fn optional(value: Option<f64>) -> String {
+pub(super) fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-fn text(writer: Writer<Vec<u8>>) -> Result<String, CsvError> {
+pub(super) fn text(writer: Writer<Vec<u8>>) -> Result<String, CsvError> {
     let bytes = writer
         .into_inner()
         .map_err(|error| ::csv::Error::from(error.into_error()))?;
@@ -165,14 +167,44 @@ pub fn history_csv(history: &[Record], objectives: &[String]) -> Result<String, 
     text(writer)
 }
 
+/// Records whose fields are the columns, one a row: instants or points of a series.
+///
+/// # Errors
+/// Never for a table in memory.
+pub fn records_csv(rows: &[impl Serialize]) -> Result<String, CsvError> {
+    let mut writer = Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    text(writer)
+}
+
+/// The dilutions of precision of a design, one a row: name, mean, quantiles, maximum and tail.
+///
+/// # Errors
+/// Never for a table in memory.
+pub fn dops_csv(dops: &DopStatistics) -> Result<String, CsvError> {
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(["dop", "mean", "p50", "p95", "p99", "max", "cvar"])?;
+    for (name, summary) in dops.named() {
+        let cell = |value: fn(&Summary) -> f64| optional(summary.as_ref().map(value));
+        writer.write_record([
+            name,
+            cell(|s| s.mean),
+            cell(|s| s.p50),
+            cell(|s| s.p95),
+            cell(|s| s.p99),
+            cell(|s| s.max),
+            cell(|s| s.cvar),
+        ])?;
+    }
+    text(writer)
+}
+
 /// The checks of a validation, one a row.
 ///
 /// # Errors
 /// Never for a table in memory.
 pub fn checks_csv(checks: &[Check]) -> Result<String, CsvError> {
-    let mut writer = Writer::from_writer(Vec::new());
-    for check in checks {
-        writer.serialize(check)?;
-    }
-    text(writer)
+    records_csv(checks)
 }

@@ -4,7 +4,8 @@ use chrono::{DateTime, Utc};
 
 use super::Constraint;
 use super::{
-    Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Surface,
+    Algorithm, Clocks, LaunchCost, Model, ObservationWeights, Pattern, PointWeights, Preset,
+    Quantity, Surface,
 };
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -131,8 +132,8 @@ pub struct Visibility {
     pub mask_deg: f64,
     /// Lowest elevation of a visible GNSS satellite, degrees.
     pub gnss_mask_deg: f64,
-    /// Skyline by rising azimuth, or empty: linear between its points and from the last to the
-    /// first across north; where it is higher than a mask it counts instead.
+    /// Skyline by azimuth rising from 0 to 360, or empty: linear between its points; where it is
+    /// higher than a mask it counts instead.
     pub mask_table: Vec<MaskPoint>,
     /// How a line of sight counts in the solution.
     pub weighting: ObservationWeights,
@@ -143,7 +144,7 @@ pub struct Visibility {
 /// One point of a skyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaskPoint {
-    /// Azimuth from north over east, degrees, 0 to below 360.
+    /// Azimuth from north over east, degrees, 0 to 360.
     pub azimuth_deg: f64,
     /// Lowest elevation of a visible satellite there, degrees.
     pub mask_deg: f64,
@@ -163,7 +164,7 @@ pub struct GnssSetup {
 /// What is minimized, and under which constraints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Objectives {
-    /// One or more, no one twice; those that are [`Quantity::maximized`] are maximized.
+    /// One or more, no one twice; those that are [`Quantity::is_maximised`] are maximized.
     pub minimize: Vec<Quantity>,
     /// Weight of the tail in `j-pos`, at least 0.
     pub cvar_weight: f64,
@@ -173,6 +174,8 @@ pub struct Objectives {
     pub constraints: Vec<Constraint>,
     /// The PDOP up to which a sample counts as available.
     pub availability_pdop: f64,
+    /// Parameters of `launch-cost`.
+    pub launch_cost: LaunchCost,
     /// One number for each objective, in its own unit. `None` when it was not given and the
     /// objectives have no usual one.
     pub hypervolume_reference: Option<Vec<f64>>,
@@ -193,10 +196,18 @@ pub struct SearchSpace {
     pub altitude_km: [f64; 2],
     /// Walker's F (for a lattice N_c) before it is cut; see [`SearchSpace::phasing_for`].
     pub phasing: [u32; 2],
+    /// Eccentricity, lowest and highest.
+    pub eccentricity: [f64; 2],
+    /// Argument of perigee, degrees.
+    pub arg_perigee_deg: [f64; 2],
     /// Step of an exhaustive search in inclination, degrees.
     pub inclination_step_deg: f64,
     /// Step of an exhaustive search in altitude, km.
     pub altitude_step_km: f64,
+    /// Step of an exhaustive search in eccentricity.
+    pub eccentricity_step: f64,
+    /// Step of an exhaustive search in argument of perigee, degrees.
+    pub arg_perigee_step_deg: f64,
 }
 
 impl SearchSpace {
@@ -215,6 +226,8 @@ impl SearchSpace {
             * whole(self.phasing)
             * count(self.inclination_deg, self.inclination_step_deg)
             * count(self.altitude_km, self.altitude_step_km)
+            * count(self.eccentricity, self.eccentricity_step)
+            * count(self.arg_perigee_deg, self.arg_perigee_step_deg)
     }
 }
 
@@ -231,6 +244,10 @@ pub struct Optimizer {
     pub crossover_probability: f64,
     /// Probability that a variable is mutated.
     pub mutation_probability: f64,
+    /// Distribution index of simulated binary crossover.
+    pub crossover_index: f64,
+    /// Distribution index of polynomial mutation.
+    pub mutation_index: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }

@@ -1,16 +1,19 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
 use super::{Algorithm, Region, Scenario};
-use crate::constellation::gnss::System;
+use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
+use crate::formats::lint::Format;
+use crate::formats::omm::{self, Notation};
+use crate::formats::{ReadError, tle};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::{DesignSpace, Goals, LaunchCost};
+use crate::search::{DesignSpace, Goals};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
-use crate::visibility::{Mask, MaskError};
+use crate::visibility::{Mask, MaskError, MaskTable, MaskTableError};
 use std::io;
 use thiserror::Error;
 
@@ -20,6 +23,14 @@ const SWEEP_BATCH: usize = 256;
 /// Why a scenario cannot be set up although each of its values is in range.
 #[derive(Debug, Error)]
 pub enum SetupError {
+    /// A GNSS file gives no system.
+    #[error("gnss.files: {file}")]
+    GnssFile {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: GnssFileError,
+    },
     /// The points file cannot be read.
     #[error("region.points: cannot read {file}")]
     PointsFile {
@@ -45,12 +56,43 @@ pub enum SetupError {
     /// A mask out of range.
     #[error("visibility: {0}")]
     Mask(#[from] MaskError),
+    /// A skyline with gaps.
+    #[error("visibility.mask-table: {0}")]
+    MaskTable(#[from] MaskTableError),
     /// A tail level out of range.
     #[error("objectives.cvar-level: {0}")]
     Level(#[from] LevelError),
     /// The reference design is no design.
     #[error("reference-design: {0}")]
     ReferenceDesign(#[from] NotationError),
+}
+
+/// The element sets of a file, in the format that it shows: TLE, or OMM in any syntax.
+fn element_sets(file: &str, bytes: &[u8]) -> Result<Vec<sgp4::Elements>, ReadError> {
+    let notation = match Format::of(bytes, Some(file)) {
+        Format::Omm => Notation::Kvn,
+        Format::OmmXml => Notation::Xml,
+        Format::OmmJson => Notation::Json,
+        Format::OmmCsv => Notation::Csv,
+        // What is neither is refused by the first rule of TLE that it breaks.
+        _ => return tle::read(bytes),
+    };
+    let messages = omm::read(bytes, notation)?;
+    Ok(messages.into_iter().map(|message| message.set).collect())
+}
+
+/// Why a file of element sets gives no system.
+#[derive(Debug, Error)]
+pub enum GnssFileError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// A line of it is wrong.
+    #[error(transparent)]
+    Format(#[from] ReadError),
+    /// Its sets make no system.
+    #[error(transparent)]
+    Sets(#[from] ElementSetError),
 }
 
 impl Scenario {
@@ -86,14 +128,10 @@ impl Scenario {
             sites: self.sites(read)?,
             mask: Mask::from_degrees(self.visibility.mask_deg)?,
             gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
-            gnss: self
-                .gnss
-                .constellations
-                .iter()
-                .copied()
-                .map(System::from)
-                .collect(),
+            skyline: self.skyline()?,
+            gnss: self.systems(read)?,
             clocks: self.gnss.clocks,
+            observation_weights: self.visibility.weighting,
             pdop_cap: self.visibility.pdop_cap,
             model: self.propagation.model,
             metrics: MetricOptions {
@@ -102,6 +140,47 @@ impl Scenario {
                 availability_pdop: self.objectives.availability_pdop,
             },
         })
+    }
+
+    /// The presets, and then a system for each file, named by the file.
+    fn systems(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<System>, SetupError> {
+        let mut systems: Vec<System> = self
+            .gnss
+            .constellations
+            .iter()
+            .copied()
+            .map(System::from)
+            .collect();
+        for file in &self.gnss.files {
+            let error = |source| SetupError::GnssFile {
+                file: file.clone(),
+                source,
+            };
+            let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
+            let sets = element_sets(file, &bytes).map_err(|source| error(source.into()))?;
+            let name = file.rsplit('/').next().unwrap_or(file);
+            let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+            let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
+            systems.push(system.into());
+        }
+        Ok(systems)
+    }
+
+    fn skyline(&self) -> Result<Option<MaskTable>, MaskTableError> {
+        let vertices: Vec<(f64, f64)> = self
+            .visibility
+            .mask_table
+            .iter()
+            .map(|point| (point.azimuth_deg, point.mask_deg))
+            .collect();
+        if vertices.is_empty() {
+            Ok(None)
+        } else {
+            MaskTable::new(vertices).map(Some)
+        }
     }
 
     fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
@@ -137,6 +216,8 @@ impl Scenario {
             inclination_deg: self.search.inclination_deg,
             altitude_km: self.search.altitude_km,
             phasing: self.search.phasing,
+            eccentricity: self.search.eccentricity,
+            arg_perigee_deg: self.search.arg_perigee_deg,
         }
     }
 
@@ -146,10 +227,7 @@ impl Scenario {
         Goals {
             objectives: self.objectives.minimize.clone(),
             constraints: self.objectives.constraints.clone(),
-            launch_cost: LaunchCost {
-                per_plane: 5.0,
-                per_1000_km: 0.2,
-            },
+            launch_cost: self.objectives.launch_cost,
         }
     }
 
@@ -166,6 +244,21 @@ impl Scenario {
         )
     }
 
+    /// The settings of NSGA-II, whatever the method of the search.
+    #[must_use]
+    pub fn nsga2(&self) -> Nsga2Config {
+        let settings = &self.optimizer;
+        Nsga2Config {
+            population: settings.population as usize,
+            generations: settings.generations as usize,
+            crossover_probability: settings.crossover_probability,
+            mutation_probability: settings.mutation_probability,
+            crossover_index: settings.crossover_index,
+            mutation_index: settings.mutation_index,
+            hypervolume_reference: self.minimised_reference(),
+        }
+    }
+
     /// The method of the search and its budget.
     #[must_use]
     pub fn method(&self) -> Method {
@@ -174,14 +267,7 @@ impl Scenario {
             (settings.population as usize, settings.generations as usize);
         let hypervolume_reference = self.minimised_reference();
         match settings.algorithm {
-            Algorithm::Nsga2 => Method::Nsga2(Nsga2Config {
-                population,
-                generations,
-                crossover_probability: settings.crossover_probability,
-                mutation_probability: settings.mutation_probability,
-                hypervolume_reference,
-                ..Nsga2Config::default()
-            }),
+            Algorithm::Nsga2 => Method::Nsga2(self.nsga2()),
             Algorithm::Mopso => Method::Mopso(MopsoConfig {
                 particles: population,
                 iterations: generations,
@@ -194,13 +280,12 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: vec![
-                    1.0,
-                    1.0,
+                steps: self.design_space().steps([
                     self.search.inclination_step_deg,
                     self.search.altitude_step_km,
-                    1.0,
-                ],
+                    self.search.eccentricity_step,
+                    self.search.arg_perigee_step_deg,
+                ]),
                 batch: SWEEP_BATCH,
                 hypervolume_reference,
             }),

@@ -28,13 +28,13 @@ fn navwalker(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-struct Ran {
-    status: i32,
-    stdout: String,
-    stderr: String,
+pub(crate) struct Ran {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
-fn ran(directory: &Path, arguments: &[&str]) -> Ran {
+pub(crate) fn ran(directory: &Path, arguments: &[&str]) -> Ran {
     let output = navwalker(directory, arguments).output().unwrap();
     Ran {
         status: output.status.code().unwrap(),
@@ -44,7 +44,7 @@ fn ran(directory: &Path, arguments: &[&str]) -> Ran {
 }
 
 /// Runs what must end with status 2, say why in one message, print nothing and leave nothing.
-fn refused(arguments: &[&str]) -> String {
+pub(crate) fn refused(arguments: &[&str]) -> String {
     let directory = TempDir::new().unwrap();
     let ran = ran(directory.path(), arguments);
     assert_eq!(ran.status, 2, "{arguments:?}: {}", ran.stderr);
@@ -54,7 +54,7 @@ fn refused(arguments: &[&str]) -> String {
     ran.stderr
 }
 
-fn optimize<'a>(further: &[&'a str]) -> Vec<&'a str> {
+pub(crate) fn optimize<'a>(further: &[&'a str]) -> Vec<&'a str> {
     [&["optimize", "--quiet"], SMALL.as_slice(), further].concat()
 }
 
@@ -227,7 +227,7 @@ fn a_scenario_too_large_for_memory_is_refused_before_it_starts() {
         "--set",
         "time.step-s=86.4",
         "--set",
-        "gnss.clocks=shared",
+        "region.weights=cos-latitude",
     ]);
     assert!(stderr.contains("GiB"), "{stderr}");
 }
@@ -524,4 +524,49 @@ fn a_closed_pipe_ends_quietly() {
         (output.status.code(), output.stderr.as_slice()),
         (Some(0), b"".as_slice())
     );
+}
+
+/// A system from element sets gives the same metrics whichever format carries the full digits.
+#[test]
+fn gnss_files_are_tle_or_omm() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let export = [
+        "export",
+        "--design",
+        "delta:56:24/3/1@21528",
+        "--as",
+        "tle,omm-xml,omm-json,omm-csv",
+        "--out",
+        "gnss",
+    ];
+    assert_eq!(ran(place, &export).status, 0);
+    let visible = |file: &str| {
+        let set = format!("gnss.files=[\"gnss/{file}\"]");
+        let design = [
+            "evaluate",
+            "--quiet",
+            "--design",
+            "delta:55:24/6/1@925",
+            "--format",
+            "json",
+        ];
+        let small = [
+            "--set",
+            "time.step-s=1200",
+            "--set",
+            "gnss.constellations=[]",
+            "--set",
+            &set,
+        ];
+        let ran = ran(place, &[design.as_slice(), &small].concat());
+        assert_eq!(ran.status, 0, "{file}: {}", ran.stderr);
+        let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+        value["metrics"]["mean_pdop"].as_f64().unwrap()
+    };
+    let json = visible("omm.json");
+    assert_eq!(visible("omm.xml"), json);
+    assert_eq!(visible("omm.csv"), json);
+    // A TLE's digits move a satellite by metres: 1e-6 of its distance.
+    assert!((visible("constellation.tle") / json - 1.0).abs() < 1e-5);
 }

@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod cli;
+mod evidence;
 mod look;
 mod reference;
+mod study;
 mod tidy;

@@ -2,7 +2,7 @@
 
 use navwalker::constellation::gnss::Preset;
 use navwalker::constellation::{Design, Pattern};
-use navwalker::dop::Clocks;
+use navwalker::dop::{Clocks, ObservationWeights};
 use navwalker::earth::Surface;
 use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
 use navwalker::ground::{Grid, PointWeights};
@@ -93,6 +93,8 @@ impl Case {
             } else {
                 Clocks::PerSystem
             },
+            skyline: None,
+            observation_weights: ObservationWeights::Unit,
             pdop_cap: 100.0,
             model: Model::J2,
             metrics: MetricOptions {

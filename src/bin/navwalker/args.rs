@@ -2,7 +2,10 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
+use navwalker::formats::CcsdsVersion;
 use navwalker::formats::export::Product;
+use navwalker::formats::metadata::ElementChoice;
+use navwalker::formats::sp3::Version as Sp3Version;
 use navwalker::frames::Frame;
 use navwalker::report::figures::draw::Form;
 use navwalker::report::figures::{Figure, Measure};
@@ -56,6 +59,21 @@ pub(crate) enum Command {
     /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
+
+    /// Check files against the standard of their format: TLE, OMM, OEM, SP3, STK ephemeris.
+    ///
+    /// Example: navwalker lint constellation.tle oem/*.oem
+    #[command(verbatim_doc_comment)]
+    Lint(LintArgs),
+
+    /// Repeat the study that this program implements: its tables and figures, ours beside theirs.
+    ///
+    /// Every statement of the paper is judged by a computed rule: met, met under another assumption
+    /// (one changed at a time), or not met. DIR gets the report and the data of each figure.
+    ///
+    /// Example: navwalker reproduce --set visibility.mask-deg=10
+    #[command(verbatim_doc_comment)]
+    Reproduce(ReproduceArgs),
 
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
@@ -130,7 +148,7 @@ pub(crate) enum Command {
 }
 
 /// Which study a command works on.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario.
     #[arg(value_name = "SCENARIO", default_value = "paper")]
@@ -152,7 +170,7 @@ pub(crate) enum Format {
     Csv,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct OptimizeArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
@@ -165,6 +183,20 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
+    /// Run this many seeds, from the one of the scenario upwards, and report their spread.
+    ///
+    /// Each seed is a run of its own in DIR/seed-N; DIR gets the table of all as seeds.csv and
+    /// seeds.json. What is printed is the front of the first seed and the table.
+    #[arg(long, value_name = "N")]
+    pub(crate) seeds: Option<NonZeroUsize>,
+
+    /// Also sweep the whole search space on the scenario's steps and hold the front against the
+    /// exact one: both hypervolumes, the distance of each member, and what was missed.
+    ///
+    /// The sweep is a run of its own in DIR-sweep, which is resumed when it is there.
+    #[arg(long)]
+    pub(crate) certify: bool,
+
     /// Go on from the checkpoint of the run directory.
     #[arg(long)]
     pub(crate) resume: bool,
@@ -174,7 +206,7 @@ pub(crate) struct OptimizeArgs {
     pub(crate) force: bool,
 
     /// Also write report.html, as `navwalker report` does.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "seeds")]
     pub(crate) report: bool,
 
     /// Form of the result on stdout.
@@ -191,9 +223,56 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "NOTATION")]
     pub(crate) design: Design,
 
+    /// Add GDOP, HDOP, VDOP and the TDOP of each system: mean and tail.
+    #[arg(long)]
+    pub(crate) dops: bool,
+
+    /// Write metrics per instant and per point into this directory: epochs.csv and points.csv.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) series: Option<PathBuf>,
+
+    /// Replace a series directory that holds something.
+    #[arg(long, requires = "series")]
+    pub(crate) force: bool,
+
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+}
+
+/// The form of a study on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyFormat {
+    /// Tables to read.
+    Text,
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header: the statements.
+    Csv,
+    /// Markdown, for an appendix.
+    Markdown,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    /// Where the report and the data of the figures go.
+    #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
+    pub(crate) out: PathBuf,
+
+    /// Seed of the searches; the same as `--set optimizer.seed=N`.
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Replace a directory that holds something else.
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: StudyFormat,
 }
 
 /// Which design of a run to take.
@@ -239,15 +318,6 @@ pub(crate) struct DesignArgs {
     pub(crate) pick: Pick,
 }
 
-/// What stands in the mean motion slot of element sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Slot {
-    /// dM/dt of secular J2: what the slot means.
-    Kozai,
-    /// sqrt(mu/a^3): drifts by up to 400 km a day; for comparisons only.
-    Kepler,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
@@ -256,7 +326,8 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// Products, separated by commas: tle, oem, csv, and tle-states for comparing another SGP4.
+    /// Products, separated by commas: tle, omm, oem, sp3, stk, csv, and others; see the error of a
+    /// wrong name for the list.
     #[arg(
         long = "as",
         value_name = "PRODUCTS",
@@ -282,9 +353,22 @@ pub(crate) struct ExportArgs {
     )]
     pub(crate) frame: Frame,
 
-    /// How the mean motion of element sets is made.
-    #[arg(long, value_enum, default_value = "kozai")]
-    pub(crate) tle_theory: Slot,
+    /// How element sets are made: kozai (the J2 mean elements), fit (least squares of SGP4 to the
+    /// trajectory), or kepler (the common mistake, for comparisons).
+    #[arg(long, value_name = "THEORY", default_value = "kozai")]
+    pub(crate) tle_theory: ElementChoice,
+
+    /// Version of CCSDS messages: 2.0 or 3.0.
+    #[arg(long, value_name = "VERSION", default_value = "2.0")]
+    pub(crate) ccsds_version: CcsdsVersion,
+
+    /// Version of SP3: c or d.
+    #[arg(long, value_name = "VERSION", default_value = "d")]
+    pub(crate) sp3_version: Sp3Version,
+
+    /// Letter of the satellite ids of SP3.
+    #[arg(long, value_name = "LETTER", default_value = "L")]
+    pub(crate) sp3_letter: char,
 }
 
 /// The form of a validation on stdout.
@@ -310,7 +394,9 @@ pub(crate) struct ValidateArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// What to check against, separated by commas: sgp4.
+    /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
+    /// all, or files and directories of another program (OEM, OMM, TLE, SP3, STK .e; anything with a
+    /// `.` or `/` in its path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
 
@@ -334,7 +420,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NOTATION")]
     pub(crate) compare: Vec<Design>,
 
-    /// Show the front of this run too, as of an exhaustive search; may be repeated.
+    /// Show the front of this run too, besides the sweep of --certify; may be repeated.
     #[arg(long, value_name = "DIR")]
     pub(crate) front: Vec<PathBuf>,
 
@@ -377,6 +463,21 @@ pub(crate) struct PlotArgs {
     /// Where the figure goes; the table goes beside it.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LintArgs {
+    /// The files.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Check against this format instead of the one that the file shows.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) format: Option<navwalker::formats::lint::Format>,
+
+    /// Form of the result on stdout.
+    #[arg(long = "format", value_enum, default_value = "text")]
+    pub(crate) output: Format,
 }
 
 #[derive(Debug, Args)]

@@ -3,8 +3,10 @@
 pub(crate) mod evaluate;
 pub(crate) mod export;
 pub(crate) mod help;
+pub(crate) mod lint;
 pub(crate) mod optimize;
 pub(crate) mod plot;
 pub(crate) mod report;
+pub(crate) mod reproduce;
 pub(crate) mod scenario;
 pub(crate) mod validate;

@@ -42,11 +42,7 @@ impl Look {
             output::warning(gap);
         }
         let beside = beside(args, &run);
-        let fronts = args
-            .front
-            .iter()
-            .map(|path| front(path))
-            .collect::<Result<_>>()?;
+        let fronts = fronts(args)?;
         let scenario_toml = files.scenario.ok();
         Ok(Self {
             run,
@@ -154,6 +150,16 @@ fn beside(args: &RunArgs, run: &StoredRun) -> Vec<(String, Design)> {
         .iter()
         .map(|design| (design.to_string(), *design));
     reference.into_iter().chain(compared).collect()
+}
+
+/// The fronts that are asked for, and that of the sweep that certified the run if there is one.
+fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
+    let mut name = args.directory.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    let sweep = args.directory.with_file_name(name);
+    let found = sweep.join("front.json").exists().then_some(&sweep);
+    let wanted = found.into_iter().chain(&args.front);
+    wanted.map(|path| front(path)).collect()
 }
 
 fn front(directory: &Path) -> Result<NamedFront> {

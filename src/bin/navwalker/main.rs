@@ -55,7 +55,9 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
     match cli.command {
         Command::Optimize(args) => commands::optimize::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Export(args) => commands::export::run(&args),
+        Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),
         Command::Report(args) => commands::report::run(&args),
         Command::Plot(args) => commands::plot::run(&args),

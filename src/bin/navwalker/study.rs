@@ -4,12 +4,14 @@ use crate::args::{DesignArgs, Pick, StudyArgs};
 use crate::{output, run};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
+use navwalker::constellation::gnss::System;
 use navwalker::evaluate::{Evaluator, Setup};
-use navwalker::scenario::{Scenario, builtin};
+use navwalker::scenario::{Algorithm, Scenario, builtin};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A scenario and where its files lie.
+#[derive(Clone)]
 pub(crate) struct Study {
     pub(crate) scenario: Scenario,
     /// Directory to which paths in the scenario are relative.
@@ -41,6 +43,13 @@ impl Study {
         })
     }
 
+    /// The same study by another algorithm.
+    pub(crate) fn with_algorithm(&self, algorithm: Algorithm) -> Self {
+        let mut other = self.clone();
+        other.scenario.optimizer.algorithm = algorithm;
+        other
+    }
+
     /// SHA-256 of what is computed, the contents of the scenario's files included.
     pub(crate) fn hash(&self) -> Result<String> {
         let read = |file: &str| {
@@ -63,6 +72,13 @@ impl Study {
         let read = |file: &str| fs::read(self.directory.join(file));
         let setup = self.scenario.setup(&read)?;
         check_memory(&setup)?;
+        for system in &setup.gnss {
+            if let System::Sets(sets) = system
+                && let Some(stale) = sets.stale(setup.grid)
+            {
+                output::warning(&stale.to_string());
+            }
+        }
         Ok(setup)
     }
 

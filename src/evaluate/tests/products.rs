@@ -25,7 +25,8 @@ fn a_weight_is_a_repetition() {
             },
             ..base.clone()
         };
-        Evaluator::new(setup).unwrap().design(&design).unwrap()
+        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+        Evaluator::new(setup).unwrap().plain(&ephemeris).unwrap()
     };
     let weighted = metrics(&[(5.0, 2.0), (40.0, 1.0), (75.0, 3.0)]);
     let repeated = metrics(&[5.0, 5.0, 40.0, 75.0, 75.0, 75.0].map(|latitude| (latitude, 1.0)));
@@ -80,7 +81,7 @@ fn series_add_up_to_the_metrics() {
     let setup = small([1.0, 2.0, 0.5]);
     let evaluator = Evaluator::new(setup.clone()).unwrap();
     let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
-    let metrics = evaluator.ephemeris(&ephemeris).unwrap();
+    let metrics = evaluator.plain(&ephemeris).unwrap();
     let Series {
         epochs,
         points,
@@ -141,7 +142,7 @@ fn a_point_of_the_series_is_an_evaluation_of_that_point() {
     };
     let series = Evaluator::new(all).unwrap().series(&ephemeris).unwrap();
     let evaluator = Evaluator::new(alone).unwrap();
-    let metrics = evaluator.ephemeris(&ephemeris).unwrap();
+    let metrics = evaluator.plain(&ephemeris).unwrap();
     let point = series.points[1];
     assert_eq!(point.p95_pdop, metrics.p95_pdop);
     assert_eq!(point.mean_visible, metrics.mean_visible);
@@ -153,14 +154,7 @@ fn a_point_of_the_series_is_an_evaluation_of_that_point() {
     assert!(single.epochs.iter().any(|e| e.max_pdop.is_none()));
 }
 
-fn plain_dops() -> DopOptions {
-    DopOptions {
-        weights: ObservationWeights::Unit,
-        skyline: None,
-    }
-}
-
-/// With unit weights the family has the PDOP of the metrics, whoever keeps the clocks.
+/// The family has the PDOP of the metrics, whoever keeps the clocks.
 #[test]
 fn dops_have_the_pdop_of_the_metrics() {
     let design: Design = "delta:55:24/6/1@925".parse().unwrap();
@@ -174,8 +168,8 @@ fn dops_have_the_pdop_of_the_metrics() {
         };
         let evaluator = Evaluator::new(setup.clone()).unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
-        let metrics = evaluator.ephemeris(&ephemeris).unwrap();
-        let dops = evaluator.dops(&ephemeris, &plain_dops()).unwrap();
+        let metrics = evaluator.plain(&ephemeris).unwrap();
+        let dops = evaluator.dops(&ephemeris).unwrap();
         let pdop = dops.pdop.unwrap();
         // Inverse and trace of the inverse round differently.
         assert!((pdop.mean / metrics.mean_pdop.unwrap() - 1.0).abs() < 1e-12);
@@ -208,17 +202,19 @@ fn a_level_skyline_is_a_mask() {
         ..open
     };
     let ephemeris = Ephemeris::of_design(&design, Model::J2, open.grid).unwrap();
-    let walled = DopOptions {
+    let walled = Setup {
         skyline: Some(MaskTable::new(vec![(0.0, 30.0), (360.0, 30.0)]).unwrap()),
-        ..plain_dops()
+        ..open.clone()
     };
-    let dops = |setup: Setup, options: DopOptions| {
-        let evaluator = Evaluator::new(setup).unwrap();
-        evaluator.dops(&ephemeris, &options).unwrap()
+    let dops = |setup: &Setup| {
+        let evaluator = Evaluator::new(setup.clone()).unwrap();
+        let metrics = evaluator.plain(&ephemeris).unwrap();
+        (evaluator.dops(&ephemeris).unwrap(), metrics.mean_visible)
     };
-    let in_open = dops(open.clone(), plain_dops());
-    let behind_wall = dops(open, walled);
-    assert_eq!(behind_wall, dops(masked, plain_dops()));
+    let (in_open, visible_in_open) = dops(&open);
+    let (behind_wall, visible_behind_wall) = dops(&walled);
+    assert_eq!((behind_wall.clone(), visible_behind_wall), dops(&masked));
+    assert!(visible_behind_wall < visible_in_open);
     assert!(behind_wall.gdop.unwrap().mean > in_open.gdop.unwrap().mean);
 }
 
@@ -231,13 +227,21 @@ fn sine_weights_dilute() {
         ..small([1.0; 3])
     };
     let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
-    let evaluator = Evaluator::new(setup).unwrap();
-    let unit = evaluator.dops(&ephemeris, &plain_dops()).unwrap();
-    let sine = DopOptions {
-        weights: ObservationWeights::SineElevation,
-        ..plain_dops()
+    let dops = |observation_weights| {
+        let setup = Setup {
+            observation_weights,
+            ..setup.clone()
+        };
+        let evaluator = Evaluator::new(setup).unwrap();
+        let metrics = evaluator.plain(&ephemeris).unwrap();
+        let dops = evaluator.dops(&ephemeris).unwrap();
+        // Inverse and trace of the inverse round differently.
+        let apart = dops.pdop.unwrap().mean / metrics.mean_pdop.unwrap() - 1.0;
+        assert!(apart.abs() < 1e-12, "{apart:e}");
+        dops
     };
-    let sine = evaluator.dops(&ephemeris, &sine).unwrap();
+    let unit = dops(ObservationWeights::Unit);
+    let sine = dops(ObservationWeights::SineElevation);
     for (more, less) in [
         (sine.hdop, unit.hdop),
         (sine.vdop, unit.vdop),

@@ -90,8 +90,9 @@ fn exports_are_the_same_twice() {
 fn choices_reach_the_files() {
     let choices = Choices {
         frame: Frame::Teme,
-        oem_version: oem::Version::V3,
-        slot: MeanMotionSlot::Kepler,
+        ccsds_version: CcsdsVersion::V3,
+        elements: ElementChoice::Kepler,
+        ..Choices::default()
     };
     let (manifest, files) = exported(&[Product::Oem, Product::Tle], choices);
     let text = String::from_utf8(files["oem/NW-P01-S02.oem"].clone()).unwrap();

@@ -1,10 +1,10 @@
 //! Reads messages strictly, line by line.
 
-use super::{Header, Oem, Segment, SegmentMetadata, StateLine, Version};
+use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
 use crate::formats::finding::Findings;
 use crate::formats::kvn::{
-    Block, Item, Keyword, Pair, item, may, must, read_number, read_stamp, words,
+    Block, Header, Item, Keyword, Pair, item, may, must, read_number, read_stamp, words,
 };
 use crate::formats::lines::{Line, Lines};
 use crate::frames::State;
@@ -14,7 +14,7 @@ use std::io::{self, BufRead};
 
 /// Table 5-2.
 const HEADER: &[Keyword] = &[
-    must("CCSDS_OEM_VERS"),
+    must(VERSION),
     may("CLASSIFICATION"),
     must("CREATION_DATE"),
     must("ORIGINATOR"),
@@ -239,6 +239,14 @@ impl Parser {
                 format!("{lines} lines do not carry the interpolation; it needs {needed}");
             findings.warning(place, "oem-interpolation", message);
         }
+        if segment
+            .states
+            .last()
+            .is_some_and(|last| last.epoch < segment.metadata.stop_time)
+        {
+            let message = "the last line is before STOP_TIME: is the file cut short?";
+            findings.warning(place, "oem-span", message);
+        }
         take(segment);
     }
 
@@ -272,23 +280,7 @@ fn misplaced_marker(marker: &str, number: usize, findings: &mut Findings) {
 
 fn header(block: &Block, number: usize, findings: &mut Findings) -> Option<Header> {
     block.finish((number, 1), findings);
-    let version = match block.text_or_empty("CCSDS_OEM_VERS").as_str() {
-        "1.0" | "2.0" => Version::V2,
-        "3.0" => Version::V3,
-        other => {
-            let message = format!("version '{other}' is not 1.0, 2.0 or 3.0");
-            findings.error(block.place("CCSDS_OEM_VERS"), "oem-version", message);
-            return None;
-        }
-    };
-    Some(Header {
-        version,
-        comments: block.comments.clone(),
-        classification: block.text("CLASSIFICATION"),
-        creation_date: block.stamp("CREATION_DATE", findings)?,
-        originator: block.text("ORIGINATOR")?,
-        message_id: block.text("MESSAGE_ID"),
-    })
+    Header::read(block, VERSION, findings)
 }
 
 fn metadata(block: &Block, number: usize, findings: &mut Findings) -> Option<SegmentMetadata> {

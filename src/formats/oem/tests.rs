@@ -1,6 +1,7 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
+use crate::formats::CcsdsVersion as Version;
 use crate::formats::finding::{Finding, Findings, Severity};
 use crate::formats::metadata::Theory;
 use crate::formats::stamp::TimeSystem;
@@ -201,7 +202,7 @@ fn broken_rules_are_named_with_their_place() {
             "",
             (4, 1, "ccsds-missing"),
         ),
-        ("= 3.0", "= 9.0", (1, 18, "oem-version")),
+        ("= 3.0", "= 9.0", (1, 18, "ccsds-version")),
         (
             "ORIGINATOR    = NASA/JPL",
             "ORIGINATOR    =",

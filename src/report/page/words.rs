@@ -64,8 +64,7 @@ impl Summary {
         paragraphs.extend(run.scenario.as_ref().map(setting));
         paragraphs.push(found(run));
         paragraphs.extend(choice(run));
-        let mut notes: Vec<String> = run.front.diagnostics.iter().map(|d| d.1.clone()).collect();
-        notes.extend(cost_note(run));
+        let notes = run.front.diagnostics.iter().map(|d| d.1.clone()).collect();
         let mut gaps = run.gaps.clone();
         let (cut, all) = (places_with_cuts.len(), run.front.members.len());
         if page.evaluator.is_some() && cut < all {
@@ -172,21 +171,6 @@ fn choice(run: &StoredRun) -> Option<String> {
         number(metrics.cvar_pdop),
         number(metrics.max_pdop)
     ))
-}
-
-/// What the paper's cost does not measure.
-fn cost_note(run: &StoredRun) -> Option<String> {
-    let scenario = run.scenario.as_ref()?;
-    let minimized = &scenario.objectives.minimize;
-    let counts = [Quantity::Satellites, Quantity::Planes, Quantity::LaunchCost];
-    let free =
-        minimized.contains(&Quantity::JCost) && !counts.iter().any(|q| minimized.contains(q));
-    free.then(|| {
-        "j-cost, satellites per visible satellite, is one over the visible share of the constellation: \
-         it hardly depends on how many satellites there are, so that satellites are free under these \
-         objectives. Objectives that count them are satellites, planes and launch-cost."
-            .to_owned()
-    })
 }
 
 /// The best design by each objective.

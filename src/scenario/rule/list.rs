@@ -12,6 +12,7 @@ use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
 use crate::scenario::resolved::MaskPoint;
 use crate::search::{Constraint, ConstraintError};
+use crate::visibility::MaskTable;
 use crate::words::Word;
 
 /// One of the words of `T`.
@@ -193,11 +194,11 @@ impl Rule for Numbers {
     }
 }
 
-/// A skyline: pairs of azimuth and mask, by rising azimuth.
+/// A skyline: pairs of azimuth and mask, by rising azimuth once around the horizon, or none.
 pub(in crate::scenario) struct Skyline;
 
 impl Skyline {
-    const AZIMUTH: Number = Number::from_below(0.0, 360.0);
+    const AZIMUTH: Number = Number::from_to(0.0, 360.0);
     const MASK: Number = Number::from_below(0.0, 90.0);
 }
 
@@ -206,8 +207,11 @@ impl Rule for Skyline {
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<MaskPoint>> {
         let points = read_list(&OnePoint, node, reading)?;
-        let falls = |pair: &[MaskPoint]| pair[1].azimuth_deg <= pair[0].azimuth_deg;
-        if points.windows(2).any(falls) {
+        let vertices = points
+            .iter()
+            .map(|point| (point.azimuth_deg, point.mask_deg))
+            .collect();
+        if !points.is_empty() && MaskTable::new(vertices).is_err() {
             reading.refuse(node);
             return None;
         }
@@ -215,7 +219,10 @@ impl Rule for Skyline {
     }
 
     fn accepted(&self) -> String {
-        format!("a list of {}, azimuths rising", OnePoint.accepted())
+        format!(
+            "a list of {}, azimuths rising from 0 to 360 with the same mask at both",
+            OnePoint.accepted()
+        )
     }
 
     fn schema(&self) -> Json {

@@ -99,13 +99,19 @@ fn masks_are_from_the_horizon_to_below_the_zenith() {
         }
         accepts("visibility", &format!("{key} = 0"));
     }
-    let table = accepts("visibility", "mask-table = [[0, 5], [90.5, 12], [270, 0]]");
+    let table = accepts(
+        "visibility",
+        "mask-table = [[0, 5], [90.5, 12], [270, 0], [360, 5]]",
+    );
     assert_eq!(table.visibility.mask_table[1].azimuth_deg, 90.5);
     assert_eq!(table.visibility.mask_table[1].mask_deg, 12.0);
-    let wanted = "expected a list of [azimuth >= 0 and < 360, mask >= 0 and < 90], azimuths rising";
+    let wanted = "expected a list of [azimuth >= 0 and <= 360, mask >= 0 and < 90], \
+                  azimuths rising from 0 to 360 with the same mask at both";
     for (table, found) in [
         ("[[0, 90]]", "90"),
-        ("[[360, 5]]", "360"),
+        ("[[361, 5]]", "361"),
+        ("[[0, 5], [180, 5]]", "[[0, 5], [180, 5]]"),
+        ("[[0, 5], [360, 6]]", "[[0, 5], [360, 6]]"),
         ("[[0, 5, 1]]", "[0, 5, 1]"),
         ("[[10, 5], [10, 6]]", "[[10, 5], [10, 6]]"),
         ("7", "7"),

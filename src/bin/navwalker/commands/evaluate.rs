@@ -2,20 +2,42 @@
 
 use crate::args::{EvaluateArgs, Format};
 use crate::study::Study;
-use crate::{Status, output};
+use crate::{Status, files, output};
 use anyhow::Result;
-use navwalker::constellation::Design;
-use navwalker::evaluate::Metrics;
-use navwalker::report::{Align, EvaluateResult, Table, metrics_csv};
+use navwalker::ephemeris::Ephemeris;
+use navwalker::evaluate::{DopStatistics, Evaluator};
+use navwalker::report::{Align, EvaluateResult, Table, dops_csv, metrics_csv, records_csv};
+use std::path::Path;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
+    if let Some(directory) = &args.series {
+        files::require_vacant(directory, args.force)?;
+    }
     let study = Study::load(&args.study, &[])?;
-    let metrics = study.evaluator()?.design(&args.design)?;
-    let result = EvaluateResult::new(&args.design, metrics, &study.scenario);
+    let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    let ephemeris = Ephemeris::of_design(&args.design, setup.model, setup.grid)?;
+    let metrics = evaluator.design(&args.design)?;
+    let dops = args.dops.then(|| evaluator.dops(&ephemeris)).transpose()?;
+    if let Some(directory) = &args.series {
+        write_series(&evaluator, &ephemeris, directory)?;
+    }
+    let result = EvaluateResult::new(&args.design, metrics, dops, &study.scenario);
     match args.format {
-        Format::Text => output::result(&text(&study, &args.design, &metrics))?,
+        Format::Text => output::result(&text(&study, &result))?,
         Format::Json => output::result(&serde_json::to_string_pretty(&result)?)?,
-        Format::Csv => output::result(&metrics_csv([(&result.design, &result.metrics)])?)?,
+        Format::Csv => {
+            output::result(&metrics_csv([(&result.design, &result.metrics)])?)?;
+            if let Some(dops) = &result.dops {
+                output::result(&format!("\n{}", dops_csv(dops)?))?;
+            }
+        }
+    }
+    if let Some(directory) = &args.series {
+        output::hint(&format!(
+            "\nepochs.csv and points.csv written to {}",
+            directory.display()
+        ));
     }
     output::hint(&format!(
         "\nnext: navwalker validate {} --design {} --against sgp4",
@@ -24,28 +46,41 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn text(study: &Study, design: &Design, metrics: &Metrics) -> String {
+fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) -> Result<()> {
+    let series = evaluator.series(ephemeris)?;
+    let staged = files::StagedDirectory::new(directory)?;
+    let write = |name: &str, text: String| {
+        files::write_atomically(&staged.path().join(name), text.as_bytes())
+    };
+    write("epochs.csv", records_csv(&series.epochs)?)?;
+    write("points.csv", records_csv(&series.points)?)?;
+    staged.commit()
+}
+
+fn text(study: &Study, result: &EvaluateResult) -> String {
     let scenario = &study.scenario;
+    let metrics = &result.metrics;
     let mut table = Table::new(&[("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     let mut row = |name: &str, value: Option<f64>, digits: usize, note: String| {
         let value = value.map_or_else(|| "none".to_owned(), |v| format!("{v:.digits$}"));
         table.row([name.to_owned(), value, note]);
     };
     let weight = scenario.objectives.cvar_weight;
-    let level = 100.0 * metrics.cvar_level;
+    let tail = 100.0 * (1.0 - metrics.cvar_level);
     let threshold = scenario.objectives.availability_pdop;
+    let seen = "LEO satellites in view, mean over points and times";
     row(
         "mean visible",
         Some(metrics.mean_visible),
         4,
-        "LEO satellites in view, mean over points and times".to_owned(),
+        seen.to_owned(),
     );
     row("mean PDOP", metrics.mean_pdop, 4, String::new());
     row(
         "CVaR PDOP",
         metrics.cvar_pdop,
         4,
-        format!("mean of the worst {:.4} %", 100.0 - level),
+        format!("mean of the worst {tail:.4} %"),
     );
     row("median PDOP", metrics.p50_pdop, 4, String::new());
     row("95 % PDOP", metrics.p95_pdop, 4, String::new());
@@ -70,9 +105,35 @@ fn text(study: &Study, design: &Design, metrics: &Metrics) -> String {
         4,
         "satellites per visible satellite".to_owned(),
     );
+    let dops = result
+        .dops
+        .as_ref()
+        .map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
     format!(
-        "{design} in scenario {}\n{}",
+        "{} in scenario {}\n{}{dops}",
+        result.design.notation,
         scenario.name,
         table.to_text()
     )
+}
+
+fn dops_table(dops: &DopStatistics) -> String {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("dilution", Align::Left),
+        ("mean", right),
+        ("median", right),
+        ("95 %", right),
+        ("99 %", right),
+        ("maximum", right),
+        ("CVaR", right),
+    ]);
+    for (name, summary) in dops.named() {
+        let cells = match summary {
+            Some(s) => [s.mean, s.p50, s.p95, s.p99, s.max, s.cvar].map(|x| format!("{x:.4}")),
+            None => std::array::from_fn(|_| "none".to_owned()),
+        };
+        table.row([name].into_iter().chain(cells));
+    }
+    table.to_text()
 }

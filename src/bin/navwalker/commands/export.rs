@@ -1,13 +1,13 @@
 //! `navwalker export`.
 
-use crate::args::{ExportArgs, Slot};
+use crate::args::ExportArgs;
 use crate::study::study_and_design;
 use crate::{Status, files, output};
 use anyhow::{Context, Result};
 use navwalker::formats::export::{Choices, Product, Subject, export};
 use navwalker::formats::manifest::{Manifest, Study};
+use navwalker::formats::metadata::ElementChoice;
 use navwalker::frames::Frame;
-use navwalker::orbit::sgp4::MeanMotionSlot;
 use navwalker::report::{Align, Table};
 use navwalker::time::Epoch;
 use std::fs::{self, File};
@@ -29,8 +29,10 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     };
     let choices = Choices {
         frame: args.frame,
-        slot: args.tle_theory.into(),
-        ..Choices::default()
+        elements: args.tle_theory,
+        ccsds_version: args.ccsds_version,
+        sp3_version: args.sp3_version,
+        sp3_letter: args.sp3_letter,
     };
     let staged = files::StagedDirectory::new(&args.out)?;
     let mut sink = |path: &str| {
@@ -42,7 +44,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         .with_context(|| format!("cannot export to {}", args.out.display()))?;
     staged.commit()?;
     output::result(&text(args, &manifest))?;
-    if args.tle_theory == Slot::Kepler {
+    if args.tle_theory == ElementChoice::Kepler {
         output::warning(
             "the mean motion slot holds sqrt(mu/a^3): SGP4 flies the design away from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
@@ -113,13 +115,4 @@ fn text(args: &ExportArgs, manifest: &Manifest) -> String {
         args.out.display(),
         table.to_text()
     )
-}
-
-impl From<Slot> for MeanMotionSlot {
-    fn from(slot: Slot) -> Self {
-        match slot {
-            Slot::Kozai => Self::Kozai,
-            Slot::Kepler => Self::Kepler,
-        }
-    }
 }

@@ -162,7 +162,7 @@ pub(in crate::scenario) static MASK_TABLE: Key<Skyline> = Key {
     section: "visibility",
     name: "mask-table",
     unit: "deg",
-    meaning: "Skyline [[azimuth, mask], ...], linear between its points and across north; counts where it is higher than a mask",
+    meaning: "Skyline [[azimuth, mask], ...] from 0 to 360 deg, linear between its points; counts where it is higher than a mask",
     rule: Skyline,
     otherwise: Otherwise::Value(Vec::new),
     of: |s| Some(s.visibility.mask_table.clone()),

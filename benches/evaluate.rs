@@ -1,0 +1,150 @@
+//! What an evaluation costs, step by step and whole, on the paper's scenario: 143 points,
+//! 1440 samples, 182 LEO and 30 BeiDou satellites, one clock per system.
+//!
+//! `cargo bench` prints the fastest, slowest, median and mean time of each case.
+//! `docs/performance.md` holds the figures and says how they were taken.
+
+use divan::{Bencher, black_box};
+use navwalker::constellation::Design;
+use navwalker::constellation::gnss::Preset;
+use navwalker::dop::{ClockGroup, Clocks, Geometry, ObservationWeights};
+use navwalker::earth::Surface;
+use navwalker::ephemeris::Ephemeris;
+use navwalker::evaluate::{Evaluator, InstructionSet, MetricOptions, Setup};
+use navwalker::frames::EarthRotation;
+use navwalker::ground::{Grid, PointWeights};
+use navwalker::orbit::Model;
+use navwalker::stats::{Level, summarize};
+use navwalker::time::{Epoch, TimeGrid};
+use navwalker::visibility::Mask;
+
+fn main() {
+    divan::main();
+}
+
+const SOUND: &str = "the paper's scenario can be evaluated";
+
+const NOTATION: &str = "delta:55:182/13/1@925";
+
+fn paper() -> Setup {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
+    let region = Grid {
+        latitude_deg: [3.0, 54.0],
+        longitude_deg: [73.0, 136.0],
+        step_deg: [5.0, 5.0],
+        weights: PointWeights::Equal,
+    };
+    Setup {
+        grid: TimeGrid::new(epoch, 86_400.0, 60.0).expect(SOUND),
+        sites: region.sites(Surface::Sphere).expect(SOUND),
+        mask: Mask::from_degrees(7.0).expect(SOUND),
+        gnss_mask: Mask::from_degrees(7.0).expect(SOUND),
+        gnss: vec![Preset::Beidou3.into()],
+        clocks: Clocks::PerSystem,
+        skyline: None,
+        observation_weights: ObservationWeights::Unit,
+        pdop_cap: 100.0,
+        model: Model::J2,
+        metrics: MetricOptions {
+            cvar_weight: 0.5,
+            cvar_level: Level::new(0.95).expect(SOUND),
+            availability_pdop: 6.0,
+        },
+    }
+}
+
+fn design() -> Design {
+    NOTATION.parse().expect(SOUND)
+}
+
+/// Everything that no design changes, GNSS included.
+#[divan::bench(sample_count = 5)]
+fn setting_up() -> Evaluator {
+    Evaluator::new(paper()).expect(SOUND)
+}
+
+/// 182 satellites at 1440 samples by the propagators, turned into the Earth-fixed frame.
+#[divan::bench(sample_count = 10)]
+fn propagation(bencher: Bencher) {
+    let grid = paper().grid;
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, grid).expect(SOUND);
+    bencher.bench_local(|| {
+        for elapsed_s in grid.iter() {
+            let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
+            for satellite in ephemeris.satellites() {
+                let state = ephemeris.state(satellite, elapsed_s).expect(SOUND);
+                black_box(rotation.to_earth_fixed(state.position_km));
+            }
+        }
+    });
+}
+
+/// The definition of visibility, 182 satellites from 143 points at one instant.
+#[divan::bench(sample_count = 100)]
+fn visibility(bencher: Bencher) {
+    let setup = paper();
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let positions: Vec<_> = ephemeris
+        .satellites()
+        .iter()
+        .map(|s| ephemeris.state(s, 0.0).expect(SOUND).position_km)
+        .collect();
+    bencher.bench_local(|| {
+        for site in &setup.sites {
+            for &position in &positions {
+                black_box(setup.mask.line_of_sight(&site.local, position));
+            }
+        }
+    });
+}
+
+/// The definition of PDOP: two clock groups of 8 and 12 satellites.
+#[divan::bench]
+fn pdop(bencher: Bencher) {
+    let directions: Vec<_> = (0..20)
+        .map(|n| {
+            let (sin_a, cos_a) = (f64::from(n) * 2.4).sin_cos();
+            let (sin_e, cos_e) = (0.2 + 0.06 * f64::from(n)).sin_cos();
+            nalgebra::Vector3::new(cos_e * sin_a, cos_e * cos_a, sin_e)
+        })
+        .collect();
+    bencher.bench_local(|| {
+        let mut geometry = Geometry::default();
+        for system in [&directions[..8], &directions[8..]] {
+            let mut group = ClockGroup::default();
+            black_box(system).iter().for_each(|&v| group.add(v, 1.0));
+            geometry.add(&group);
+        }
+        geometry.pdop(100.0)
+    });
+}
+
+/// All the statistics of 205 920 values by selection.
+#[divan::bench(sample_count = 20)]
+fn statistics(bencher: Bencher) {
+    // A low-discrepancy sequence shaped like PDOP: between 1 and 2, the large ones rare.
+    let sample: Vec<f64> = (0..205_920)
+        .map(|n| 1.0 + (f64::from(n) * 0.618_033_988_749_895).fract().powi(4))
+        .collect();
+    let level = Level::new(0.95).expect(SOUND);
+    bencher
+        .with_inputs(|| sample.clone())
+        .bench_local_values(|mut values| summarize(&mut values, level));
+}
+
+/// A whole design by the definitions, one sample after the other, GNSS included.
+#[divan::bench(sample_count = 5)]
+fn design_plain(bencher: Bencher) {
+    let setup = paper();
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    bencher.bench_local(|| evaluator.plain(&ephemeris).expect(SOUND));
+}
+
+/// A whole design by the kernel.
+#[divan::bench(sample_count = 200, args = InstructionSet::ALL)]
+fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
+    let evaluator = Evaluator::with_instructions(paper(), instructions).expect(SOUND);
+    let design = design();
+    bencher.bench_local(|| evaluator.design(&design).expect(SOUND));
+}

@@ -1,0 +1,434 @@
+//! The fast path of the evaluator. It gives what [`super::plain`] gives; a property test holds
+//! the two together.
+//!
+//! # What is summed
+//!
+//! A group of n visible satellites that share a clock contributes Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the
+//! normal matrix of the position (M-17). So nine sums and a count over the visible LEO satellites
+//! are all that a sample needs: Σ v vᵀ (five numbers: the sixth follows from tr Σ v vᵀ = n), Σ v
+//! and n. The part of the GNSS does not change between designs and is made once ([`fixed`]). PDOP²
+//! is the sum of the principal minors over the determinant, so that no matrix is inverted.
+//!
+//! # In what order
+//!
+//! Sample by sample in time. At each: positions of all satellites ([`flight`]); for each group of
+//! tiles of ground points the satellites that it may see ([`tiles`], [`candidates`]); for each tile
+//! of sixteen points ([`lanes`]) the loop over those that the tile may see, with the ten sums in
+//! registers. Work grows with the pairs that see each other, about twice their number, and not
+//! with points times satellites.
+//!
+//! # What f32 cannot hold
+//!
+//! The lanes work in f32, which is good to about 1e-7 where geometry is good. Two things are not
+//! left to it ([`sample`]):
+//!
+//! - a decision so close to the mask that rounding might turn it is taken again with the positions
+//!   and the comparison of the plain path ([`retake`]), so that visible satellites are counted
+//!   exactly;
+//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
+//!   around each order statistic ([`refine`]).
+//!
+//! Both are counted in [`Retakes`].
+//!
+//! # Statistics
+//!
+//! Values are never sorted, and and beyond a number of them not even kept ([`tally`]).
+
+mod candidates;
+mod fixed;
+mod flight;
+mod instructions;
+mod lanes;
+mod refine;
+mod retake;
+mod sample;
+mod tally;
+mod tiles;
+
+pub use instructions::InstructionSet;
+
+use super::metrics::Evaluated;
+use super::{Evaluator, Setup};
+use crate::constellation::Design;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::EarthRotation;
+use crate::stats::Summary;
+use fixed::{Fixed, FixedTiles};
+use flight::PatternFlight;
+use lanes::{LANES, Lanes, MaskTerms};
+use rayon::prelude::*;
+use refine::{Ranked, Surround};
+use sample::{Limits, Outcome, Sample, Scene, Workspace};
+use std::ops::Range;
+use tally::{Count, Counts, Find, Found, Merge, Search};
+use tiles::Tiles;
+
+/// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
+/// not grow with points times samples.
+#[derive(Debug, Clone, Copy)]
+struct Keep {
+    /// Values of PDOP between the two passes of the statistics of one design.
+    values: usize,
+    /// Bytes of the GNSS part between designs.
+    fixed_bytes: usize,
+}
+
+impl Default for Keep {
+    fn default() -> Self {
+        Self {
+            values: 4 << 20,
+            fixed_bytes: 256 << 20,
+        }
+    }
+}
+
+/// Values of PDOP that are made in one piece of work.
+const CHUNK_VALUES: usize = 1 << 18;
+
+/// PDOP up to which f32 is trusted at most.
+const SINGLE_BELOW: f32 = 2.0;
+
+/// Memory of a kernel and of `threads` evaluations at a time, bytes.
+pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
+    let keep = Keep::default();
+    let tiles = setup.sites.len().div_ceil(LANES) * setup.grid.len();
+    let values = (tiles * LANES).min(keep.values) * size_of::<f32>();
+    let fixed = match tiles * FixedTiles::bytes(setup.clocks) {
+        bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
+        bytes => bytes,
+    };
+    fixed + threads * (values + Counts::BYTES + Found::BYTES)
+}
+
+/// Samples that were taken again in f64.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Retakes {
+    /// A satellite was too close to the mask.
+    pub near_mask: u64,
+    /// PDOP was large or close to a threshold.
+    pub large_pdop: u64,
+}
+
+/// Everything of the kernel that no design changes.
+pub(super) struct Kernel {
+    scene: Scene,
+    fixed: Fixed,
+    instructions: InstructionSet,
+    kept_values: usize,
+}
+
+/// Satellites, and the pattern behind them if there is a fast way to fly it.
+#[derive(Clone, Copy)]
+struct Flight<'a> {
+    ephemeris: &'a Ephemeris,
+    pattern: Option<&'a PatternFlight>,
+}
+
+/// Counts of one piece of work.
+#[derive(Debug, Clone, Copy, Default)]
+struct Tallies {
+    visible: u64,
+    available: u64,
+    retakes: Retakes,
+}
+
+impl Tallies {
+    fn merged(self, other: Self) -> Self {
+        Self {
+            visible: self.visible + other.visible,
+            available: self.available + other.available,
+            retakes: Retakes {
+                near_mask: self.retakes.near_mask + other.retakes.near_mask,
+                large_pdop: self.retakes.large_pdop + other.retakes.large_pdop,
+            },
+        }
+    }
+}
+
+impl Kernel {
+    pub(super) fn new(
+        setup: &Setup,
+        rotations: &[EarthRotation],
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
+        Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
+    }
+
+    fn keeping_at_most(
+        keep: Keep,
+        setup: &Setup,
+        rotations: &[EarthRotation],
+        instructions: InstructionSet,
+    ) -> Result<Self, EphemerisError> {
+        let tiles = Tiles::new(&setup.sites, setup.mask);
+        let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
+        let scene = Scene {
+            tiles,
+            single: MaskTerms::new(setup.mask),
+            double: MaskTerms::new(setup.mask),
+            limits: Limits {
+                single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
+                cap: setup.pdop_cap,
+                available: setup.metrics.availability_pdop,
+            },
+        };
+        Ok(Self {
+            scene,
+            fixed,
+            instructions,
+            kept_values: keep.values,
+        })
+    }
+
+    /// Evaluates satellites; `design` is what they are if they are the satellites of a design
+    /// under the model of the setup.
+    pub(super) fn evaluate(
+        &self,
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+        design: Option<&Design>,
+    ) -> Result<(Evaluated, Retakes), EphemerisError> {
+        let pattern = design.and_then(|design| PatternFlight::new(design, evaluator.setup().model));
+        let flight = Flight {
+            ephemeris,
+            pattern: pattern.as_ref(),
+        };
+        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= self.kept_values {
+            self.keeping(evaluator, flight)
+        } else {
+            self.streaming(evaluator, flight)
+        }
+    }
+
+    /// One pass over the samples; the statistics pass over the values twice.
+    fn keeping(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+    ) -> Result<(Evaluated, Retakes), EphemerisError> {
+        let samples = evaluator.setup().grid.len();
+        let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
+        let mut counts = Counts::new();
+        let mut sum = 0.0;
+        let mut tallies = Tallies::default();
+        for chunk in self.chunks(samples) {
+            let first = values.len();
+            let part = self.run(evaluator, flight, chunk, self.scene.limits, |tiles| {
+                values.extend_from_slice(tiles);
+            })?;
+            tallies = tallies.merged(part);
+            sum += self.count(&values[first..], &mut counts);
+        }
+        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+            Some(search) => {
+                let mut found = Found::new();
+                let tail = self.find(&values, &search, &mut found);
+                let mut summary = search.summary(&found, sum, tail);
+                self.refine(evaluator, flight, &values, &search, &mut summary)?;
+                Some(summary)
+            }
+            None => None,
+        };
+        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
+        Ok((evaluated, tallies.retakes))
+    }
+
+    /// Takes the order statistics again in f64.
+    fn refine(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+        values: &[Lanes<f32>],
+        search: &Search,
+        summary: &mut Summary,
+    ) -> Result<(), EphemerisError> {
+        let statistics = [
+            &mut summary.p50,
+            &mut summary.p95,
+            &mut summary.p99,
+            &mut summary.max,
+        ];
+        let mut numbers = 0..;
+        let ranked = statistics.each_ref().map(|value| Ranked {
+            rank: search.rank(numbers.next().unwrap_or(0)),
+            value: **value,
+        });
+        let windows = self.instructions.run(Surround {
+            tiles: values,
+            ranked,
+        });
+        let exact = Limits {
+            single_below: 0.0,
+            ..self.scene.limits
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        for (statistic, window) in statistics.into_iter().zip(&windows) {
+            let mut again = Vec::with_capacity(window.places.len());
+            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
+                let k = together[0].0 / tiles;
+                self.run(evaluator, flight, k..k + 1, exact, |sample| {
+                    again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
+                })?;
+            }
+            if let Some(value) = window.pick(again) {
+                *statistic = value;
+            }
+        }
+        Ok(())
+    }
+
+    /// Two passes over the samples, each on all threads; nothing is kept but counts.
+    fn streaming(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+    ) -> Result<(Evaluated, Retakes), EphemerisError> {
+        let chunks = self.chunks(evaluator.setup().grid.len());
+        let (counts, parts) =
+            self.pass(evaluator, flight, &chunks, Counts::new, |tiles, counts| {
+                self.count(tiles, counts)
+            })?;
+        // The order of the chunks is kept, so that the sum does not depend on the threads.
+        let tallies = parts
+            .iter()
+            .fold(Tallies::default(), |all, part| all.merged(part.0));
+        let sum = parts.iter().map(|part| part.1).sum();
+        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+            Some(search) => {
+                let (found, parts) =
+                    self.pass(evaluator, flight, &chunks, Found::new, |tiles, found| {
+                        self.find(tiles, &search, found)
+                    })?;
+                let tail = parts.iter().map(|part| part.1).sum();
+                Some(search.summary(&found, sum, tail))
+            }
+            None => None,
+        };
+        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
+        Ok((evaluated, tallies.retakes))
+    }
+
+    /// One pass over the samples on all threads. `note` takes the values of a sample into an
+    /// accumulator of integers, in any order, and returns a sum, which is kept for each chunk.
+    fn pass<A: Merge + Send>(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+        chunks: &[Range<usize>],
+        new: impl Fn() -> A + Sync,
+        note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
+    ) -> Result<(A, Vec<(Tallies, f64)>), EphemerisError> {
+        chunks
+            .par_iter()
+            .try_fold(
+                || (new(), Vec::new()),
+                |(mut all, mut parts), chunk| {
+                    let mut sum = 0.0;
+                    let tallies = self.run(
+                        evaluator,
+                        flight,
+                        chunk.clone(),
+                        self.scene.limits,
+                        |tiles| {
+                            sum += note(tiles, &mut all);
+                        },
+                    )?;
+                    parts.push((tallies, sum));
+                    Ok((all, parts))
+                },
+            )
+            .try_reduce(
+                || (new(), Vec::new()),
+                |(all, mut parts), (more, more_parts)| {
+                    parts.extend(more_parts);
+                    Ok((all.merged(&more), parts))
+                },
+            )
+    }
+
+    fn count(&self, tiles: &[Lanes<f32>], counts: &mut Counts) -> f64 {
+        self.instructions.run(Count { tiles, counts })
+    }
+
+    fn find(&self, tiles: &[Lanes<f32>], search: &Search, found: &mut Found) -> f64 {
+        self.instructions.run(Find {
+            tiles,
+            search,
+            found,
+        })
+    }
+
+    /// Pieces of the time grid that do not depend on the threads.
+    fn chunks(&self, samples: usize) -> Vec<Range<usize>> {
+        let length = (CHUNK_VALUES / self.scene.tiles.slots()).max(1);
+        (0..samples)
+            .step_by(length)
+            .map(|first| first..(first + length).min(samples))
+            .collect()
+    }
+
+    /// Evaluates some samples and hands the values of each to `take`.
+    fn run(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+        chunk: Range<usize>,
+        limits: Limits,
+        mut take: impl FnMut(&[Lanes<f32>]),
+    ) -> Result<Tallies, EphemerisError> {
+        let mut work = Workspace::new(flight.ephemeris.satellites().len());
+        let mut outcome = Outcome::new(self.scene.tiles.tiles.len());
+        let mut room = FixedTiles::default();
+        let mut tallies = Tallies::default();
+        for k in chunk {
+            let elapsed_s = evaluator.setup().grid.elapsed_s(k);
+            let rotation = evaluator.rotations[k];
+            let instant = (k, elapsed_s, rotation);
+            let fixed = self.fixed.at(&self.scene.tiles, instant, &mut room)?;
+            if flight.pattern.is_none() {
+                work.positions.ask(flight.ephemeris, elapsed_s, rotation)?;
+            }
+            let pattern = flight
+                .pattern
+                .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
+            self.instructions.run(Sample {
+                scene: &self.scene,
+                limits,
+                pattern,
+                fixed,
+                work: &mut work,
+                outcome: &mut outcome,
+            });
+            tallies.retakes.near_mask += outcome.doubts.len() as u64;
+            tallies.retakes.large_pdop += outcome.doubled;
+            let sky = retake::Sky {
+                ephemeris: flight.ephemeris,
+                elapsed_s,
+                rotation,
+            };
+            retake::settle(evaluator.setup(), &self.scene, &sky, fixed, &mut outcome)?;
+            tallies.visible += outcome.visible;
+            tallies.available += outcome.available;
+            take(&outcome.pdop);
+        }
+        Ok(tallies)
+    }
+}
+
+fn evaluated(
+    setup: &Setup,
+    tallies: Tallies,
+    counts: &Counts,
+    summary: Option<Summary>,
+) -> Evaluated {
+    let samples = setup.sample_count() as f64;
+    Evaluated {
+        mean_visible: tallies.visible as f64 / samples,
+        solved: counts.solved() as f64 / samples,
+        available: tallies.available as f64 / samples,
+        summary,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! Satellites that a cap of ground points may see.
+
+use super::flight::{BLOCK, PositionBlock, Positions};
+use super::tiles::{Cap, Horizon};
+
+/// Satellites in f32, which are tested together, one for each bit of a word.
+///
+/// A place without a satellite holds NaN, which passes no test.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct Block {
+    x: [f32; BLOCK],
+    y: [f32; BLOCK],
+    z: [f32; BLOCK],
+    /// sqrt(|r|² - k²), see [`super::tiles`].
+    q: [f32; BLOCK],
+    /// Number of each among all satellites.
+    index: [u32; BLOCK],
+}
+
+impl Block {
+    const EMPTY: Self = Self {
+        x: [f32::NAN; BLOCK],
+        y: [f32::NAN; BLOCK],
+        z: [f32::NAN; BLOCK],
+        q: [f32::NAN; BLOCK],
+        index: [0; BLOCK],
+    };
+
+    #[inline(always)]
+    pub(super) fn position(&self, n: usize) -> [f32; 3] {
+        [self.x[n], self.y[n], self.z[n]]
+    }
+
+    #[inline(always)]
+    pub(super) fn index(&self, n: usize) -> usize {
+        self.index[n] as usize
+    }
+
+    /// A bit for each satellite that the cap may see something of.
+    #[inline(always)]
+    pub(super) fn inside(&self, cap: &Cap, slack_km: f32) -> u64 {
+        let bound = cap.bound - slack_km;
+        let [x, y, z] = cap.centre;
+        let bit = |n: usize, place: usize| {
+            let reach = self.x[n] * x + self.y[n] * y + self.z[n] * z + self.q[n] * cap.sine;
+            if reach >= bound { 1_u32 << place } else { 0 }
+        };
+        // Lanes of words whose bits do not overlap: vector comparisons give no word by themselves.
+        let (mut low, mut high) = ([0; QUARTER], [0; QUARTER]);
+        for l in 0..QUARTER {
+            low[l] = bit(l, l) | bit(QUARTER + l, QUARTER + l);
+            high[l] = bit(2 * QUARTER + l, l) | bit(3 * QUARTER + l, QUARTER + l);
+        }
+        let joined =
+            |lanes: [u32; QUARTER]| u64::from(lanes.iter().fold(0, |all, bits| all | bits));
+        joined(low) | joined(high) << (2 * QUARTER)
+    }
+
+    #[inline(always)]
+    fn fill(&mut self, from: &PositionBlock, reach2: f64, first: usize) {
+        for n in 0..BLOCK {
+            let (x, y, z) = (from.x[n], from.y[n], from.z[n]);
+            let beyond = (x * x + y * y + z * z - reach2) as f32;
+            (self.x[n], self.y[n], self.z[n]) = (x as f32, y as f32, z as f32);
+            self.q[n] = if beyond > 0.0 { beyond.sqrt() } else { 0.0 };
+            self.index[n] = (first + n) as u32;
+        }
+    }
+}
+
+/// Satellites of a block that one vector register holds, at most.
+const QUARTER: usize = BLOCK / 4;
+
+/// The numbers of the bits that are set, in increasing order.
+#[inline(always)]
+pub(super) fn bits(mut word: u64) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        (word != 0).then(|| {
+            let n = word.trailing_zeros() as usize % BLOCK;
+            word &= word - 1;
+            n
+        })
+    })
+}
+
+/// A list of satellites.
+#[derive(Debug, Clone)]
+pub(super) struct Candidates {
+    blocks: Vec<Block>,
+    count: usize,
+}
+
+impl Candidates {
+    /// An empty list with room for `count`.
+    pub(super) fn with_capacity(count: usize) -> Self {
+        Self {
+            blocks: vec![Block::EMPTY; count.div_ceil(BLOCK)],
+            count: 0,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn blocks(&self) -> &[Block] {
+        &self.blocks[..self.count.div_ceil(BLOCK)]
+    }
+
+    /// All satellites.
+    #[inline(always)]
+    pub(super) fn fill(&mut self, positions: &Positions, horizon: &Horizon) {
+        for (number, (to, from)) in self.blocks.iter_mut().zip(&positions.blocks).enumerate() {
+            to.fill(from, horizon.reach2, number * BLOCK);
+        }
+        self.count = positions.count;
+    }
+
+    /// Those of `others` that the cap may see something of.
+    #[inline(always)]
+    pub(super) fn select(&mut self, others: &Self, cap: &Cap, slack_km: f32) {
+        self.count = 0;
+        for block in others.blocks() {
+            for n in bits(block.inside(cap, slack_km)) {
+                let to = &mut self.blocks[self.count / BLOCK];
+                let place = self.count % BLOCK;
+                to.x[place] = block.x[n];
+                to.y[place] = block.y[n];
+                to.z[place] = block.z[n];
+                to.q[place] = block.q[n];
+                to.index[place] = block.index[n];
+                self.count += 1;
+            }
+        }
+        if !self.count.is_multiple_of(BLOCK) {
+            // One NaN in the sum of the test is enough.
+            self.blocks[self.count / BLOCK].x[self.count % BLOCK..].fill(f32::NAN);
+        }
+    }
+}

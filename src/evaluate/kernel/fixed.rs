@@ -1,0 +1,232 @@
+//! The GNSS part of the geometry, which no design changes.
+
+use super::super::Setup;
+use super::flight::Positions;
+use super::instructions::{InstructionSet, Work};
+use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, split};
+use super::tiles::{Tile, Tiles};
+use crate::dop::Clocks;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::EarthRotation;
+
+/// The GNSS part of all samples.
+pub(super) struct Fixed {
+    systems: Vec<Ephemeris>,
+    clocks: Clocks,
+    mask: MaskTerms<f64>,
+    instructions: InstructionSet,
+    /// Empty when there is no GNSS or it does not fit.
+    kept: FixedTiles,
+}
+
+/// The GNSS part of some samples, sample by sample and tile by tile.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FixedTiles {
+    normals: Vec<Normal>,
+    remainders: Vec<Normal>,
+    surpluses: Vec<[u8; LANES]>,
+    /// Empty when all systems have clocks of their own.
+    shared: Vec<SharedClock>,
+}
+
+impl FixedTiles {
+    /// Bytes for each tile and sample.
+    pub(super) fn bytes(clocks: Clocks) -> usize {
+        let shared = match clocks {
+            Clocks::PerSystem => 0,
+            Clocks::Shared => size_of::<SharedClock>(),
+        };
+        2 * size_of::<Normal>() + LANES + shared
+    }
+
+    fn clear(&mut self) {
+        self.normals.clear();
+        self.remainders.clear();
+        self.surpluses.clear();
+        self.shared.clear();
+    }
+
+    fn reserve(&mut self, count: usize) {
+        self.normals.reserve_exact(count);
+        self.remainders.reserve_exact(count);
+        self.surpluses.reserve_exact(count);
+    }
+
+    #[inline(always)]
+    fn tile(&self, n: usize) -> FixedTile<'_> {
+        self.normals
+            .get(n)
+            .map_or(FixedTile::NONE, |normal| FixedTile {
+                normal,
+                remainder: &self.remainders[n],
+                surplus: &self.surpluses[n],
+                shared: self.shared.get(n),
+            })
+    }
+}
+
+/// The GNSS part of one sample.
+#[derive(Clone, Copy)]
+pub(super) struct FixedSample<'a> {
+    tiles: &'a FixedTiles,
+    first: usize,
+}
+
+impl<'a> FixedSample<'a> {
+    #[inline(always)]
+    pub(super) fn tile(&self, n: usize) -> FixedTile<'a> {
+        self.tiles.tile(self.first + n)
+    }
+}
+
+impl Fixed {
+    /// Keeps the samples if they fit into `kept_bytes`.
+    pub(super) fn new(
+        setup: &Setup,
+        tiles: &Tiles,
+        rotations: &[EarthRotation],
+        (instructions, kept_bytes): (InstructionSet, usize),
+    ) -> Result<Self, EphemerisError> {
+        let epoch = setup.grid.epoch();
+        let mut fixed = Self {
+            systems: setup
+                .gnss
+                .iter()
+                .map(|system| Ephemeris::of_gnss(system.satellites(epoch), setup.grid))
+                .collect(),
+            clocks: setup.clocks,
+            mask: MaskTerms::new(setup.gnss_mask),
+            instructions,
+            kept: FixedTiles::default(),
+        };
+        let count = tiles.tiles.len() * setup.grid.len();
+        if !fixed.systems.is_empty() && count * FixedTiles::bytes(setup.clocks) <= kept_bytes {
+            let mut kept = FixedTiles::default();
+            kept.reserve(count);
+            for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
+                fixed.make(tiles, elapsed_s, *rotation, &mut kept)?;
+            }
+            fixed.kept = kept;
+        }
+        Ok(fixed)
+    }
+
+    /// The tiles of sample `k`: kept ones, or made in `room`.
+    pub(super) fn at<'a>(
+        &'a self,
+        tiles: &Tiles,
+        (k, elapsed_s, rotation): (usize, f64, EarthRotation),
+        room: &'a mut FixedTiles,
+    ) -> Result<FixedSample<'a>, EphemerisError> {
+        if self.systems.is_empty() || !self.kept.normals.is_empty() {
+            let (tiles, first) = (&self.kept, k * tiles.tiles.len());
+            return Ok(FixedSample { tiles, first });
+        }
+        room.clear();
+        self.make(tiles, elapsed_s, rotation, room)?;
+        let (tiles, first) = (room, 0);
+        Ok(FixedSample { tiles, first })
+    }
+
+    fn make(
+        &self,
+        tiles: &Tiles,
+        elapsed_s: f64,
+        rotation: EarthRotation,
+        to: &mut FixedTiles,
+    ) -> Result<(), EphemerisError> {
+        let mut systems = Vec::with_capacity(self.systems.len());
+        for system in &self.systems {
+            let mut positions = Positions::new(system.satellites().len());
+            positions.ask(system, elapsed_s, rotation)?;
+            systems.push(positions);
+        }
+        self.instructions.run(Make {
+            fixed: self,
+            tiles: &tiles.tiles,
+            systems: &systems,
+            to,
+        });
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn push_tile(&self, tile: &Tile, systems: &[Positions], to: &mut FixedTiles) {
+        let mut normal = [Lanes([0.0; LANES]); 6];
+        let mut surplus = [0_u8; LANES];
+        let groups: &[&[Positions]] = match self.clocks {
+            Clocks::PerSystem => &systems.chunks(1).collect::<Vec<_>>(),
+            Clocks::Shared => &[systems],
+        };
+        for group in groups {
+            let mut sums = Sums::<f64>::zero();
+            for positions in *group {
+                for n in 0..positions.count {
+                    sums.add(&tile.double, positions.at(n), &self.mask);
+                }
+            }
+            add_group(&sums, &mut normal);
+            match self.clocks {
+                Clocks::PerSystem => {
+                    for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
+                        let spare = u8::try_from(seen.saturating_sub(1)).unwrap_or(u8::MAX);
+                        *surplus = surplus.saturating_add(spare);
+                    }
+                }
+                Clocks::Shared => to.shared.push(shared_clock(&sums)),
+            }
+        }
+        let parts = normal.each_ref().map(split);
+        to.normals.push(parts.map(|(nearest, _)| nearest));
+        to.remainders.push(parts.map(|(_, remainder)| remainder));
+        to.surpluses.push(surplus);
+    }
+}
+
+/// The GNSS part of one sample, to be made from the positions of each system.
+struct Make<'a> {
+    fixed: &'a Fixed,
+    tiles: &'a [Tile],
+    systems: &'a [Positions],
+    to: &'a mut FixedTiles,
+}
+
+impl Work for Make<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for tile in self.tiles {
+            self.fixed.push_tile(tile, self.systems, self.to);
+        }
+    }
+}
+
+/// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
+#[inline(always)]
+fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
+    for l in 0..LANES {
+        let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
+        let zz = f64::from(count) - sums.xx.0[l] - sums.yy.0[l];
+        let scale = 1.0 / f64::from(count.max(1));
+        normal[0].0[l] += sums.xx.0[l] - x * x * scale;
+        normal[1].0[l] += sums.yy.0[l] - y * y * scale;
+        normal[2].0[l] += zz - z * z * scale;
+        normal[3].0[l] += sums.xy.0[l] - x * y * scale;
+        normal[4].0[l] += sums.xz.0[l] - x * z * scale;
+        normal[5].0[l] += sums.yz.0[l] - y * z * scale;
+    }
+}
+
+#[inline(always)]
+fn shared_clock(sums: &Sums<f64>) -> SharedClock {
+    let parts = [&sums.x, &sums.y, &sums.z].map(|sum| {
+        let mean = |l: usize| sum.0[l] / f64::from(sums.count.0[l].max(1));
+        split(&Lanes(std::array::from_fn(mean)))
+    });
+    SharedClock {
+        mean: parts.map(|(nearest, _)| nearest),
+        remainder: parts.map(|(_, remainder)| remainder),
+        count: sums.count,
+    }
+}

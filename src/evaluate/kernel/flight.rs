@@ -1,0 +1,190 @@
+//! Earth-fixed positions of all satellites at one sample.
+//!
+//! The satellites of a pattern under a secular model share a, i and all rates. Their angles are
+//! those of the epoch plus one angle of the sample, so that two sines and cosines a sample turn
+//! the whole pattern by the addition theorems; the node and the Earth turn about one axis and
+//! are one angle. Anything else is asked of its propagators one by one.
+
+use crate::constellation::{Design, Satellite};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::EarthRotation;
+use crate::orbit::Model;
+use crate::orbit::j2::SecularRates;
+use nalgebra::Vector3;
+
+/// Satellites that are worked on together.
+pub(super) const BLOCK: usize = 64;
+
+/// Positions of satellites, Earth-fixed, km; NaN in a place without a satellite.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+pub(super) struct PositionBlock {
+    pub(super) x: [f64; BLOCK],
+    pub(super) y: [f64; BLOCK],
+    pub(super) z: [f64; BLOCK],
+}
+
+/// Positions of all satellites at one sample.
+#[derive(Debug, Clone)]
+pub(super) struct Positions {
+    pub(super) blocks: Vec<PositionBlock>,
+    pub(super) count: usize,
+    /// Smallest and largest distance from the centre of the Earth, km.
+    pub(super) nearest_km: f64,
+    pub(super) farthest_km: f64,
+}
+
+impl Positions {
+    pub(super) fn new(count: usize) -> Self {
+        let nowhere = PositionBlock {
+            x: [f64::NAN; BLOCK],
+            y: [f64::NAN; BLOCK],
+            z: [f64::NAN; BLOCK],
+        };
+        Self {
+            blocks: vec![nowhere; count.div_ceil(BLOCK)],
+            count,
+            nearest_km: 0.0,
+            farthest_km: 0.0,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn at(&self, n: usize) -> [f64; 3] {
+        let block = &self.blocks[n / BLOCK];
+        let place = n % BLOCK;
+        [block.x[place], block.y[place], block.z[place]]
+    }
+
+    /// Positions from the propagators, one after the other.
+    pub(super) fn ask(
+        &mut self,
+        ephemeris: &Ephemeris,
+        elapsed_s: f64,
+        rotation: EarthRotation,
+    ) -> Result<(), EphemerisError> {
+        (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
+        for (n, satellite) in ephemeris.satellites().iter().enumerate() {
+            let state = ephemeris.state(satellite, elapsed_s)?;
+            let position = rotation.to_earth_fixed(state.position_km);
+            let radius_km = position.norm();
+            self.nearest_km = self.nearest_km.min(radius_km);
+            self.farthest_km = self.farthest_km.max(radius_km);
+            let block = &mut self.blocks[n / BLOCK];
+            let place = n % BLOCK;
+            (block.x[place], block.y[place], block.z[place]) = (position.x, position.y, position.z);
+        }
+        Ok(())
+    }
+}
+
+/// A circular pattern under a secular model.
+#[derive(Debug, Clone)]
+pub(super) struct PatternFlight {
+    semi_major_axis_km: f64,
+    sin_i: f64,
+    cos_i: f64,
+    raan_rate_rad_s: f64,
+    latitude_rate_rad_s: f64,
+    blocks: Vec<PatternBlock>,
+}
+
+/// Cosines and sines of node and argument of latitude at the epoch.
+#[derive(Debug, Clone)]
+#[repr(align(64))]
+struct PatternBlock {
+    cos_node: [f64; BLOCK],
+    sin_node: [f64; BLOCK],
+    cos_latitude: [f64; BLOCK],
+    sin_latitude: [f64; BLOCK],
+}
+
+impl PatternBlock {
+    fn new(satellites: &[Satellite]) -> Self {
+        let angle = |of: fn(&Satellite) -> f64, function: fn(f64) -> f64| {
+            std::array::from_fn(|n| satellites.get(n).map_or(f64::NAN, |s| function(of(s))))
+        };
+        let node = |s: &Satellite| s.elements.raan_rad;
+        let latitude = |s: &Satellite| s.elements.arg_perigee_rad + s.elements.mean_anomaly_rad;
+        Self {
+            cos_node: angle(node, f64::cos),
+            sin_node: angle(node, f64::sin),
+            cos_latitude: angle(latitude, f64::cos),
+            sin_latitude: angle(latitude, f64::sin),
+        }
+    }
+
+    #[inline(always)]
+    fn fly(&self, orbit: &PatternFlight, turn: &Turn, to: &mut PositionBlock) {
+        let (a, sin_i, cos_i) = (orbit.semi_major_axis_km, orbit.sin_i, orbit.cos_i);
+        for n in 0..BLOCK {
+            let (cos_o, sin_o) = (self.cos_node[n], self.sin_node[n]);
+            let (cos_u, sin_u) = (self.cos_latitude[n], self.sin_latitude[n]);
+            let cos_node = cos_o * turn.cos_node - sin_o * turn.sin_node;
+            let sin_node = sin_o * turn.cos_node + cos_o * turn.sin_node;
+            let along = a * (cos_u * turn.cos_latitude - sin_u * turn.sin_latitude);
+            let ahead = a * (sin_u * turn.cos_latitude + cos_u * turn.sin_latitude);
+            let level = ahead * cos_i;
+            to.x[n] = cos_node * along - sin_node * level;
+            to.y[n] = sin_node * along + cos_node * level;
+            to.z[n] = ahead * sin_i;
+        }
+    }
+}
+
+impl PatternFlight {
+    /// The flight of a design; `None` when it is not circular or its model not secular.
+    pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
+        let satellites = design.satellites();
+        let first = satellites.first()?.elements;
+        let rates = match model {
+            Model::J2 => SecularRates::j2(&first),
+            Model::TwoBody => SecularRates::two_body(&first),
+            _ => return None,
+        };
+        if design.eccentricity() != 0.0 {
+            return None;
+        }
+        let (sin_i, cos_i) = first.inclination_rad.sin_cos();
+        Some(Self {
+            semi_major_axis_km: first.semi_major_axis_km,
+            sin_i,
+            cos_i,
+            raan_rate_rad_s: rates.raan_rad_s,
+            latitude_rate_rad_s: rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
+            blocks: satellites.chunks(BLOCK).map(PatternBlock::new).collect(),
+        })
+    }
+
+    /// What turns the pattern from the epoch to a sample.
+    pub(super) fn turn(&self, elapsed_s: f64, rotation: EarthRotation) -> Turn {
+        let (sin_latitude, cos_latitude) = (self.latitude_rate_rad_s * elapsed_s).sin_cos();
+        let (sin_raan, cos_raan) = (self.raan_rate_rad_s * elapsed_s).sin_cos();
+        let node = rotation.to_earth_fixed(Vector3::new(cos_raan, sin_raan, 0.0));
+        Turn {
+            cos_node: node.x,
+            sin_node: node.y,
+            cos_latitude,
+            sin_latitude,
+        }
+    }
+
+    /// Positions at a sample.
+    #[inline(always)]
+    pub(super) fn fly(&self, turn: &Turn, positions: &mut Positions) {
+        for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
+            from.fly(self, turn, to);
+        }
+        positions.nearest_km = self.semi_major_axis_km;
+        positions.farthest_km = self.semi_major_axis_km;
+    }
+}
+
+/// The rotation of a pattern from its epoch to a sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    cos_node: f64,
+    sin_node: f64,
+    cos_latitude: f64,
+    sin_latitude: f64,
+}

@@ -1,0 +1,389 @@
+//! The arithmetic of the kernel: sixteen ground points side by side, in f32 or in f64.
+//!
+//! Each function is one loop over the lanes without a branch, which the compiler turns into
+//! vector instructions of whatever width the caller is compiled for. There is no fused
+//! multiply-add and no approximate reciprocal: every operation is one that IEEE 754 rounds in
+//! one way, so that all instruction sets give the same bits.
+
+use crate::visibility::Mask;
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
+
+/// Ground points that are worked on side by side.
+pub(super) const LANES: usize = 16;
+
+/// One number for each of the points.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Lanes<R>(pub(super) [R; LANES]);
+
+/// The two precisions.
+pub(super) trait Real:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + AddAssign
+{
+    const ZERO: Self;
+    const ONE: Self;
+    /// Stands for a position block that is not positive definite.
+    const NO_SOLUTION: Self;
+
+    fn of(value: f64) -> Self;
+    /// A number of satellites.
+    fn count(count: u32) -> Self;
+    /// A number from its f32 nearest and what that leaves over.
+    fn joined(high: f32, low: f32) -> Self;
+    fn root(self) -> Self;
+    /// Whether a satellite at this height over the horizon plane and this squared range is at or
+    /// above the mask, and whether it may be; `sine` is height over range.
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> (bool, bool);
+}
+
+impl Real for f32 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const NO_SOLUTION: Self = Self::INFINITY;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+
+    #[inline(always)]
+    fn count(count: u32) -> Self {
+        // Signed conversion is one instruction everywhere; there are fewer than 2^24.
+        count as i32 as Self
+    }
+
+    #[inline(always)]
+    fn joined(high: f32, _low: f32) -> Self {
+        high
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    /// What may be but need not be above the mask is looked at again.
+    #[inline(always)]
+    fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> (bool, bool) {
+        (
+            sine >= mask.sine + mask.slack,
+            sine >= mask.sine - mask.slack,
+        )
+    }
+}
+
+impl Real for f64 {
+    const ZERO: Self = 0.0;
+    const ONE: Self = 1.0;
+    const NO_SOLUTION: Self = Self::INFINITY;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn count(count: u32) -> Self {
+        Self::from(count)
+    }
+
+    #[inline(always)]
+    fn joined(high: f32, low: f32) -> Self {
+        Self::from(high) + Self::from(low)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    /// The comparison of [`Mask::line_of_sight`], operation by operation.
+    #[inline(always)]
+    fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, _sine: Self) -> (bool, bool) {
+        let seen = (height >= 0.0) & (height * height >= mask.sine2 * range2) & (range2 > 0.0);
+        (seen, seen)
+    }
+}
+
+/// An elevation mask as the lanes compare with it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct MaskTerms<R> {
+    sine: R,
+    sine2: R,
+    /// By how much a sine may be wrong; 0 in f64, which is exact as the plain path is.
+    slack: R,
+}
+
+impl<R: Real> MaskTerms<R> {
+    pub(super) fn new(mask: Mask) -> Self {
+        Self {
+            sine: R::of(mask.degrees().to_radians().sin()),
+            sine2: R::of(mask.sine_squared()),
+            slack: R::ZERO,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn with_slack(self, slack: R) -> Self {
+        Self { slack, ..self }
+    }
+}
+
+/// Positions and verticals of the points of a tile, Earth-fixed, km.
+///
+/// A lane without a point holds NaN, which no comparison passes: it never sees anything.
+#[derive(Debug, Clone)]
+pub(super) struct SiteLanes<R> {
+    pub(super) origin: [Lanes<R>; 3],
+    pub(super) up: [Lanes<R>; 3],
+}
+
+/// What the visible satellites of one clock group leave at each point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sums<R> {
+    /// Σ v vᵀ without (z, z), which is the count less the other two: v is a unit vector.
+    pub(super) xx: Lanes<R>,
+    pub(super) yy: Lanes<R>,
+    pub(super) xy: Lanes<R>,
+    pub(super) xz: Lanes<R>,
+    pub(super) yz: Lanes<R>,
+    /// Σ v.
+    pub(super) x: Lanes<R>,
+    pub(super) y: Lanes<R>,
+    pub(super) z: Lanes<R>,
+    /// Visible satellites.
+    pub(super) count: Lanes<u32>,
+    /// Satellites that may be visible.
+    pub(super) possible: Lanes<u32>,
+}
+
+impl<R: Real> Sums<R> {
+    #[inline(always)]
+    pub(super) fn zero() -> Self {
+        let zero = Lanes([R::ZERO; LANES]);
+        Self {
+            xx: zero,
+            yy: zero,
+            xy: zero,
+            xz: zero,
+            yz: zero,
+            x: zero,
+            y: zero,
+            z: zero,
+            count: Lanes([0; LANES]),
+            possible: Lanes([0; LANES]),
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn merge(&mut self, other: &Self) {
+        for l in 0..LANES {
+            self.xx.0[l] += other.xx.0[l];
+            self.yy.0[l] += other.yy.0[l];
+            self.xy.0[l] += other.xy.0[l];
+            self.xz.0[l] += other.xz.0[l];
+            self.yz.0[l] += other.yz.0[l];
+            self.x.0[l] += other.x.0[l];
+            self.y.0[l] += other.y.0[l];
+            self.z.0[l] += other.z.0[l];
+            self.count.0[l] += other.count.0[l];
+            self.possible.0[l] += other.possible.0[l];
+        }
+    }
+
+    /// Adds a satellite where it is visible. This loop is where the time goes.
+    #[inline(always)]
+    pub(super) fn add(&mut self, sites: &SiteLanes<R>, satellite: [R; 3], mask: &MaskTerms<R>) {
+        let [origin_x, origin_y, origin_z] = &sites.origin;
+        let [up_x, up_y, up_z] = &sites.up;
+        for l in 0..LANES {
+            let dx = satellite[0] - origin_x.0[l];
+            let dy = satellite[1] - origin_y.0[l];
+            let dz = satellite[2] - origin_z.0[l];
+            let height = up_x.0[l] * dx + up_y.0[l] * dy + up_z.0[l] * dz;
+            let range2 = dx * dx + dy * dy + dz * dz;
+            let inverse = R::ONE / range2.root();
+            let sine = height * inverse;
+            let (seen, possible) = R::above(mask, height, range2, sine);
+            let scale = if seen { inverse } else { R::ZERO };
+            self.possible.0[l] += u32::from(possible);
+            self.count.0[l] += u32::from(seen);
+            let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
+            self.x.0[l] += vx;
+            self.y.0[l] += vy;
+            self.z.0[l] += vz;
+            self.xx.0[l] += vx * vx;
+            self.yy.0[l] += vy * vy;
+            self.xy.0[l] += vx * vy;
+            self.xz.0[l] += vx * vz;
+            self.yz.0[l] += vy * vz;
+        }
+    }
+}
+
+/// The GNSS part of the normal matrix at the points of a tile: (x, x), (y, y), (z, z), (x, y),
+/// (x, z), (y, z).
+pub(super) type Normal = [Lanes<f32>; 6];
+
+/// The GNSS part at the points of a tile, one sample. Each number is an f32 and a remainder,
+/// which together hold 48 bits; f32 lanes read the first alone.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FixedTile<'a> {
+    pub(super) normal: &'a Normal,
+    pub(super) remainder: &'a Normal,
+    /// Satellites less clocks of the systems with clocks of their own.
+    pub(super) surplus: &'a [u8; LANES],
+    /// The GNSS satellites that share their clock with the design, if any do.
+    pub(super) shared: Option<&'a SharedClock>,
+}
+
+/// GNSS satellites that share their clock with the design; what they contribute on their own is
+/// part of the normal matrix already.
+#[derive(Debug, Clone)]
+pub(super) struct SharedClock {
+    /// Σ v / n, and its remainder.
+    pub(super) mean: [Lanes<f32>; 3],
+    pub(super) remainder: [Lanes<f32>; 3],
+    pub(super) count: Lanes<u32>,
+}
+
+pub(super) const ZERO: Lanes<f32> = Lanes([0.0; LANES]);
+
+impl SharedClock {
+    #[inline(always)]
+    pub(super) fn mean<R: Real>(&self, axis: usize, lane: usize) -> R {
+        R::joined(self.mean[axis].0[lane], self.remainder[axis].0[lane])
+    }
+}
+
+impl FixedTile<'_> {
+    /// No GNSS.
+    pub(super) const NONE: Self = FixedTile {
+        normal: &[ZERO; 6],
+        remainder: &[ZERO; 6],
+        surplus: &[0; LANES],
+        shared: None,
+    };
+
+    #[inline(always)]
+    pub(super) fn normal<R: Real>(&self, element: usize, lane: usize) -> R {
+        R::joined(
+            self.normal[element].0[lane],
+            self.remainder[element].0[lane],
+        )
+    }
+}
+
+/// Numbers as the f32 nearest to each and what that leaves over.
+pub(super) fn split(values: &Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
+    let nearest = values.0.map(|value| value as f32);
+    let remainder = std::array::from_fn(|l| (values.0[l] - f64::from(nearest[l])) as f32);
+    (Lanes(nearest), Lanes(remainder))
+}
+
+/// PDOP at the points of a tile, and satellites less clock states.
+pub(super) struct Solution<R> {
+    /// [`Real::NO_SOLUTION`] where the position block is not positive definite.
+    pub(super) pdop: Lanes<R>,
+    pub(super) surplus: Lanes<u32>,
+}
+
+impl<R: Real> Solution<R> {
+    /// From the sums over the design and the GNSS part.
+    #[inline(always)]
+    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
+        let mut system = NormalLanes::new(sums, fixed);
+        if let Some(shared) = fixed.shared {
+            system.join_clocks(sums, shared);
+        }
+        Self {
+            pdop: system.pdop(),
+            surplus: system.surplus,
+        }
+    }
+}
+
+/// The normal matrix of the position at the points of a tile.
+struct NormalLanes<R> {
+    /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
+    matrix: [Lanes<R>; 6],
+    /// Satellites less clock states.
+    surplus: Lanes<u32>,
+}
+
+impl<R: Real> NormalLanes<R> {
+    /// The GNSS part and Σ v vᵀ - (Σ v)(Σ v)ᵀ / n of the design.
+    #[inline(always)]
+    fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
+        let mut system = Self {
+            matrix: [Lanes([R::ZERO; LANES]); 6],
+            surplus: Lanes([0; LANES]),
+        };
+        for l in 0..LANES {
+            let count = sums.count.0[l];
+            let clocks = u32::from(count > 0);
+            system.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
+            let scale = R::ONE / R::count(count + 1 - clocks);
+            let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
+            let (xx, yy) = (sums.xx.0[l], sums.yy.0[l]);
+            let zz = R::count(count) - xx - yy;
+            let matrix = &mut system.matrix;
+            matrix[0].0[l] = fixed.normal::<R>(0, l) + (xx - x * x * scale);
+            matrix[1].0[l] = fixed.normal::<R>(1, l) + (yy - y * y * scale);
+            matrix[2].0[l] = fixed.normal::<R>(2, l) + (zz - z * z * scale);
+            matrix[3].0[l] = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
+            matrix[4].0[l] = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
+            matrix[5].0[l] = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
+        }
+        system
+    }
+
+    /// Makes one clock of the design's and the GNSS's: two groups of n and m satellites that
+    /// become one gain n m / (n + m) δ δᵀ, δ the difference of their mean unit vectors (Chan,
+    /// Golub and LeVeque, *Amer. Statist.* 37 (1983) 242). Nothing is cancelled by this, as it
+    /// would be by the sums of both groups together.
+    #[inline(always)]
+    fn join_clocks(&mut self, sums: &Sums<R>, shared: &SharedClock) {
+        for l in 0..LANES {
+            let (n, m) = (sums.count.0[l], shared.count.0[l]);
+            let both = u32::from((n > 0) & (m > 0));
+            self.surplus.0[l] += m - u32::from(m > 0) + both;
+            let gain = R::count(n * m) / R::count((n + m).max(1));
+            let scale = R::ONE / R::count(n.max(1));
+            let x = sums.x.0[l] * scale - shared.mean::<R>(0, l);
+            let y = sums.y.0[l] * scale - shared.mean::<R>(1, l);
+            let z = sums.z.0[l] * scale - shared.mean::<R>(2, l);
+            self.matrix[0].0[l] += gain * x * x;
+            self.matrix[1].0[l] += gain * y * y;
+            self.matrix[2].0[l] += gain * z * z;
+            self.matrix[3].0[l] += gain * x * y;
+            self.matrix[4].0[l] += gain * x * z;
+            self.matrix[5].0[l] += gain * y * z;
+        }
+    }
+
+    /// [`Real::NO_SOLUTION`] where the matrix is not positive definite.
+    #[inline(always)]
+    fn pdop(&self) -> Lanes<R> {
+        let mut lanes = Lanes([R::NO_SOLUTION; LANES]);
+        let matrix = &self.matrix;
+        for l in 0..LANES {
+            let (xx, yy, zz) = (matrix[0].0[l], matrix[1].0[l], matrix[2].0[l]);
+            let (xy, xz, yz) = (matrix[3].0[l], matrix[4].0[l], matrix[5].0[l]);
+            let minor_zz = xx * yy - xy * xy;
+            let minor_yy = xx * zz - xz * xz;
+            let minor_xx = yy * zz - yz * yz;
+            let determinant = xx * minor_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+            let definite = (xx > R::ZERO) & (minor_zz > R::ZERO) & (determinant > R::ZERO);
+            let pdop = ((minor_xx + minor_yy + minor_zz) / determinant).root();
+            lanes.0[l] = if definite { pdop } else { R::NO_SOLUTION };
+        }
+        lanes
+    }
+}

@@ -1,0 +1,326 @@
+//! One sample: all points, all satellites. The code that is compiled for each instruction set.
+
+use super::candidates::{Block, Candidates, bits};
+use super::fixed::FixedSample;
+use super::flight::{BLOCK, PatternFlight, Positions, Turn};
+use super::instructions::Work;
+use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, SiteLanes, Solution, Sums};
+use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
+
+/// Stands for an unsolved sample among the values of PDOP.
+pub(super) const UNSOLVED: f32 = f32::INFINITY;
+
+/// Least surplus of satellites over clock states: one satellite for each component of position.
+pub(super) const POSITION_STATES: u32 = 3;
+
+/// Where f32 is good enough.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    /// PDOP above this is computed again in f64.
+    pub(super) single_below: f32,
+    /// PDOP above which a sample is unsolved.
+    pub(super) cap: f64,
+    /// PDOP up to which a sample is available.
+    pub(super) available: f64,
+}
+
+impl Limits {
+    /// Relative distance from a threshold within which f32 does not decide.
+    const BAND: f32 = 1e-5;
+
+    #[inline(always)]
+    fn capped(self, single_below: f32) -> Self {
+        Self {
+            single_below: self.single_below.min(single_below),
+            ..self
+        }
+    }
+
+    #[inline(always)]
+    fn holds_in_single(&self, pdop: f32) -> bool {
+        let available = self.available as f32;
+        (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
+    }
+}
+
+/// What all samples share.
+pub(super) struct Scene {
+    pub(super) tiles: Tiles,
+    pub(super) single: MaskTerms<f32>,
+    pub(super) double: MaskTerms<f64>,
+    pub(super) limits: Limits,
+}
+
+/// Memory of one evaluation that is used again for each sample.
+pub(super) struct Workspace {
+    pub(super) positions: Positions,
+    all: Candidates,
+    near: Candidates,
+    /// Words of a tile.
+    blocks: usize,
+    /// Which satellites the tiles of a group may see, tile by tile.
+    words: Vec<u64>,
+}
+
+impl Workspace {
+    pub(super) fn new(satellites: usize) -> Self {
+        let all = Candidates::with_capacity(satellites);
+        let blocks = satellites.div_ceil(BLOCK).max(1);
+        Self {
+            positions: Positions::new(satellites),
+            near: all.clone(),
+            blocks,
+            words: vec![0; blocks * TILES_IN_GROUP],
+            all,
+        }
+    }
+}
+
+/// A decision that f32 cannot take: the point in a lane of a tile, and the satellites that it may
+/// see.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Doubt {
+    pub(super) tile: usize,
+    pub(super) lane: usize,
+    pub(super) satellites: Vec<u32>,
+}
+
+/// What one sample gives.
+#[derive(Debug, Clone)]
+pub(super) struct Outcome {
+    /// PDOP of each slot, tile by tile; [`UNSOLVED`] where there is none.
+    pub(super) pdop: Vec<Lanes<f32>>,
+    /// Visible satellites, summed over the points without doubt.
+    pub(super) visible: u64,
+    /// Points without doubt that are available.
+    pub(super) available: u64,
+    /// Points whose PDOP was computed again in f64.
+    pub(super) doubled: u64,
+    /// Points to look at again.
+    pub(super) doubts: Vec<Doubt>,
+}
+
+impl Outcome {
+    pub(super) fn new(tiles: usize) -> Self {
+        Self {
+            pdop: vec![Lanes([UNSOLVED; LANES]); tiles],
+            visible: 0,
+            available: 0,
+            doubled: 0,
+            doubts: Vec::new(),
+        }
+    }
+}
+
+/// One sample to be evaluated.
+pub(super) struct Sample<'a> {
+    pub(super) scene: &'a Scene,
+    /// Those of the scene, or narrower ones.
+    pub(super) limits: Limits,
+    /// The pattern to fly; without one the positions are there already.
+    pub(super) pattern: Option<(&'a PatternFlight, Turn)>,
+    /// The GNSS part.
+    pub(super) fixed: FixedSample<'a>,
+    pub(super) work: &'a mut Workspace,
+    pub(super) outcome: &'a mut Outcome,
+}
+
+impl Work for Sample<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        if let Some((pattern, turn)) = &self.pattern {
+            pattern.fly(turn, &mut self.work.positions);
+        }
+        evaluate(
+            self.scene,
+            self.limits,
+            &self.fixed,
+            self.work,
+            self.outcome,
+        );
+    }
+}
+
+#[inline(always)]
+fn evaluate(
+    scene: &Scene,
+    limits: Limits,
+    fixed: &FixedSample<'_>,
+    work: &mut Workspace,
+    out: &mut Outcome,
+) {
+    let horizon = &scene.tiles.horizon;
+    work.all.fill(&work.positions, horizon);
+    let slack_km = Horizon::cap_slack_km(&work.positions);
+    let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
+    let limits = limits.capped(horizon.single_below(&work.positions));
+    out.doubled = 0;
+    out.doubts.clear();
+    let (mut visible, mut available) = ([0; LANES], [0; LANES]);
+    for group in &scene.tiles.groups {
+        work.near.select(&work.all, &group.cap, slack_km);
+        let blocks = work.near.blocks();
+        let tiles = &scene.tiles.tiles[group.tiles.clone()];
+        for (tile, words) in tiles.iter().zip(work.words.chunks_exact_mut(work.blocks)) {
+            for (block, word) in blocks.iter().zip(words) {
+                *word = block.inside(&tile.cap, slack_km);
+            }
+        }
+        for number in group.tiles.clone() {
+            let place = number - group.tiles.start;
+            let words = &work.words[place * work.blocks..(place + 1) * work.blocks];
+            let looked = Looked {
+                blocks: work.near.blocks(),
+                words,
+            };
+            let fixed = fixed.tile(number);
+            let sums = looked.sums(&scene.tiles.tiles[number].single, &mask);
+            let verdict = Verdict::new(&sums, &fixed, &limits);
+            for l in 0..LANES {
+                visible[l] += verdict.visible.0[l];
+                available[l] += verdict.available.0[l];
+            }
+            out.pdop[number] = verdict.pdop;
+            if any(&verdict.doubtful) {
+                doubt(number, &verdict, looked, out);
+            }
+            if any(&verdict.coarse) {
+                available[0] += compute_again(
+                    scene,
+                    number,
+                    &fixed,
+                    &verdict,
+                    &work.positions,
+                    looked,
+                    out,
+                );
+            }
+        }
+    }
+    out.visible = visible.into_iter().map(u64::from).sum();
+    out.available = available.into_iter().map(u64::from).sum();
+}
+
+#[inline(always)]
+fn any(lanes: &Lanes<u32>) -> bool {
+    lanes.0.iter().fold(0, |all, lane| all | lane) != 0
+}
+
+/// The satellites that a tile may see.
+#[derive(Clone, Copy)]
+struct Looked<'a> {
+    blocks: &'a [Block],
+    /// A bit for each satellite of the block.
+    words: &'a [u64],
+}
+
+impl<'a> Looked<'a> {
+    #[inline(always)]
+    fn sums(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
+        let mut all = Sums::zero();
+        for (block, &word) in self.blocks.iter().zip(self.words) {
+            let mut sums = Sums::zero();
+            for n in bits(word) {
+                sums.add(sites, block.position(n), mask);
+            }
+            // Sums of sums: hundreds of visible satellites one by one would cost f32 a digit.
+            all.merge(&sums);
+        }
+        all
+    }
+
+    /// The number of each among all satellites.
+    #[inline(always)]
+    fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
+        let blocks = self.blocks.iter().zip(self.words);
+        blocks.flat_map(|(block, &word)| bits(word).map(|n| block.index(n)))
+    }
+}
+
+/// What f32 says about the points of a tile; 0 or 1 where it is yes or no.
+struct Verdict {
+    pdop: Lanes<f32>,
+    /// Too close to the mask for f32.
+    doubtful: Lanes<u32>,
+    /// PDOP too large for f32, or too close to a threshold.
+    coarse: Lanes<u32>,
+    /// Visible satellites where there is no doubt.
+    visible: Lanes<u32>,
+    /// Available, and neither doubtful nor coarse.
+    available: Lanes<u32>,
+}
+
+impl Verdict {
+    #[inline(always)]
+    fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
+        let solution = Solution::new(sums, fixed);
+        let zero = Lanes([0; LANES]);
+        let mut verdict = Self {
+            pdop: Lanes([UNSOLVED; LANES]),
+            doubtful: zero,
+            coarse: zero,
+            visible: zero,
+            available: zero,
+        };
+        for l in 0..LANES {
+            let pdop = solution.pdop.0[l];
+            let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
+            let counted = u32::from(solution.surplus.0[l] >= POSITION_STATES);
+            let fine = u32::from(limits.holds_in_single(pdop));
+            let reached = u32::from(pdop <= limits.available as f32);
+            verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
+            verdict.doubtful.0[l] = 1 - sure;
+            verdict.coarse.0[l] = counted & (1 - fine) & sure;
+            verdict.visible.0[l] = sums.count.0[l] * sure;
+            verdict.available.0[l] = counted & fine & sure & reached;
+        }
+        verdict
+    }
+}
+
+/// Leaves the doubtful points of a tile to be looked at again.
+#[inline(never)]
+fn doubt(number: usize, verdict: &Verdict, looked: Looked<'_>, out: &mut Outcome) {
+    let satellites: Vec<u32> = looked.satellites().map(|n| n as u32).collect();
+    for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
+        out.pdop[number].0[lane] = UNSOLVED;
+        out.doubts.push(Doubt {
+            tile: number,
+            lane,
+            satellites: satellites.clone(),
+        });
+    }
+}
+
+/// Takes the tile again in f64, for the points that f32 is too coarse for. Returns how many of
+/// them are available.
+#[inline(always)]
+fn compute_again(
+    scene: &Scene,
+    number: usize,
+    fixed: &FixedTile<'_>,
+    verdict: &Verdict,
+    positions: &Positions,
+    looked: Looked<'_>,
+    out: &mut Outcome,
+) -> u32 {
+    let mut sums = Sums::<f64>::zero();
+    let sites = &scene.tiles.tiles[number].double;
+    for (block, &word) in looked.blocks.iter().zip(looked.words) {
+        for n in bits(word) {
+            sums.add(sites, positions.at(block.index(n)), &scene.double);
+        }
+    }
+    let solution = Solution::new(&sums, fixed);
+    let mut available = 0;
+    for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
+        let pdop = solution.pdop.0[lane];
+        let solved = pdop < f64::NO_SOLUTION && pdop <= scene.limits.cap;
+        out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
+        available += u32::from(solved && pdop <= scene.limits.available);
+        out.doubled += 1;
+    }
+    available
+}

@@ -1,0 +1,265 @@
+//! Statistics of a stream of PDOP values in two passes, without keeping or sorting the values.
+//!
+//! The first pass counts values by their leading bits and sums them. The counts say with which
+//! leading bits each order statistic begins; the second pass counts the trailing bits of the
+//! values that begin so, and sums the values beyond the value-at-risk's. That gives every order
+//! statistic and the tail exactly, in memory that does not depend on how many values there are.
+//!
+//! Counts are integers and do not depend on the order of the values; sums are made in pieces
+//! that do not depend on who makes them.
+
+use super::instructions::Work;
+use super::lanes::{LANES, Lanes};
+use super::sample::UNSOLVED;
+use crate::stats::{Level, Summary, quantile_rank};
+
+/// Bits of an f32 that the first pass does not look at: it sees 11 of the 23 of the fraction.
+const TRAILING_BITS: u32 = 12;
+
+/// Places begin at 2^-7: n satellites give a PDOP of 3/√n or more, which is above that up to
+/// 147 000 satellites. The place behind the last holds what is unsolved.
+const FIRST: u32 = (127 - 7) << (23 - TRAILING_BITS);
+const UNSOLVED_PLACE: u32 = (255 << (23 - TRAILING_BITS)) - FIRST;
+
+/// The place of a value in the first pass; larger values have the same or a later one.
+#[inline(always)]
+fn place(value: f32) -> u32 {
+    let leading = value.to_bits() >> TRAILING_BITS;
+    leading.max(FIRST) - FIRST
+}
+
+/// The value of a place with some trailing bits.
+fn value(place: u32, trailing: usize) -> f64 {
+    f64::from(f32::from_bits(
+        (place + FIRST) << TRAILING_BITS | trailing as u32,
+    ))
+}
+
+/// What passes over different pieces leave, put together.
+pub(super) trait Merge {
+    fn merged(self, other: &Self) -> Self;
+}
+
+/// First pass: how many values there are in each place.
+pub(super) struct Counts {
+    places: Vec<u64>,
+    values: u64,
+}
+
+impl Counts {
+    /// Memory that it takes.
+    pub(super) const BYTES: usize = (UNSOLVED_PLACE as usize + 1) * size_of::<u64>();
+
+    pub(super) fn new() -> Self {
+        Self {
+            places: vec![0; UNSOLVED_PLACE as usize + 1],
+            values: 0,
+        }
+    }
+
+    /// Solved values.
+    pub(super) fn solved(&self) -> u64 {
+        self.values - self.places[UNSOLVED_PLACE as usize]
+    }
+
+    /// Where the order statistic of a rank (from 1) lies.
+    fn locate(&self, rank: u64) -> Wanted {
+        let mut before = rank - 1;
+        let mut places = (0..).zip(&self.places);
+        let place = places.find_map(|(place, &count)| {
+            let here = before < count;
+            before -= if here { 0 } else { count };
+            here.then_some(place)
+        });
+        Wanted {
+            place: place.unwrap_or(UNSOLVED_PLACE),
+            rank,
+            before,
+        }
+    }
+}
+
+impl Merge for Counts {
+    fn merged(mut self, other: &Self) -> Self {
+        add(&mut self.places, &other.places);
+        self.values += other.values;
+        self
+    }
+}
+
+fn add(mine: &mut [u64], theirs: &[u64]) {
+    for (mine, theirs) in mine.iter_mut().zip(theirs) {
+        *mine += theirs;
+    }
+}
+
+/// The first pass over some tiles; its output is the sum of the solved values.
+pub(super) struct Count<'a> {
+    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) counts: &'a mut Counts,
+}
+
+impl Work for Count<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let mut sums = [0.0; LANES];
+        for tile in self.tiles {
+            let mut places = [0; LANES];
+            for l in 0..LANES {
+                let value = tile.0[l];
+                places[l] = place(value);
+                sums[l] += f64::from(if value < UNSOLVED { value } else { 0.0 });
+            }
+            for place in places {
+                self.counts.places[place as usize] += 1;
+            }
+        }
+        self.counts.values += (self.tiles.len() * LANES) as u64;
+        sums.iter().sum()
+    }
+}
+
+/// An order statistic: its place, its rank among all, and how many values of the place come
+/// before it.
+#[derive(Debug, Clone, Copy)]
+struct Wanted {
+    place: u32,
+    rank: u64,
+    before: u64,
+}
+
+/// Order statistics that are searched for: median, 95 %, 99 %, largest, value-at-risk.
+const WANTED: usize = 5;
+const VALUE_AT_RISK: usize = 4;
+
+/// What the second pass looks for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Search {
+    level: Level,
+    solved: u64,
+    wanted: [Wanted; WANTED],
+}
+
+/// Second pass: trailing bits of the values in the wanted places.
+pub(super) struct Found([Vec<u64>; WANTED]);
+
+impl Found {
+    /// Memory that it takes.
+    pub(super) const BYTES: usize = WANTED * (size_of::<u64>() << TRAILING_BITS);
+
+    pub(super) fn new() -> Self {
+        Self(std::array::from_fn(|_| vec![0; 1 << TRAILING_BITS]))
+    }
+}
+
+impl Merge for Found {
+    fn merged(mut self, other: &Self) -> Self {
+        for (mine, theirs) in self.0.iter_mut().zip(&other.0) {
+            add(mine, theirs);
+        }
+        self
+    }
+}
+
+/// The second pass over some tiles; its output is the sum of the solved values in places beyond
+/// that of the value-at-risk.
+pub(super) struct Find<'a> {
+    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) search: &'a Search,
+    pub(super) found: &'a mut Found,
+}
+
+impl Work for Find<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let wanted = self.search.wanted.map(|wanted| wanted.place);
+        let mut tail = [0.0; LANES];
+        for tile in self.tiles {
+            let mut hits = 0;
+            for (tail, &value) in tail.iter_mut().zip(&tile.0) {
+                let place = place(value);
+                let beyond = (place > wanted[VALUE_AT_RISK]) & (place < UNSOLVED_PLACE);
+                *tail += f64::from(if beyond { value } else { 0.0 });
+                for wanted in wanted {
+                    hits |= u32::from(place == wanted);
+                }
+            }
+            if hits != 0 {
+                note(tile, &wanted, self.found);
+            }
+        }
+        tail.iter().sum()
+    }
+}
+
+/// Counts the trailing bits of the values in wanted places.
+fn note(tile: &Lanes<f32>, wanted: &[u32; WANTED], found: &mut Found) {
+    for (counts, &wanted) in found.0.iter_mut().zip(wanted) {
+        for value in tile.0.iter().filter(|&&value| place(value) == wanted) {
+            counts[(value.to_bits() % (1 << TRAILING_BITS)) as usize] += 1;
+        }
+    }
+}
+
+impl Search {
+    /// `None` when no value is solved.
+    pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
+        let solved = counts.solved();
+        let ranked = |q: f64| counts.locate(quantile_rank(q, solved as usize) as u64);
+        (solved > 0).then(|| Self {
+            level,
+            solved,
+            wanted: [
+                ranked(0.50),
+                ranked(0.95),
+                ranked(0.99),
+                counts.locate(solved),
+                ranked(level.get()),
+            ],
+        })
+    }
+
+    /// The rank of an order statistic: median, 95 %, 99 %, largest.
+    pub(super) fn rank(&self, number: usize) -> u64 {
+        self.wanted[number].rank
+    }
+
+    /// The statistics, from the finds of all tiles, the sum of all values and that of those
+    /// beyond the place of the value-at-risk.
+    pub(super) fn summary(&self, found: &Found, sum: f64, tail: f64) -> Summary {
+        let [p50, p95, p99, max, value_at_risk] = std::array::from_fn(|n| {
+            let Wanted { place, before, .. } = self.wanted[n];
+            let mut passed = 0;
+            let trailing = found.0[n].iter().position(|count| {
+                passed += count;
+                passed > before
+            });
+            trailing.map_or(f64::NAN, |trailing| value(place, trailing))
+        });
+        let Wanted {
+            place,
+            rank,
+            before,
+        } = self.wanted[VALUE_AT_RISK];
+        let counts = &found.0[VALUE_AT_RISK];
+        let in_place: u64 = counts.iter().sum();
+        let beyond = self.solved - (rank - 1 - before) - in_place;
+        let nearby = counts.iter().enumerate().map(|(trailing, &count)| {
+            (value(place, trailing) - value_at_risk).max(0.0) * count as f64
+        });
+        let excess = tail - beyond as f64 * value_at_risk + nearby.sum::<f64>();
+        let share = (1.0 - self.level.get()) * self.solved as f64;
+        Summary {
+            mean: sum / self.solved as f64,
+            p50,
+            p95,
+            p99,
+            max,
+            cvar: value_at_risk + excess / share,
+        }
+    }
+}

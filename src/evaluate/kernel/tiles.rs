@@ -1,0 +1,325 @@
+//! Ground points in tiles of neighbours, and tiles in groups.
+//!
+//! A tile fills the lanes. Points are split in two until a tile is left, so that any set of points,
+//! a grid or not, gives compact tiles, and all tiles but the last of each group are full. Many
+//! points are split across the longest side of their bounding box; few where it leaves the least
+//! to be looked at, because a satellite that sees any point of a tile is looked at for all of them.
+//!
+//! A satellite at r sees the points within the angle ψ(r) = acos(k / r) - m of the point below it,
+//! k = g cos m, for points at distance g from the centre and an elevation m over the horizon of
+//! the sphere through them. It can see something of a cap of angular radius ρ around the unit
+//! vector c only if r·c >= |r| cos(ψ + ρ), which is free of angles when written out:
+//!
+//! ```text
+//! r·c + sin(ρ - m) q >= k cos(ρ - m),   q = sqrt(|r|² - k²)
+//! ```
+//!
+//! Taking the smallest g of all points, and the mask less the largest angle between a vertical and
+//! the radius, makes this hold for points of an ellipsoid too; it never leaves out a satellite
+//! that is visible.
+
+use super::flight::Positions;
+use super::lanes::{LANES, Lanes, SiteLanes};
+use crate::ground::Site;
+use crate::visibility::Mask;
+use nalgebra::Vector3;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Tiles that are culled together first.
+pub(super) const TILES_IN_GROUP: usize = 32;
+
+/// The test of a cap against a satellite: `x`, `y`, `z`, `q` coefficients and the bound.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cap {
+    pub(super) centre: [f32; 3],
+    pub(super) sine: f32,
+    pub(super) bound: f32,
+}
+
+/// Points that are worked on side by side.
+#[derive(Debug, Clone)]
+pub(super) struct Tile {
+    /// Index of the point in each lane; shorter than the lanes in the last tile.
+    pub(super) members: Vec<u32>,
+    pub(super) single: SiteLanes<f32>,
+    pub(super) double: SiteLanes<f64>,
+    pub(super) cap: Cap,
+}
+
+/// Tiles next to each other.
+#[derive(Debug, Clone)]
+pub(super) struct Group {
+    pub(super) tiles: std::ops::Range<usize>,
+    pub(super) cap: Cap,
+}
+
+/// All the points.
+#[derive(Debug, Clone)]
+pub(super) struct Tiles {
+    pub(super) tiles: Vec<Tile>,
+    pub(super) groups: Vec<Group>,
+    pub(super) horizon: Horizon,
+}
+
+/// What bounds the sight of all points together.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Horizon {
+    /// Largest distance of a point from the centre of the Earth, km.
+    farthest_km: f64,
+    /// Least elevation over the horizon of the sphere of what is at the mask, radians; and sine
+    /// and cosine of the largest.
+    least_mask_rad: f64,
+    sin_most: f64,
+    cos_most: f64,
+    /// k², km²: what is nearer to the centre than k is nowhere visible.
+    pub(super) reach2: f64,
+}
+
+impl Horizon {
+    fn new(sites: &[Site], mask: Mask) -> Self {
+        let mut tilt: f64 = 0.0;
+        let (mut nearest_km, mut farthest_km) = (f64::INFINITY, 0.0_f64);
+        for site in sites {
+            let radius = site.local.origin_km.norm();
+            nearest_km = nearest_km.min(radius);
+            farthest_km = farthest_km.max(radius);
+            tilt = tilt.max(site.local.origin_km.cross(&site.local.up).norm() / radius);
+        }
+        let (mask_rad, tilt_rad) = (mask.degrees().to_radians(), tilt.min(1.0).asin());
+        let (sin_most, cos_most) = (mask_rad + tilt_rad).min(FRAC_PI_2).sin_cos();
+        Self {
+            farthest_km,
+            least_mask_rad: mask_rad - tilt_rad,
+            sin_most,
+            cos_most,
+            reach2: (nearest_km * (mask_rad - tilt_rad).cos()).powi(2),
+        }
+    }
+
+    /// Smallest distance from a point to a satellite at the mask that is `radius_km` from the
+    /// centre; 0 for one that is not above all points.
+    fn range_at_mask_km(&self, radius_km: f64) -> f64 {
+        let beyond = radius_km.powi(2) - (self.farthest_km * self.cos_most).powi(2);
+        (beyond.max(0.0).sqrt() - self.farthest_km * self.sin_most).max(0.0)
+    }
+
+    /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
+    /// were rounded, over the shortest range; and eight roundings of the sine itself.
+    #[inline(always)]
+    pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
+        let range_km = self.range_at_mask_km(positions.nearest_km);
+        let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
+        // Satellites on the ground leave nothing to f32.
+        slack.min(2.0) as f32
+    }
+
+    /// PDOP up to which f32 holds six digits. A line of sight is turned by the rounding of the
+    /// positions over the range, most in the zenith, and PDOP magnifies that by its square at
+    /// most; the constant was found by trial, with twice as much left (seven digits at 925 km).
+    #[inline(always)]
+    pub(super) fn single_below(&self, positions: &Positions) -> f32 {
+        let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
+        (5e-6 * range_km / rounding_km(positions)).sqrt() as f32
+    }
+
+    /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
+    /// number in it, and as much again.
+    #[inline(always)]
+    pub(super) fn cap_slack_km(positions: &Positions) -> f32 {
+        positions.farthest_km as f32 * (16.0 * f32::EPSILON)
+    }
+
+    fn cap(&self, circle: Option<Circle>) -> Cap {
+        // Caps near a hemisphere and beyond are not worth a test.
+        let Some(circle) = circle.filter(|circle| circle.radius_rad < 1.2) else {
+            return Cap::EVERYTHING;
+        };
+        let angle = circle.radius_rad - self.least_mask_rad;
+        Cap {
+            centre: circle.centre.map(|x| x as f32).into(),
+            sine: angle.sin() as f32,
+            bound: (self.reach2.sqrt() * angle.cos()) as f32,
+        }
+    }
+}
+
+/// How far two positions that were rounded to f32 may be displaced: half a unit in each of the
+/// three components.
+#[inline(always)]
+fn rounding_km(positions: &Positions) -> f64 {
+    const ROOT_3: f64 = 1.732_050_807_568_877_2;
+    positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3
+}
+
+/// A circle on the sphere around some points.
+#[derive(Debug, Clone, Copy)]
+struct Circle {
+    centre: Vector3<f64>,
+    radius_rad: f64,
+}
+
+impl Circle {
+    /// Nearly the smallest: the centre is moved towards the farthest point by smaller and smaller
+    /// steps (Bădoiu and Clarkson, *SODA* 2003, p. 801). `None` for points all around the Earth.
+    fn around(sites: &[Site], members: &[u32]) -> Option<Self> {
+        let units: Vec<_> = members
+            .iter()
+            .map(|&m| sites[m as usize].local.origin_km.normalize())
+            .collect();
+        let sum: Vector3<f64> = units.iter().sum();
+        let mut centre = sum.try_normalize(1e-6)?;
+        let mut best: Option<Self> = None;
+        for step in 2..64 {
+            let nearness = |unit: &&Vector3<f64>| unit.dot(&centre);
+            let farthest = units
+                .iter()
+                .min_by(|a, b| nearness(a).total_cmp(&nearness(b)))?;
+            let radius_rad = farthest.angle(&centre);
+            if best.is_none_or(|best| radius_rad < best.radius_rad) {
+                best = Some(Self { centre, radius_rad });
+            }
+            centre = (centre + (farthest - centre) / f64::from(step)).try_normalize(1e-6)?;
+        }
+        best
+    }
+
+    /// What grows with the number of satellites that see something of the circle: the area that
+    /// they can be over, if each sees a circle of 0.4 rad (that of 1000 km and 7°).
+    fn cost(circle: Option<Self>) -> f64 {
+        circle.map_or(2.0, |circle| 1.0 - (circle.radius_rad + 0.4).min(PI).cos())
+    }
+}
+
+impl Cap {
+    const EVERYTHING: Self = Self {
+        centre: [0.0; 3],
+        sine: 0.0,
+        bound: f32::MIN,
+    };
+}
+
+impl Tiles {
+    pub(super) fn new(sites: &[Site], mask: Mask) -> Self {
+        let horizon = Horizon::new(sites, mask);
+        let mut members: Vec<u32> = (0..sites.len() as u32).collect();
+        let mut tiles = Self {
+            tiles: Vec::with_capacity(sites.len().div_ceil(LANES)),
+            groups: Vec::new(),
+            horizon,
+        };
+        tiles.split(sites, &mut members);
+        tiles
+    }
+
+    /// Points of all tiles, lanes without a point included.
+    pub(super) fn slots(&self) -> usize {
+        self.tiles.len() * LANES
+    }
+
+    fn split(&mut self, sites: &[Site], members: &mut [u32]) {
+        if members.len() > TILES_IN_GROUP * LANES {
+            sort_along(&keys(sites, members)[longest_side(sites, members)], members);
+            let (left, right) = members.split_at_mut(middle(members.len()));
+            self.split(sites, left);
+            self.split(sites, right);
+            return;
+        }
+        let first = self.tiles.len();
+        self.split_group(sites, members);
+        self.groups.push(Group {
+            tiles: first..self.tiles.len(),
+            cap: self.horizon.cap(Circle::around(sites, members)),
+        });
+    }
+
+    fn split_group(&mut self, sites: &[Site], members: &mut [u32]) {
+        if members.len() > LANES {
+            cut_well(sites, members);
+            let (left, right) = members.split_at_mut(middle(members.len()));
+            self.split_group(sites, left);
+            self.split_group(sites, right);
+            return;
+        }
+        self.tiles.push(Tile {
+            single: site_lanes(sites, members, |x| x as f32, f32::NAN),
+            double: site_lanes(sites, members, |x| x, f64::NAN),
+            cap: self.horizon.cap(Circle::around(sites, members)),
+            members: members.to_vec(),
+        });
+    }
+}
+
+/// The points on the left of a cut: a whole number of tiles.
+fn middle(points: usize) -> usize {
+    points.div_ceil(LANES).div_ceil(2) * LANES
+}
+
+/// What points can be ordered by: x, y, z and the longitude, counted from the middle one.
+fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
+    let origin = |m: u32| sites[m as usize].local.origin_km;
+    let sum: Vector3<f64> = members.iter().map(|&m| origin(m)).sum();
+    let along =
+        |key: &dyn Fn(Vector3<f64>) -> f64| members.iter().map(|&m| (m, key(origin(m)))).collect();
+    let eastwards = |p: Vector3<f64>| (sum.x * p.y - sum.y * p.x).atan2(sum.x * p.x + sum.y * p.y);
+    [
+        along(&|p| p.x),
+        along(&|p| p.y),
+        along(&|p| p.z),
+        along(&eastwards),
+    ]
+}
+
+/// The axis along which the bounding box of the points is longest.
+fn longest_side(sites: &[Site], members: &[u32]) -> usize {
+    let points = members.iter().map(|&m| sites[m as usize].local.origin_km);
+    let low = points.clone().reduce(|a, b| a.inf(&b));
+    let high = points.reduce(|a, b| a.sup(&b));
+    low.zip(high).map_or(0, |(low, high)| (high - low).imax())
+}
+
+/// Orders points by a key; ties by the order of the points, so that it does not depend on the sort.
+fn sort_along(key: &[(u32, f64)], members: &mut [u32]) {
+    let mut ordered = key.to_vec();
+    ordered.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    for (member, (m, _)) in members.iter_mut().zip(ordered) {
+        *member = m;
+    }
+}
+
+/// Orders points so that the two halves have the smallest circles.
+fn cut_well(sites: &[Site], members: &mut [u32]) {
+    let cut = middle(members.len());
+    let cost = |members: &[u32]| {
+        let (left, right) = members.split_at(cut);
+        left.len() as f64 * Circle::cost(Circle::around(sites, left))
+            + right.len() as f64 * Circle::cost(Circle::around(sites, right))
+    };
+    let orders = keys(sites, members).map(|key| {
+        let mut order = members.to_vec();
+        sort_along(&key, &mut order);
+        order
+    });
+    let best = orders.iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    if let Some(best) = best {
+        members.copy_from_slice(best);
+    }
+}
+
+fn site_lanes<R: Copy>(
+    sites: &[Site],
+    members: &[u32],
+    convert: impl Fn(f64) -> R,
+    empty: R,
+) -> SiteLanes<R> {
+    let lanes = |part: fn(&Site) -> Vector3<f64>, axis: usize| {
+        Lanes(std::array::from_fn(|l| {
+            members
+                .get(l)
+                .map_or(empty, |&m| convert(part(&sites[m as usize])[axis]))
+        }))
+    };
+    SiteLanes {
+        origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km, axis)),
+        up: [0, 1, 2].map(|axis| lanes(|site| site.local.up, axis)),
+    }
+}

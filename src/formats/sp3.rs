@@ -1,0 +1,303 @@
+//! SP3-c and SP3-d orbit files, written and read.
+//!
+//! Sources: S. Hilla, *The Extended Standard Product 3 Orbit Format (SP3-c)*, 17 August 2010, and
+//! *(SP3-d)*, 21 February 2016, National Geodetic Survey. Earth-fixed positions in km, velocities
+//! in dm/s, epochs in the time system of the header, here GPS time. An id is a letter and two
+//! digits; the letter `L` means a low orbit, and some readers know other letters only.
+
+mod read;
+
+pub use read::{parse, read};
+
+use super::WriteError;
+use super::metadata::{Metadata, Object};
+use super::sampled::Sampled;
+use super::stamp::TimeSystem;
+use crate::ephemeris::Flown;
+use crate::frames::State;
+use crate::time::Epoch;
+use crate::words::words;
+use chrono::{Datelike, NaiveDate, NaiveDateTime, TimeDelta, Timelike};
+use std::io::{self, Write};
+use thiserror::Error;
+
+words! {
+    /// A version of the format.
+    Version {
+        /// SP3-d, 2016: up to 999 satellites and any number of comments.
+        D = "d",
+        /// SP3-c, 2010: up to 85 satellites, four comments of 57 characters.
+        C = "c",
+    }
+}
+
+impl Version {
+    /// Most satellites of a file: what a letter and two digits tell apart, and 85 in SP3-c.
+    #[must_use]
+    pub fn most_satellites(self) -> usize {
+        match self {
+            Self::C => 85,
+            Self::D => 99,
+        }
+    }
+
+    /// Longest line.
+    fn columns(self) -> usize {
+        match self {
+            Self::C => 60,
+            Self::D => 80,
+        }
+    }
+}
+
+/// What SP3 cannot hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Sp3Error {
+    /// More satellites than a file holds, or none.
+    #[error("{found} satellites do not fit an SP3-{version} file; 1 to {most} do", most = version.most_satellites())]
+    Satellites {
+        /// Their number.
+        found: usize,
+        /// The version.
+        version: Version,
+    },
+    /// More epochs than seven digits tell.
+    #[error("{0} epochs do not fit an SP3 file; 9999999 do")]
+    Epochs(usize),
+    /// A letter that is none.
+    #[error("'{0}' is no capital letter, as an SP3 id begins with")]
+    Letter(char),
+}
+
+/// The accuracy code of an unknown accuracy.
+const UNKNOWN_ACCURACY: &str = "  0";
+
+/// A clock value that is not known, microseconds.
+const NO_CLOCK: &str = " 999999.999999";
+
+/// Ids on one line of the header.
+const IDS: usize = 17;
+
+/// Fewest lines of ids in the header of either version.
+const ID_LINES: usize = 5;
+
+/// Writes one file of satellites that fly on one grid, epoch by epoch.
+///
+/// `satellites` are named `letter` 01, 02 … in their order.
+///
+/// # Errors
+/// When they do not fit a file, a satellite has no state, or the output does not take the bytes.
+pub fn write(
+    out: &mut impl Write,
+    version: Version,
+    letter: char,
+    metadata: &Metadata,
+    sampled: &Sampled<'_>,
+    satellites: &[(&Flown, &Object)],
+) -> Result<(), WriteError> {
+    let grid = sampled.grid();
+    if satellites.is_empty() || satellites.len() > version.most_satellites() {
+        let found = satellites.len();
+        return Err(Sp3Error::Satellites { found, version }.into());
+    }
+    if grid.len() > 9_999_999 {
+        return Err(Sp3Error::Epochs(grid.len()).into());
+    }
+    if !letter.is_ascii_uppercase() {
+        return Err(Sp3Error::Letter(letter).into());
+    }
+    let ids: Vec<String> = (1..=satellites.len())
+        .map(|number| format!("{letter}{number:02}"))
+        .collect();
+    let start = TimeSystem::Gps.stamp(grid.epoch());
+    write_first_lines(out, version, start, (grid.len(), grid.step_s()))?;
+    write_ids(out, version, &ids)?;
+    write_fixed_lines(out, letter)?;
+    write_comments(out, version, metadata, &ids, satellites)?;
+    for k in 0..grid.len() {
+        let elapsed_s = grid.elapsed_s(k);
+        let at = grid.epoch().plus_seconds(elapsed_s);
+        writeln!(out, "*  {}", epoch_fields(TimeSystem::Gps.stamp(at)))?;
+        for ((satellite, _), id) in satellites.iter().zip(&ids) {
+            write_state(out, id, &sampled.state_at(satellite, k)?)?;
+        }
+    }
+    writeln!(out, "EOF")?;
+    Ok(())
+}
+
+/// Lines 1 and 2: epoch, number and spacing of the samples, GPS week, modified Julian day.
+fn write_first_lines(
+    out: &mut impl Write,
+    version: Version,
+    start: NaiveDateTime,
+    (epochs, step_s): (usize, f64),
+) -> io::Result<()> {
+    writeln!(
+        out,
+        "#{version}V{} {epochs:>7} ORBIT ITRF  EXT  NWK",
+        epoch_fields(start)
+    )?;
+    let since_gps = start - gps_zero();
+    let week = since_gps.num_days().div_euclid(7);
+    let of_week = since_gps - TimeDelta::days(7 * week);
+    let seconds = of_week.num_seconds() as f64 + f64::from(of_week.subsec_nanos()) * 1e-9;
+    let of_day =
+        f64::from(start.num_seconds_from_midnight()) + f64::from(start.nanosecond()) * 1e-9;
+    // 44244 is the modified Julian day of 6 January 1980.
+    let day = since_gps.num_seconds().div_euclid(86_400) + 44_244;
+    writeln!(
+        out,
+        "## {week:>4} {seconds:15.8} {step_s:14.8} {day:>5} {:15.13}",
+        of_day / 86_400.0
+    )
+}
+
+/// Beginning of GPS time, 6 January 1980.
+fn gps_zero() -> NaiveDateTime {
+    NaiveDate::from_ymd_opt(1980, 1, 6)
+        .unwrap_or_default()
+        .into()
+}
+
+/// `2025  1  1  0  0  0.00000000`.
+fn epoch_fields(stamp: NaiveDateTime) -> String {
+    let seconds = f64::from(stamp.second()) + f64::from(stamp.nanosecond()) * 1e-9;
+    format!(
+        "{:4} {:>2} {:>2} {:>2} {:>2} {seconds:11.8}",
+        stamp.year(),
+        stamp.month(),
+        stamp.day(),
+        stamp.hour(),
+        stamp.minute()
+    )
+}
+
+/// The lines of ids and those of accuracies, at least five each.
+fn write_ids(out: &mut impl Write, version: Version, ids: &[String]) -> io::Result<()> {
+    let lines = ids.len().div_ceil(IDS).max(ID_LINES);
+    for line in 0..lines {
+        let count = match (line, version) {
+            (0, _) => format!("{:>3}", ids.len()),
+            _ => "   ".to_owned(),
+        };
+        let fields: String = (0..IDS)
+            .map(|column| ids.get(line * IDS + column).map_or("  0", String::as_str))
+            .collect();
+        writeln!(out, "+  {count}   {fields}")?;
+    }
+    for _ in 0..lines {
+        writeln!(out, "++       {}", UNKNOWN_ACCURACY.repeat(IDS))?;
+    }
+    Ok(())
+}
+
+/// File type, time system, and what the format keeps for later.
+fn write_fixed_lines(out: &mut impl Write, letter: char) -> io::Result<()> {
+    let rest = "ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc";
+    writeln!(out, "%c {letter}  cc GPS {rest}")?;
+    writeln!(out, "%c cc cc ccc {rest}")?;
+    writeln!(
+        out,
+        "%f  1.2500000  1.025000000  0.00000000000  0.000000000000000"
+    )?;
+    writeln!(
+        out,
+        "%f  0.0000000  0.000000000  0.00000000000  0.000000000000000"
+    )?;
+    for _ in 0..2 {
+        writeln!(
+            out,
+            "%i    0    0    0    0      0      0      0      0         0"
+        )?;
+    }
+    Ok(())
+}
+
+/// The comments: SP3-d names every satellite, SP3-c has room for the first and the last.
+fn write_comments(
+    out: &mut impl Write,
+    version: Version,
+    metadata: &Metadata,
+    ids: &[String],
+    satellites: &[(&Flown, &Object)],
+) -> io::Result<()> {
+    let width = version.columns() - 3;
+    let name = |(id, (_, object)): (&String, &(&Flown, &Object))| format!("{id} = {}", object.name);
+    let names: Vec<String> = ids.iter().zip(satellites).map(name).collect();
+    let lines = match version {
+        Version::D => metadata.comments().into_iter().chain(names).collect(),
+        Version::C => vec![
+            metadata.subject.first().cloned().unwrap_or_default(),
+            format!("Theory: {}; pseudo-Earth-fixed, UT1 = UTC", metadata.theory),
+            names.first().cloned().unwrap_or_default(),
+            names.last().cloned().unwrap_or_default(),
+        ],
+    };
+    for line in lines {
+        for part in wrapped(&line, width) {
+            writeln!(out, "/* {part}")?;
+            if version == Version::C {
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Words of a text in lines of at most `width` characters.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines
+            .last_mut()
+            .filter(|line| line.len() + word.len() < width);
+        match line {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) => *line += &format!(" {word}"),
+            None => lines.push(word.chars().take(width).collect()),
+        }
+    }
+    lines
+}
+
+/// A position in km and a velocity in dm/s, to a millimetre and 1e-7 m/s.
+fn write_state(out: &mut impl Write, id: &str, state: &State) -> io::Result<()> {
+    let (r, v) = (state.position_km, state.velocity_km_s * DM_IN_KM);
+    writeln!(out, "P{id}{:14.6}{:14.6}{:14.6}{NO_CLOCK}", r.x, r.y, r.z)?;
+    writeln!(out, "V{id}{:14.6}{:14.6}{:14.6}{NO_CLOCK}", v.x, v.y, v.z)
+}
+
+/// Decimetres in a kilometre.
+const DM_IN_KM: f64 = 1e4;
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sp3 {
+    /// Version letter.
+    pub version: char,
+    /// Time system of the epochs.
+    pub time_system: TimeSystem,
+    /// Name of the frame.
+    pub frame: String,
+    /// Ids of the satellites, in the order of the header.
+    pub ids: Vec<String>,
+    /// Comments.
+    pub comments: Vec<String>,
+    /// For each satellite its states in the order of time; a missing velocity is none.
+    pub states: Vec<Vec<Sample>>,
+}
+
+/// A state of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Instant.
+    pub at: Epoch,
+    /// Earth-fixed position, km.
+    pub position_km: nalgebra::Vector3<f64>,
+    /// Earth-fixed velocity, km/s.
+    pub velocity_km_s: Option<nalgebra::Vector3<f64>>,
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,281 @@
+//! Reads SP3-a to SP3-d by columns.
+
+use super::{DM_IN_KM, Sample, Sp3};
+use crate::formats::ReadError;
+use crate::formats::finding::Findings;
+use crate::formats::lines::{Line, Lines};
+use crate::formats::stamp::TimeSystem;
+use crate::formats::trajectory::time_system_of_name;
+use crate::time::Epoch;
+use chrono::{NaiveDate, NaiveDateTime, TimeDelta};
+use nalgebra::Vector3;
+use std::io::{self, BufRead};
+
+/// Reads a file; the first broken rule ends it.
+///
+/// # Errors
+/// The first finding, or a failure of the input.
+pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
+    let mut findings = Findings::of_reader();
+    let file = parse(input, &mut findings)?;
+    findings.unless_error(file)
+}
+
+/// Reads a file; what it breaks goes to the list of findings.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Sp3> {
+    let mut lines = Lines::new(input);
+    let mut parser = Parser::new();
+    while let Some(line) = lines.next(findings)? {
+        parser.line(&line, findings);
+    }
+    Ok(parser.end(lines.number().max(1), findings))
+}
+
+struct Parser {
+    file: Sp3,
+    /// Number of satellites and of epochs that the header announces.
+    announced: (usize, usize),
+    /// Lines that begin with `%c`.
+    type_lines: usize,
+    epochs: usize,
+    at: Option<Epoch>,
+    ended: bool,
+    any: bool,
+}
+
+impl Parser {
+    fn new() -> Self {
+        Self {
+            file: Sp3 {
+                version: ' ',
+                time_system: TimeSystem::Gps,
+                frame: String::new(),
+                ids: Vec::new(),
+                comments: Vec::new(),
+                states: Vec::new(),
+            },
+            announced: (0, 0),
+            type_lines: 0,
+            epochs: 0,
+            at: None,
+            ended: false,
+            any: false,
+        }
+    }
+
+    fn line(&mut self, line: &Line, findings: &mut Findings) {
+        let text = line.text.trim_end();
+        let place = (line.number, 1);
+        if !std::mem::replace(&mut self.any, true) {
+            self.first_line(line, findings);
+            return;
+        }
+        if self.ended {
+            if !text.is_empty() {
+                findings.error(place, "sp3-line", "nothing may follow EOF");
+            }
+            return;
+        }
+        match text.as_bytes() {
+            [b'#', b'#', ..]
+            | [b'+', b'+', ..]
+            | [b'%', b'f' | b'i', ..]
+            | [b'E', b'P' | b'V', ..] => {}
+            [b'+', b' ', ..] => self.ids(line, findings),
+            [b'%', b'c', ..] => self.file_type(line, findings),
+            [b'/', b'*', ..] => self.file.comments.push(text[2..].trim().to_owned()),
+            [b'*', b' ', ..] => self.epoch(line, findings),
+            [b'P', ..] => self.position(line, findings),
+            [b'V', ..] => self.velocity(line, findings),
+            _ if text == "EOF" => self.ended = true,
+            _ => findings.error(place, "sp3-line", "a line of no kind that SP3 has"),
+        }
+    }
+
+    fn first_line(&mut self, line: &Line, findings: &mut Findings) {
+        let bytes = line.text.as_bytes();
+        let ([b'#', version @ b'a'..=b'd', b'P' | b'V', ..], true) = (bytes, bytes.len() >= 51)
+        else {
+            let message = "the first line must be # with a version a to d, P or V, and 60 columns";
+            findings.error((line.number, 1), "sp3-first-line", message);
+            return;
+        };
+        self.file.version = char::from(*version);
+        self.file.frame = line.text[46..51].trim().to_owned();
+        match line.text[32..39].trim().parse() {
+            Ok(epochs) => self.announced.1 = epochs,
+            Err(_) => {
+                let message = "the number of epochs is not a number";
+                findings.error((line.number, 33), "sp3-number", message);
+            }
+        }
+        if calendar(&line.text[3..31]).is_none() {
+            findings.error(
+                (line.number, 4),
+                "sp3-time",
+                "the first epoch is not a time",
+            );
+        }
+    }
+
+    fn ids(&mut self, line: &Line, findings: &mut Findings) {
+        let text = &line.text;
+        if let Some(Ok(count)) = text.get(3..6).map(|count| count.trim().parse()) {
+            self.announced.0 = count;
+        }
+        for column in (9..60).step_by(3) {
+            let Some(id) = text.get(column..column + 3) else {
+                return;
+            };
+            if self.file.ids.len() == self.announced.0 || id.trim() == "0" {
+                continue;
+            }
+            let place = (line.number, column + 1);
+            if !is_id(id) {
+                let message = format!("'{id}' is no id: a letter and two digits");
+                findings.error(place, "sp3-id", message);
+            } else if self.file.ids.iter().any(|known| known == id) {
+                findings.error(place, "sp3-id", format!("{id} is named twice"));
+            } else {
+                self.file.ids.push(id.to_owned());
+                self.file.states.push(Vec::new());
+            }
+        }
+    }
+
+    fn file_type(&mut self, line: &Line, findings: &mut Findings) {
+        self.type_lines += 1;
+        if self.type_lines > 1 || !matches!(self.file.version, 'c' | 'd') {
+            return;
+        }
+        let name = line.text.get(9..12).unwrap_or_default().trim();
+        match time_system_of_name(name) {
+            Ok(time_system) => self.file.time_system = time_system,
+            Err(_) => {
+                let message = format!("time system '{name}' is not GPS, UTC, TAI or TT");
+                findings.error((line.number, 10), "sp3-time-system", message);
+            }
+        }
+    }
+
+    fn epoch(&mut self, line: &Line, findings: &mut Findings) {
+        let stamp = line.text.get(3..31).and_then(calendar);
+        let Some(stamp) = stamp else {
+            findings.error((line.number, 4), "sp3-time", "the epoch is not a time");
+            self.at = None;
+            return;
+        };
+        let at = self.file.time_system.epoch(stamp);
+        if self.at.is_some_and(|before| at <= before) {
+            let message = "the epoch is not after the one before";
+            findings.error((line.number, 4), "sp3-time-order", message);
+        }
+        self.epochs += 1;
+        self.at = Some(at);
+    }
+
+    /// The satellite of a record, and its three numbers.
+    fn record(&self, line: &Line, findings: &mut Findings) -> Option<(usize, Vector3<f64>)> {
+        let text = &line.text;
+        let id = text.get(1..4).unwrap_or_default();
+        let Some(index) = self.file.ids.iter().position(|known| known == id) else {
+            let message = format!("'{id}' is not in the header");
+            findings.error((line.number, 2), "sp3-id", message);
+            return None;
+        };
+        let mut values = [0.0; 3];
+        for (value, column) in values.iter_mut().zip([4, 18, 32]) {
+            let field = text.get(column..column + 14).unwrap_or_default();
+            match field.trim().parse::<f64>() {
+                Ok(number) if number.is_finite() => *value = number,
+                _ => {
+                    let message = format!("'{field}' is not a number of 14 columns");
+                    findings.error((line.number, column + 1), "sp3-number", message);
+                    return None;
+                }
+            }
+        }
+        Some((index, Vector3::from(values)))
+    }
+
+    fn position(&mut self, line: &Line, findings: &mut Findings) {
+        let (Some((index, position_km)), Some(at)) = (self.record(line, findings), self.at) else {
+            return;
+        };
+        // A position of zeros stands for a missing one.
+        if position_km.norm_squared() == 0.0 {
+            return;
+        }
+        let states = &mut self.file.states[index];
+        if states.last().is_some_and(|last| last.at >= at) {
+            let message = "the satellite has two positions at one epoch";
+            findings.error((line.number, 2), "sp3-repeated", message);
+            return;
+        }
+        states.push(Sample {
+            at,
+            position_km,
+            velocity_km_s: None,
+        });
+    }
+
+    fn velocity(&mut self, line: &Line, findings: &mut Findings) {
+        let Some((index, velocity_dm_s)) = self.record(line, findings) else {
+            return;
+        };
+        match self.file.states[index].last_mut() {
+            Some(last) if Some(last.at) == self.at => {
+                last.velocity_km_s = Some(velocity_dm_s / DM_IN_KM);
+            }
+            _ => {
+                let message = "a velocity without a position before it";
+                findings.error((line.number, 1), "sp3-velocity", message);
+            }
+        }
+    }
+
+    fn end(self, number: usize, findings: &mut Findings) -> Sp3 {
+        let place = (number, 1);
+        if !self.any {
+            findings.error(place, "sp3-first-line", "the file is empty");
+        } else if !self.ended {
+            findings.error(place, "sp3-truncated", "EOF is missing");
+        }
+        let (satellites, epochs) = self.announced;
+        if self.file.ids.len() != satellites {
+            let message = format!(
+                "{satellites} satellites are announced; {} are named",
+                self.file.ids.len()
+            );
+            findings.error(place, "sp3-count", message);
+        }
+        if self.epochs != epochs {
+            let message = format!("{epochs} epochs are announced; there are {}", self.epochs);
+            findings.error(place, "sp3-count", message);
+        }
+        self.file
+    }
+}
+
+fn is_id(id: &str) -> bool {
+    let bytes = id.as_bytes();
+    (bytes[0].is_ascii_uppercase() || bytes[0] == b' ')
+        && (bytes[1].is_ascii_digit() || bytes[1] == b' ')
+        && bytes[2].is_ascii_digit()
+}
+
+/// Reads `2025  1  1  0  0  0.00000000`.
+fn calendar(text: &str) -> Option<NaiveDateTime> {
+    let fields: Vec<&str> = text.split_whitespace().collect();
+    let [year, month, day, hour, minute, second] = fields[..] else {
+        return None;
+    };
+    let date = NaiveDate::from_ymd_opt(year.parse().ok()?, month.parse().ok()?, day.parse().ok()?)?;
+    let second: f64 = second.parse().ok().filter(|s| (0.0..61.0).contains(s))?;
+    let start = date.and_hms_opt(hour.parse().ok()?, minute.parse().ok()?, 0)?;
+    // The columns hold 1e-8 s.
+    start.checked_add_signed(TimeDelta::nanoseconds((second * 1e9).round() as i64))
+}

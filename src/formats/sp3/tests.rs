@@ -1,0 +1,177 @@
+use super::*;
+use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
+use crate::formats::finding::{Finding, Findings};
+use crate::formats::metadata::Theory;
+use crate::frames::{Frame, from_teme};
+use crate::orbit::Model;
+use crate::time::TimeGrid;
+use proptest::prelude::*;
+
+fn ephemeris(design: &str) -> Ephemeris {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let grid = TimeGrid::new(epoch, 600.0, 97.5).unwrap();
+    let design: Design = design.parse().unwrap();
+    Ephemeris::of_design(&design, Model::J2, grid).unwrap()
+}
+
+fn written(ephemeris: &Ephemeris, version: Version, letter: char) -> Result<String, WriteError> {
+    let epoch = ephemeris.grid().epoch();
+    let metadata = Metadata {
+        originator: "NAVWALKER".to_owned(),
+        creation: epoch,
+        frame: Frame::EarthFixed,
+        time_system: TimeSystem::Gps,
+        theory: Theory::Flown(Model::J2),
+        subject: vec!["Design: delta:55:20/5/1@925".to_owned()],
+    };
+    let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
+    let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
+    let sampled = Sampled::new(ephemeris, Frame::EarthFixed);
+    let mut out = Vec::new();
+    write(&mut out, version, letter, &metadata, &sampled, &satellites)?;
+    Ok(String::from_utf8(out).unwrap())
+}
+
+fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
+    let mut findings = Findings::of_linter(20);
+    parse(text.as_ref(), &mut findings).unwrap();
+    findings.into_vec()
+}
+
+/// Columns of SP3-c: the first two lines of a file of 1 January 2025, 0h UTC, which is 18 s into
+/// Wednesday of GPS week 2347; modified Julian day 60676.
+#[test]
+fn validate_columns_of_the_header() {
+    let text = written(&ephemeris("delta:55:20/5/1@925"), Version::C, 'L').unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        lines[0],
+        "#cV2025  1  1  0  0 18.00000000       7 ORBIT ITRF  EXT  NWK"
+    );
+    assert_eq!(
+        lines[1],
+        "## 2347 259218.00000000    97.50000000 60676 0.0002083333333"
+    );
+    assert_eq!(
+        lines[2],
+        "+   20   L01L02L03L04L05L06L07L08L09L10L11L12L13L14L15L16L17"
+    );
+    assert_eq!(
+        lines[3],
+        "+        L18L19L20  0  0  0  0  0  0  0  0  0  0  0  0  0  0"
+    );
+    assert_eq!(
+        lines[7],
+        "++         0  0  0  0  0  0  0  0  0  0  0  0  0  0  0  0  0"
+    );
+    assert_eq!(
+        lines[12],
+        "%c L  cc GPS ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc"
+    );
+    // Twenty-two lines before the first epoch (SP3-c, table of the header).
+    assert_eq!(lines[22], "*  2025  1  1  0  0 18.00000000");
+    assert!(lines[23].starts_with("PL01") && lines[24].starts_with("VL01"));
+    assert!(lines[..22].iter().all(|line| line.len() <= 60));
+    assert_eq!((lines[23].len(), lines[24].len()), (60, 60));
+    assert_eq!(lines.last(), Some(&"EOF"));
+}
+
+#[test]
+fn states_survive_with_their_units() {
+    let ephemeris = ephemeris("delta:55:20/5/1@925");
+    for version in [Version::C, Version::D] {
+        let text = written(&ephemeris, version, 'X').unwrap();
+        assert_eq!(findings(&text), [], "{version}");
+        let file = read(text.as_bytes()).unwrap();
+        assert_eq!((file.ids.len(), file.frame.as_str()), (20, "ITRF"));
+        assert_eq!(file.ids[19], "X20");
+        for (satellite, states) in ephemeris.satellites().iter().zip(&file.states) {
+            assert_eq!(states.len(), 7);
+            for (found, expected) in states.iter().zip(ephemeris.states(satellite)) {
+                let (elapsed_s, teme) = expected.unwrap();
+                let expected =
+                    from_teme(teme, Frame::EarthFixed, ephemeris.grid().epoch(), elapsed_s);
+                // Half a digit of 1e-6 km and of 1e-6 dm/s in three components.
+                assert!((found.position_km - expected.position_km).norm() < 1e-6);
+                assert!((found.velocity_km_s.unwrap() - expected.velocity_km_s).norm() < 1e-10);
+                assert_eq!(found.at.seconds_since(ephemeris.grid().epoch()), elapsed_s);
+            }
+        }
+    }
+}
+
+#[test]
+fn sp3d_names_every_satellite_in_its_comments() {
+    let text = written(&ephemeris("delta:55:98/7/1@925"), Version::D, 'L').unwrap();
+    assert!(text.contains("\n/* L98 = NW-P07-S14\n"));
+    assert!(text.lines().all(|line| line.len() <= 80));
+    assert_eq!(read(text.as_bytes()).unwrap().ids.len(), 98);
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let error = |design: &str, version, letter| {
+        written(&ephemeris(design), version, letter)
+            .unwrap_err()
+            .to_string()
+    };
+    assert!(error("delta:55:98/7/1@925", Version::C, 'L').contains("1 to 85"));
+    assert!(error("delta:55:100/5/1@925", Version::D, 'L').contains("1 to 99"));
+    assert!(error("delta:55:6/3/1@925", Version::D, 'l').contains("capital"));
+}
+
+#[test]
+fn broken_rules_are_named_with_their_place() {
+    let text = written(&ephemeris("delta:55:6/3/1@925"), Version::C, 'L').unwrap();
+    let cases = [
+        ("#cV", "#zV", (1, 1, "sp3-first-line")),
+        ("      7 ORBIT", "      8 ORBIT", (114, 1, "sp3-count")),
+        ("+    6 ", "+    7 ", (114, 1, "sp3-count")),
+        ("L02L03", "L02L02", (3, 16, "sp3-id")),
+        ("L02L03", "L020X3", (3, 16, "sp3-id")),
+        ("cc GPS", "cc GLO", (13, 10, "sp3-time-system")),
+        (
+            "*  2025  1  1  0  1 55",
+            "*  2025  1  1  0  0 17",
+            (36, 4, "sp3-time-order"),
+        ),
+        (
+            "*  2025  1  1  0  1 55",
+            "*  2025  1 41  0  1 55",
+            (36, 4, "sp3-time"),
+        ),
+        ("\nPL03", "\nPL09", (28, 2, "sp3-id")),
+        ("\nPL03", "\nPL02", (28, 2, "sp3-repeated")),
+        ("\nVL03", "\nVL04", (29, 1, "sp3-velocity")),
+        ("\nPL03", "\nPL03 x", (28, 5, "sp3-number")),
+        ("EOF\n", "", (113, 1, "sp3-truncated")),
+        ("EOF\n", "EOF\nmore\n", (115, 1, "sp3-line")),
+        ("/* T", "?? T", (20, 1, "sp3-line")),
+    ];
+    let mut misplaced = Vec::new();
+    for (from, to, expected) in cases {
+        let broken = text.replacen(from, to, 1);
+        assert_ne!(broken, text, "{from}");
+        assert!(read(broken.as_bytes()).is_err(), "{from}");
+        let found = findings(&broken);
+        if !found.iter().any(|f| (f.line, f.column, f.rule) == expected) {
+            let places: Vec<_> = found.iter().map(|f| (f.line, f.column, f.rule)).collect();
+            misplaced.push((from, to, expected, places));
+        }
+    }
+    assert!(misplaced.is_empty(), "{misplaced:#?}");
+    assert!(read(&b""[..]).is_err());
+}
+
+proptest! {
+    #[test]
+    fn damaged_files_never_panic(at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in 0_usize..90) {
+        let mut bytes = written(&ephemeris("delta:55:6/3/1@925"), Version::D, 'L').unwrap().into_bytes();
+        let at = at.index(bytes.len());
+        bytes[at] = byte;
+        let end = (at + cut).min(bytes.len());
+        bytes.drain(at..end);
+        let _ = findings(&bytes);
+    }
+}

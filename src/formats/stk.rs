@@ -1,0 +1,157 @@
+//! STK ephemeris files (`.e`), written and read.
+//!
+//! Source: AGI/Ansys, *STK Help*, "Ephemeris File Format (*.e)" and "Ephemeris Formats":
+//! `EphemerisTimePosVel`, seconds from the scenario epoch, UTC. `InterpolationSamplesM1` is one
+//! less than the number of samples that an interpolation takes; the file never names
+//! `InterpolationOrder`, which other readers refuse.
+
+mod read;
+
+pub use read::{parse, read};
+
+use super::WriteError;
+use super::interpolation::Hermite;
+use super::metadata::Metadata;
+use super::sampled::Sampled;
+use crate::ephemeris::Flown;
+use crate::frames::{Frame, State};
+use chrono::{Datelike, NaiveDateTime, Timelike};
+use std::io::{self, Write};
+
+/// Version of the format that is written.
+pub const FORMAT_VERSION: &str = "12.0";
+
+/// Names of months in STK's calendar dates.
+const MONTHS: [&str; 12] = [
+    "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
+];
+
+/// A whole file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StkEphemeris {
+    /// Comment lines, without the hash sign.
+    pub comments: Vec<String>,
+    /// Origin of the times, UTC.
+    pub scenario_epoch: NaiveDateTime,
+    /// Number of samples of the interpolation less one.
+    pub interpolation_samples_m1: Option<usize>,
+    /// Frame of the states.
+    pub frame: Frame,
+    /// Seconds since the scenario epoch, and the states.
+    pub states: Vec<(f64, State)>,
+}
+
+impl StkEphemeris {
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// When the output does not take the bytes.
+    pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        write_head(
+            out,
+            &self.comments,
+            (self.scenario_epoch, self.states.len()),
+            self.interpolation_samples_m1,
+            self.frame,
+        )?;
+        for (elapsed_s, state) in &self.states {
+            write_state(out, *elapsed_s, state)?;
+        }
+        write_tail(out)
+    }
+}
+
+/// Writes the states of one satellite on the grid of its ephemeris, line by line.
+///
+/// # Errors
+/// When the satellite has no state, or the output does not take the bytes.
+pub fn write(
+    out: &mut impl Write,
+    name: &str,
+    metadata: &Metadata,
+    (sampled, satellite): (&Sampled<'_>, &Flown),
+    hermite: Option<Hermite>,
+) -> Result<(), WriteError> {
+    let grid = sampled.grid();
+    let mut comments = vec![format!("Satellite: {name}")];
+    comments.extend(metadata.comments());
+    write_head(
+        out,
+        &comments,
+        (grid.epoch().utc().naive_utc(), grid.len()),
+        hermite.map(|hermite| hermite.degree / 2),
+        sampled.frame(),
+    )?;
+    for (k, sample) in sampled.states(satellite).enumerate() {
+        let (_, state) = sample?;
+        write_state(out, grid.elapsed_s(k), &state)?;
+    }
+    write_tail(out)?;
+    Ok(())
+}
+
+/// What STK calls a frame.
+#[must_use]
+pub fn coordinate_system(frame: Frame) -> &'static str {
+    match frame {
+        Frame::Eme2000 => "J2000",
+        Frame::Gcrf => "ICRF",
+        Frame::EarthFixed => "Fixed",
+        Frame::Teme => "TEMEOfDate",
+    }
+}
+
+fn write_head(
+    out: &mut impl Write,
+    comments: &[String],
+    (epoch, points): (NaiveDateTime, usize),
+    samples_m1: Option<usize>,
+    frame: Frame,
+) -> io::Result<()> {
+    writeln!(out, "stk.v.{FORMAT_VERSION}")?;
+    for comment in comments {
+        writeln!(out, "# {comment}")?;
+    }
+    writeln!(out, "BEGIN Ephemeris")?;
+    writeln!(out, "NumberOfEphemerisPoints {points}")?;
+    writeln!(out, "ScenarioEpoch {}", calendar_date(epoch))?;
+    if let Some(samples_m1) = samples_m1 {
+        writeln!(out, "InterpolationMethod Hermite")?;
+        writeln!(out, "InterpolationSamplesM1 {samples_m1}")?;
+    }
+    writeln!(out, "CentralBody Earth")?;
+    writeln!(out, "CoordinateSystem {}", coordinate_system(frame))?;
+    writeln!(out, "DistanceUnit Kilometers")?;
+    writeln!(out, "EphemerisTimePosVel\n")
+}
+
+fn write_tail(out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "\nEND Ephemeris")
+}
+
+/// `1 Jan 2025 00:00:00.000000000`.
+fn calendar_date(stamp: NaiveDateTime) -> String {
+    format!(
+        "{} {} {} {}.{:09}",
+        stamp.day(),
+        MONTHS[stamp.month0() as usize],
+        stamp.year(),
+        stamp.format("%H:%M:%S"),
+        stamp.nanosecond() % 1_000_000_000
+    )
+}
+
+/// Seconds in full digits; positions to 1e-9 km and velocities to 1e-12 km/s.
+fn write_state(out: &mut impl Write, elapsed_s: f64, state: &State) -> io::Result<()> {
+    let (r, v) = (state.position_km, state.velocity_km_s);
+    // The nanosecond to which stamps are kept everywhere else.
+    let seconds = (elapsed_s * 1e9).round() / 1e9;
+    writeln!(
+        out,
+        "{seconds} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}",
+        r.x, r.y, r.z, v.x, v.y, v.z
+    )
+}
+
+#[cfg(test)]
+mod tests;

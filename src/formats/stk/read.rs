@@ -1,0 +1,251 @@
+//! Reads `.e` files: keywords in any order and case, then one table.
+
+use super::{MONTHS, StkEphemeris};
+use crate::formats::ReadError;
+use crate::formats::finding::Findings;
+use crate::formats::kvn::{read_number, words};
+use crate::formats::lines::{Line, Lines};
+use crate::frames::{Frame, State};
+use chrono::{NaiveDate, NaiveDateTime};
+use nalgebra::Vector3;
+use std::io::{self, BufRead};
+
+/// Keywords that do not change what the states mean here.
+const PASSED_OVER: [&str; 8] = [
+    "TimeFormat",
+    "InterpolationMethod",
+    "InterpolationOrder",
+    "MessageLevel",
+    "ScenarioName",
+    "BlockingFactor",
+    "AllowSuperSampling",
+    "AllowEphemerisExtrapolation",
+];
+
+/// Reads a file; the first broken rule ends it.
+///
+/// # Errors
+/// The first finding, or a failure of the input.
+pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
+    let mut findings = Findings::of_reader();
+    let file = parse(input, &mut findings)?;
+    let read = findings.unless_error(file)?;
+    read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
+}
+
+/// Reads a file; what it breaks goes to the list of findings.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<StkEphemeris>> {
+    let mut lines = Lines::new(input);
+    let mut parser = Parser::default();
+    while let Some(line) = lines.next(findings)? {
+        parser.line(&line, findings);
+    }
+    Ok(parser.end(lines.number().max(1), findings))
+}
+
+/// What the next line belongs to.
+#[derive(Clone, Copy, PartialEq, Default)]
+enum Part {
+    #[default]
+    Version,
+    Before,
+    Keywords,
+    Table,
+    After,
+}
+
+#[derive(Default)]
+struct Parser {
+    part: Part,
+    comments: Vec<String>,
+    points: Option<(usize, (usize, usize))>,
+    epoch: Option<NaiveDateTime>,
+    samples_m1: Option<usize>,
+    frame: Option<Frame>,
+    /// Kilometres in the unit of length; metres if none is named.
+    unit_km: Option<f64>,
+    states: Vec<(f64, State)>,
+}
+
+impl Parser {
+    fn line(&mut self, line: &Line, findings: &mut Findings) {
+        let text = line.text.trim();
+        let place = (line.number, 1);
+        if text.is_empty() {
+            return;
+        }
+        if let Some(comment) = text.strip_prefix('#') {
+            self.comments.push(comment.trim_start().to_owned());
+            return;
+        }
+        let (key, value) = text.split_once(' ').unwrap_or((text, ""));
+        let value = value.trim().trim_matches('"');
+        match self.part {
+            Part::Version => {
+                if !text.to_ascii_lowercase().starts_with("stk.v.") {
+                    let message = "the first line must be stk.v. and a version";
+                    findings.error(place, "stk-version", message);
+                }
+                self.part = Part::Before;
+            }
+            Part::Before if is(key, "BEGIN") && is(value, "Ephemeris") => {
+                self.part = Part::Keywords
+            }
+            Part::Before => findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here"),
+            Part::Keywords => self.keyword(place, (key, value), line, findings),
+            Part::Table if is(key, "END") && is(value, "Ephemeris") => self.part = Part::After,
+            Part::Table => self.row(line, findings),
+            Part::After => findings.error(place, "stk-line", "nothing may follow END Ephemeris"),
+        }
+    }
+
+    fn keyword(
+        &mut self,
+        place: (usize, usize),
+        (key, value): (&str, &str),
+        line: &Line,
+        findings: &mut Findings,
+    ) {
+        let value_place = (line.number, line.text.find(value).unwrap_or(0) + 1);
+        let known = |known: bool, findings: &mut Findings| {
+            if !known {
+                let message = format!("{key} '{value}' is unknown here");
+                findings.error(value_place, "stk-value", message);
+            }
+        };
+        match key.to_ascii_lowercase().as_str() {
+            "numberofephemerispoints" => {
+                let points = value.parse().ok();
+                known(points.is_some(), findings);
+                self.points = points.map(|points| (points, place));
+            }
+            "scenarioepoch" => {
+                self.epoch = calendar_date(value);
+                known(self.epoch.is_some(), findings);
+            }
+            "interpolationsamplesm1" => {
+                self.samples_m1 = value.parse().ok();
+                known(self.samples_m1.is_some(), findings);
+            }
+            "centralbody" => known(is(value, "Earth"), findings),
+            "coordinatesystem" => {
+                self.frame = frame(value);
+                known(self.frame.is_some(), findings);
+            }
+            "distanceunit" => {
+                self.unit_km = match value.to_ascii_lowercase().as_str() {
+                    "kilometers" => Some(1.0),
+                    "meters" => Some(1e-3),
+                    _ => None,
+                };
+                known(self.unit_km.is_some(), findings);
+            }
+            "ephemeristimeposvel" => self.begin_table(place, findings),
+            _ if PASSED_OVER.iter().any(|passed| is(key, passed)) => {}
+            _ => {
+                let message = format!("keyword {key} is not one that is read here");
+                findings.error(place, "stk-keyword", message);
+            }
+        }
+    }
+
+    fn begin_table(&mut self, place: (usize, usize), findings: &mut Findings) {
+        for (missing, name) in [
+            (self.epoch.is_none(), "ScenarioEpoch"),
+            (self.frame.is_none(), "CoordinateSystem"),
+        ] {
+            if missing {
+                let message = format!("{name} is missing before the table");
+                findings.error(place, "stk-missing", message);
+            }
+        }
+        self.part = Part::Table;
+    }
+
+    fn row(&mut self, line: &Line, findings: &mut Findings) {
+        let fields: Vec<_> = words(&line.text).take(8).collect();
+        if fields.len() != 7 {
+            let message = format!("the row has {} fields; it needs 7", fields.len());
+            findings.error((line.number, 1), "stk-fields", message);
+            return;
+        }
+        let mut values = [0.0; 7];
+        for (value, (column, text)) in values.iter_mut().zip(fields) {
+            match read_number(text, (line.number, column), findings) {
+                Some(number) => *value = number,
+                None => return,
+            }
+        }
+        let [elapsed_s, numbers @ ..] = values;
+        if self
+            .states
+            .last()
+            .is_some_and(|(last, _)| elapsed_s <= *last)
+        {
+            let message = "the time is not after that of the row before";
+            findings.error((line.number, 1), "stk-time-order", message);
+            return;
+        }
+        let unit_km = self.unit_km.unwrap_or(1e-3);
+        let [x, y, z, vx, vy, vz] = numbers.map(|number| number * unit_km);
+        let state = State {
+            position_km: Vector3::new(x, y, z),
+            velocity_km_s: Vector3::new(vx, vy, vz),
+        };
+        self.states.push((elapsed_s, state));
+    }
+
+    fn end(self, number: usize, findings: &mut Findings) -> Option<StkEphemeris> {
+        if self.part != Part::After {
+            findings.error((number, 1), "stk-truncated", "END Ephemeris is missing");
+        }
+        match self.points {
+            Some((points, place)) if points != self.states.len() => {
+                let message = format!(
+                    "{points} points are announced; there are {}",
+                    self.states.len()
+                );
+                findings.error(place, "stk-count", message);
+            }
+            _ if self.states.is_empty() => {
+                findings.error((number, 1), "stk-empty", "there is no point");
+            }
+            _ => {}
+        }
+        Some(StkEphemeris {
+            comments: self.comments,
+            scenario_epoch: self.epoch?,
+            interpolation_samples_m1: self.samples_m1,
+            frame: self.frame?,
+            states: self.states,
+        })
+    }
+}
+
+fn is(word: &str, name: &str) -> bool {
+    word.eq_ignore_ascii_case(name)
+}
+
+fn frame(name: &str) -> Option<Frame> {
+    match name.to_ascii_lowercase().as_str() {
+        "j2000" => Some(Frame::Eme2000),
+        "icrf" => Some(Frame::Gcrf),
+        "fixed" => Some(Frame::EarthFixed),
+        "temeofdate" => Some(Frame::Teme),
+        _ => None,
+    }
+}
+
+/// Reads `1 Jan 2025 00:00:00.000`.
+fn calendar_date(text: &str) -> Option<NaiveDateTime> {
+    let [day, month, year, time] = text.split_whitespace().collect::<Vec<_>>()[..] else {
+        return None;
+    };
+    let month = MONTHS.iter().position(|name| is(name, month))? as u32 + 1;
+    let date = NaiveDate::from_ymd_opt(year.parse().ok()?, month, day.parse().ok()?)?;
+    // The time of day is that of CCSDS.
+    crate::formats::stamp::parse(&format!("{}T{time}", date.format("%Y-%m-%d")))
+}

@@ -1,0 +1,134 @@
+use super::*;
+use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
+use crate::formats::finding::{Finding, Findings};
+use crate::formats::metadata::Theory;
+use crate::formats::stamp::TimeSystem;
+use crate::orbit::Model;
+use crate::time::{Epoch, TimeGrid};
+use crate::words::Word;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+/// In the layout of the help page: metres by default, keywords in another order and case.
+const METRES: &str = "\
+stk.v.11.0
+# WrittenBy somebody
+BEGIN Ephemeris
+numberofephemerispoints 2
+ScenarioEpoch \"1 Jul 2007 12:00:00.50\"
+CoordinateSystem Fixed
+CentralBody Earth
+InterpolationMethod Lagrange
+InterpolationSamplesM1 5
+EphemerisTimePosVel
+0.0e+000 7.0e+006 0.0 0.0 0.0 7.5e+003 0.0
+60 6.9e+006 4.0e+005 0.0 -1.0 7.4e+003 0.0
+END Ephemeris
+";
+
+fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
+    let mut findings = Findings::of_linter(20);
+    parse(text.as_ref(), &mut findings).unwrap();
+    findings.into_vec()
+}
+
+fn written(frame: Frame, step_s: f64) -> String {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00.25Z".parse().unwrap());
+    let grid = TimeGrid::new(epoch, 7_200.0, step_s).unwrap();
+    let design: Design = "delta:55:6/3/1@925".parse().unwrap();
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
+    let metadata = Metadata {
+        originator: "NAVWALKER".to_owned(),
+        creation: epoch,
+        frame,
+        time_system: TimeSystem::Utc,
+        theory: Theory::Flown(Model::J2),
+        subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
+    };
+    let sampled = Sampled::new(&ephemeris, frame);
+    let satellite = &ephemeris.satellites()[1];
+    let hermite = Hermite::measured(&sampled, satellite).unwrap();
+    let mut out = Vec::new();
+    write(
+        &mut out,
+        "NW-P01-S02",
+        &metadata,
+        (&sampled, satellite),
+        hermite,
+    )
+    .unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+#[test]
+fn validate_units_and_epoch_of_the_documented_layout() {
+    assert_eq!(findings(METRES), []);
+    let file = read(METRES.as_bytes()).unwrap();
+    assert_eq!(file.frame, Frame::EarthFixed);
+    assert_eq!(file.scenario_epoch.to_string(), "2007-07-01 12:00:00.500");
+    assert_eq!(file.interpolation_samples_m1, Some(5));
+    assert_eq!(file.states[1].0, 60.0);
+    assert_eq!(file.states[0].1.position_km, Vector3::new(7000.0, 0.0, 0.0));
+    assert_eq!(file.states[0].1.velocity_km_s.y, 7.5);
+}
+
+#[test]
+fn what_is_written_reads_back_and_writes_the_same() {
+    for (frame, step_s) in Frame::ALL.iter().zip([60.0, 0.1 + 299.7, 97.0, 3_600.0]) {
+        let text = written(*frame, step_s);
+        assert_eq!(findings(&text), [], "{frame}");
+        let file = read(text.as_bytes()).unwrap();
+        assert_eq!(file.frame, *frame);
+        let mut again = Vec::new();
+        file.write(&mut again).unwrap();
+        assert_eq!(String::from_utf8(again).unwrap(), text);
+    }
+    let text = written(Frame::Eme2000, 60.0);
+    assert!(text.contains("\nScenarioEpoch 1 Jan 2025 00:00:00.250000000\n"));
+    assert!(text.contains("\nInterpolationSamplesM1 3\n") && !text.contains("Order"));
+}
+
+#[test]
+fn broken_rules_are_named_with_their_place() {
+    let cases = [
+        ("stk.v.11.0", "stk", (1, 1, "stk-version")),
+        ("BEGIN Ephemeris\n", "", (3, 1, "stk-begin")),
+        ("points 2", "points 3", (4, 1, "stk-count")),
+        ("1 Jul 2007", "1 Jux 2007", (5, 16, "stk-value")),
+        ("System Fixed", "System Moon", (6, 18, "stk-value")),
+        ("Body Earth", "Body Mars", (7, 13, "stk-value")),
+        ("CoordinateSystem Fixed\n", "", (9, 1, "stk-missing")),
+        ("TimePosVel\n", "LLATimePos\n", (10, 1, "stk-keyword")),
+        ("\n60 ", "\n0 ", (12, 1, "stk-time-order")),
+        ("\n60 ", "\nNaN ", (12, 1, "ccsds-number")),
+        ("\n60 ", "\n", (12, 1, "stk-fields")),
+        ("END Ephemeris\n", "", (12, 1, "stk-truncated")),
+        (
+            "END Ephemeris\n",
+            "END Ephemeris\nmore\n",
+            (14, 1, "stk-line"),
+        ),
+    ];
+    for (from, to, expected) in cases {
+        let text = METRES.replacen(from, to, 1);
+        assert_ne!(text, METRES, "{from}");
+        let found = findings(&text);
+        let places: Vec<_> = found.iter().map(|f| (f.line, f.column, f.rule)).collect();
+        assert!(places.contains(&expected), "{from:?}: {places:?}");
+        assert!(read(text.as_bytes()).is_err());
+    }
+    for text in ["", "\n", "\0", "stk.v.4.3\n"] {
+        assert!(read(text.as_bytes()).is_err(), "{text:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn damaged_files_never_panic(at in 0..METRES.len(), byte in any::<u8>(), cut in 0_usize..40) {
+        let mut bytes = METRES.as_bytes().to_vec();
+        bytes[at] = byte;
+        bytes.drain(at..(at + cut).min(METRES.len()));
+        let _ = findings(&bytes);
+    }
+}
