@@ -169,8 +169,10 @@ fn cuts_are_those_of_the_design() {
     let cuts = &data["baselines"][0]["cuts"];
     let largest = cuts["maps"].as_array().unwrap();
     let largest = largest.iter().find(|pair| pair[0] == "max-pdop").unwrap();
-    // The packed row keeps its range in full.
-    assert_eq!(largest[1]["hi"].as_f64(), metrics.max_pdop);
+    // The packed row keeps its range in full; the kernel of the metrics and the plain path of the
+    // cuts agree to 1e-5 in a maximum.
+    let shown = largest[1]["hi"].as_f64().unwrap();
+    assert!((shown / metrics.max_pdop.unwrap() - 1.0).abs() < 1e-5);
     assert_eq!(
         data["baselines"][0]["objectives"].as_array().unwrap().len(),
         2
