@@ -412,6 +412,21 @@ pub(crate) struct ValidateArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct LintArgs {
+    /// The files.
+    #[arg(value_name = "FILE", required = true)]
+    pub(crate) files: Vec<PathBuf>,
+
+    /// Check against this format instead of the one that the file shows.
+    #[arg(long = "as", value_name = "FORMAT")]
+    pub(crate) format: Option<navwalker::formats::lint::Format>,
+
+    /// Form of the result on stdout.
+    #[arg(long = "format", value_enum, default_value = "text")]
+    pub(crate) output: Format,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ScenarioArgs {
     #[command(subcommand)]
     pub(crate) action: ScenarioAction,
