@@ -6,11 +6,14 @@ mod results;
 mod table;
 mod validation;
 
-pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
+pub use csv::{
+    CsvError, checks_csv, constellation_csv, dops_csv, front_csv, history_csv, metrics_csv,
+    records_csv,
+};
 pub use diagnostics::{Diagnostic, diagnose};
 pub use results::{
-    DesignSummary, EvaluateResult, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
-    ValidateResult,
+    ConstellationResult, ConstellationSummary, DesignSummary, EvaluateResult, FrontMember,
+    Hypervolume, OptimizeResult, ScenarioStamp, ValidateResult,
 };
 pub use table::{Align, Table};
 pub use validation::{checks_junit, validation_markdown, validation_text};

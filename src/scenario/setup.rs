@@ -4,7 +4,7 @@ use super::{Algorithm, Region, Scenario};
 use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
-use crate::formats::{ReadError, tle};
+use crate::formats::fleet::{Fleet, ReadFleetError};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, LaunchCost};
@@ -73,7 +73,13 @@ pub enum GnssFileError {
     Io(#[from] io::Error),
     /// A line of it is wrong.
     #[error(transparent)]
-    Format(#[from] ReadError),
+    Format(#[from] ReadFleetError),
+    /// It is no file of element sets.
+    #[error("the file holds {content}; TLE or OMM element sets are needed")]
+    NoSets {
+        /// What it holds.
+        content: &'static str,
+    },
     /// Its sets make no system.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
@@ -144,8 +150,13 @@ impl Scenario {
                 source,
             };
             let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
-            let sets = tle::read(bytes.as_slice()).map_err(|source| error(source.into()))?;
             let name = file.rsplit('/').next().unwrap_or(file);
+            let (_, fleet) =
+                Fleet::read(&bytes, None, Some(name)).map_err(|source| error(source.into()))?;
+            let Fleet::Sets(sets) = fleet else {
+                let content = fleet.content();
+                return Err(error(GnssFileError::NoSets { content }));
+            };
             let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
             let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
             systems.push(system.into());
