@@ -93,6 +93,12 @@ impl Ephemeris {
         &self.satellites
     }
 
+    /// The satellites, without the grid.
+    #[must_use]
+    pub fn into_satellites(self) -> Vec<Flown> {
+        self.satellites
+    }
+
     /// The TEME state of a satellite `elapsed_s` after the epoch of the grid.
     ///
     /// # Errors

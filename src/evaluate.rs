@@ -91,8 +91,9 @@ impl Setup {
             && self.observation_weights == ObservationWeights::Unit
     }
 
-    /// The unit vector to a satellite that clears the mask and the skyline.
-    fn line_of_sight(
+    /// The unit vector to a satellite (Earth-fixed, km) that clears the mask and the skyline.
+    #[must_use]
+    pub fn line_of_sight(
         &self,
         mask: Mask,
         site: &LocalFrame,

@@ -38,7 +38,7 @@ pub use crate::dop::{Clocks, ObservationWeights};
 pub use crate::earth::Surface;
 pub use crate::ground::PointWeights;
 pub use crate::orbit::Model;
-pub use crate::search::{Constraint, ConstraintError, Quantity, Relation};
+pub use crate::search::{Constraint, ConstraintError, LaunchCost, Quantity, Relation};
 pub use crate::words::{UnknownWord, Word};
 pub use builtin::{builtin, builtin_names};
 pub use keys::{KeyDescription, describe_keys};

@@ -19,6 +19,9 @@ const INCLINATION_DECIMALS: usize = 4;
 /// Decimals of a kilometre to which a search resolves altitude: one metre.
 const ALTITUDE_DECIMALS: usize = 3;
 
+/// Decimals to which a search resolves eccentricity: 7 m in low orbit.
+const ECCENTRICITY_DECIMALS: usize = 6;
+
 /// Positions of the variables in a genome.
 const PLANES: usize = 0;
 const PER_PLANE: usize = 1;
@@ -41,10 +44,15 @@ pub struct DesignSpace {
     pub altitude_km: [f64; 2],
     /// Phasing F, or `N_c` of a lattice; cut at P - 1.
     pub phasing: [u32; 2],
+    /// Eccentricity; a variable where the limits differ.
+    pub eccentricity: [f64; 2],
+    /// Argument of perigee, degrees; a variable where the limits differ.
+    pub arg_perigee_deg: [f64; 2],
 }
 
 impl DesignSpace {
-    /// The space of the vectors (P, S, i, h, F).
+    /// The space of the vectors (P, S, i, h, F[, e][, ω]); e and ω only where they vary, so that
+    /// circular searches draw the same random numbers with and without them.
     ///
     /// # Errors
     /// When an interval is reversed.
@@ -60,30 +68,74 @@ impl DesignSpace {
             name: name.to_owned(),
             kind: Kind::Real { lo, hi },
         };
-        Space::new(vec![
+        let mut variables = vec![
             integer("planes", self.planes),
             integer("satellites-per-plane", self.satellites_per_plane),
             real("inclination-deg", self.inclination_deg),
             real("altitude-km", self.altitude_km),
-            integer("phasing", self.phasing),
-        ])
+            integer("phasing", self.cut_phasing()),
+        ];
+        let ellipse = [
+            ("eccentricity", self.eccentricity),
+            ("arg-perigee-deg", self.arg_perigee_deg),
+        ];
+        let varied = ellipse.into_iter().filter(|(_, limits)| varies(*limits));
+        variables.extend(varied.map(|(name, limits)| real(name, limits)));
+        Space::new(variables)
     }
 
-    /// Cuts the phasing at P - 1, and brings inclination and altitude to their resolution, so that
+    /// The steps of a sweep, in the order of the vectors: inclination and altitude, eccentricity and
+    /// argument of perigee as given, 1 for what is counted.
+    #[must_use]
+    pub fn steps(&self, [inclination, altitude, eccentricity, perigee]: [f64; 4]) -> Vec<f64> {
+        let mut steps = vec![1.0, 1.0, inclination, altitude, 1.0];
+        steps.extend(varies(self.eccentricity).then_some(eccentricity));
+        steps.extend(varies(self.arg_perigee_deg).then_some(perigee));
+        steps
+    }
+
+    /// Eccentricity and argument of perigee (degrees) of a vector.
+    fn ellipse(&self, genome: &[f64]) -> (f64, f64) {
+        let mut further = genome[PHASING + 1..].iter().copied();
+        let mut next = |limits: [f64; 2]| {
+            let varied = if varies(limits) { further.next() } else { None };
+            varied.unwrap_or(limits[0])
+        };
+        (next(self.eccentricity), next(self.arg_perigee_deg))
+    }
+
+    /// The phasings that occur: each limit cut for the planes that cut it most, or least.
+    fn cut_phasing(&self) -> [u32; 2] {
+        let cut = |n: usize| self.phasing[n].min(self.planes[n].saturating_sub(1));
+        [cut(0), cut(1)]
+    }
+
+    /// Keeps the phasing between its limits, both cut at P - 1, and brings inclination and altitude to their resolution, so that
     /// a design is written in few digits and equal designs are equal vectors.
     fn repair(&self, genome: &mut [f64]) {
-        genome[PHASING] = genome[PHASING].min(genome[PLANES] - 1.0);
+        let lowest = f64::from(self.phasing[0]);
+        genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
         let [south, north] = self.inclination_deg;
         genome[INCLINATION] =
             round_decimal(genome[INCLINATION], INCLINATION_DECIMALS).clamp(south, north);
         let [low, high] = self.altitude_km;
         genome[ALTITUDE] = round_decimal(genome[ALTITUDE], ALTITUDE_DECIMALS).clamp(low, high);
+        let resolutions = [
+            (self.eccentricity, ECCENTRICITY_DECIMALS),
+            (self.arg_perigee_deg, INCLINATION_DECIMALS),
+        ];
+        let varied = resolutions
+            .into_iter()
+            .filter(|(limits, _)| varies(*limits));
+        for (value, ([low, high], decimals)) in genome[PHASING + 1..].iter_mut().zip(varied) {
+            *value = round_decimal(*value, decimals).clamp(low, high);
+        }
     }
 
     /// The design of a vector.
     ///
     /// # Errors
-    /// When the vector is no design, which a repaired vector of [`Self::vectors`] always is.
+    /// When the vector is no design: an ellipse whose perigee is not above ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
         let satellites = count(PLANES) * count(PER_PLANE);
@@ -93,7 +145,16 @@ impl DesignSpace {
             genome[INCLINATION],
             genome[ALTITUDE],
         )
+        .and_then(|design| {
+            let (eccentricity, arg_perigee_deg) = self.ellipse(genome);
+            design.with_ellipse(eccentricity, arg_perigee_deg)
+        })
     }
+}
+
+/// Whether an interval leaves a choice.
+fn varies([lo, hi]: [f64; 2]) -> bool {
+    lo < hi
 }
 
 /// What a search is for.
@@ -227,6 +288,8 @@ mod tests {
             inclination_deg: [40.0, 60.0],
             altitude_km: [400.0, 1000.0],
             phasing: [0, 14],
+            eccentricity: [0.0, 0.0],
+            arg_perigee_deg: [0.0, 0.0],
         }
     }
 
@@ -239,6 +302,50 @@ mod tests {
         let before = genome.clone();
         space().repair(&mut genome);
         assert_eq!(genome, before);
+    }
+
+    #[test]
+    fn phasing_stays_between_limits_that_are_cut() {
+        let narrow = DesignSpace {
+            phasing: [3, 20],
+            planes: [2, 8],
+            ..space()
+        };
+        let vectors = narrow.vectors().unwrap();
+        assert_eq!(vectors.variables()[PHASING].kind.bounds(), (1.0, 7.0));
+        for (planes, phasing, repaired) in [(2.0, 5.0, 1.0), (8.0, 1.0, 3.0), (8.0, 7.0, 7.0)] {
+            let mut genome = vec![planes, 11.0, 50.0, 925.0, phasing];
+            narrow.repair(&mut genome);
+            assert_eq!(genome[PHASING], repaired);
+            assert_eq!(vectors.check(&genome), Ok(()));
+        }
+    }
+
+    #[test]
+    fn validate_launch_cost_by_hand() {
+        let design: Design = "delta:50:100/5/1@500".parse().unwrap();
+        let cost = LaunchCost {
+            per_satellite: 2.0,
+            per_plane: 7.0,
+            per_1000_km: 0.3,
+        };
+        let metrics = Metrics {
+            mean_visible: 0.0,
+            mean_pdop: None,
+            cvar_pdop: None,
+            cvar_level: 0.95,
+            p50_pdop: None,
+            p95_pdop: None,
+            p99_pdop: None,
+            max_pdop: None,
+            solved_fraction: 0.0,
+            availability: 0.0,
+            j_pos: None,
+            j_cost: None,
+        };
+        // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
+        let value = Quantity::LaunchCost.value(&design, &metrics, &cost);
+        assert!((value.unwrap() - 265.0).abs() < 1e-12);
     }
 
     #[test]
@@ -257,5 +364,25 @@ mod tests {
             bound: 0.75,
         };
         assert_eq!(at_least.violation(Some(0.5)), 0.25);
+    }
+
+    #[test]
+    fn ellipses_are_variables_where_they_vary() {
+        let free = DesignSpace {
+            pattern: Pattern::Lattice,
+            arg_perigee_deg: [0.0, 360.0],
+            eccentricity: [0.01, 0.01],
+            ..space()
+        };
+        assert_eq!(space().vectors().unwrap().variables().len(), 5);
+        assert_eq!(free.vectors().unwrap().variables().len(), 6);
+        assert_eq!(
+            free.steps([0.5, 50.0, 0.1, 30.0]),
+            [1.0, 1.0, 0.5, 50.0, 1.0, 30.0]
+        );
+        let mut genome = vec![13.0, 14.0, 55.0, 925.0, 5.0, 270.000_04];
+        free.repair(&mut genome);
+        let design = free.design(&genome).unwrap();
+        assert_eq!(design.to_string(), "lattice:55:182/13/5@925,e=0.01,w=270");
     }
 }

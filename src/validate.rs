@@ -1,10 +1,34 @@
 //! Checks against standards that this library did not write: residuals, budgets and gates.
+//!
+//! What is on trial are the [`Parts`] of the library; a [`Subject`] is a design in a study, with
+//! the parts that fly and see it. A target (a standard) takes a subject and gives [`Findings`].
 
+pub mod analytic;
+mod decisions;
+pub mod distribution;
+mod eccentricity;
+pub mod file;
+pub mod geodesic;
+pub mod numerical;
+pub mod paper;
 pub mod residuals;
 pub mod sgp4;
 
+use crate::constellation::{Design, Satellite, Slot};
+use crate::dop::Clocks;
+use crate::earth::Surface;
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
+use crate::evaluate::{Evaluator, Setup};
+use crate::frames::LocalFrame;
+use crate::orbit::j2::SecularOrbit;
+use crate::orbit::sgp4::MeanMotionSlot;
+use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
+use crate::time::{Epoch, TimeGrid};
+use crate::units::SECONDS_PER_DAY;
+use distribution::Distribution;
 use residuals::BudgetLine;
 use serde::Serialize;
+use thiserror::Error;
 
 /// One number of a validation, with the bound that it must keep.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -50,6 +74,41 @@ impl Check {
     }
 }
 
+/// A crate that validations lean on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Judge {
+    /// Its name.
+    pub name: &'static str,
+    /// The version that is built in.
+    pub version: &'static str,
+    /// What it judges.
+    pub role: &'static str,
+}
+
+/// The crates whose word counts, in the versions that the lock file pins.
+pub const JUDGES: [Judge; 4] = [
+    Judge {
+        name: "sgp4",
+        version: "2.4.0",
+        role: "SGP4 in AFSPC and improved mode",
+    },
+    Judge {
+        name: "geographiclib-rs",
+        version: "0.2.7",
+        role: "geodesics on the ellipsoid",
+    },
+    Judge {
+        name: "differential-equations",
+        version: "0.7.0",
+        role: "numerical integration, DOP853",
+    },
+    Judge {
+        name: "sofars",
+        version: "0.6.2",
+        role: "sidereal time, precession and nutation",
+    },
+];
+
 /// What a validation found.
 #[derive(Debug, Clone, PartialEq, Serialize, Default)]
 pub struct Findings {
@@ -58,6 +117,12 @@ pub struct Findings {
     /// The error budget by cause, for comparisons of trajectories.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetLine>,
+    /// How residuals are distributed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub distributions: Vec<Distribution>,
+    /// Comparisons with the ephemerides of other programs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<file::FileComparison>,
 }
 
 impl Findings {
@@ -66,7 +131,161 @@ impl Findings {
     pub fn passed(&self) -> bool {
         self.checks.iter().all(|check| check.passed)
     }
+
+    /// Adds what another target found.
+    pub fn append(&mut self, mut other: Self) {
+        self.checks.append(&mut other.checks);
+        self.budget.append(&mut other.budget);
+        self.distributions.append(&mut other.distributions);
+        self.files.append(&mut other.files);
+    }
 }
+
+/// The parts of the library that are held against standards.
+///
+/// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
+#[derive(Debug, Clone, Copy)]
+pub struct Parts {
+    /// Who flies where.
+    pub satellites: fn(&Design) -> Vec<Satellite>,
+    /// The secular J2 theory.
+    pub mean_j2: fn(&MeanElements) -> SecularOrbit,
+    /// What the mean motion slot of exported element sets holds.
+    pub slot: MeanMotionSlot,
+    /// Argument of perigee at which the frozen eccentricity is cancelled in an element set, degrees.
+    pub cancelling_perigee_deg: f64,
+    /// Greenwich mean sidereal time some seconds after an epoch, radians.
+    pub gmst_rad: fn(Epoch, f64) -> f64,
+    /// East, north and up at a latitude and longitude, radians.
+    pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
+    /// The clock states that are solved for, by those that are meant.
+    pub clocks: fn(Clocks) -> Clocks,
+    /// Elevation and azimuth of an Earth-fixed position, radians.
+    pub look_angles: fn(&LocalFrame, nalgebra::Vector3<f64>) -> (f64, f64),
+}
+
+impl Default for Parts {
+    fn default() -> Self {
+        Self {
+            satellites: Design::satellites,
+            mean_j2: SecularOrbit::j2,
+            slot: MeanMotionSlot::Kozai,
+            cancelling_perigee_deg: 270.0,
+            gmst_rad: Epoch::gmst_rad,
+            local_frame: LocalFrame::new,
+            clocks: |meant| meant,
+            look_angles: LocalFrame::look_angles,
+        }
+    }
+}
+
+/// A design in a study, and what flies and sees it.
+pub struct Subject<'a> {
+    /// The design.
+    pub design: Design,
+    /// The study.
+    pub evaluator: &'a Evaluator,
+    /// The parts of the library on trial.
+    pub parts: Parts,
+}
+
+impl<'a> Subject<'a> {
+    /// A design with the library's own parts.
+    #[must_use]
+    pub fn new(design: Design, evaluator: &'a Evaluator) -> Self {
+        Self {
+            design,
+            evaluator,
+            parts: Parts::default(),
+        }
+    }
+
+    fn setup(&self) -> &'a Setup {
+        self.evaluator.setup()
+    }
+
+    fn grid(&self) -> TimeGrid {
+        self.setup().grid
+    }
+
+    fn epoch(&self) -> Epoch {
+        self.grid().epoch()
+    }
+
+    fn days(&self) -> f64 {
+        self.grid().len() as f64 * self.grid().step_s() / SECONDS_PER_DAY
+    }
+
+    /// Elements of the first satellite: all share size, shape and inclination.
+    fn orbit(&self) -> MeanElements {
+        self.design.elements(Slot { plane: 0, index: 0 })
+    }
+
+    fn satellites(&self) -> Vec<Satellite> {
+        (self.parts.satellites)(&self.design)
+    }
+
+    /// The design flown by a theory.
+    fn fly<P: Propagator + 'static>(
+        &self,
+        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
+    ) -> Result<Ephemeris, EphemerisError> {
+        let one = |satellite: &Satellite| {
+            let name = object_name(satellite.slot);
+            match theory(&satellite.elements) {
+                Ok(flown) => Ok(Flown {
+                    name,
+                    slot: Some(satellite.slot),
+                    propagator: Box::new(flown),
+                }),
+                Err(source) => Err(EphemerisError { name, source }),
+            }
+        };
+        let satellites = self.satellites().iter().map(one).collect::<Result<_, _>>();
+        Ok(Ephemeris::new(self.grid(), satellites?))
+    }
+
+    /// The design flown by the model of the study.
+    fn fly_model(&self) -> Result<Ephemeris, EphemerisError> {
+        match self.setup().model {
+            Model::J2 => self.fly_mean_j2(),
+            model => Ephemeris::of_design(&self.design, model, self.grid()),
+        }
+    }
+
+    /// The design flown by mean J2.
+    fn fly_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
+        self.fly(|elements| Ok((self.parts.mean_j2)(elements)))
+    }
+}
+
+/// Why a validation cannot be carried out.
+#[derive(Debug, Error)]
+pub enum ValidateError {
+    /// A satellite cannot be propagated.
+    #[error(transparent)]
+    Ephemeris(#[from] EphemerisError),
+    /// An element does not fit a TLE.
+    #[error(transparent)]
+    Tle(#[from] crate::formats::tle::TleFieldError),
+    /// The study of the paper cannot be repeated.
+    #[error(transparent)]
+    Paper(#[from] paper::PaperError),
+    /// A file cannot be compared.
+    #[error(transparent)]
+    File(#[from] file::FileError),
+    /// An integration fails.
+    #[error(transparent)]
+    Integration(#[from] numerical::integrator::IntegrationError),
+    /// There is no identity for a satellite.
+    #[error(transparent)]
+    Identity(#[from] crate::formats::metadata::IdentityError),
+}
+
+#[cfg(test)]
+mod planted;
+#[cfg(test)]
+mod testing;
 
 #[cfg(test)]
 mod tests {

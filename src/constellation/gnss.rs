@@ -48,6 +48,13 @@ pub enum System {
     Preset(Preset),
     /// Satellites from element sets.
     Sets(ElementSets),
+    /// Satellites as they are given, for any epoch.
+    Listed {
+        /// The name in results.
+        name: String,
+        /// The satellites.
+        satellites: Vec<GnssSatellite>,
+    },
 }
 
 impl System {
@@ -57,6 +64,7 @@ impl System {
         match self {
             Self::Preset(preset) => preset.word(),
             Self::Sets(sets) => sets.name(),
+            Self::Listed { name, .. } => name,
         }
     }
 
@@ -66,6 +74,7 @@ impl System {
         match self {
             Self::Preset(preset) => preset.satellites(epoch),
             Self::Sets(sets) => sets.satellites(epoch),
+            Self::Listed { satellites, .. } => satellites.clone(),
         }
     }
 }

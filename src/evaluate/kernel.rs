@@ -25,7 +25,8 @@
 //! - a decision so close to the mask that rounding might turn it is taken again with the positions
 //!   and the comparison of the plain path ([`retake`]), so that visible satellites are counted
 //!   exactly;
-//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes.
+//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
+//!   around each order statistic ([`refine`]).
 //!
 //! Both are counted in [`Retakes`].
 //!
@@ -38,6 +39,7 @@ mod fixed;
 mod flight;
 mod instructions;
 mod lanes;
+mod refine;
 mod retake;
 mod sample;
 mod tally;
@@ -55,6 +57,7 @@ use fixed::{Fixed, FixedTiles};
 use flight::PatternFlight;
 use lanes::{LANES, Lanes, MaskTerms};
 use rayon::prelude::*;
+use refine::{Ranked, Surround};
 use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
 use tally::{Count, Counts, Find, Found, Merge, Search};
@@ -82,7 +85,7 @@ impl Default for Keep {
 /// Values of PDOP that are made in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
 
-/// PDOP up to which f32 is trusted.
+/// PDOP up to which f32 is trusted at most.
 const SINGLE_BELOW: f32 = 2.0;
 
 /// Memory of a kernel and of `threads` evaluations at a time, bytes.
@@ -158,7 +161,7 @@ impl Kernel {
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask);
-        let fixed = Fixed::new(setup, &tiles, rotations, keep.fixed_bytes)?;
+        let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
         let scene = Scene {
             tiles,
             single: MaskTerms::new(setup.mask),
@@ -210,19 +213,68 @@ impl Kernel {
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(evaluator, flight, chunk, |tiles| {
+            let part = self.run(evaluator, flight, chunk, self.scene.limits, |tiles| {
                 values.extend_from_slice(tiles);
             })?;
             tallies = tallies.merged(part);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = Search::new(&counts, evaluator.setup().metrics.cvar_level).map(|search| {
-            let mut found = Found::new();
-            let tail = self.find(&values, &search, &mut found);
-            search.summary(&found, sum, tail)
-        });
+        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+            Some(search) => {
+                let mut found = Found::new();
+                let tail = self.find(&values, &search, &mut found);
+                let mut summary = search.summary(&found, sum, tail);
+                self.refine(evaluator, flight, &values, &search, &mut summary)?;
+                Some(summary)
+            }
+            None => None,
+        };
         let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
         Ok((evaluated, tallies.retakes))
+    }
+
+    /// Takes the order statistics again in f64.
+    fn refine(
+        &self,
+        evaluator: &Evaluator,
+        flight: Flight<'_>,
+        values: &[Lanes<f32>],
+        search: &Search,
+        summary: &mut Summary,
+    ) -> Result<(), EphemerisError> {
+        let statistics = [
+            &mut summary.p50,
+            &mut summary.p95,
+            &mut summary.p99,
+            &mut summary.max,
+        ];
+        let mut numbers = 0..;
+        let ranked = statistics.each_ref().map(|value| Ranked {
+            rank: search.rank(numbers.next().unwrap_or(0)),
+            value: **value,
+        });
+        let windows = self.instructions.run(Surround {
+            tiles: values,
+            ranked,
+        });
+        let exact = Limits {
+            single_below: 0.0,
+            ..self.scene.limits
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        for (statistic, window) in statistics.into_iter().zip(&windows) {
+            let mut again = Vec::with_capacity(window.places.len());
+            for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
+                let k = together[0].0 / tiles;
+                self.run(evaluator, flight, k..k + 1, exact, |sample| {
+                    again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
+                })?;
+            }
+            if let Some(value) = window.pick(again) {
+                *statistic = value;
+            }
+        }
+        Ok(())
     }
 
     /// Two passes over the samples, each on all threads; nothing is kept but counts.
@@ -272,9 +324,15 @@ impl Kernel {
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
                     let mut sum = 0.0;
-                    let tallies = self.run(evaluator, flight, chunk.clone(), |tiles| {
-                        sum += note(tiles, &mut all);
-                    })?;
+                    let tallies = self.run(
+                        evaluator,
+                        flight,
+                        chunk.clone(),
+                        self.scene.limits,
+                        |tiles| {
+                            sum += note(tiles, &mut all);
+                        },
+                    )?;
                     parts.push((tallies, sum));
                     Ok((all, parts))
                 },
@@ -315,6 +373,7 @@ impl Kernel {
         evaluator: &Evaluator,
         flight: Flight<'_>,
         chunk: Range<usize>,
+        limits: Limits,
         mut take: impl FnMut(&[Lanes<f32>]),
     ) -> Result<Tallies, EphemerisError> {
         let mut work = Workspace::new(flight.ephemeris.satellites().len());
@@ -334,6 +393,7 @@ impl Kernel {
                 .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
             self.instructions.run(Sample {
                 scene: &self.scene,
+                limits,
                 pattern,
                 fixed,
                 work: &mut work,

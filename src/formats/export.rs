@@ -177,6 +177,6 @@ impl<S: Sink> Files<'_, S> {
 }
 
 #[cfg(test)]
-pub(super) mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;

@@ -14,6 +14,7 @@ use super::{ReadError, csv, oem, omm, opm, sp3, stk, tle};
 use crate::formats::csv::ElementsRow;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
+use crate::words::UnknownWord;
 use flight::velocities;
 use nalgebra::Vector3;
 use thiserror::Error;
@@ -126,10 +127,10 @@ impl Fleet {
     }
 
     fn of_sp3(file: sp3::Sp3) -> Result<Self, ReadFleetError> {
-        // Every realisation that SP3 names is Earth-fixed: ITRF, IGS14, WGS84, PZ90.
-        let frame = frame_of_name(&file.frame).unwrap_or(Frame::EarthFixed);
+        let frame = frame_of_sp3(&file.frame).map_err(TrajectoryError::Name)?;
         let mut trajectories = Vec::new();
-        for (id, samples) in file.ids.iter().zip(&file.states) {
+        let given = file.ids.iter().zip(&file.states);
+        for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
             let positions: Vec<(Epoch, Vector3<f64>)> =
                 samples.iter().map(|s| (s.at, s.position_km)).collect();
             let given: Option<Vec<_>> = samples.iter().map(|s| s.velocity_km_s).collect();
@@ -156,6 +157,7 @@ impl Fleet {
     /// The file names no satellite: it is called as its file is.
     fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
         let file_name = file_name.unwrap_or("satellite");
+        let file_name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
         let name = file_name
             .rsplit_once('.')
             .map_or(file_name, |(stem, _)| stem);
@@ -213,6 +215,16 @@ impl Fleet {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
+}
+
+/// SP3 names a realisation of the Earth-fixed frame in five characters: `IGS14`, `WGS84`, `ITR08`.
+fn frame_of_sp3(name: &str) -> Result<Frame, UnknownWord> {
+    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ"];
+    let upper = name.to_ascii_uppercase();
+    if earth_fixed.iter().any(|start| upper.starts_with(start)) {
+        return Ok(Frame::EarthFixed);
+    }
+    frame_of_name(name)
 }
 
 #[cfg(test)]

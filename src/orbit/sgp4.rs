@@ -2,6 +2,7 @@
 
 use super::j2::SecularRates;
 use super::{MeanElements, PropagationError, Propagator};
+use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::frames::State;
 use crate::time::Epoch;
 use crate::units::{MINUTES_PER_DAY, wrap_two_pi};
@@ -24,6 +25,83 @@ pub enum ZonalHarmonics {
     Full,
     /// J2 alone: J3 = J4 = 0.
     J2Only,
+    /// J2 and J4: J3 = 0.
+    WithoutJ3,
+}
+
+impl ZonalHarmonics {
+    /// The constants of WGS-72 with these harmonics.
+    #[must_use]
+    pub fn wgs72(self) -> ::sgp4::Geopotential {
+        let full = ::sgp4::WGS72;
+        match self {
+            Self::Full => full,
+            Self::J2Only => ::sgp4::Geopotential {
+                j3: 0.0,
+                j4: 0.0,
+                ..full
+            },
+            Self::WithoutJ3 => ::sgp4::Geopotential { j3: 0.0, ..full },
+        }
+    }
+}
+
+/// The two ways in which SGP4 is run (Vallado et al., AIAA 2006-6753, section II).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sgp4Mode {
+    /// As the United States Space Force runs it; what element sets are made for.
+    Afspc,
+    /// With the corrections of AIAA 2006-6753: another sidereal time, and a continuous Lyddane choice.
+    Improved,
+}
+
+impl Sgp4Mode {
+    fn sidereal_time(self) -> fn(f64) -> f64 {
+        match self {
+            Self::Afspc => ::sgp4::afspc_epoch_to_sidereal_time,
+            Self::Improved => ::sgp4::iau_epoch_to_sidereal_time,
+        }
+    }
+
+    fn years_since_j2000(self, epoch: &chrono::NaiveDateTime) -> f64 {
+        match self {
+            Self::Afspc => ::sgp4::julian_years_since_j2000_afspc_compatibility_mode(epoch),
+            Self::Improved => ::sgp4::julian_years_since_j2000(epoch),
+        }
+    }
+}
+
+/// What SGP4 is run with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sgp4Theory {
+    /// The constants.
+    pub geopotential: ::sgp4::Geopotential,
+    /// The mode.
+    pub mode: Sgp4Mode,
+}
+
+impl Sgp4Theory {
+    /// What element sets are made for: WGS-72, AFSPC mode.
+    pub const STANDARD: Self = Self {
+        geopotential: ::sgp4::WGS72,
+        mode: Sgp4Mode::Afspc,
+    };
+
+    /// SGP4 with this library's μ, R and J2 in place of those of WGS-72: no SGP4 that element sets
+    /// are made for, but what the difference of the constants alone amounts to.
+    #[must_use]
+    pub fn with_design_constants() -> Self {
+        Self {
+            geopotential: ::sgp4::Geopotential {
+                ae: RADIUS_KM,
+                // k_e = sqrt(μ) in Earth radii^1.5 per minute
+                ke: 60.0 * (MU_KM3_S2 / RADIUS_KM.powi(3)).sqrt(),
+                j2: J2,
+                ..::sgp4::WGS72
+            },
+            ..Self::STANDARD
+        }
+    }
 }
 
 impl MeanMotionSlot {
@@ -47,6 +125,7 @@ impl MeanMotionSlot {
 #[derive(Debug, Clone)]
 pub struct Sgp4Orbit {
     constants: ::sgp4::Constants,
+    mode: Sgp4Mode,
     /// Seconds from the time origin of [`Propagator::state_at`] to the epoch of the set.
     epoch_offset_s: f64,
 }
@@ -62,16 +141,25 @@ impl Sgp4Orbit {
         slot: MeanMotionSlot,
         zonals: ZonalHarmonics,
     ) -> Result<Self, PropagationError> {
-        let geopotential = match zonals {
-            ZonalHarmonics::Full => ::sgp4::WGS72,
-            ZonalHarmonics::J2Only => ::sgp4::Geopotential {
-                j3: 0.0,
-                j4: 0.0,
-                ..::sgp4::WGS72
-            },
+        let theory = Sgp4Theory {
+            geopotential: zonals.wgs72(),
+            ..Sgp4Theory::STANDARD
         };
+        Self::from_mean_elements_with(elements, epoch, slot, theory)
+    }
+
+    /// The same by any variant of SGP4.
+    ///
+    /// # Errors
+    /// When SGP4 refuses the elements.
+    pub fn from_mean_elements_with(
+        elements: &MeanElements,
+        epoch: Epoch,
+        slot: MeanMotionSlot,
+        theory: Sgp4Theory,
+    ) -> Result<Self, PropagationError> {
         let orbit = ::sgp4::Orbit::from_kozai_elements(
-            &geopotential,
+            &theory.geopotential,
             elements.inclination_rad,
             wrap_two_pi(elements.raan_rad),
             elements.eccentricity,
@@ -80,20 +168,7 @@ impl Sgp4Orbit {
             slot.mean_motion_rad_s(elements) * 60.0,
         )
         .map_err(refused)?;
-        let years =
-            ::sgp4::julian_years_since_j2000_afspc_compatibility_mode(&epoch.utc().naive_utc());
-        let constants = ::sgp4::Constants::new(
-            geopotential,
-            ::sgp4::afspc_epoch_to_sidereal_time,
-            years,
-            0.0,
-            orbit,
-        )
-        .map_err(refused)?;
-        Ok(Self {
-            constants,
-            epoch_offset_s: 0.0,
-        })
+        Self::new(orbit, &epoch.utc().naive_utc(), 0.0, theory, 0.0)
     }
 
     /// SGP4 from an element set as read from a file; time runs from `origin`.
@@ -104,11 +179,50 @@ impl Sgp4Orbit {
         set: &::sgp4::Elements,
         origin: Epoch,
     ) -> Result<Self, PropagationError> {
-        let constants =
-            ::sgp4::Constants::from_elements_afspc_compatibility_mode(set).map_err(refused)?;
+        Self::from_element_set_with(set, origin, Sgp4Theory::STANDARD)
+    }
+
+    /// The same by any variant of SGP4.
+    ///
+    /// # Errors
+    /// When SGP4 refuses the elements.
+    pub fn from_element_set_with(
+        set: &::sgp4::Elements,
+        origin: Epoch,
+        theory: Sgp4Theory,
+    ) -> Result<Self, PropagationError> {
+        let orbit = ::sgp4::Orbit::from_kozai_elements(
+            &theory.geopotential,
+            set.inclination.to_radians(),
+            set.right_ascension.to_radians(),
+            set.eccentricity,
+            set.argument_of_perigee.to_radians(),
+            set.mean_anomaly.to_radians(),
+            set.mean_motion * TAU / MINUTES_PER_DAY,
+        )
+        .map_err(refused)?;
         let epoch_offset_s = Epoch::from_utc(set.datetime.and_utc()).seconds_since(origin);
+        Self::new(orbit, &set.datetime, set.drag_term, theory, epoch_offset_s)
+    }
+
+    fn new(
+        orbit: ::sgp4::Orbit,
+        epoch: &chrono::NaiveDateTime,
+        drag_term: f64,
+        theory: Sgp4Theory,
+        epoch_offset_s: f64,
+    ) -> Result<Self, PropagationError> {
+        let constants = ::sgp4::Constants::new(
+            theory.geopotential,
+            theory.mode.sidereal_time(),
+            theory.mode.years_since_j2000(epoch),
+            drag_term,
+            orbit,
+        )
+        .map_err(refused)?;
         Ok(Self {
             constants,
+            mode: theory.mode,
             epoch_offset_s,
         })
     }
@@ -118,6 +232,7 @@ impl Sgp4Orbit {
     pub fn with_origin_moved(&self, seconds: f64) -> Self {
         Self {
             constants: self.constants.clone(),
+            mode: self.mode,
             epoch_offset_s: self.epoch_offset_s - seconds,
         }
     }
@@ -132,13 +247,14 @@ fn refused(error: impl std::fmt::Display) -> PropagationError {
 impl Propagator for Sgp4Orbit {
     fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
         let minutes = ::sgp4::MinutesSinceEpoch((elapsed_s - self.epoch_offset_s) / 60.0);
-        let prediction = self
-            .constants
-            .propagate_afspc_compatibility_mode(minutes)
-            .map_err(|error| PropagationError::Sgp4State {
-                elapsed_s,
-                reason: error.to_string(),
-            })?;
+        let prediction = match self.mode {
+            Sgp4Mode::Afspc => self.constants.propagate_afspc_compatibility_mode(minutes),
+            Sgp4Mode::Improved => self.constants.propagate(minutes),
+        };
+        let prediction = prediction.map_err(|error| PropagationError::Sgp4State {
+            elapsed_s,
+            reason: error.to_string(),
+        })?;
         Ok(State {
             position_km: Vector3::from(prediction.position),
             velocity_km_s: Vector3::from(prediction.velocity),

@@ -73,11 +73,11 @@ fn metrics_cells(metrics: &Metrics) -> Vec<String> {
 }
 
 /// The shortest digits that read back; empty for a metric without a value.
-fn optional(value: Option<f64>) -> String {
+pub(super) fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
-fn text(writer: Writer<Vec<u8>>) -> Result<String, CsvError> {
+pub(super) fn text(writer: Writer<Vec<u8>>) -> Result<String, CsvError> {
     let bytes = writer
         .into_inner()
         .map_err(|error| ::csv::Error::from(error.into_error()))?;

@@ -1,7 +1,17 @@
 //! What a search's result shows that its numbers alone do not say.
 
+mod bounds;
+mod conflict;
+mod dependence;
+mod progress;
+mod rivals;
+
+pub use bounds::at_bounds;
+pub use rivals::{dominated_by, seed_spread};
+
 use super::FrontMember;
-use crate::search::DesignSpace;
+use crate::optimize::{Individual, Search, Strategy};
+use crate::search::DesignProblem;
 use serde::Serialize;
 
 /// Something worth knowing about a result, in plain words.
@@ -13,119 +23,45 @@ pub struct Diagnostic {
     pub message: String,
 }
 
-/// A front may rest on a bound with this share of its members before that is worth saying.
-const RESTING_SHARE: f64 = 0.5;
-
-/// Relative distance from a bound, in parts of the interval, that counts as resting on it.
-const RESTING_DISTANCE: f64 = 1e-3;
-
-/// The variables whose bounds decide the front.
-#[must_use]
-pub fn diagnose(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> {
-    if front.is_empty() {
-        return vec![Diagnostic {
-            code: "no-feasible-design".to_owned(),
-            message: "no design of the last population meets the constraints; widen the search or \
-                      relax the mask, the PDOP cap or the constraints"
-                .to_owned(),
-        }];
+impl Diagnostic {
+    fn new(code: &str, message: String) -> Self {
+        Self {
+            code: code.to_owned(),
+            message,
+        }
     }
-    let whole = |[lo, hi]: [u32; 2]| [f64::from(lo), f64::from(hi)];
-    type Value = fn(&FrontMember) -> f64;
-    let variables: [(&str, &str, [f64; 2], Value); 4] = [
-        ("planes", "", whole(space.planes), |m| {
-            m.design.planes as f64
-        }),
-        (
-            "satellites-per-plane",
-            "",
-            whole(space.satellites_per_plane),
-            |m| m.design.satellites_per_plane as f64,
-        ),
-        ("inclination-deg", "°", space.inclination_deg, |m| {
-            m.design.inclination_deg
-        }),
-        ("altitude-km", " km", space.altitude_km, |m| {
-            m.design.altitude_km
-        }),
-    ];
-    let mut found = Vec::new();
-    for (name, unit, [lo, hi], value) in variables {
-        if hi <= lo {
-            continue;
-        }
-        for (bound, side) in [(lo, "lower"), (hi, "upper")] {
-            let near = |m: &&FrontMember| (value(m) - bound).abs() <= RESTING_DISTANCE * (hi - lo);
-            let resting = front.iter().filter(near).count();
-            if resting as f64 >= RESTING_SHARE * front.len() as f64 {
-                found.push(Diagnostic {
-                    code: format!("at-bound:{name}"),
-                    message: format!(
-                        "{name} rests on its {side} bound {bound}{unit} in {resting} of {} front \
-                         members: the bound, not the trade-off, sets it",
-                        front.len()
-                    ),
-                });
-            }
-        }
+}
+
+/// Everything that a search shows of itself. The front and the individuals behind it are in the
+/// same order. Evaluates some variations of the chosen design.
+#[must_use]
+pub fn diagnose(
+    problem: &DesignProblem<'_>,
+    search: &Search,
+    front: &[FrontMember],
+    individuals: &[Individual],
+) -> Vec<Diagnostic> {
+    let mut found = at_bounds(front, problem.designs());
+    found.extend(conflict::without_conflict(
+        individuals,
+        &problem.goals().objectives,
+    ));
+    let chosen = front.iter().position(|member| member.chosen);
+    if let Some(chosen) = chosen.and_then(|n| individuals.get(n)) {
+        found.extend(dependence::independent(problem, chosen));
+    }
+    // A sweep makes its way through a grid; how fast its front grows says nothing.
+    if !matches!(search, Search::Exhaustive(_)) {
+        found.extend(progress::of_history(search.history()));
     }
     found
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::constellation::{Design, Pattern};
-    use crate::evaluate::Metrics;
-
-    fn member(text: &str) -> FrontMember {
-        let design: Design = text.parse().unwrap();
-        let metrics = Metrics {
-            mean_visible: 8.0,
-            mean_pdop: None,
-            cvar_pdop: None,
-            cvar_level: 0.95,
-            p50_pdop: None,
-            p95_pdop: None,
-            p99_pdop: None,
-            max_pdop: None,
-            solved_fraction: 0.0,
-            availability: 0.0,
-            j_pos: None,
-            j_cost: None,
-        };
-        FrontMember {
-            index: 1,
-            design: (&design).into(),
-            metrics,
-            objectives: vec![],
-            membership: 0.0,
-            membership_sum: 0.0,
-            chosen: false,
-        }
-    }
-
-    #[test]
-    fn bounds_that_decide_are_named() {
-        let space = DesignSpace {
-            pattern: Pattern::Delta,
-            planes: [11, 15],
-            satellites_per_plane: [11, 15],
-            inclination_deg: [40.0, 60.0],
-            altitude_km: [400.0, 1000.0],
-            phasing: [1, 1],
-        };
-        let front = [
-            "delta:45:225/15/1@1000",
-            "delta:47:210/15/1@999.9",
-            "delta:49:195/15/1@800",
-        ];
-        let front: Vec<_> = front.into_iter().map(member).collect();
-        let codes: Vec<_> = diagnose(&front, &space)
-            .into_iter()
-            .map(|d| d.code)
-            .collect();
-        assert_eq!(codes, ["at-bound:planes", "at-bound:altitude-km"]);
-        assert_eq!(diagnose(&[], &space)[0].code, "no-feasible-design");
+/// The names in a sentence: `a`, `a and b`, `a, b and c`.
+fn listed(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => (*one).to_owned(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
     }
 }

@@ -1,12 +1,13 @@
 //! The objects that `--format json` prints and that run directories hold.
 
-use super::{Diagnostic, VERSION, diagnose};
+use super::{Certificate, Diagnostic, VERSION, diagnose, dominated_by};
 use crate::constellation::Design;
+use crate::earth;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
 use crate::scenario::Scenario;
-use crate::search::DesignProblem;
-use crate::validate::Findings;
+use crate::search::{DesignProblem, Quantity};
+use crate::validate::{Findings, JUDGES, Judge};
 use rayon::prelude::*;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -189,6 +190,9 @@ pub struct OptimizeResult {
     pub generations: [u64; 2],
     /// What the program notices.
     pub diagnostics: Vec<Diagnostic>,
+    /// What a sweep of the same problem says of the front, when it was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
@@ -211,7 +215,7 @@ impl OptimizeResult {
         let progress = search.progress();
         let reference = scenario.minimised_reference();
         Self {
-            diagnostics: diagnose(&front, problem.designs()),
+            diagnostics: diagnose(problem, search, &front, &individuals),
             front,
             evaluations: progress.evaluations,
             hypervolume: Hypervolume {
@@ -221,10 +225,25 @@ impl OptimizeResult {
             seed: scenario.optimizer.seed,
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
+            certificate: None,
             scenario: scenario.into(),
             version: VERSION,
             history: search.history().to_vec(),
         }
+    }
+
+    /// Holds the front against a sweep of the same problem.
+    pub fn certify(&mut self, sweep: &Self, objectives: &[Quantity]) {
+        let points = |result: &Self| -> Vec<Vec<f64>> {
+            let point = |member: &FrontMember| {
+                let values = objectives.iter().zip(&member.objectives);
+                values.map(|(q, (_, value))| q.minimised(*value)).collect()
+            };
+            result.front.iter().map(point).collect()
+        };
+        self.diagnostics
+            .extend(dominated_by(&points(self), &points(sweep)));
+        self.certificate = Some(Certificate::new(self, sweep, objectives));
     }
 
     /// The pick of the fuzzy decision.
@@ -285,19 +304,57 @@ pub struct ValidateResult {
     pub passed: bool,
     /// The study.
     pub scenario: ScenarioStamp,
+    /// The targets, in the order in which they were asked for.
+    pub against: Vec<String>,
+    /// What every number rests on.
+    pub basis: Basis,
     /// Version of the program.
     pub version: &'static str,
+}
+
+/// Constants and crates behind a validation. There is no random number in it, and no seed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Basis {
+    /// Gravitational parameter, km³/s².
+    pub mu_km3_s2: f64,
+    /// Equatorial radius, km.
+    pub radius_km: f64,
+    /// Second zonal harmonic.
+    pub j2: f64,
+    /// Flattening of the ellipsoid.
+    pub flattening: f64,
+    /// The crates whose word counts.
+    pub judges: [Judge; 4],
+}
+
+impl Default for Basis {
+    fn default() -> Self {
+        Self {
+            mu_km3_s2: earth::MU_KM3_S2,
+            radius_km: earth::RADIUS_KM,
+            j2: earth::J2,
+            flattening: earth::FLATTENING,
+            judges: JUDGES,
+        }
+    }
 }
 
 impl ValidateResult {
     /// The result of validating one design.
     #[must_use]
-    pub fn new(design: &Design, findings: Findings, scenario: &Scenario) -> Self {
+    pub fn new(
+        design: &Design,
+        against: Vec<String>,
+        findings: Findings,
+        scenario: &Scenario,
+    ) -> Self {
         Self {
             design: design.into(),
             passed: findings.passed(),
             findings,
             scenario: scenario.into(),
+            against,
+            basis: Basis::default(),
             version: VERSION,
         }
     }

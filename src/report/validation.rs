@@ -1,9 +1,12 @@
 //! A validation as text, Markdown and `JUnit`.
 
+use super::results::Basis;
 use super::{Align, Table, ValidateResult};
-use crate::earth;
 use crate::validate::Check;
+use crate::validate::distribution::Distribution;
+use crate::validate::file::FileComparison;
 use crate::validate::residuals::{BudgetLine, Ric};
+use crate::units::round_decimal;
 use quick_xml::escape::escape;
 use std::fmt::Write;
 
@@ -35,7 +38,8 @@ fn budget_table(budget: &[BudgetLine]) -> Table {
         ("I", right),
         ("C (km/day)", right),
     ]);
-    let cells = |ric: &Ric| [ric.radial, ric.in_track, ric.cross_track].map(|x| format!("{x:.3}"));
+    let cells = |ric: &Ric| [ric.radial, ric.in_track, ric.cross_track]
+            .map(|x| format!("{:.3}", round_decimal(x, 3)));
     for line in budget {
         let numbers = [&line.rms_km, &line.max_km, &line.growth_km_per_day].map(cells);
         table.row(
@@ -74,13 +78,125 @@ fn check_table(checks: &[Check]) -> Table {
 }
 
 /// What every number rests on, in one line.
-fn conventions() -> String {
+fn conventions(basis: &Basis) -> String {
+    let judges = basis
+        .judges
+        .map(|one| format!("{} {}", one.name, one.version));
     format!(
-        "mu {} km3/s2, R {} km, J2 {:e}; SGP4: WGS-72, AFSPC mode, B* = 0; TEME; UT1 = UTC",
-        earth::MU_KM3_S2,
-        earth::RADIUS_KM,
-        earth::J2
+        "mu {} km3/s2, R {} km, J2 {:e}; SGP4: WGS-72, AFSPC mode, B* = 0; TEME; UT1 = UTC; {}; no random numbers",
+        basis.mu_km3_s2,
+        basis.radius_km,
+        basis.j2,
+        judges.join(", ")
     )
+}
+
+/// The residuals of the checks and of the budget.
+fn distributions(result: &ValidateResult) -> Vec<&Distribution> {
+    let of_budget = result.findings.budget.iter();
+    of_budget
+        .filter_map(|line| line.distance.as_ref())
+        .chain(&result.findings.distributions)
+        .collect()
+}
+
+fn distribution_table(distributions: &[&Distribution]) -> Table {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("residual", Align::Left),
+        ("n", right),
+        ("median", right),
+        ("95 %", right),
+        ("99 %", right),
+        ("max", right),
+        ("unit", Align::Left),
+        ("worst", Align::Left),
+    ]);
+    for one in distributions {
+        table.row([
+            one.name.clone(),
+            one.n.to_string(),
+            digits(one.median),
+            digits(one.q95),
+            digits(one.q99),
+            digits(one.max),
+            one.unit.clone(),
+            one.worst.clone(),
+        ]);
+    }
+    table
+}
+
+/// Most satellites of a comparison that a table lists; JSON has them all.
+const LISTED: usize = 12;
+
+/// The satellites that differ most.
+fn satellite_table(comparison: &FileComparison) -> Table {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("slot", Align::Left),
+        ("object", Align::Left),
+        ("samples", right),
+        ("offset R", right),
+        ("I", right),
+        ("C (km)", right),
+        ("drift R", right),
+        ("I", right),
+        ("C (km/day)", right),
+        ("max (km)", right),
+    ]);
+    let mut satellites: Vec<_> = comparison.satellites.iter().collect();
+    satellites.sort_by(|a, b| b.max_km.total_cmp(&a.max_km));
+    for one in satellites.into_iter().take(LISTED) {
+        let ric = |ric: &Ric| [ric.radial, ric.in_track, ric.cross_track].map(digits);
+        let head = [
+            one.slot.clone(),
+            one.object.clone(),
+            one.samples.to_string(),
+        ];
+        let numbers = ric(&one.offset_km)
+            .into_iter()
+            .chain(ric(&one.drift_km_per_day));
+        let cells = head.into_iter().chain(numbers);
+        table.row(cells.chain([digits(one.max_km)]));
+    }
+    table
+}
+
+/// How a comparison went, in sentences.
+fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
+    let mut lines = vec![format!(
+        "{} satellites matched by {}",
+        comparison.satellites.len(),
+        comparison.matched_by
+    )];
+    for (what, names) in [
+        ("slots without an object", &comparison.unmatched_slots),
+        ("objects without a slot", &comparison.unmatched_objects),
+    ] {
+        if !names.is_empty() {
+            let shown: Vec<_> = names.iter().take(LISTED).map(String::as_str).collect();
+            let more = if names.len() > LISTED { " ..." } else { "" };
+            lines.push(format!(
+                "{} {what}: {}{more}",
+                names.len(),
+                shown.join(", ")
+            ));
+        }
+    }
+    lines.push(match &comparison.explanation {
+        Some(found) => format!(
+            "explained by {}: {}; it leaves {} of {} km rms",
+            found.convention,
+            found.meaning,
+            digits(found.after_km),
+            digits(found.before_km)
+        ),
+        None => {
+            "no known convention explains the difference better than the design itself".to_owned()
+        }
+    });
+    lines
 }
 
 fn verdict(result: &ValidateResult) -> String {
@@ -111,7 +227,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         result.design.notation,
         result.scenario.name,
         result.version,
-        conventions()
+        conventions(&result.basis)
     );
     if !result.findings.budget.is_empty() {
         text +=
@@ -130,6 +246,18 @@ pub fn validation_text(result: &ValidateResult) -> String {
     text += &check_table(&result.findings.checks).to_text();
     for reason in reasons(&result.findings.checks) {
         let _ = writeln!(text, "{reason}");
+    }
+    let residuals = distributions(result);
+    if !residuals.is_empty() {
+        text += "\nResiduals\n";
+        text += &distribution_table(&residuals).to_text();
+    }
+    for comparison in &result.findings.files {
+        let _ = writeln!(text, "\nFile {}", comparison.source);
+        text += &satellite_table(comparison).to_text();
+        for line in comparison_lines(comparison) {
+            let _ = writeln!(text, "{line}");
+        }
     }
     let _ = writeln!(text, "\n{}", verdict(result));
     text
@@ -159,7 +287,7 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         result.scenario.name,
         result.scenario.hash,
         result.version,
-        conventions(),
+        conventions(&result.basis),
         verdict(result)
     );
     if !result.findings.budget.is_empty() {
@@ -167,7 +295,16 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         text += &budget_table(&result.findings.budget).to_markdown();
         text += "\n";
         for line in &result.findings.budget {
-            let _ = writeln!(text, "- `{}`: {}", line.case, line.cause);
+            let worst = &line.worst;
+            let _ = writeln!(
+                text,
+                "- `{}`: {}; worst {} at {} s, {} km",
+                line.case,
+                line.cause,
+                worst.satellite,
+                worst.elapsed_s,
+                digits(worst.distance_km)
+            );
         }
     }
     text += "\n## Checks\n\n";
@@ -175,6 +312,19 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
     text += "\nReasons of the gates:\n\n";
     for reason in reasons(&result.findings.checks) {
         let _ = writeln!(text, "- {reason}");
+    }
+    let residuals = distributions(result);
+    if !residuals.is_empty() {
+        text += "\n## Residuals\n\nSizes of the residuals and the inputs of the largest.\n\n";
+        text += &distribution_table(&residuals).to_markdown();
+    }
+    for comparison in &result.findings.files {
+        let _ = writeln!(text, "\n## File {}\n", comparison.source);
+        text += &satellite_table(comparison).to_markdown();
+        text += "\n";
+        for line in comparison_lines(comparison) {
+            let _ = writeln!(text, "- {line}");
+        }
     }
     text
 }

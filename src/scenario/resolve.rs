@@ -9,7 +9,7 @@ use super::resolved::{
 };
 use super::rule::{Reading, Rule};
 use super::written::Written;
-use super::{Algorithm, PointWeights, Quantity};
+use super::{Algorithm, LaunchCost, PointWeights, Quantity};
 
 /// Samples in time: 366 days at every 3.2 seconds.
 const MOST_SAMPLES: u64 = 10_000_000;
@@ -199,6 +199,7 @@ impl Resolver<'_, '_> {
         let cvar_level = self.value(&table::CVAR_LEVEL);
         let constraints = self.value(&table::CONSTRAINTS);
         let availability_pdop = self.value(&table::AVAILABILITY_PDOP);
+        let launch_cost = self.launch_cost();
         let reference = self.hypervolume_reference(minimize.as_deref());
         Some(Objectives {
             minimize: minimize?,
@@ -206,7 +207,19 @@ impl Resolver<'_, '_> {
             cvar_level: cvar_level?,
             constraints: constraints?,
             availability_pdop: availability_pdop?,
+            launch_cost: launch_cost?,
             hypervolume_reference: reference?,
+        })
+    }
+
+    fn launch_cost(&mut self) -> Option<LaunchCost> {
+        let per_satellite = self.value(&table::LAUNCH_COST_PER_SATELLITE);
+        let per_plane = self.value(&table::LAUNCH_COST_PER_PLANE);
+        let per_1000_km = self.value(&table::LAUNCH_COST_PER_1000_KM);
+        Some(LaunchCost {
+            per_satellite: per_satellite?,
+            per_plane: per_plane?,
+            per_1000_km: per_1000_km?,
         })
     }
 
@@ -236,6 +249,10 @@ impl Resolver<'_, '_> {
         let inclination_deg = self.value(&table::INCLINATION_DEG);
         let altitude_km = self.value(&table::ALTITUDE_KM);
         let phasing = self.phasing(planes);
+        let eccentricity = self.value(&table::ECCENTRICITY);
+        let arg_perigee_deg = self.value(&table::ARG_PERIGEE_DEG);
+        let eccentricity_step = self.value(&table::ECCENTRICITY_STEP);
+        let arg_perigee_step_deg = self.value(&table::ARG_PERIGEE_STEP_DEG);
         let inclination_step_deg = self.value(&table::INCLINATION_STEP_DEG);
         let altitude_step_km = self.value(&table::ALTITUDE_STEP_KM);
         let space = SearchSpace {
@@ -245,6 +262,10 @@ impl Resolver<'_, '_> {
             inclination_deg: inclination_deg?,
             altitude_km: altitude_km?,
             phasing: phasing?,
+            eccentricity: eccentricity?,
+            arg_perigee_deg: arg_perigee_deg?,
+            eccentricity_step: eccentricity_step?,
+            arg_perigee_step_deg: arg_perigee_step_deg?,
             inclination_step_deg: inclination_step_deg?,
             altitude_step_km: altitude_step_km?,
         };
@@ -286,6 +307,8 @@ impl Resolver<'_, '_> {
         let generations = self.value(&table::GENERATIONS);
         let crossover_probability = self.value(&table::CROSSOVER_PROBABILITY);
         let mutation_probability = self.value(&table::MUTATION_PROBABILITY);
+        let crossover_index = self.value(&table::CROSSOVER_INDEX);
+        let mutation_index = self.value(&table::MUTATION_INDEX);
         let seed = self.value(&table::SEED);
         Some(Optimizer {
             algorithm: algorithm?,
@@ -293,6 +316,8 @@ impl Resolver<'_, '_> {
             generations: generations?,
             crossover_probability: crossover_probability?,
             mutation_probability: mutation_probability?,
+            crossover_index: crossover_index?,
+            mutation_index: mutation_index?,
             seed: seed?,
         })
     }

@@ -4,7 +4,8 @@ use chrono::{DateTime, Utc};
 
 use super::Constraint;
 use super::{
-    Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Surface,
+    Algorithm, Clocks, LaunchCost, Model, ObservationWeights, Pattern, PointWeights, Preset,
+    Quantity, Surface,
 };
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -173,6 +174,8 @@ pub struct Objectives {
     pub constraints: Vec<Constraint>,
     /// The PDOP up to which a sample counts as available.
     pub availability_pdop: f64,
+    /// Parameters of `launch-cost`.
+    pub launch_cost: LaunchCost,
     /// One number for each objective, in its own unit. `None` when it was not given and the
     /// objectives have no usual one.
     pub hypervolume_reference: Option<Vec<f64>>,
@@ -193,10 +196,18 @@ pub struct SearchSpace {
     pub altitude_km: [f64; 2],
     /// Walker's F (for a lattice N_c) before it is cut; see [`SearchSpace::phasing_for`].
     pub phasing: [u32; 2],
+    /// Eccentricity, lowest and highest.
+    pub eccentricity: [f64; 2],
+    /// Argument of perigee, degrees.
+    pub arg_perigee_deg: [f64; 2],
     /// Step of an exhaustive search in inclination, degrees.
     pub inclination_step_deg: f64,
     /// Step of an exhaustive search in altitude, km.
     pub altitude_step_km: f64,
+    /// Step of an exhaustive search in eccentricity.
+    pub eccentricity_step: f64,
+    /// Step of an exhaustive search in argument of perigee, degrees.
+    pub arg_perigee_step_deg: f64,
 }
 
 impl SearchSpace {
@@ -215,6 +226,8 @@ impl SearchSpace {
             * whole(self.phasing)
             * count(self.inclination_deg, self.inclination_step_deg)
             * count(self.altitude_km, self.altitude_step_km)
+            * count(self.eccentricity, self.eccentricity_step)
+            * count(self.arg_perigee_deg, self.arg_perigee_step_deg)
     }
 }
 
@@ -231,6 +244,10 @@ pub struct Optimizer {
     pub crossover_probability: f64,
     /// Probability that a variable is mutated.
     pub mutation_probability: f64,
+    /// Distribution index of simulated binary crossover.
+    pub crossover_index: f64,
+    /// Distribution index of polynomial mutation.
+    pub mutation_index: f64,
     /// Seed of the random numbers.
     pub seed: u64,
 }

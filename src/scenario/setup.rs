@@ -7,7 +7,7 @@ use crate::evaluate::{MetricOptions, Setup};
 use crate::formats::fleet::{Fleet, ReadFleetError};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::{DesignSpace, Goals, LaunchCost};
+use crate::search::{DesignSpace, Goals};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
@@ -211,6 +211,8 @@ impl Scenario {
             inclination_deg: self.search.inclination_deg,
             altitude_km: self.search.altitude_km,
             phasing: self.search.phasing,
+            eccentricity: self.search.eccentricity,
+            arg_perigee_deg: self.search.arg_perigee_deg,
         }
     }
 
@@ -220,10 +222,7 @@ impl Scenario {
         Goals {
             objectives: self.objectives.minimize.clone(),
             constraints: self.objectives.constraints.clone(),
-            launch_cost: LaunchCost {
-                per_plane: 5.0,
-                per_1000_km: 0.2,
-            },
+            launch_cost: self.objectives.launch_cost,
         }
     }
 
@@ -240,6 +239,21 @@ impl Scenario {
         )
     }
 
+    /// The settings of NSGA-II, whatever the method of the search.
+    #[must_use]
+    pub fn nsga2(&self) -> Nsga2Config {
+        let settings = &self.optimizer;
+        Nsga2Config {
+            population: settings.population as usize,
+            generations: settings.generations as usize,
+            crossover_probability: settings.crossover_probability,
+            mutation_probability: settings.mutation_probability,
+            crossover_index: settings.crossover_index,
+            mutation_index: settings.mutation_index,
+            hypervolume_reference: self.minimised_reference(),
+        }
+    }
+
     /// The method of the search and its budget.
     #[must_use]
     pub fn method(&self) -> Method {
@@ -248,14 +262,7 @@ impl Scenario {
             (settings.population as usize, settings.generations as usize);
         let hypervolume_reference = self.minimised_reference();
         match settings.algorithm {
-            Algorithm::Nsga2 => Method::Nsga2(Nsga2Config {
-                population,
-                generations,
-                crossover_probability: settings.crossover_probability,
-                mutation_probability: settings.mutation_probability,
-                hypervolume_reference,
-                ..Nsga2Config::default()
-            }),
+            Algorithm::Nsga2 => Method::Nsga2(self.nsga2()),
             Algorithm::Mopso => Method::Mopso(MopsoConfig {
                 particles: population,
                 iterations: generations,
@@ -268,13 +275,12 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: vec![
-                    1.0,
-                    1.0,
+                steps: self.design_space().steps([
                     self.search.inclination_step_deg,
                     self.search.altitude_step_km,
-                    1.0,
-                ],
+                    self.search.eccentricity_step,
+                    self.search.arg_perigee_step_deg,
+                ]),
                 batch: SWEEP_BATCH,
                 hypervolume_reference,
             }),

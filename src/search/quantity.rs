@@ -25,15 +25,17 @@ words! {
         MeanVisible = "mean-visible",
         /// Share of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
-        /// Relative cost of bringing the satellites up; minimised.
+        /// Cost of bringing the satellites up, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
 }
 
-/// Parameters of the relative launch cost: T (1 + c_h h/1000 km) + c_P P, in satellites.
+/// Parameters of the launch cost c_T T (1 + c_h h/1000 km) + c_P P (M-40), in any one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
-    /// c_P, cost of opening one plane, in satellites.
+    /// c_T, cost of one satellite brought up to a vanishing altitude.
+    pub per_satellite: f64,
+    /// c_P, cost of opening one plane.
     pub per_plane: f64,
     /// c_h, share that a satellite costs more for each 1000 km of altitude.
     pub per_1000_km: f64,
@@ -88,7 +90,7 @@ impl Quantity {
             Self::Availability => Some(metrics.availability),
             Self::LaunchCost => {
                 let lift = 1.0 + cost.per_1000_km * design.altitude_km() / 1000.0;
-                Some(satellites * lift + cost.per_plane * planes)
+                Some(cost.per_satellite * satellites * lift + cost.per_plane * planes)
             }
         }
     }

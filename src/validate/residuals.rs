@@ -1,5 +1,6 @@
 //! Differences of two trajectories of the same satellites in radial, in-track, cross-track axes.
 
+use super::distribution::{Distribution, Residual};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::ric_basis;
 use crate::stats::line_fit;
@@ -20,7 +21,7 @@ pub struct Ric {
 }
 
 impl Ric {
-    fn from_vector(v: Vector3<f64>) -> Self {
+    pub(super) fn from_vector(v: Vector3<f64>) -> Self {
         Self {
             radial: v.x,
             in_track: v.y,
@@ -51,11 +52,18 @@ pub struct BudgetLine {
     pub rms_km: Ric,
     /// Largest size, km.
     pub max_km: Ric,
+    /// Mean, km.
+    pub mean_km: Ric,
     /// Slope of the straight line through the mean of the constellation, km/day.
     pub growth_km_per_day: Ric,
     /// Where the largest difference was found.
     pub worst: Worst,
+    /// How the distances are distributed.
+    pub distance: Option<Distribution>,
 }
+
+/// Most distances that are kept for their distribution; beyond, instants are thinned out.
+const KEPT: usize = 1_000_000;
 
 /// The sums of one instant, over the satellites.
 struct Instant {
@@ -64,6 +72,7 @@ struct Instant {
     squares: Vector3<f64>,
     largest: Vector3<f64>,
     worst: (f64, usize),
+    distances: Vec<f64>,
 }
 
 fn instant(
@@ -77,6 +86,7 @@ fn instant(
         squares: Vector3::zeros(),
         largest: Vector3::zeros(),
         worst: (-1.0, 0),
+        distances: Vec::with_capacity(first.satellites().len()),
     };
     for (n, (a, b)) in first
         .satellites()
@@ -91,6 +101,7 @@ fn instant(
         sums.sum += apart;
         sums.squares += apart.component_mul(&apart);
         sums.largest = sums.largest.sup(&apart.abs());
+        sums.distances.push(apart.norm());
         if apart.norm() > sums.worst.0 {
             sums.worst = (apart.norm(), n);
         }
@@ -115,20 +126,14 @@ pub fn compare(
         .map(|&elapsed_s| instant(first, second, elapsed_s))
         .collect::<Result<Vec<_>, _>>()?;
     let satellites = first.satellites().len().min(second.satellites().len()) as f64;
-    let mut squares = Vector3::zeros();
-    let mut largest = Vector3::zeros();
-    let mut worst = (-1.0, 0, 0.0);
-    for at in &instants {
-        squares += at.squares;
-        largest = largest.sup(&at.largest);
-        if at.worst.0 > worst.0 {
-            worst = (at.worst.0, at.worst.1, at.elapsed_s);
-        }
-    }
-    let days: Vec<f64> = instants
-        .iter()
-        .map(|at| at.elapsed_s / SECONDS_PER_DAY)
-        .collect();
+    let samples = satellites * instants.len() as f64;
+    let total = |add: fn(Vector3<f64>, &Instant) -> Vector3<f64>| {
+        instants.iter().fold(Vector3::zeros(), add)
+    };
+    let mean = total(|sum, at| sum + at.sum) / samples;
+    let squares = total(|sum, at| sum + at.squares);
+    let largest = total(|most, at| most.sup(&at.largest));
+    let days: Vec<f64> = times.iter().map(|t| t / SECONDS_PER_DAY).collect();
     let slope = |axis: usize| {
         let means: Vec<f64> = instants
             .iter()
@@ -139,19 +144,50 @@ pub fn compare(
     Ok(BudgetLine {
         case: case.to_owned(),
         cause: cause.to_owned(),
-        rms_km: Ric::from_vector((squares / (satellites * instants.len() as f64)).map(f64::sqrt)),
+        rms_km: Ric::from_vector((squares / samples).map(f64::sqrt)),
         max_km: Ric::from_vector(largest),
+        mean_km: Ric::from_vector(mean),
         growth_km_per_day: Ric {
             radial: slope(0),
             in_track: slope(1),
             cross_track: slope(2),
         },
-        worst: Worst {
-            satellite: first.satellites()[worst.1].name.clone(),
-            elapsed_s: worst.2,
-            distance_km: worst.0,
-        },
+        worst: worst(first, &instants),
+        distance: distances(case, first, &instants),
     })
+}
+
+fn worst(first: &Ephemeris, instants: &[Instant]) -> Worst {
+    let (mut distance_km, mut satellite, mut elapsed_s) = (-1.0, 0, 0.0);
+    for at in instants {
+        if at.worst.0 > distance_km {
+            (distance_km, satellite) = at.worst;
+            elapsed_s = at.elapsed_s;
+        }
+    }
+    Worst {
+        satellite: first.satellites()[satellite].name.clone(),
+        elapsed_s,
+        distance_km,
+    }
+}
+
+fn distances(case: &str, first: &Ephemeris, instants: &[Instant]) -> Option<Distribution> {
+    let total = instants.len() * first.satellites().len();
+    let stride = total.div_ceil(KEPT).max(1);
+    let kept = instants.iter().step_by(stride);
+    let residuals: Vec<_> = kept
+        .flat_map(|at| {
+            let distances = at.distances.iter().enumerate();
+            distances.map(|(n, &value)| Residual {
+                value,
+                input: (n, at.elapsed_s),
+            })
+        })
+        .collect();
+    let describe =
+        |&(n, elapsed_s): &(usize, f64)| format!("{} at {elapsed_s} s", first.satellites()[n].name);
+    Distribution::of(case, ["distance", "km"], &residuals, describe)
 }
 
 #[cfg(test)]

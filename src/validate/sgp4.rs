@@ -5,263 +5,286 @@
 //! eccentricity that J3 forces, and (d) second-order secular terms. Each has a closed form at e = 0,
 //! from which the gates are made, so that they follow the inclination and altitude of the design.
 
+pub(super) mod causes;
+mod element_sets;
+mod frozen;
+pub(super) mod rates;
+mod verification;
+
+use super::decisions::{DecisionGates, Seen, flip_gate};
 use super::residuals::{BudgetLine, compare};
-use super::{Check, Findings};
-use crate::constellation::Design;
-use crate::earth::{J2, RADIUS_KM};
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
-use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, ZonalHarmonics};
-use crate::orbit::{MeanElements, PropagationError, Propagator};
-use crate::time::TimeGrid;
-use crate::units::SECONDS_PER_DAY;
-use std::f64::consts::{SQRT_2, TAU};
+use super::{Check, Findings, Subject, ValidateError};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::orbit::osculating::OsculatingOrbit;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Mode, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
+use causes::{Causes, is_deep_space};
 
-/// SGP4 adds the Sun, the Moon and resonances at periods from 225 minutes on (Hoots and
-/// Roehrich, *Spacetrack Report* 3 (1980), section 6), which no J2 model has.
-const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
+pub use verification::against_the_verification_set;
 
-/// -J3/J2 of WGS-72, the constants that SGP4 flies (Vallado et al., AIAA 2006-6753, table 1).
-const J3_OVER_J2_WGS72: f64 = 2.538_81e-6 / 1.082_616e-3;
-
-/// Share by which a closed form at e = 0 and first order may be exceeded: terms of order e and
-/// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
-const FIRST_ORDER_MARGIN: f64 = 1.15;
-
-/// Closed forms of the causes, for one orbit; all at e = 0 (M-30 to M-35).
-#[derive(Debug, Clone, Copy)]
-struct Causes {
-    /// Constant shift of the radius, km.
-    radius_shift_km: f64,
-    /// Amplitudes of the short-period terms, km.
-    short_period_km: [f64; 3],
-    /// Amplitude of the radial effect of the frozen eccentricity, km; in-track is twice that.
-    frozen_km: f64,
-    /// Bound on the in-track rate of second-order terms, km/day.
-    second_order_km_per_day: f64,
-    /// In-track rate of sqrt(μ/a³) in the Kozai slot, km/day.
-    kepler_slot_km_per_day: f64,
-    /// Share of first-order sizes that the eccentricity adds.
-    eccentric_factor: f64,
+/// The design flown by SGP4 and by J2, each once.
+struct Flights {
+    mean_j2: Ephemeris,
+    osculating_j2: Ephemeris,
+    sgp4: Ephemeris,
+    no_j3j4: Ephemeris,
+    no_j3: Ephemeris,
+    kepler_slot: Ephemeris,
+    design_constants: Ephemeris,
+    improved: Ephemeris,
 }
 
-impl Causes {
-    fn of(orbit: &MeanElements) -> Self {
-        let (sin_i, cos_i) = orbit.inclination_rad.sin_cos();
-        let a = orbit.semi_major_axis_km;
-        let e = orbit.eccentricity;
-        let parameter_km = a * (1.0 - e * e);
-        let n = orbit.kepler_mean_motion_rad_s();
-        let first_order_km = J2 * RADIUS_KM * RADIUS_KM / parameter_km;
-        let km_per_day = n * a * SECONDS_PER_DAY;
-        let ratio2 = (RADIUS_KM / parameter_km).powi(2);
-        Self {
-            // 3/4 J2 (R²/p) (1 - 3 cos² i)
-            radius_shift_km: 0.75 * first_order_km * (1.0 - 3.0 * cos_i * cos_i),
-            short_period_km: [
-                // 1/4 J2 (R²/p) sin² i
-                0.25 * first_order_km * sin_i * sin_i,
-                // 1/8 J2 (R²/p) sin² i
-                0.125 * first_order_km * sin_i * sin_i,
-                // 3/4 J2 (R²/p) sin i |cos i|
-                0.75 * first_order_km * sin_i * cos_i.abs(),
-            ],
-            // a e_f = |J3 / (2 J2)| R sin i
-            frozen_km: 0.5 * J3_OVER_J2_WGS72 * RADIUS_KM * sin_i,
-            // (2 + 12 cos⁴ i) J2² (R/p)⁴ n a
-            second_order_km_per_day: (2.0 + 12.0 * cos_i.powi(4))
-                * J2
-                * J2
-                * ratio2
-                * ratio2
-                * km_per_day,
-            // -3/2 J2 (R/p)² sqrt(1 - e²) (1 - 3/2 sin² i) n a
-            kepler_slot_km_per_day: -1.5
-                * J2
-                * ratio2
-                * (1.0 - e * e).sqrt()
-                * (1.0 - 1.5 * sin_i * sin_i)
-                * km_per_day,
-            eccentric_factor: 1.0 + 8.0 * e,
-        }
-    }
-
-    /// Bounds on the RMS of mean J2 against SGP4 over a span, km.
-    fn rms_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
-        let frozen = match zonals {
-            ZonalHarmonics::Full => self.frozen_km / SQRT_2,
-            ZonalHarmonics::J2Only => 0.0,
+impl Flights {
+    fn new(subject: &Subject<'_>) -> Result<Self, EphemerisError> {
+        let by = |slot: MeanMotionSlot, theory: Sgp4Theory| {
+            subject.fly(|elements| {
+                Sgp4Orbit::from_mean_elements_with(elements, subject.epoch(), slot, theory)
+            })
         };
-        let periodic = self.short_period_km.map(|amplitude| amplitude / SQRT_2);
-        let drift = self.second_order_km_per_day * days / 3_f64.sqrt();
-        let first_order = [
-            self.radius_shift_km.hypot(periodic[0]).hypot(frozen),
-            periodic[1].hypot(2.0 * frozen),
-            periodic[2],
-        ];
-        let second_order = [0.05 * drift, drift, drift];
-        std::array::from_fn(|axis| {
-            FIRST_ORDER_MARGIN * self.eccentric_factor * first_order[axis].hypot(second_order[axis])
+        let zonals = |zonals: ZonalHarmonics| Sgp4Theory {
+            geopotential: zonals.wgs72(),
+            ..Sgp4Theory::STANDARD
+        };
+        let slot = subject.parts.slot;
+        Ok(Self {
+            mean_j2: subject.fly_mean_j2()?,
+            osculating_j2: subject.fly(|elements| Ok(OsculatingOrbit::new(elements)))?,
+            sgp4: by(slot, Sgp4Theory::STANDARD)?,
+            no_j3j4: by(slot, zonals(ZonalHarmonics::J2Only))?,
+            no_j3: by(slot, zonals(ZonalHarmonics::WithoutJ3))?,
+            kepler_slot: by(MeanMotionSlot::Kepler, Sgp4Theory::STANDARD)?,
+            design_constants: by(slot, Sgp4Theory::with_design_constants())?,
+            improved: by(
+                slot,
+                Sgp4Theory {
+                    mode: Sgp4Mode::Improved,
+                    ..Sgp4Theory::STANDARD
+                },
+            )?,
         })
     }
-}
 
-/// The SGP4 flights of the budget.
-#[derive(Clone, Copy)]
-struct Flight {
-    slot: MeanMotionSlot,
-    zonals: ZonalHarmonics,
-}
-
-fn fly<P: Propagator + 'static>(
-    design: &Design,
-    grid: TimeGrid,
-    propagator: impl Fn(&MeanElements) -> Result<P, PropagationError>,
-) -> Result<Ephemeris, EphemerisError> {
-    let one = |satellite: &crate::constellation::Satellite| {
-        let name = object_name(satellite.slot);
-        match propagator(&satellite.elements) {
-            Ok(flown) => Ok(Flown {
-                name,
-                slot: Some(satellite.slot),
-                propagator: Box::new(flown),
-            }),
-            Err(source) => Err(EphemerisError { name, source }),
-        }
-    };
-    let satellites = design
-        .satellites()
-        .iter()
-        .map(one)
-        .collect::<Result<_, _>>()?;
-    Ok(Ephemeris::new(grid, satellites))
-}
-
-/// The budget of a design over a grid: `mean-j2/sgp4`, `mean-j2/sgp4-no-j3j4` and `kepler-slot`.
-///
-/// Elements are unrounded, without drag, in WGS-72; only J3 and J4 are set to zero where the case
-/// says so.
-///
-/// # Errors
-/// When SGP4 refuses a satellite, as for an orbit that decays.
-pub fn against_sgp4(design: &Design, grid: TimeGrid) -> Result<Findings, EphemerisError> {
-    let mean_j2 = fly(design, grid, |elements| Ok(SecularOrbit::j2(elements)))?;
-    let sgp4 = |flight: Flight| {
-        fly(design, grid, |elements| {
-            Sgp4Orbit::from_mean_elements(elements, grid.epoch(), flight.slot, flight.zonals)
-        })
-    };
-    let full = Flight {
-        slot: MeanMotionSlot::Kozai,
-        zonals: ZonalHarmonics::Full,
-    };
-    let no_j3j4 = Flight {
-        zonals: ZonalHarmonics::J2Only,
-        ..full
-    };
-    let kepler = Flight {
-        slot: MeanMotionSlot::Kepler,
-        ..full
-    };
-    let budget = vec![
-        compare(
+    /// The budget: first the cases of J2 against SGP4, then what SGP4's own variants amount to.
+    fn budget(&self) -> Result<Vec<BudgetLine>, EphemerisError> {
+        let cases: [(&str, &str, &Ephemeris, &Ephemeris); 8] = [
             (
                 "mean-j2/sgp4",
                 "all that mean J2 leaves out; at e = 0 mostly J3's frozen eccentricity",
+                &self.mean_j2,
+                &self.sgp4,
             ),
-            &mean_j2,
-            &sgp4(full)?,
-        )?,
-        compare(
             (
                 "mean-j2/sgp4-no-j3j4",
                 "J2's own short-period terms and radius shift",
+                &self.mean_j2,
+                &self.no_j3j4,
             ),
-            &mean_j2,
-            &sgp4(no_j3j4)?,
-        )?,
-        compare(
+            (
+                "osculating-j2/sgp4-no-j3j4",
+                "second-order secular terms of J2",
+                &self.osculating_j2,
+                &self.no_j3j4,
+            ),
+            (
+                "osculating-j2/sgp4",
+                "J3's frozen eccentricity, J4 and the second order",
+                &self.osculating_j2,
+                &self.sgp4,
+            ),
             (
                 "kepler-slot",
                 "sqrt(mu/a^3) in the Kozai slot: what the common mistake would cost",
+                &self.mean_j2,
+                &self.kepler_slot,
             ),
-            &mean_j2,
-            &sgp4(kepler)?,
-        )?,
-    ];
-    let orbit = design.satellites()[0].elements;
-    let days = grid.len() as f64 * grid.step_s() / SECONDS_PER_DAY;
-    let checks = checks(&budget, &orbit, days);
-    Ok(Findings { checks, budget })
+            ("sgp4-no-j3j4/sgp4-no-j3", "J4", &self.no_j3j4, &self.no_j3),
+            (
+                "sgp4/sgp4-egm96",
+                "gravity constants: mu, R and J2 of EGM96 in place of WGS-72",
+                &self.sgp4,
+                &self.design_constants,
+            ),
+            (
+                "sgp4/sgp4-improved",
+                "improved mode and its sidereal time in place of AFSPC mode",
+                &self.sgp4,
+                &self.improved,
+            ),
+        ];
+        cases
+            .into_iter()
+            .map(|(case, cause, first, second)| compare((case, cause), first, second))
+            .collect()
+    }
 }
 
-fn checks(budget: &[BudgetLine], orbit: &MeanElements, days: f64) -> Vec<Check> {
-    let causes = Causes::of(orbit);
-    let deep_space = TAU / orbit.kepler_mean_motion_rad_s() >= DEEP_SPACE_PERIOD_S;
-    let gate = |bound: f64| (!deep_space).then_some(bound);
-    let note = if deep_space {
-        "reported only: SGP4 adds Sun, Moon and resonances at this period"
-    } else {
-        "closed forms of radius shift, short period, frozen eccentricity and second order, with 15 %"
-    };
-    let mut checks = Vec::new();
-    for (line, zonals) in budget
-        .iter()
-        .zip([ZonalHarmonics::Full, ZonalHarmonics::J2Only])
-    {
-        let bounds = causes.rms_gates_km(zonals, days);
-        let values = [
-            line.rms_km.radial,
-            line.rms_km.in_track,
-            line.rms_km.cross_track,
-        ];
-        for ((axis, value), bound) in ["radial", "in-track", "cross-track"]
-            .iter()
-            .zip(values)
-            .zip(bounds)
-        {
-            let name = format!("sgp4/{}/{axis}-rms", line.case);
-            let quantity = format!("{axis} difference");
-            checks.push(Check::new(
-                &name,
-                [&quantity, "km", "rms"],
-                value,
-                gate(bound),
-                note,
-            ));
+/// Everything that SGP4 says about a design: the budget by cause with its gates, the rates of node
+/// and argument of latitude, the frozen eccentricity, the exported element sets, and what the
+/// differences do to visibility decisions, passes and metrics.
+///
+/// Elements are unrounded, without drag, in WGS-72 unless a case says otherwise.
+///
+/// # Errors
+/// When SGP4 refuses a satellite, as for an orbit that decays.
+pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
+    let mut findings = against_the_verification_set();
+    let flights = Flights::new(subject)?;
+    let budget = flights.budget()?;
+    let scale = Scale::of(subject);
+    findings.checks.extend(scale.budget_checks(&budget));
+    findings.checks.extend(rates::checks(subject, &scale)?);
+    findings.checks.extend(frozen::checks(subject, &scale)?);
+    let written = element_sets::Written::new(subject)?;
+    findings.append(written.findings(subject, &flights.sgp4)?);
+    let gates = scale.decision_gates(subject);
+    for (name, second) in [
+        ("sgp4/decisions", &flights.sgp4),
+        ("sgp4/tle/decisions", &written.flown),
+    ] {
+        let seen = Seen {
+            evaluator: subject.evaluator,
+            first: &flights.mean_j2,
+            second,
+        };
+        findings.append(seen.compare(name, gates)?);
+    }
+    findings.budget.splice(0..0, budget);
+    Ok(findings)
+}
+
+/// The closed forms for the orbit and the span at hand.
+struct Scale {
+    causes: Causes,
+    days: f64,
+    deep_space: bool,
+}
+
+impl Scale {
+    fn of(subject: &Subject<'_>) -> Self {
+        let orbit = subject.orbit();
+        Self {
+            causes: Causes::of(&orbit),
+            days: subject.days(),
+            deep_space: is_deep_space(&orbit),
         }
+    }
+
+    /// A bound, but for deep space.
+    fn gate(&self, bound: f64) -> Option<f64> {
+        (!self.deep_space).then_some(bound)
+    }
+
+    /// Why a bound is there, or is not.
+    fn reason<'a>(&self, reason: &'a str) -> &'a str {
+        if self.deep_space {
+            "reported only: SGP4 adds Sun, Moon and resonances at this period"
+        } else {
+            reason
+        }
+    }
+
+    fn decision_gates(&self, subject: &Subject<'_>) -> Option<DecisionGates> {
+        let [radial, in_track, cross_track] =
+            self.causes.rms_gates_km(ZonalHarmonics::Full, self.days);
+        let orbit = subject.orbit();
+        let mask_deg = subject.setup().mask.degrees();
+        let along = in_track.hypot(cross_track);
+        let flips = flip_gate(orbit.semi_major_axis_km, mask_deg, radial, along);
+        self.gate(flips).map(|flips| DecisionGates {
+            flips,
+            satellites: subject.design.satellite_count() as f64,
+        })
+    }
+
+    fn budget_checks(&self, budget: &[BudgetLine]) -> Vec<Check> {
+        let causes = &self.causes;
+        let bounds = |line: &BudgetLine| match line.case.as_str() {
+            "mean-j2/sgp4" => Some(causes.rms_gates_km(ZonalHarmonics::Full, self.days)),
+            "mean-j2/sgp4-no-j3j4" => Some(causes.rms_gates_km(ZonalHarmonics::J2Only, self.days)),
+            "osculating-j2/sgp4-no-j3j4" => {
+                Some(causes.osculating_gates_km(ZonalHarmonics::J2Only, self.days))
+            }
+            "osculating-j2/sgp4" => {
+                Some(causes.osculating_gates_km(ZonalHarmonics::Full, self.days))
+            }
+            _ => None,
+        };
+        let mut checks = Vec::new();
+        for line in budget {
+            if let Some(bounds) = bounds(line) {
+                checks.extend(self.line_checks(line, bounds));
+            }
+        }
+        if let [_, without_j3j4, _, _, kepler, ..] = budget {
+            checks.push(self.radius_check(without_j3j4));
+            checks.extend(self.slot_checks(kepler));
+        }
+        checks
+    }
+
+    /// RMS of a case by axis, and the growth of its mean.
+    fn line_checks(&self, line: &BudgetLine, bounds: [f64; 3]) -> Vec<Check> {
+        let rms = [
+            ("radial", line.rms_km.radial),
+            ("in-track", line.rms_km.in_track),
+            ("cross-track", line.rms_km.cross_track),
+        ];
+        let mut checks: Vec<Check> = rms
+            .into_iter()
+            .zip(bounds)
+            .map(|((axis, value), bound)| {
+                Check::new(
+                    &format!("sgp4/{}/{axis}-rms", line.case),
+                    [&format!("{axis} difference"), "km", "rms"],
+                    value,
+                    self.gate(bound),
+                    self.reason("closed forms of radius shift, short period, frozen eccentricity and second order, with 15 %"),
+                )
+            })
+            .collect();
         checks.push(Check::new(
             &format!("sgp4/{}/in-track-growth", line.case),
             ["in-track growth", "km/day", "slope"],
             line.growth_km_per_day.in_track,
-            gate(growth_gate(&causes, days)),
-            "second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and what a part of a revolution leaves",
+            self.gate(self.causes.growth_gate_km_per_day(self.days)),
+            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and what a part of a revolution leaves"),
         ));
+        checks
     }
-    let kepler = &budget[2];
-    checks.push(Check::new(
-        "sgp4/kepler-slot/in-track-growth",
-        ["in-track growth", "km/day", "slope"],
-        kepler.growth_km_per_day.in_track,
-        None,
-        "what sqrt(mu/a^3) in the mean motion slot of an element set costs",
-    ));
-    checks.push(Check::new(
-        "sgp4/kepler-slot/closed-form",
-        ["in-track growth less -dM/dt(J2) a", "km/day", "slope"],
-        kepler.growth_km_per_day.in_track - causes.kepler_slot_km_per_day,
-        gate(growth_gate(&causes, days)),
-        "the drift is the J2 term of dM/dt, up to second order",
-    ));
-    checks
-}
 
-/// Bound on the slope of the mean in-track difference, km/day: second order, and for spans so
-/// short that the mean over the constellation is not yet a mean over the orbit, the periodic part.
-fn growth_gate(causes: &Causes, days: f64) -> f64 {
-    let periodic = causes.short_period_km[1] + 2.0 * causes.frozen_km;
-    let leftover = 0.02 * periodic / days.min(1.0);
-    causes.eccentric_factor * (causes.second_order_km_per_day + leftover)
+    fn radius_check(&self, without_j3j4: &BudgetLine) -> Check {
+        let causes = &self.causes;
+        // Terms of relative order J2 of the short-period theory, SGP4's floor of e, and e itself.
+        let bound = 0.03
+            + 0.02 * causes.radius_shift_km.abs()
+            + (causes.eccentric_factor - 1.0) * causes.short_period_km[0];
+        Check::new(
+            "sgp4/radius-shift/closed-form",
+            ["mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)", "km", "mean"],
+            without_j3j4.mean_km.radial - causes.radius_shift_km,
+            self.gate(bound),
+            self.reason("the short-period theory of J2 moves the mean radius by a constant, known to first order"),
+        )
+    }
+
+    fn slot_checks(&self, kepler: &BudgetLine) -> [Check; 2] {
+        let growth = kepler.growth_km_per_day.in_track;
+        [
+            Check::new(
+                "sgp4/kepler-slot/in-track-growth",
+                ["in-track growth", "km/day", "slope"],
+                growth,
+                None,
+                "what sqrt(mu/a^3) in the mean motion slot of an element set costs",
+            ),
+            Check::new(
+                "sgp4/kepler-slot/closed-form",
+                ["in-track growth less -dM/dt(J2) a", "km/day", "slope"],
+                growth - self.causes.kepler_slot_km_per_day,
+                self.gate(self.causes.growth_gate_km_per_day(self.days)),
+                self.reason("the drift is the J2 term of dM/dt, up to second order"),
+            ),
+        ]
+    }
 }
 
 #[cfg(test)]

@@ -28,13 +28,13 @@ fn navwalker(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-struct Ran {
-    status: i32,
-    stdout: String,
-    stderr: String,
+pub(crate) struct Ran {
+    pub(crate) status: i32,
+    pub(crate) stdout: String,
+    pub(crate) stderr: String,
 }
 
-fn ran(directory: &Path, arguments: &[&str]) -> Ran {
+pub(crate) fn ran(directory: &Path, arguments: &[&str]) -> Ran {
     let output = navwalker(directory, arguments).output().unwrap();
     Ran {
         status: output.status.code().unwrap(),
@@ -44,7 +44,7 @@ fn ran(directory: &Path, arguments: &[&str]) -> Ran {
 }
 
 /// Runs what must end with status 2, say why in one message, print nothing and leave nothing.
-fn refused(arguments: &[&str]) -> String {
+pub(crate) fn refused(arguments: &[&str]) -> String {
     let directory = TempDir::new().unwrap();
     let ran = ran(directory.path(), arguments);
     assert_eq!(ran.status, 2, "{arguments:?}: {}", ran.stderr);
@@ -54,7 +54,7 @@ fn refused(arguments: &[&str]) -> String {
     ran.stderr
 }
 
-fn optimize<'a>(further: &[&'a str]) -> Vec<&'a str> {
+pub(crate) fn optimize<'a>(further: &[&'a str]) -> Vec<&'a str> {
     [&["optimize", "--quiet"], SMALL.as_slice(), further].concat()
 }
 

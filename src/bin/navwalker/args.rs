@@ -62,6 +62,15 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
+    /// Repeat the study that this program implements: its tables and figures, ours beside theirs.
+    ///
+    /// Every statement of the paper is judged by a computed rule: met, met under another assumption
+    /// (one changed at a time), or not met. DIR gets the report and the data of each figure.
+    ///
+    /// Example: navwalker reproduce --set visibility.mask-deg=10
+    #[command(verbatim_doc_comment)]
+    Reproduce(ReproduceArgs),
+
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
@@ -94,7 +103,7 @@ Products:
   tle-states  table of what SGP4 makes of the element sets as written";
 
 /// Which study a command works on.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario.
     #[arg(value_name = "SCENARIO", default_value = "paper")]
@@ -116,7 +125,7 @@ pub(crate) enum Format {
     Csv,
 }
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct OptimizeArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
@@ -128,6 +137,20 @@ pub(crate) struct OptimizeArgs {
     /// Seed of the search; the same as `--set optimizer.seed=N`.
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+
+    /// Run this many seeds, from the one of the scenario upwards, and report their spread.
+    ///
+    /// Each seed is a run of its own in DIR/seed-N; DIR gets the table of all as seeds.csv and
+    /// seeds.json. What is printed is the front of the first seed and the table.
+    #[arg(long, value_name = "N")]
+    pub(crate) seeds: Option<NonZeroUsize>,
+
+    /// Also sweep the whole search space on the scenario's steps and hold the front against the
+    /// exact one: both hypervolumes, the distance of each member, and what was missed.
+    ///
+    /// The sweep is a run of its own in DIR-sweep, which is resumed when it is there.
+    #[arg(long)]
+    pub(crate) certify: bool,
 
     /// Go on from the checkpoint of the run directory.
     #[arg(long)]
@@ -175,6 +198,41 @@ pub(crate) struct EvaluateArgs {
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+}
+
+/// The form of a study on stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StudyFormat {
+    /// Tables to read.
+    Text,
+    /// One JSON object.
+    Json,
+    /// Comma-separated values with a header: the statements.
+    Csv,
+    /// Markdown, for an appendix.
+    Markdown,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReproduceArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+
+    /// Where the report and the data of the figures go.
+    #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
+    pub(crate) out: PathBuf,
+
+    /// Seed of the searches; the same as `--set optimizer.seed=N`.
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// Replace a directory that holds something else.
+    #[arg(long)]
+    pub(crate) force: bool,
+
+    /// Form of the result on stdout.
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: StudyFormat,
 }
 
 /// Which design of a run to take.
@@ -311,7 +369,9 @@ pub(crate) struct ValidateArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// What to check against, separated by commas: sgp4.
+    /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
+    /// all, or files and directories of another program (OEM, OMM, TLE, SP3, STK .e; anything with a
+    /// `.` or `/` in its path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
 

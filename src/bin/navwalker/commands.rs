@@ -4,5 +4,6 @@ pub(crate) mod evaluate;
 pub(crate) mod export;
 pub(crate) mod lint;
 pub(crate) mod optimize;
+pub(crate) mod reproduce;
 pub(crate) mod scenario;
 pub(crate) mod validate;

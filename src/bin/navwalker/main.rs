@@ -53,6 +53,7 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
     match cli.command {
         Command::Optimize(args) => commands::optimize::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),

@@ -194,8 +194,8 @@ struct StoredDesign {
     notation: String,
 }
 
-/// The design that `pick` names in the front of a run.
-pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<Design> {
+/// The front of a run, and the file that it stands in.
+fn stored_front(directory: &Path) -> Result<(PathBuf, Vec<StoredMember>)> {
     let path = directory.join("front.json");
     let text = fs::read_to_string(&path).with_context(|| {
         format!(
@@ -205,7 +205,12 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<Design> {
     })?;
     let stored: StoredFront = serde_json::from_str(&text)
         .with_context(|| format!("{} is no front of a run", path.display()))?;
-    let members = &stored.front;
+    Ok((path, stored.front))
+}
+
+/// The design that `pick` names in the front of a run.
+pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<Design> {
+    let (path, members) = stored_front(directory)?;
     let found = match pick {
         Pick::Fuzzy => members.iter().find(|member| member.chosen),
         Pick::Index(index) => members.iter().find(|member| member.index == index),

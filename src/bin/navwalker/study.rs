@@ -6,11 +6,12 @@ use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::System;
 use navwalker::evaluate::{Evaluator, Setup};
-use navwalker::scenario::{Scenario, builtin};
+use navwalker::scenario::{Algorithm, Scenario, builtin};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A scenario and where its files lie.
+#[derive(Clone)]
 pub(crate) struct Study {
     pub(crate) scenario: Scenario,
     /// Directory to which paths in the scenario are relative.
@@ -40,6 +41,13 @@ impl Study {
             scenario,
             directory: directory.to_owned(),
         })
+    }
+
+    /// The same study by another algorithm.
+    pub(crate) fn with_algorithm(&self, algorithm: Algorithm) -> Self {
+        let mut other = self.clone();
+        other.scenario.optimizer.algorithm = algorithm;
+        other
     }
 
     /// SHA-256 of what is computed, the contents of the scenario's files included.

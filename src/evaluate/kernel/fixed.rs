@@ -2,6 +2,7 @@
 
 use super::super::Setup;
 use super::flight::Positions;
+use super::instructions::{InstructionSet, Work};
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, split};
 use super::tiles::{Tile, Tiles};
 use crate::dop::Clocks;
@@ -13,6 +14,7 @@ pub(super) struct Fixed {
     systems: Vec<Ephemeris>,
     clocks: Clocks,
     mask: MaskTerms<f64>,
+    instructions: InstructionSet,
     /// Empty when there is no GNSS or it does not fit.
     kept: FixedTiles,
 }
@@ -83,7 +85,7 @@ impl Fixed {
         setup: &Setup,
         tiles: &Tiles,
         rotations: &[EarthRotation],
-        kept_bytes: usize,
+        (instructions, kept_bytes): (InstructionSet, usize),
     ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
         let mut fixed = Self {
@@ -94,6 +96,7 @@ impl Fixed {
                 .collect(),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
+            instructions,
             kept: FixedTiles::default(),
         };
         let count = tiles.tiles.len() * setup.grid.len();
@@ -138,12 +141,16 @@ impl Fixed {
             positions.ask(system, elapsed_s, rotation)?;
             systems.push(positions);
         }
-        for tile in &tiles.tiles {
-            self.push_tile(tile, &systems, to);
-        }
+        self.instructions.run(Make {
+            fixed: self,
+            tiles: &tiles.tiles,
+            systems: &systems,
+            to,
+        });
         Ok(())
     }
 
+    #[inline(always)]
     fn push_tile(&self, tile: &Tile, systems: &[Positions], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
         let mut surplus = [0_u8; LANES];
@@ -176,7 +183,27 @@ impl Fixed {
     }
 }
 
+/// The GNSS part of one sample, to be made from the positions of each system.
+struct Make<'a> {
+    fixed: &'a Fixed,
+    tiles: &'a [Tile],
+    systems: &'a [Positions],
+    to: &'a mut FixedTiles,
+}
+
+impl Work for Make<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for tile in self.tiles {
+            self.fixed.push_tile(tile, self.systems, self.to);
+        }
+    }
+}
+
 /// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
+#[inline(always)]
 fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     for l in 0..LANES {
         let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
@@ -191,6 +218,7 @@ fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     }
 }
 
+#[inline(always)]
 fn shared_clock(sums: &Sums<f64>) -> SharedClock {
     let parts = [&sums.x, &sums.y, &sums.z].map(|sum| {
         let mean = |l: usize| sum.0[l] / f64::from(sums.count.0[l].max(1));

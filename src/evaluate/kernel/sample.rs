@@ -29,6 +29,14 @@ impl Limits {
     const BAND: f32 = 1e-5;
 
     #[inline(always)]
+    fn capped(self, single_below: f32) -> Self {
+        Self {
+            single_below: self.single_below.min(single_below),
+            ..self
+        }
+    }
+
+    #[inline(always)]
     fn holds_in_single(&self, pdop: f32) -> bool {
         let available = self.available as f32;
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
@@ -107,6 +115,8 @@ impl Outcome {
 /// One sample to be evaluated.
 pub(super) struct Sample<'a> {
     pub(super) scene: &'a Scene,
+    /// Those of the scene, or narrower ones.
+    pub(super) limits: Limits,
     /// The pattern to fly; without one the positions are there already.
     pub(super) pattern: Option<(&'a PatternFlight, Turn)>,
     /// The GNSS part.
@@ -123,16 +133,29 @@ impl Work for Sample<'_> {
         if let Some((pattern, turn)) = &self.pattern {
             pattern.fly(turn, &mut self.work.positions);
         }
-        evaluate(self.scene, &self.fixed, self.work, self.outcome);
+        evaluate(
+            self.scene,
+            self.limits,
+            &self.fixed,
+            self.work,
+            self.outcome,
+        );
     }
 }
 
 #[inline(always)]
-fn evaluate(scene: &Scene, fixed: &FixedSample<'_>, work: &mut Workspace, out: &mut Outcome) {
+fn evaluate(
+    scene: &Scene,
+    limits: Limits,
+    fixed: &FixedSample<'_>,
+    work: &mut Workspace,
+    out: &mut Outcome,
+) {
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
     let slack_km = Horizon::cap_slack_km(&work.positions);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
+    let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     let (mut visible, mut available) = ([0; LANES], [0; LANES]);
@@ -154,7 +177,7 @@ fn evaluate(scene: &Scene, fixed: &FixedSample<'_>, work: &mut Workspace, out: &
             };
             let fixed = fixed.tile(number);
             let sums = looked.sums(&scene.tiles.tiles[number].single, &mask);
-            let verdict = Verdict::new(&sums, &fixed, &scene.limits);
+            let verdict = Verdict::new(&sums, &fixed, &limits);
             for l in 0..LANES {
                 visible[l] += verdict.visible.0[l];
                 available[l] += verdict.available.0[l];

@@ -223,6 +223,11 @@ impl Search {
         })
     }
 
+    /// The rank of an order statistic: median, 95 %, 99 %, largest.
+    pub(super) fn rank(&self, number: usize) -> u64 {
+        self.wanted[number].rank
+    }
+
     /// The statistics, from the finds of all tiles, the sum of all values and that of those
     /// beyond the place of the value-at-risk.
     pub(super) fn summary(&self, found: &Found, sum: f64, tail: f64) -> Summary {

@@ -178,7 +178,7 @@ fn whole_days_equal_the_plain_path() {
         // Means do better than single values: roundings cancel.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
         assert!(retakes.near_mask > 0, "{text}");
-        assert_eq!(retakes.large_pdop > 0, text != "delta:55:182/13/1@925");
+        assert!(retakes.large_pdop > 0, "{text}");
     }
 }
 
@@ -277,8 +277,9 @@ fn streaming_equals_keeping() {
         let one = on_threads(1);
         assert_eq!(one, on_threads(2));
         assert_eq!(one, on_threads(5));
-        assert_eq!(one.max_pdop, expected.max_pdop);
-        assert_eq!(one.p95_pdop, expected.p95_pdop);
+        // A stream does not go back to f64 for its order statistics.
+        assert!(relative(one.max_pdop, expected.max_pdop) < 1e-6);
+        assert!(relative(one.p95_pdop, expected.p95_pdop) < 1e-6);
         assert_eq!(one.mean_visible, expected.mean_visible);
         // The sums are made in pieces of other sizes: a few ulp.
         assert!(relative(one.mean_pdop, expected.mean_pdop) < 1e-14);
@@ -363,20 +364,21 @@ fn single_values_hold_six_digits() {
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let pattern = PatternFlight::new(&design, setup.model).unwrap();
-        let mut evaluator = Evaluator::new(setup).unwrap();
-        let mut values = |single_below: f32| {
-            evaluator.kernel.as_mut().unwrap().scene.limits.single_below = single_below;
+        let evaluator = Evaluator::new(setup).unwrap();
+        let kernel = evaluator.kernel.as_ref().unwrap();
+        let values = |single_below: f32| {
+            let limits = Limits {
+                single_below,
+                ..kernel.scene.limits
+            };
             let flight = Flight {
                 ephemeris: &ephemeris,
                 pattern: Some(&pattern),
             };
             let mut all = Vec::new();
             let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
-            evaluator
-                .kernel
-                .as_ref()
-                .unwrap()
-                .run(&evaluator, flight, 0..200, take)
+            kernel
+                .run(&evaluator, flight, 0..200, limits, take)
                 .unwrap();
             all
         };

@@ -104,16 +104,22 @@ impl Horizon {
     }
 
     /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
-    /// were rounded by half a unit in each of three components, over the shortest range; and
-    /// eight roundings of the sine itself.
+    /// were rounded, over the shortest range; and eight roundings of the sine itself.
     #[inline(always)]
     pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
-        const ROOT_3: f64 = 1.732_050_807_568_877_2;
-        let rounding_km = positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3;
         let range_km = self.range_at_mask_km(positions.nearest_km);
-        let slack = rounding_km / range_km + 4.0 * f64::from(f32::EPSILON);
+        let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
         // Satellites on the ground leave nothing to f32.
         slack.min(2.0) as f32
+    }
+
+    /// PDOP up to which f32 holds six digits. A line of sight is turned by the rounding of the
+    /// positions over the range, most in the zenith, and PDOP magnifies that by its square at
+    /// most; the constant was found by trial, with twice as much left (seven digits at 925 km).
+    #[inline(always)]
+    pub(super) fn single_below(&self, positions: &Positions) -> f32 {
+        let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
+        (5e-6 * range_km / rounding_km(positions)).sqrt() as f32
     }
 
     /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
@@ -135,6 +141,14 @@ impl Horizon {
             bound: (self.reach2.sqrt() * angle.cos()) as f32,
         }
     }
+}
+
+/// How far two positions that were rounded to f32 may be displaced: half a unit in each of the
+/// three components.
+#[inline(always)]
+fn rounding_km(positions: &Positions) -> f64 {
+    const ROOT_3: f64 = 1.732_050_807_568_877_2;
+    positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3
 }
 
 /// A circle on the sphere around some points.

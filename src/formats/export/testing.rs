@@ -25,7 +25,7 @@ impl Write for Kept {
 }
 
 /// The manifest and the files of an export by their paths.
-pub(in crate::formats) fn in_memory(
+pub(crate) fn in_memory(
     subject: &Subject,
     products: &[Product],
     choices: Choices,

@@ -51,6 +51,9 @@ fn an_empty_file_has_the_documented_search() {
     assert_eq!(objectives.constraints, []);
     assert_eq!(objectives.availability_pdop, 6.0);
     assert_eq!(objectives.hypervolume_reference, Some(vec![2.0, 22.0]));
+    let cost = objectives.launch_cost;
+    let parameters = (cost.per_satellite, cost.per_plane, cost.per_1000_km);
+    assert_eq!(parameters, (1.0, 5.0, 0.2));
     let search = scenario.search;
     assert_eq!(search.pattern, Pattern::Delta);
     assert_eq!(
@@ -78,6 +81,10 @@ fn an_empty_file_has_the_documented_search() {
             optimizer.mutation_probability
         ),
         (0.8, 0.1)
+    );
+    assert_eq!(
+        (optimizer.crossover_index, optimizer.mutation_index),
+        (5.0, 10.0)
     );
 }
 

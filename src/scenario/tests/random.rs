@@ -7,9 +7,9 @@ use proptest::sample::{select, subsequence};
 
 use super::parse;
 use crate::scenario::{
-    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer,
-    Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace, TimeSpan, Visibility,
-    Word, template,
+    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, LaunchCost, MaskPoint, Objectives,
+    Optimizer, Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace, TimeSpan,
+    Visibility, Word, template,
 };
 
 fn word<T: Word + std::fmt::Debug>() -> impl Strategy<Value = T> {
@@ -109,14 +109,15 @@ fn objectives() -> impl Strategy<Value = Objectives> {
             bound,
         },
     );
-    let scalars = (0.0..1e300, 0.001..0.999, 0.1..50.0);
+    let scalars = (0.0..1e300, 0.001..0.999, 0.1..50.0, launch_cost());
     let lists = (
         some::<Quantity>(1),
         vec(constraint, 0..4),
         any::<bool>(),
         -1e3..1e3,
     );
-    (scalars, lists).prop_map(|((cvar_weight, cvar_level, availability_pdop), lists)| {
+    (scalars, lists).prop_map(|(scalars, lists)| {
+        let (cvar_weight, cvar_level, availability_pdop, launch_cost) = scalars;
         let (minimize, constraints, given, coordinate) = lists;
         let usual: Option<Vec<f64>> = minimize
             .iter()
@@ -130,7 +131,17 @@ fn objectives() -> impl Strategy<Value = Objectives> {
             cvar_level,
             constraints,
             availability_pdop,
+            launch_cost,
         }
+    })
+}
+
+fn launch_cost() -> impl Strategy<Value = LaunchCost> {
+    let costs = (0.0..1e12, 0.0..1e12, 0.0..1e12);
+    costs.prop_map(|(per_satellite, per_plane, per_1000_km)| LaunchCost {
+        per_satellite,
+        per_plane,
+        per_1000_km,
     })
 }
 
@@ -147,8 +158,15 @@ fn search() -> impl Strategy<Value = SearchSpace> {
         1.0..1e3,
         1.0..1e3,
     );
-    (whole, real).prop_map(
-        |((planes, satellites_per_plane, mut phasing, pattern), real)| {
+    let ellipse = (
+        rising(0.0..=0.89),
+        rising(0.0..=360.0),
+        0.001..1.0,
+        1.0..360.0,
+    );
+    (whole, real, ellipse).prop_map(
+        |((planes, satellites_per_plane, mut phasing, pattern), real, ellipse)| {
+            let (eccentricity, arg_perigee_deg, eccentricity_step, arg_perigee_step_deg) = ellipse;
             let (inclination_deg, altitude_km, inclination_step_deg, altitude_step_km) = real;
             phasing[0] = phasing[0].min(planes[1] - 1);
             SearchSpace {
@@ -158,8 +176,12 @@ fn search() -> impl Strategy<Value = SearchSpace> {
                 inclination_deg,
                 altitude_km,
                 phasing,
+                eccentricity,
+                arg_perigee_deg,
                 inclination_step_deg,
                 altitude_step_km,
+                eccentricity_step,
+                arg_perigee_step_deg,
             }
         },
     )
@@ -175,7 +197,9 @@ fn optimizer() -> impl Strategy<Value = Optimizer> {
         0.0..=1.0,
         any::<u64>(),
     );
-    (algorithm, numbers).prop_map(|(algorithm, numbers)| {
+    let indices = (0.0..1e3, 0.0..1e3);
+    (algorithm, numbers, indices).prop_map(|(algorithm, numbers, indices)| {
+        let (crossover_index, mutation_index) = indices;
         let (population, generations, crossover_probability, mutation_probability, seed) = numbers;
         Optimizer {
             algorithm,
@@ -183,6 +207,8 @@ fn optimizer() -> impl Strategy<Value = Optimizer> {
             generations,
             crossover_probability,
             mutation_probability,
+            crossover_index,
+            mutation_index,
             seed,
         }
     })

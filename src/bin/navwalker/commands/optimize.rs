@@ -1,21 +1,33 @@
 //! `navwalker optimize`: the main job.
 
+mod seeds;
+
 use crate::args::{Format, OptimizeArgs};
 use crate::progress::Progress;
 use crate::run::{Identity, RunDirectory};
 use crate::study::Study;
 use crate::{Status, output};
 use anyhow::{Context, Result};
+use navwalker::evaluate::Evaluator;
 use navwalker::optimize::{Search, Strategy};
 use navwalker::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
+use navwalker::scenario::Algorithm;
 use navwalker::search::DesignProblem;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
     let study = Study::load(&args.study, seed.as_slice())?;
+    match args.seeds {
+        Some(count) => seeds::run(args, study, count),
+        None => one(args, &study),
+    }
+}
+
+/// The search with the seed of the scenario.
+fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     let scenario = &study.scenario;
     let default_out = || {
         PathBuf::from(format!(
@@ -25,16 +37,88 @@ pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     };
     let out = args.out.clone().unwrap_or_else(default_out);
     let setup = study.setup()?;
-    let directory = RunDirectory::open(
-        out.clone(),
-        Identity::of(scenario, study.hash()?),
-        args.force,
-    )?;
-    let evaluator = navwalker::evaluate::Evaluator::new(setup)?;
-    let problem = DesignProblem::new(&evaluator, scenario.design_space(), scenario.goals())?;
-    let mut search = start(args, &directory, &study, &problem)?;
-
+    let directory = open(args, study, &out)?;
+    let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
+    let Some(sweep) = sweep(args, study, &evaluator, &out, &interrupted)? else {
+        return Ok(Status::Interrupted);
+    };
+    let ended = search(
+        args,
+        study,
+        &evaluator,
+        &directory,
+        &interrupted,
+        sweep.as_ref(),
+    )?;
+    let result = &ended.result;
+    output::result(&match args.format {
+        Format::Text => text(result, &scenario.name),
+        Format::Json => serde_json::to_string_pretty(result)?,
+        Format::Csv => front_csv(result)?,
+    })?;
+    let shown = out.display().to_string();
+    if !ended.is_done {
+        hint_resume(result, &shown);
+        return Ok(Status::Interrupted);
+    }
+    hint_what_next(result, &shown);
+    Ok(status(result))
+}
+
+/// The result of the sweep that certifies, if one is asked for; `None` when it was interrupted.
+pub(super) fn sweep(
+    args: &OptimizeArgs,
+    study: &Study,
+    evaluator: &Evaluator,
+    out: &Path,
+    interrupted: &AtomicBool,
+) -> Result<Option<Option<OptimizeResult>>> {
+    if !args.certify {
+        return Ok(Some(None));
+    }
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    let place = out.with_file_name(name);
+    let study = study.with_algorithm(Algorithm::Exhaustive);
+    let args = OptimizeArgs {
+        resume: true,
+        ..args.clone()
+    };
+    let directory = open(&args, &study, &place)?;
+    let ended = search(&args, &study, evaluator, &directory, interrupted, None)?;
+    if !ended.is_done {
+        hint_resume(&ended.result, &place.display().to_string());
+        return Ok(None);
+    }
+    Ok(Some(Some(ended.result)))
+}
+
+/// The run directory of a study.
+pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<RunDirectory> {
+    let identity = Identity::of(&study.scenario, study.hash()?);
+    RunDirectory::open(out.to_owned(), identity, args.force)
+}
+
+/// How a search ended.
+pub(super) struct Ended {
+    pub(super) result: OptimizeResult,
+    /// Whether it had its whole budget, rather than being interrupted.
+    pub(super) is_done: bool,
+}
+
+/// Runs, or resumes, one search and writes its results.
+pub(super) fn search(
+    args: &OptimizeArgs,
+    study: &Study,
+    evaluator: &Evaluator,
+    directory: &RunDirectory,
+    interrupted: &AtomicBool,
+    sweep: Option<&OptimizeResult>,
+) -> Result<Ended> {
+    let scenario = &study.scenario;
+    let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals())?;
+    let mut search = start(args, directory, study, &problem)?;
     let progress = Progress::new(&search);
     while !search.is_done() && !interrupted.load(Ordering::Relaxed) {
         search.step(&problem)?;
@@ -42,30 +126,32 @@ pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
         progress.show(&search);
     }
     progress.finish();
-
-    let result = OptimizeResult::new(&problem, &search, scenario);
-    directory.finish(scenario, &search, &result)?;
-    output::result(&match args.format {
-        Format::Text => text(&result, &scenario.name),
-        Format::Json => serde_json::to_string_pretty(&result)?,
-        Format::Csv => front_csv(&result)?,
-    })?;
-    let shown = out.display().to_string();
-    if search.is_done() {
-        hint_what_next(&result, &shown);
-        Ok(if result.front.is_empty() {
-            Status::Failed
-        } else {
-            Status::Done
-        })
-    } else {
-        let [done, of] = result.generations;
-        output::hint(&format!(
-            "\ninterrupted after generation {done} of {of}; the results so far are in {shown}\n\
-             go on with the same command and --resume"
-        ));
-        Ok(Status::Interrupted)
+    let mut result = OptimizeResult::new(&problem, &search, scenario);
+    if let Some(sweep) = sweep {
+        result.certify(sweep, &scenario.objectives.minimize);
     }
+    directory.finish(scenario, &search, &result)?;
+    Ok(Ended {
+        result,
+        is_done: search.is_done(),
+    })
+}
+
+/// The exit status of a search that had its whole budget.
+pub(super) fn status(result: &OptimizeResult) -> Status {
+    if result.front.is_empty() {
+        Status::Failed
+    } else {
+        Status::Done
+    }
+}
+
+pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
+    let [done, of] = result.generations;
+    output::hint(&format!(
+        "\ninterrupted after generation {done} of {of}; the results so far are in {shown}\n\
+         go on with the same command and --resume"
+    ));
 }
 
 /// The search where its checkpoint left it, or a new one.
@@ -88,7 +174,7 @@ fn start(
         ));
         return Ok(search);
     }
-    if args.resume {
+    if args.resume && !args.certify {
         output::hint("no checkpoint to resume from; starting anew");
     }
     Ok(study
@@ -98,7 +184,7 @@ fn start(
 }
 
 /// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
-fn interrupt_flag() -> Result<Arc<AtomicBool>> {
+pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>> {
     let flag = Arc::new(AtomicBool::new(false));
     let seen = Arc::clone(&flag);
     ctrlc::set_handler(move || {
@@ -111,7 +197,7 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>> {
     Ok(flag)
 }
 
-fn text(result: &OptimizeResult, scenario: &str) -> String {
+pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     let right = Align::Right;
     let mut table = Table::new(&[
         ("", Align::Left),
@@ -151,6 +237,9 @@ fn text(result: &OptimizeResult, scenario: &str) -> String {
             "* chosen by fuzzy decision: {}, the largest least membership ({:.3}) over the objectives\n",
             chosen.design.notation, chosen.membership
         );
+    }
+    if let Some(certificate) = &result.certificate {
+        text += &certificate.to_text();
     }
     for diagnostic in &result.diagnostics {
         text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);

@@ -1,49 +1,94 @@
 //! `navwalker validate`.
 
 use crate::args::{ReportFormat, ValidateArgs};
-use crate::study::study_and_design;
+use crate::study::{Study, study_and_design};
 use crate::{Status, files, output};
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
+use navwalker::formats::manifest::{FILE_NAME, Manifest};
 use navwalker::report::{
     ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
 };
-use navwalker::validate::{Findings, sgp4::against_sgp4};
+use navwalker::scenario::{Scenario, builtin};
+use navwalker::validate::analytic::against_closed_forms;
+use navwalker::validate::file::{Comparand, against_file, read};
+use navwalker::validate::geodesic::against_geodesics;
+use navwalker::validate::numerical::against_integration;
+use navwalker::validate::paper::against_paper;
+use navwalker::validate::sgp4::against_sgp4;
+use navwalker::validate::{Findings, Subject, ValidateError};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-/// The targets that can be named.
-const TARGETS: [&str; 1] = ["sgp4"];
+/// What a design is held against.
+type Standard = fn(&Subject<'_>) -> Result<Findings, ValidateError>;
+
+/// The standards that can be named.
+const STANDARDS: [(&str, Standard); 5] = [
+    ("sgp4", against_sgp4),
+    ("geographiclib", against_geodesics),
+    ("numerical", against_integration),
+    ("analytic", against_closed_forms),
+    ("paper", |subject| {
+        Ok(against_paper(subject.evaluator.setup())?)
+    }),
+];
+
+/// A standard, or files of another program.
+enum Target {
+    Standard(Standard),
+    /// Every standard that there is for the study.
+    All,
+    Files(PathBuf),
+}
+
+/// The targets that were typed; one with a dot or a slash in it is a file or a directory.
+fn targets(typed: &[String]) -> Result<Vec<Target>> {
+    let mut targets = Vec::new();
+    for name in typed {
+        if let Some((_, standard)) = STANDARDS.iter().find(|(known, _)| known == name) {
+            targets.push(Target::Standard(*standard));
+        } else if name == "all" {
+            targets.push(Target::All);
+        } else if name.contains(['.', '/', '\\']) {
+            targets.push(Target::Files(PathBuf::from(name)));
+        } else {
+            let known = STANDARDS.map(|(known, _)| known).join(", ");
+            bail!(
+                "unknown target '{name}' for --against; the targets are: {known}, all, or a file or directory with a '.' or '/' in its path"
+            );
+        }
+    }
+    Ok(targets)
+}
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
-    if let Some(unknown) = args
-        .against
-        .iter()
-        .find(|target| !TARGETS.contains(&target.as_str()))
-    {
-        bail!(
-            "unknown target '{unknown}' for --against; the targets are: {}",
-            TARGETS.join(", ")
-        );
-    }
+    let targets = targets(&args.against)?;
     if let Some(directory) = &args.out {
         files::require_vacant(directory, false)?;
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
-    let findings: Findings = against_sgp4(&design, study.scenario.time_grid()?)?;
-    let result = ValidateResult::new(&design, findings, &study.scenario);
-    if let Some(directory) = &args.out {
-        let staged = files::StagedDirectory::new(directory)?;
-        for (name, format) in [
-            ("report.txt", ReportFormat::Text),
-            ("report.json", ReportFormat::Json),
-            ("report.csv", ReportFormat::Csv),
-            ("report.md", ReportFormat::Markdown),
-            ("report.junit.xml", ReportFormat::Junit),
-        ] {
-            files::write_atomically(
-                &staged.path().join(name),
-                render(&result, format)?.as_bytes(),
-            )?;
+    let evaluator = study.evaluator()?;
+    let subject = Subject::new(design, &evaluator);
+    let mut findings = Findings::default();
+    for target in &targets {
+        match target {
+            Target::Standard(standard) => findings.append(standard(&subject)?),
+            Target::All => {
+                for standard in standards_for(&study)? {
+                    findings.append(standard(&subject)?);
+                }
+            }
+            Target::Files(path) => {
+                for (source, comparands) in comparisons(path)? {
+                    findings.append(against_file(&subject, &source, &comparands)?);
+                }
+            }
         }
-        staged.commit()?;
+    }
+    let result = ValidateResult::new(&design, args.against.clone(), findings, &study.scenario);
+    if let Some(directory) = &args.out {
+        write_reports(directory, &result)?;
     }
     output::result(&render(&result, args.format)?)?;
     Ok(if result.passed {
@@ -51,6 +96,94 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     } else {
         Status::Failed
     })
+}
+
+/// All standards; the tables of the paper only for its own study, as no other has its mask.
+fn standards_for(study: &Study) -> Result<Vec<Standard>> {
+    let ours = &study.scenario;
+    let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
+    let sees_the_same = ours.time == paper.time
+        && ours.earth == paper.earth
+        && ours.region == paper.region
+        && ours.visibility == paper.visibility
+        && ours.gnss == paper.gnss;
+    let applies = |name: &str| name != "paper" || sees_the_same;
+    let standards = STANDARDS.into_iter().filter(|(name, _)| applies(name));
+    Ok(standards.map(|(_, standard)| standard).collect())
+}
+
+/// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
+fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
+    let read_one = |file: &Path| -> Result<Vec<Comparand>> {
+        let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+        Ok(read(&file.to_string_lossy(), &bytes)?)
+    };
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    let name = name.to_string_lossy().into_owned();
+    if !path.is_dir() {
+        return Ok(vec![(name, read_one(path)?)]);
+    }
+    let manifest = path.join(FILE_NAME);
+    if !manifest.exists() {
+        let mut all = Vec::new();
+        for file in sorted_files(path)? {
+            all.extend(read_one(&file)?);
+        }
+        return Ok(vec![(name, all)]);
+    }
+    let bytes =
+        fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
+    let manifest = Manifest::read(bytes.as_slice())
+        .with_context(|| format!("{} is no manifest of an export", manifest.display()))?;
+    let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
+    for file in manifest.files {
+        if COMPARED.contains(&file.format.as_str()) {
+            let found = read_one(&path.join(&file.path))?;
+            by_format.entry(file.format).or_default().extend(found);
+        }
+    }
+    if by_format.is_empty() {
+        bail!(
+            "{} has no file in a format that is compared: {}",
+            path.display(),
+            COMPARED.join(", ")
+        );
+    }
+    Ok(by_format.into_iter().collect())
+}
+
+/// Formats of an export that are read back.
+const COMPARED: [&str; 8] = [
+    "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
+];
+
+fn sorted_files(directory: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let entries =
+        fs::read_dir(directory).with_context(|| format!("cannot read {}", directory.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        if path.is_file() {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn write_reports(directory: &Path, result: &ValidateResult) -> Result<()> {
+    let staged = files::StagedDirectory::new(directory)?;
+    for (name, format) in [
+        ("report.txt", ReportFormat::Text),
+        ("report.json", ReportFormat::Json),
+        ("report.csv", ReportFormat::Csv),
+        ("report.md", ReportFormat::Markdown),
+        ("report.junit.xml", ReportFormat::Junit),
+    ] {
+        let text = render(result, format)?;
+        files::write_atomically(&staged.path().join(name), text.as_bytes())?;
+    }
+    staged.commit()
 }
 
 fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {

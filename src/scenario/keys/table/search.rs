@@ -61,6 +61,36 @@ pub(in crate::scenario) static AVAILABILITY_PDOP: Key<Number> = Key {
     of: |s| Some(s.objectives.availability_pdop),
 };
 
+pub(in crate::scenario) static LAUNCH_COST_PER_SATELLITE: Key<Number> = Key {
+    section: "objectives",
+    name: "launch-cost-per-satellite",
+    unit: "",
+    meaning: "Part of launch-cost: one satellite, before its altitude counts; the unit of the cost is yours",
+    rule: Number::from_to(0.0, 1e12),
+    otherwise: Otherwise::Value(|| 1.0),
+    of: |s| Some(s.objectives.launch_cost.per_satellite),
+};
+
+pub(in crate::scenario) static LAUNCH_COST_PER_PLANE: Key<Number> = Key {
+    section: "objectives",
+    name: "launch-cost-per-plane",
+    unit: "",
+    meaning: "Part of launch-cost: opening one plane, in the same unit",
+    rule: Number::from_to(0.0, 1e12),
+    otherwise: Otherwise::Value(|| 5.0),
+    of: |s| Some(s.objectives.launch_cost.per_plane),
+};
+
+pub(in crate::scenario) static LAUNCH_COST_PER_1000_KM: Key<Number> = Key {
+    section: "objectives",
+    name: "launch-cost-per-1000-km",
+    unit: "",
+    meaning: "Part of launch-cost: the share that a satellite costs more for each 1000 km of altitude",
+    rule: Number::from_to(0.0, 1e12),
+    otherwise: Otherwise::Value(|| 0.2),
+    of: |s| Some(s.objectives.launch_cost.per_1000_km),
+};
+
 pub(in crate::scenario) static HYPERVOLUME_REFERENCE: Key<Numbers> = Key {
     section: "objectives",
     name: "hypervolume-reference",
@@ -140,6 +170,32 @@ pub(in crate::scenario) static PHASING: Key<Interval<Integer<u32>>> = Key {
     of: |s| Some(s.search.phasing),
 };
 
+pub(in crate::scenario) static ECCENTRICITY: Key<Interval<Number>> = Key {
+    section: "search",
+    name: "eccentricity",
+    unit: "",
+    meaning: "Eccentricity; a variable of the search where the limits differ",
+    rule: Interval {
+        of: Number::from_below(0.0, 0.9),
+        or_single: true,
+    },
+    otherwise: Otherwise::Value(|| [0.0, 0.0]),
+    of: |s| Some(s.search.eccentricity),
+};
+
+pub(in crate::scenario) static ARG_PERIGEE_DEG: Key<Interval<Number>> = Key {
+    section: "search",
+    name: "arg-perigee-deg",
+    unit: "deg",
+    meaning: "Argument of perigee; a variable of the search where the limits differ",
+    rule: Interval {
+        of: Number::from_to(0.0, 360.0),
+        or_single: true,
+    },
+    otherwise: Otherwise::Value(|| [0.0, 0.0]),
+    of: |s| Some(s.search.arg_perigee_deg),
+};
+
 pub(in crate::scenario) static INCLINATION_STEP_DEG: Key<Number> = Key {
     section: "search",
     name: "inclination-step-deg",
@@ -158,6 +214,26 @@ pub(in crate::scenario) static ALTITUDE_STEP_KM: Key<Number> = Key {
     rule: Number::above(0.0),
     otherwise: Otherwise::Value(|| 50.0),
     of: |s| Some(s.search.altitude_step_km),
+};
+
+pub(in crate::scenario) static ECCENTRICITY_STEP: Key<Number> = Key {
+    section: "search",
+    name: "eccentricity-step",
+    unit: "",
+    meaning: "Step of an exhaustive search in eccentricity",
+    rule: Number::above(0.0),
+    otherwise: Otherwise::Value(|| 0.005),
+    of: |s| Some(s.search.eccentricity_step),
+};
+
+pub(in crate::scenario) static ARG_PERIGEE_STEP_DEG: Key<Number> = Key {
+    section: "search",
+    name: "arg-perigee-step-deg",
+    unit: "deg",
+    meaning: "Step of an exhaustive search in argument of perigee",
+    rule: Number::above(0.0),
+    otherwise: Otherwise::Value(|| 30.0),
+    of: |s| Some(s.search.arg_perigee_step_deg),
 };
 
 pub(in crate::scenario) static ALGORITHM: Key<OneOf<Algorithm>> = Key {
@@ -214,6 +290,26 @@ pub(in crate::scenario) static MUTATION_PROBABILITY: Key<Number> = Key {
     rule: Number::from_to(0.0, 1.0),
     otherwise: Otherwise::Value(|| 0.1),
     of: |s| Some(s.optimizer.mutation_probability),
+};
+
+pub(in crate::scenario) static CROSSOVER_INDEX: Key<Number> = Key {
+    section: "optimizer",
+    name: "crossover-index",
+    unit: "",
+    meaning: "Distribution index of simulated binary crossover; larger keeps children closer to their parents",
+    rule: Number::at_least(0.0),
+    otherwise: Otherwise::Value(|| 5.0),
+    of: |s| Some(s.optimizer.crossover_index),
+};
+
+pub(in crate::scenario) static MUTATION_INDEX: Key<Number> = Key {
+    section: "optimizer",
+    name: "mutation-index",
+    unit: "",
+    meaning: "Distribution index of polynomial mutation; larger makes smaller steps",
+    rule: Number::at_least(0.0),
+    otherwise: Otherwise::Value(|| 10.0),
+    of: |s| Some(s.optimizer.mutation_index),
 };
 
 pub(in crate::scenario) static SEED: Key<Integer<u64>> = Key {

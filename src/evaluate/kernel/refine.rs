@@ -1,0 +1,100 @@
+//! Order statistics in f64.
+//!
+//! Roundings of f32 cancel in means and tails, but an order statistic is one value. So the values
+//! that lie so close to it that rounding may have changed their order are computed again, and the
+//! order statistic is taken among them.
+
+use super::instructions::Work;
+use super::lanes::{LANES, Lanes};
+
+/// Relative distance within which the order of two f32 values means nothing: more than twice the
+/// error of one.
+const WINDOW: f64 = 2e-6;
+
+/// More values than this in a window are so dense that the order does not matter.
+const CROWD: usize = 256;
+
+/// An order statistic by its rank (from 1) and its value in f32.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ranked {
+    pub(super) rank: u64,
+    pub(super) value: f64,
+}
+
+/// The surroundings of an order statistic.
+#[derive(Debug, Clone)]
+pub(super) struct Window {
+    start: f32,
+    end: f32,
+    rank: u64,
+    below: u64,
+    /// Tile and lane of the values inside.
+    pub(super) places: Vec<(usize, usize)>,
+}
+
+impl Window {
+    fn new(ranked: Ranked) -> Self {
+        Self {
+            start: (ranked.value * (1.0 - WINDOW)) as f32,
+            end: (ranked.value * (1.0 + WINDOW)) as f32,
+            rank: ranked.rank,
+            below: 0,
+            places: Vec::new(),
+        }
+    }
+
+    /// Notes the places of a tile that are inside, up to a crowd.
+    fn note(&mut self, number: usize, tile: &Lanes<f32>) {
+        if self.places.len() <= CROWD {
+            let inside = |l: &usize| tile.0[*l] >= self.start && tile.0[*l] <= self.end;
+            let lanes = (0..LANES).filter(inside);
+            self.places.extend(lanes.map(|lane| (number, lane)));
+        }
+    }
+
+    /// The order statistic among the values of the places, computed again.
+    pub(super) fn pick(&self, mut values: Vec<f32>) -> Option<f64> {
+        values.sort_unstable_by(f32::total_cmp);
+        let place = usize::try_from(self.rank - 1 - self.below).ok()?;
+        values.get(place).copied().map(f64::from)
+    }
+}
+
+/// Finds what surrounds some order statistics; those in a crowd have no places.
+pub(super) struct Surround<'a, const N: usize> {
+    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) ranked: [Ranked; N],
+}
+
+impl<const N: usize> Work for Surround<'_, N> {
+    type Output = [Window; N];
+
+    #[inline(always)]
+    fn run(self) -> [Window; N] {
+        let mut windows = self.ranked.map(Window::new);
+        let starts = windows.each_ref().map(|window| window.start);
+        let ends = windows.each_ref().map(|window| window.end);
+        let mut below = [[0_u32; LANES]; N];
+        for (number, tile) in self.tiles.iter().enumerate() {
+            let mut inside = 0;
+            for (l, &value) in tile.0.iter().enumerate() {
+                for w in 0..N {
+                    below[w][l] += u32::from(value < starts[w]);
+                    inside |= u32::from((value >= starts[w]) & (value <= ends[w]));
+                }
+            }
+            if inside != 0 {
+                windows
+                    .iter_mut()
+                    .for_each(|window| window.note(number, tile));
+            }
+        }
+        for (window, below) in windows.iter_mut().zip(below) {
+            window.below = below.into_iter().map(u64::from).sum();
+            if window.places.len() > CROWD {
+                window.places.clear();
+            }
+        }
+        windows
+    }
+}

@@ -1,0 +1,188 @@
+//! A front against the exact front of a lattice: how good it is, and what it missed.
+
+use super::{FrontMember, OptimizeResult};
+use crate::search::Quantity;
+use serde::Serialize;
+
+/// A swept design counts as found when a front member is no worse than it by more than this share
+/// of the exact front's range in every objective: the spacing of thirty members along a front.
+const FOUND_WITHIN: f64 = 1.0 / 30.0;
+
+/// What a sweep says of a front.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Designs that the sweep evaluated.
+    pub evaluations: u64,
+    /// Members of the exact front of the lattice.
+    pub exact_members: usize,
+    /// Hypervolume of the exact front of the lattice.
+    pub exact_hypervolume: Option<f64>,
+    /// Hypervolume of the certified front.
+    pub found_hypervolume: Option<f64>,
+    /// Distance of each front member to the exact front, in the order of the front.
+    pub distances: Vec<f64>,
+    /// The exact members that no front member comes near to, if any.
+    pub missed: Option<Missed>,
+}
+
+/// A part of the exact front that a search did not find, by the ranges of its designs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Missed {
+    /// Exact members that were not found.
+    pub members: usize,
+    /// Planes, lowest and highest.
+    pub planes: [usize; 2],
+    /// Satellites per plane, lowest and highest.
+    pub satellites_per_plane: [usize; 2],
+    /// Inclination, lowest and highest, degrees.
+    pub inclination_deg: [f64; 2],
+    /// Altitude, lowest and highest, km.
+    pub altitude_km: [f64; 2],
+}
+
+impl Certificate {
+    /// Holds a front against the result of a sweep of the same problem.
+    ///
+    /// The distance of a member is IGD+'s (Ishibuchi et al., EMO 2015): over the exact members, the
+    /// least root of the sum of squares of what it is worse by, each objective in units of the
+    /// exact front's range. It is 0 for a member that no exact member beats.
+    #[must_use]
+    pub fn new(found: &OptimizeResult, sweep: &OptimizeResult, objectives: &[Quantity]) -> Self {
+        let exact: Vec<Vec<f64>> = sweep
+            .front
+            .iter()
+            .map(|m| minimised(m, objectives))
+            .collect();
+        let front: Vec<Vec<f64>> = found
+            .front
+            .iter()
+            .map(|m| minimised(m, objectives))
+            .collect();
+        let ranges = ranges(&exact, objectives.len());
+        let nearest = |point: &Vec<f64>| {
+            let worse = exact.iter().map(|target| worse_by(point, target, &ranges));
+            worse
+                .map(|w| w.iter().map(|x| x * x).sum::<f64>().sqrt())
+                .reduce(f64::min)
+        };
+        let is_found = |target: &Vec<f64>| {
+            front.iter().any(|point| {
+                worse_by(point, target, &ranges)
+                    .iter()
+                    .all(|&worse| worse <= FOUND_WITHIN)
+            })
+        };
+        let missed: Vec<&FrontMember> = sweep
+            .front
+            .iter()
+            .zip(&exact)
+            .filter_map(|(member, target)| (!is_found(target)).then_some(member))
+            .collect();
+        Self {
+            evaluations: sweep.evaluations,
+            exact_members: exact.len(),
+            exact_hypervolume: sweep.hypervolume.value,
+            found_hypervolume: found.hypervolume.value,
+            distances: front.iter().filter_map(nearest).collect(),
+            missed: Missed::of(&missed),
+        }
+    }
+
+    /// The certificate for a terminal.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let volume =
+            |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |v| format!("{v:.4}"));
+        let worst = self.distances.iter().copied().fold(0.0, f64::max);
+        let mean = self.distances.iter().sum::<f64>() / self.distances.len().max(1) as f64;
+        let mut text = format!(
+            "certificate: a sweep of {} designs has an exact front of {} members, hypervolume {}; found {}\n\
+             distance to the exact front, as a share of its range: mean {:.2} %, worst {:.2} %\n",
+            self.evaluations,
+            self.exact_members,
+            volume(self.exact_hypervolume),
+            volume(self.found_hypervolume),
+            100.0 * mean,
+            100.0 * worst,
+        );
+        text += &match &self.missed {
+            None => "no part of the exact front was missed\n".to_owned(),
+            Some(missed) => format!(
+                "missed: {} exact members with planes {} to {}, satellites per plane {} to {}, \
+                 inclination {} to {} deg, altitude {} to {} km\n",
+                missed.members,
+                missed.planes[0],
+                missed.planes[1],
+                missed.satellites_per_plane[0],
+                missed.satellites_per_plane[1],
+                missed.inclination_deg[0],
+                missed.inclination_deg[1],
+                missed.altitude_km[0],
+                missed.altitude_km[1],
+            ),
+        };
+        text
+    }
+}
+
+impl Missed {
+    fn of(members: &[&FrontMember]) -> Option<Self> {
+        let whole = |value: fn(&FrontMember) -> usize| {
+            let values = || members.iter().map(|member| value(member));
+            Some([values().min()?, values().max()?])
+        };
+        let real = |value: fn(&FrontMember) -> f64| {
+            let values = || members.iter().map(|member| value(member));
+            Some([values().reduce(f64::min)?, values().reduce(f64::max)?])
+        };
+        Some(Self {
+            members: members.len(),
+            planes: whole(|m| m.design.planes)?,
+            satellites_per_plane: whole(|m| m.design.satellites_per_plane)?,
+            inclination_deg: real(|m| m.design.inclination_deg)?,
+            altitude_km: real(|m| m.design.altitude_km)?,
+        })
+    }
+}
+
+fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {
+    let values = objectives.iter().zip(&member.objectives);
+    values
+        .map(|(quantity, (_, value))| quantity.minimised(*value))
+        .collect()
+}
+
+/// Width of the exact front in each objective; 1 where it has none.
+fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
+    let range = |n: usize| {
+        let values = || points.iter().map(|point| point[n]);
+        let width =
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        if width > 0.0 && width.is_finite() {
+            width
+        } else {
+            1.0
+        }
+    };
+    (0..objectives).map(range).collect()
+}
+
+/// What `point` is worse by than `target` in each objective, in units of the ranges.
+fn worse_by(point: &[f64], target: &[f64], ranges: &[f64]) -> Vec<f64> {
+    let differences = point.iter().zip(target).zip(ranges);
+    differences
+        .map(|((p, t), range)| ((p - t) / range).max(0.0))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_worse_counts() {
+        assert_eq!(worse_by(&[1.0, 3.0], &[2.0, 1.0], &[1.0, 4.0]), [0.0, 0.5]);
+        assert_eq!(ranges(&[vec![1.0, 5.0], vec![3.0, 5.0]], 2), [2.0, 1.0]);
+        assert_eq!(ranges(&[], 1), [1.0]);
+    }
+}

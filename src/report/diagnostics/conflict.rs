@@ -1,0 +1,71 @@
+//! Objectives that can be had together.
+
+use super::Diagnostic;
+use crate::optimize::Individual;
+use crate::search::Quantity;
+
+/// Members of a front below which the order of two objectives over it is chance.
+const FEWEST_MEMBERS: usize = 5;
+
+/// Pairs of objectives that no two members of the front set against each other: what betters one
+/// never worsens the other. A front of one member has every best value at once.
+pub(super) fn without_conflict(front: &[Individual], objectives: &[Quantity]) -> Vec<Diagnostic> {
+    if front.is_empty() || (front.len() > 1 && front.len() < FEWEST_MEMBERS) {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (m, a) in objectives.iter().enumerate() {
+        for (n, b) in objectives.iter().enumerate().skip(m + 1) {
+            if front
+                .iter()
+                .any(|x| front.iter().any(|y| opposed(x, y, [m, n])))
+            {
+                continue;
+            }
+            found.push(Diagnostic::new(
+                &format!("no-conflict:{a}:{b}"),
+                format!(
+                    "{a} and {b} do not conflict: of {} front members no two trade one for the \
+                     other, so one of them could be left out or made a constraint",
+                    front.len()
+                ),
+            ));
+        }
+    }
+    found
+}
+
+/// Whether `x` is better in the first objective and worse in the second.
+fn opposed(x: &Individual, y: &Individual, [m, n]: [usize; 2]) -> bool {
+    x.objectives[m] < y.objectives[m] && x.objectives[n] > y.objectives[n]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn front(points: &[[f64; 3]]) -> Vec<Individual> {
+        let individual = |objectives: &[f64; 3]| Individual {
+            genome: vec![],
+            objectives: objectives.to_vec(),
+            violation: 0.0,
+        };
+        points.iter().map(individual).collect()
+    }
+
+    #[test]
+    fn only_what_never_trades_is_named() {
+        let objectives = [Quantity::MeanPdop, Quantity::MaxPdop, Quantity::Satellites];
+        let points: Vec<[f64; 3]> = (0..6_u8)
+            .map(f64::from)
+            .map(|x| [x, x * x, 10.0 - x])
+            .collect();
+        let codes = |points: &[[f64; 3]]| -> Vec<String> {
+            let found = without_conflict(&front(points), &objectives);
+            found.into_iter().map(|d| d.code).collect()
+        };
+        assert_eq!(codes(&points), ["no-conflict:mean-pdop:max-pdop"]);
+        assert_eq!(codes(&points[..1]).len(), 3);
+        assert!(codes(&points[..3]).is_empty());
+    }
+}

@@ -1,0 +1,347 @@
+//! The paper's study repeated, as text, Markdown and CSV.
+
+mod files;
+
+pub use files::{reproduction_csv, reproduction_files};
+
+use super::{Align, ScenarioStamp, Table, VERSION};
+use crate::scenario::Scenario;
+use crate::validate::paper::{Expected, Line, Reproduction, Verdict};
+use crate::words::Word;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What `reproduce` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReproduceResult {
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// Version of the program.
+    pub version: &'static str,
+    /// Seed of the searches.
+    pub seed: u64,
+    /// What came out.
+    #[serde(flatten)]
+    pub study: Reproduction,
+}
+
+impl ReproduceResult {
+    /// The result for a scenario.
+    #[must_use]
+    pub fn new(study: Reproduction, scenario: &Scenario) -> Self {
+        Self {
+            scenario: scenario.into(),
+            version: VERSION,
+            seed: scenario.optimizer.seed,
+            study,
+        }
+    }
+
+    /// Lines with each verdict, in the order of [`Verdict::ALL`].
+    #[must_use]
+    pub fn counts(&self) -> Vec<(Verdict, usize)> {
+        let count = |verdict: &Verdict| {
+            let lines = self.study.lines.iter();
+            (
+                *verdict,
+                lines.filter(|line| line.verdict == *verdict).count(),
+            )
+        };
+        Verdict::ALL.iter().map(count).collect()
+    }
+}
+
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or_else(|| "-".to_owned(), |x| format!("{x:.digits$}"))
+}
+
+/// The change from the paper's value to ours, percent.
+fn change(ours: Option<f64>, paper: f64) -> String {
+    let percent = ours.map(|ours| 100.0 * (ours / paper - 1.0));
+    percent.map_or_else(|| "-".to_owned(), |x| format!("{x:+.2}"))
+}
+
+const LEFT: Align = Align::Left;
+const RIGHT: Align = Align::Right;
+
+fn rows_table(study: &Reproduction) -> Table {
+    let mut table = Table::new(&[
+        ("row", LEFT),
+        ("design as printed", LEFT),
+        ("N paper", RIGHT),
+        ("ours", RIGHT),
+        ("%", RIGHT),
+        ("PDOP paper", RIGHT),
+        ("ours", RIGHT),
+        ("%", RIGHT),
+        ("i that fits N (deg)", RIGHT),
+        ("N there", RIGHT),
+        ("PDOP there", RIGHT),
+        ("%", RIGHT),
+    ]);
+    for row in &study.rows {
+        let (printed, fitting) = (&row.as_printed, &row.at_fitting);
+        table.row([
+            row.name.clone(),
+            row.design.clone(),
+            number(Some(row.paper_mean_visible), 2),
+            number(Some(printed.mean_visible), 3),
+            change(Some(printed.mean_visible), row.paper_mean_visible),
+            number(Some(row.paper_mean_pdop), 4),
+            number(printed.mean_pdop, 4),
+            change(printed.mean_pdop, row.paper_mean_pdop),
+            number(row.fitting_inclination_deg, 1),
+            number(Some(fitting.mean_visible), 3),
+            number(fitting.mean_pdop, 4),
+            change(fitting.mean_pdop, row.paper_mean_pdop),
+        ]);
+    }
+    table
+}
+
+fn mask_table(study: &Reproduction) -> Table {
+    let mut table = Table::new(&[("row", LEFT), ("mask that its N asks for (deg)", RIGHT)]);
+    for row in &study.mask_fit.rows {
+        table.row([row.row.clone(), number(row.mask_deg, 2)]);
+    }
+    table
+}
+
+/// Rows of Table II that the sensitivity is shown for; the files hold all of them.
+const SHOWN_ROWS: [&str; 2] = ["proposed-2", "polar-2"];
+
+fn sensitivity_table(study: &Reproduction) -> Table {
+    let mut table = Table::new(&[
+        ("assumption", LEFT),
+        ("N proposed-2", RIGHT),
+        ("change", RIGHT),
+        ("PDOP", RIGHT),
+        ("change", RIGHT),
+        ("N polar-2", RIGHT),
+        ("change", RIGHT),
+        ("PDOP", RIGHT),
+        ("change", RIGHT),
+    ]);
+    let indices = SHOWN_ROWS.map(|name| study.rows.iter().position(|row| row.name == name));
+    let Some(base) = study.sensitivity.first() else {
+        return table;
+    };
+    let difference = |x: Option<f64>, from: Option<f64>| {
+        let difference = x.zip(from).map(|(x, from)| x - from);
+        difference.map_or_else(|| "-".to_owned(), |d| format!("{d:+.4}"))
+    };
+    for measured in &study.sensitivity {
+        let mut cells = vec![measured.assumption.clone()];
+        for index in indices.into_iter().flatten() {
+            let (value, from) = (&measured.values[index], &base.values[index]);
+            let visible = Some(value.mean_visible);
+            cells.push(number(visible, 3));
+            cells.push(difference(visible, Some(from.mean_visible)));
+            cells.push(number(value.mean_pdop, 4));
+            cells.push(difference(value.mean_pdop, from.mean_pdop));
+        }
+        table.row(cells);
+    }
+    table
+}
+
+fn searches_table(study: &Reproduction) -> Table {
+    let mut table = Table::new(&[
+        ("search", LEFT),
+        ("of what", LEFT),
+        ("designs", RIGHT),
+        ("pick", LEFT),
+        ("N", RIGHT),
+        ("mean PDOP", RIGHT),
+        ("max PDOP", RIGHT),
+        ("J_pos", RIGHT),
+        ("J_cost", RIGHT),
+    ]);
+    for set in &study.searches {
+        let mut cells = vec![
+            set.name.to_owned(),
+            set.what.clone(),
+            set.members.len().to_string(),
+        ];
+        if let Some(pick) = set.pick() {
+            let metrics = &pick.metrics;
+            cells.push(pick.design.to_string());
+            cells.push(number(Some(metrics.mean_visible), 3));
+            for value in [
+                metrics.mean_pdop,
+                metrics.max_pdop,
+                metrics.j_pos,
+                metrics.j_cost,
+            ] {
+                cells.push(number(value, 4));
+            }
+        }
+        table.row(cells);
+    }
+    table
+}
+
+fn expected(line: &Line) -> String {
+    match line.expected {
+        Expected::Value { value, tolerance } => {
+            format!("{} ± {}", round(value), round(tolerance))
+        }
+        Expected::AtLeast(bound) => format!(">= {bound}"),
+        Expected::MoreThan(bound) => format!("> {bound}"),
+    }
+}
+
+/// At most four decimals, without trailing zeros.
+fn round(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn lines_table(study: &Reproduction) -> Table {
+    let mut table = Table::new(&[
+        ("verdict", LEFT),
+        ("where", LEFT),
+        ("statement", LEFT),
+        ("paper", RIGHT),
+        ("ours", RIGHT),
+        ("unit", LEFT),
+        ("assumption under which it holds", LEFT),
+        ("ours there", RIGHT),
+    ]);
+    for line in &study.lines {
+        table.row([
+            line.verdict.to_string(),
+            line.place.clone(),
+            line.statement.clone(),
+            expected(line),
+            line.ours.map_or_else(|| "-".to_owned(), round),
+            line.unit.clone(),
+            line.assumption.clone().unwrap_or_default(),
+            line.ours_there.map_or_else(String::new, round),
+        ]);
+    }
+    table
+}
+
+/// What the tables show, in sentences that are computed from them.
+fn notes(result: &ReproduceResult) -> Vec<String> {
+    let study = &result.study;
+    let fit = &study.mask_fit;
+    let mut notes = Vec::new();
+    if let Some(median) = fit.median_deg {
+        notes.push(format!(
+            "The paper states no elevation mask. Asked row by row, its visibility implies {median:.2}° (median); \
+             {} of {} rows agree with that within 0.1°, and the scenario has {}°.",
+            fit.agreeing,
+            fit.rows.len(),
+            study.mask_deg
+        ));
+    }
+    let size = &study.cost_of_size;
+    if let [Some(small), Some(large)] = size.j_cost {
+        notes.push(format!(
+            "J_cost = T/N is one over the visible share: from {} to {} satellites it goes from {small:.4} to \
+             {large:.4} ({:+.3} %). Under the paper's two objectives satellites are free, so the front lies \
+             where there are most of them; minimise satellites, planes or launch-cost to make them count.",
+            size.satellites[0],
+            size.satellites[1],
+            100.0 * (large / small - 1.0)
+        ));
+    }
+    notes.push(
+        "Step (3) of the paper's algorithm sorts the offspring; the merged population is sorted here, as in \
+         its equation (19) and in Deb et al. (2002)."
+            .to_owned(),
+    );
+    notes.push(
+        "Table II gives only the product P x S, no phasing and no pattern: rows are read as 13 x 15, 13 x 14, \
+         14 x 15 and 13 x 13, F = 1, the polar and Iridium-like ones as star patterns."
+            .to_owned(),
+    );
+    notes
+}
+
+fn summary(result: &ReproduceResult) -> String {
+    let counts = result.counts();
+    let words: Vec<String> = counts
+        .iter()
+        .map(|(verdict, count)| format!("{count} {verdict}"))
+        .collect();
+    format!(
+        "{} statements: {}",
+        result.study.lines.len(),
+        words.join(", ")
+    )
+}
+
+type Section = (&'static str, &'static str, fn(&Reproduction) -> Table);
+
+const SECTIONS: [Section; 5] = [
+    (
+        "Statements, judged",
+        "Met: within the tolerance under the scenario. Under another assumption: within it with the one change that is named, of those below.",
+        lines_table,
+    ),
+    (
+        "Table II",
+        "As printed, and at the inclination nearest to the printed one that gives the paper's N. Differences are ours less the paper's.",
+        rows_table,
+    ),
+    (
+        "The mask",
+        "One-dimensional fit to each row at its printed inclination; a row whose inclination is misprinted stands out.",
+        mask_table,
+    ),
+    (
+        "Sensitivity",
+        "One assumption changed at a time, designs as printed.",
+        sensitivity_table,
+    ),
+    (
+        "Searches",
+        "With the paper's budget; the pick is the fuzzy decision over each set.",
+        searches_table,
+    ),
+];
+
+/// The study for a terminal.
+#[must_use]
+pub fn reproduction_text(result: &ReproduceResult) -> String {
+    let mut text = format!(
+        "The paper's study under scenario {}, seed {}, navwalker {}\n{}\n",
+        result.scenario.name,
+        result.seed,
+        result.version,
+        summary(result)
+    );
+    for (title, caption, table) in SECTIONS {
+        let table = table(&result.study).to_text();
+        let _ = write!(text, "\n{title}. {caption}\n{table}");
+    }
+    text.push('\n');
+    for note in notes(result) {
+        let _ = writeln!(text, "note: {note}");
+    }
+    text
+}
+
+/// The study for an appendix.
+#[must_use]
+pub fn reproduction_markdown(result: &ReproduceResult) -> String {
+    let mut text = format!(
+        "# The paper's study, repeated\n\nScenario {} (`{}`), seed {}, navwalker {}.\n\n**{}.**\n\n",
+        result.scenario.name,
+        result.scenario.hash,
+        result.seed,
+        result.version,
+        summary(result)
+    );
+    for note in notes(result) {
+        let _ = writeln!(text, "- {note}");
+    }
+    for (title, caption, table) in SECTIONS {
+        let table = table(&result.study).to_markdown();
+        let _ = write!(text, "\n## {title}\n\n{caption}\n\n{table}");
+    }
+    text
+}

@@ -1,0 +1,164 @@
+//! The same search with several seeds.
+
+use super::csv::{CsvError, optional, text};
+use super::{Align, OptimizeResult, Table, seed_spread};
+use ::csv::Writer;
+use serde::Serialize;
+
+/// One of the searches.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeedRun {
+    /// Its seed.
+    pub seed: u64,
+    /// Volume that its front dominates.
+    pub hypervolume: Option<f64>,
+    /// Designs evaluated.
+    pub evaluations: u64,
+    /// Members of its front.
+    pub front_size: usize,
+    /// Pick of the fuzzy decision.
+    pub pick: Option<String>,
+}
+
+impl From<&OptimizeResult> for SeedRun {
+    fn from(result: &OptimizeResult) -> Self {
+        Self {
+            seed: result.seed,
+            hypervolume: result.hypervolume.value,
+            evaluations: result.evaluations,
+            front_size: result.front.len(),
+            pick: result.chosen().map(|member| member.design.notation.clone()),
+        }
+    }
+}
+
+/// The hypervolume over the seeds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Spread {
+    /// Arithmetic mean.
+    pub mean: f64,
+    /// Least.
+    pub min: f64,
+    /// Greatest.
+    pub max: f64,
+    /// Standard deviation of the sample, by n - 1; 0 for one seed.
+    pub std_dev: f64,
+}
+
+impl Spread {
+    fn of(values: &[f64]) -> Option<Self> {
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let squares: f64 = values.iter().map(|x| (x - mean).powi(2)).sum();
+        Some(Self {
+            mean,
+            min: values.iter().copied().min_by(f64::total_cmp)?,
+            max: values.iter().copied().max_by(f64::total_cmp)?,
+            std_dev: (squares / (count - 1.0).max(1.0)).sqrt(),
+        })
+    }
+}
+
+/// What `optimize --seeds` prints: the result of the first seed, which nobody picked for being the
+/// best, and what all of them reached.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeedsResult {
+    /// The result of the first seed.
+    #[serde(flatten)]
+    pub first: OptimizeResult,
+    /// Seed by seed.
+    pub seeds: Vec<SeedRun>,
+    /// The hypervolume over the seeds; `None` without a reference point.
+    pub hypervolume_spread: Option<Spread>,
+}
+
+impl SeedsResult {
+    /// The result of searches that differ in their seed alone; `None` without any.
+    #[must_use]
+    pub fn new(results: Vec<OptimizeResult>) -> Option<Self> {
+        let seeds: Vec<SeedRun> = results.iter().map(SeedRun::from).collect();
+        let volumes: Option<Vec<f64>> = seeds.iter().map(|run| run.hypervolume).collect();
+        let spread = volumes.and_then(|volumes| Spread::of(&volumes));
+        let mut first = results.into_iter().next()?;
+        let diagnostic = spread.and_then(|s| seed_spread(s.mean, s.std_dev, seeds.len()));
+        first.diagnostics.extend(diagnostic);
+        Some(Self {
+            first,
+            seeds,
+            hypervolume_spread: spread,
+        })
+    }
+
+    /// The seeds and their spread, for a terminal.
+    #[must_use]
+    pub fn to_text(&self) -> String {
+        let right = Align::Right;
+        let mut table = Table::new(&[
+            ("seed", right),
+            ("hypervolume", right),
+            ("evaluations", right),
+            ("front", right),
+            ("pick", Align::Left),
+        ]);
+        let volume =
+            |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.5}"));
+        for run in &self.seeds {
+            table.row([
+                run.seed.to_string(),
+                volume(run.hypervolume),
+                run.evaluations.to_string(),
+                run.front_size.to_string(),
+                run.pick.clone().unwrap_or_default(),
+            ]);
+        }
+        let mut text = table.to_text();
+        if let Some(spread) = self.hypervolume_spread {
+            let Spread {
+                mean,
+                min,
+                max,
+                std_dev,
+            } = spread;
+            text += &format!(
+                "hypervolume over {} seeds: mean {mean:.5}, least {min:.5}, greatest {max:.5}, \
+                 standard deviation {std_dev:.5}\n",
+                self.seeds.len()
+            );
+        }
+        text
+    }
+
+    /// The seeds, one a row.
+    ///
+    /// # Errors
+    /// Never for a table in memory.
+    pub fn to_csv(&self) -> Result<String, CsvError> {
+        let mut writer = Writer::from_writer(Vec::new());
+        writer.write_record(["seed", "hypervolume", "evaluations", "front_size", "pick"])?;
+        for run in &self.seeds {
+            writer.write_record([
+                run.seed.to_string(),
+                optional(run.hypervolume),
+                run.evaluations.to_string(),
+                run.front_size.to_string(),
+                run.pick.clone().unwrap_or_default(),
+            ])?;
+        }
+        text(writer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn validate_spread_by_hand() {
+        let spread = Spread::of(&[1.0, 2.0, 3.0, 6.0]).unwrap();
+        assert_eq!((spread.mean, spread.min, spread.max), (3.0, 1.0, 6.0));
+        // Squares 4, 1, 0, 9 over 3.
+        assert!((spread.std_dev - (14.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert_eq!(Spread::of(&[2.0]).unwrap().std_dev, 0.0);
+        assert_eq!(Spread::of(&[]), None);
+    }
+}

@@ -1,0 +1,104 @@
+//! The secular rates of J2 from Lagrange's planetary equations and the potential averaged by
+//! quadrature (Vallado, *Fundamentals of Astrodynamics* (4th ed.), section 9.3.1).
+
+use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
+use crate::orbit::MeanElements;
+use crate::units::{SECONDS_PER_DAY, wrap_pi};
+use crate::validate::{Check, Subject};
+use std::f64::consts::TAU;
+
+/// Nodes of the quadrature over the true anomaly; the integrand is a trigonometric polynomial of
+/// degree 3.
+const NODES: usize = 64;
+
+/// Relative step of the central differences.
+const STEP: f64 = 1e-4;
+
+/// The J2 potential averaged over the mean anomaly, km²/s²; positive as a force function.
+fn averaged([a, e, i]: [f64; 3]) -> f64 {
+    let parameter = a * (1.0 - e * e);
+    let sum: f64 = (0..NODES)
+        .map(|k| {
+            let f = TAU * k as f64 / NODES as f64;
+            let r = parameter / (1.0 + e * f.cos());
+            // The argument of perigee averages out of sin² (ω + f); a quarter turn more shows it.
+            let s2 = i.sin().powi(2) * (0.7 + f).sin().powi(2);
+            let potential = -MU_KM3_S2 / r * J2 * (RADIUS_KM / r).powi(2) * 0.5 * (3.0 * s2 - 1.0);
+            // dM = (r/a)²/sqrt(1 - e²) df
+            potential * (r / a).powi(2) / (1.0 - e * e).sqrt()
+        })
+        .sum();
+    sum / NODES as f64
+}
+
+fn derivative(at: [f64; 3], n: usize, step: f64) -> f64 {
+    let moved = |by: f64| {
+        let mut place = at;
+        place[n] += by;
+        averaged(place)
+    };
+    // Fourth order: the error is that of the rounding.
+    (8.0 * (moved(step) - moved(-step)) - (moved(2.0 * step) - moved(-2.0 * step))) / (12.0 * step)
+}
+
+/// Rates of the node and of ω + M, rad/s.
+fn rates(orbit: &MeanElements) -> [f64; 2] {
+    let (a, e, i) = (
+        orbit.semi_major_axis_km,
+        orbit.eccentricity,
+        orbit.inclination_rad,
+    );
+    let place = [a, e, i];
+    let n = (MU_KM3_S2 / (a * a * a)).sqrt();
+    let eta = (1.0 - e * e).sqrt();
+    let by_a = derivative(place, 0, STEP * a);
+    let by_i = derivative(place, 2, STEP);
+    // In dω/dt + dM/dt the derivative by e has the factor η(1 - η)/e, which vanishes with e.
+    let by_e = if e > 0.0 {
+        eta * (1.0 - eta) / e * derivative(place, 1, STEP.min(0.25 * e))
+    } else {
+        0.0
+    };
+    let (sin_i, cos_i) = i.sin_cos();
+    let na2 = n * a * a;
+    let node = by_i / (na2 * eta * sin_i);
+    [node, n - 2.0 / (n * a) * by_a + by_e / na2 - cos_i * node]
+}
+
+/// Rates of the flown theory, by its elements after a day.
+fn flown_rates(subject: &Subject<'_>, orbit: &MeanElements, expected: [f64; 2]) -> [f64; 2] {
+    let after = (subject.parts.mean_j2)(orbit).elements_at(SECONDS_PER_DAY);
+    let turned = [
+        after.raan_rad - orbit.raan_rad,
+        after.mean_argument_of_latitude_rad() - orbit.mean_argument_of_latitude_rad(),
+    ];
+    // The whole turns are those that are expected.
+    [0, 1].map(|n| {
+        let excess = wrap_pi(turned[n] - expected[n] * SECONDS_PER_DAY);
+        expected[n] + excess / SECONDS_PER_DAY
+    })
+}
+
+pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
+    let orbit = subject.orbit();
+    // Without a node its rate and that of ω are not told apart.
+    if orbit.inclination_rad.sin() < 0.02 {
+        return Vec::new();
+    }
+    let expected = rates(&orbit);
+    let found = flown_rates(subject, &orbit, expected);
+    ["node", "argument-of-latitude"]
+        .into_iter()
+        .zip([0, 1])
+        .map(|(name, n)| {
+            let apart = (found[n] - expected[n]) * SECONDS_PER_DAY;
+            Check::new(
+                &format!("analytic/rates/{name}"),
+                [&format!("rate of the {name} less that of the averaged potential"), "deg/day", "value"],
+                apart.to_degrees(),
+                Some(1e-5),
+                "Lagrange's equations with the J2 potential averaged by quadrature: differences at 1e-4, good to 1e-7 of the J2 rates",
+            )
+        })
+        .collect()
+}

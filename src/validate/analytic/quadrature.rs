@@ -1,0 +1,140 @@
+//! The mean number of visible satellites without stepping time.
+//!
+//! Over a long time the node of a satellite turns evenly past every meridian, independently of its
+//! place in the orbit. For each place, the longitudes from which it is seen are an arc about its own
+//! meridian, whose ends follow from the definition of the elevation; the share of visibility is the
+//! mean of the arcs over the mean anomaly.
+
+use crate::evaluate::Setup;
+use crate::ground::Site;
+use crate::orbit::MeanElements;
+use crate::orbit::kepler::eccentric_anomaly;
+use crate::validate::{Check, Subject, ValidateError};
+use std::f64::consts::{PI, TAU};
+
+/// Nodes over the mean anomaly. Arcs end like square roots: an error of N^-3/2, 1e-6.
+const NODES: usize = 20_000;
+
+/// Share of time for which a site sees a satellite of this orbit.
+pub(super) fn visible_share(orbit: &MeanElements, site: &Site, mask_deg: f64) -> f64 {
+    let (up, origin) = (site.local.up, site.local.origin_km);
+    // Everything is symmetric about the site's meridian: distance from the axis, and height over the
+    // equator.
+    let (up_out, up_pole) = (up.x.hypot(up.y), up.z);
+    let (origin_out, origin_pole) = (origin.x.hypot(origin.y), origin.z);
+    let sin_mask = mask_deg.to_radians().sin();
+    let sum: f64 = (0..NODES)
+        .map(|k| {
+            let [out, pole] = place(orbit, TAU * (k as f64 + 0.5) / NODES as f64);
+            // Height over the horizon is a + b C and distance² is d - 2 q C, C = cos(longitude).
+            let height = |c: f64| up_out * (out * c - origin_out) + up_pole * (pole - origin_pole);
+            let seen = |c: f64| {
+                let distance2 = out * out + pole * pole + origin_out.powi(2) + origin_pole.powi(2)
+                    - 2.0 * (out * origin_out * c + pole * origin_pole);
+                height(c) - sin_mask * distance2.max(0.0).sqrt()
+            };
+            arc(seen)
+        })
+        .sum();
+    sum / NODES as f64 / PI
+}
+
+/// Distance from the axis and height over the equator at a mean anomaly, km.
+fn place(orbit: &MeanElements, mean_anomaly: f64) -> [f64; 2] {
+    let e = orbit.eccentricity;
+    let (sin_e, cos_e) = eccentric_anomaly(mean_anomaly, e).sin_cos();
+    let a = orbit.semi_major_axis_km;
+    let (x, y) = (a * (cos_e - e), a * (1.0 - e * e).sqrt() * sin_e);
+    let (sin_w, cos_w) = orbit.arg_perigee_rad.sin_cos();
+    let ahead = sin_w * x + cos_w * y;
+    let pole = ahead * orbit.inclination_rad.sin();
+    [(x * x + y * y - pole * pole).max(0.0).sqrt(), pole]
+}
+
+/// Half the arc of longitudes, rad, for which a function of their cosine that increases is positive.
+fn arc(seen: impl Fn(f64) -> f64) -> f64 {
+    if seen(1.0) < 0.0 {
+        return 0.0;
+    }
+    if seen(-1.0) >= 0.0 {
+        return PI;
+    }
+    let (mut below, mut above) = (-1.0, 1.0);
+    // 40 halvings: 2e-12 of the cosine, 2e-6 rad at the worst, where the arc closes.
+    for _ in 0..40 {
+        let middle = 0.5 * (below + above);
+        if seen(middle) < 0.0 {
+            below = middle;
+        } else {
+            above = middle;
+        }
+    }
+    (0.5_f64 * (below + above)).acos()
+}
+
+/// Sites with weights, one for each latitude: the share does not depend on longitude.
+fn rows(setup: &Setup) -> Vec<(Site, f64)> {
+    let mut rows: Vec<(Site, f64)> = Vec::new();
+    for site in &setup.sites {
+        match rows
+            .iter_mut()
+            .find(|(row, _)| row.latitude_deg == site.latitude_deg)
+        {
+            Some((_, weight)) => *weight += site.weight,
+            None => rows.push((*site, site.weight)),
+        }
+    }
+    rows
+}
+
+/// Relative difference that a finite span may leave.
+///
+/// The discrepancy of one satellite over D days is that of a sequence of N = 15 D revolutions:
+/// each passes the site at some longitude, and the count is off by at most one pass in N. Satellites
+/// that are spread evenly share it.
+fn finite_span(subject: &Subject<'_>) -> f64 {
+    let revolutions = subject.days() * 86_400.0 * subject.orbit().kepler_mean_motion_rad_s() / TAU;
+    let satellites = subject.design.satellite_count() as f64;
+    2.0 / revolutions.max(1.0) / satellites.sqrt()
+}
+
+pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
+    let setup = subject.setup();
+    let orbit = subject.orbit();
+    let rows = rows(setup);
+    // A list of points has as many latitudes as points; some tell enough.
+    if rows.len() > 200 {
+        return Ok(Vec::new());
+    }
+    let weight: f64 = rows.iter().map(|(_, weight)| weight).sum();
+    let share: f64 = rows
+        .iter()
+        .map(|(site, weight)| weight * visible_share(&orbit, site, setup.mask.degrees()))
+        .sum::<f64>()
+        / weight;
+    let expected = share * subject.design.satellite_count() as f64;
+    let found = subject
+        .evaluator
+        .ephemeris(&subject.fly_mean_j2()?)?
+        .mean_visible;
+    Ok(vec![
+        Check::new(
+            "analytic/mean-visible/quadrature",
+            ["mean visible satellites, by quadrature", "1", "mean"],
+            expected,
+            None,
+            "the limit of a long time: node and place in the orbit independent",
+        ),
+        Check::new(
+            "analytic/mean-visible",
+            [
+                "mean visible satellites of the study over quadrature, less 1",
+                "1",
+                "mean",
+            ],
+            found / expected - 1.0,
+            Some(finite_span(subject)),
+            "a finite span misses at most a pass or two of each satellite's revolutions; satellites that are spread share the error",
+        ),
+    ])
+}

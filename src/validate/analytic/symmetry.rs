@@ -1,0 +1,151 @@
+//! What does not change when a pattern is turned, satellites are reordered, or the mask is raised.
+
+use crate::constellation::{Pattern, Satellite};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::{Evaluator, Setup};
+use crate::frames::EarthRotation;
+use crate::orbit::MeanElements;
+use crate::units::wrap_two_pi;
+use crate::validate::{Check, Subject, ValidateError};
+use crate::visibility::Mask;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Steps by which the mask is raised, degrees.
+const MASK_STEPS_DEG: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
+
+/// Largest design whose places are matched one by one.
+const MOST_MATCHED: usize = 2_000;
+
+pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
+    let mut checks = Vec::new();
+    checks.extend(turn_check(subject));
+    checks.push(order_check(subject)?);
+    checks.extend(mask_check(subject)?);
+    Ok(checks)
+}
+
+/// How a pattern comes to lie on itself: the turn of the nodes and the shift of M, rad.
+fn symmetry(subject: &Subject<'_>) -> (f64, f64) {
+    let design = &subject.design;
+    let (planes, per_plane) = (design.planes() as f64, design.satellites_per_plane() as f64);
+    let phase = TAU * design.phasing() as f64 / (planes * per_plane);
+    match design.pattern() {
+        Pattern::Delta => (TAU / planes, phase),
+        // Half a turn: the second half of the nodes is not occupied.
+        Pattern::Star => (0.5 * TAU / planes, phase),
+        Pattern::Lattice => (TAU / planes, -phase),
+    }
+}
+
+/// Largest distance of a turned place from the nearest place of the pattern, km.
+fn turn_check(subject: &Subject<'_>) -> Option<Check> {
+    let satellites = subject.satellites();
+    if satellites.len() > MOST_MATCHED {
+        return None;
+    }
+    let (turn, shift) = symmetry(subject);
+    let theory = subject.parts.mean_j2;
+    let at_s = 0.37 * subject.days() * crate::units::SECONDS_PER_DAY;
+    let position = |elements: &MeanElements| theory(elements).state(at_s).position_km;
+    let places: Vec<Vector3<f64>> = satellites.iter().map(|s| position(&s.elements)).collect();
+    let rotation = EarthRotation::from_gmst(turn);
+    let is_last = |satellite: &Satellite| satellite.slot.plane + 1 == subject.design.planes();
+    let moved = satellites
+        .iter()
+        .filter(|satellite| subject.design.pattern() != Pattern::Star || !is_last(satellite))
+        .map(|satellite| {
+            let elements = &satellite.elements;
+            let shifted = MeanElements {
+                mean_anomaly_rad: wrap_two_pi(elements.mean_anomaly_rad + shift),
+                ..*elements
+            };
+            // Turned forwards about the pole by the angle.
+            rotation.to_teme(position(&shifted))
+        });
+    let nearest = |place: Vector3<f64>| {
+        let distances = places.iter().map(|other| (other - place).norm());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    Some(Check::new(
+        "analytic/symmetry/turn",
+        [
+            "distance of the pattern, turned and shifted, from itself",
+            "km",
+            "max",
+        ],
+        moved.map(nearest).fold(0.0, f64::max),
+        Some(1e-6),
+        "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
+    ))
+}
+
+fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
+    let forwards = subject.evaluator.ephemeris(&subject.fly_mean_j2()?)?;
+    let mut satellites = subject.fly_mean_j2()?.into_satellites();
+    satellites.reverse();
+    let backwards = subject
+        .evaluator
+        .ephemeris(&Ephemeris::new(subject.grid(), satellites))?;
+    let pairs = [
+        (Some(forwards.mean_visible), Some(backwards.mean_visible)),
+        (forwards.mean_pdop, backwards.mean_pdop),
+        (forwards.cvar_pdop, backwards.cvar_pdop),
+    ];
+    let change = |(a, b): (Option<f64>, Option<f64>)| match (a, b) {
+        (Some(a), Some(b)) => (a - b).abs() / a.abs().max(1.0),
+        (None, None) => 0.0,
+        _ => f64::INFINITY,
+    };
+    Ok(Check::new(
+        "analytic/symmetry/order",
+        [
+            "change of the metrics when satellites are reordered",
+            "1",
+            "max",
+        ],
+        pairs.into_iter().map(change).fold(0.0, f64::max),
+        Some(1e-6),
+        "sums in another order: rounding only, of single precision where the fast path takes it",
+    ))
+}
+
+/// The largest gain of mean visible satellites when the mask is raised, which must not be.
+fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
+    let setup = subject.setup();
+    let flown = subject.fly_mean_j2()?;
+    let mut before = None;
+    let mut largest_gain = f64::NEG_INFINITY;
+    let raised = MASK_STEPS_DEG.map(|step| setup.mask.degrees() + step);
+    let masks = std::iter::once(setup.mask.degrees()).chain(raised);
+    for mask in masks.filter_map(|degrees| Mask::from_degrees(degrees).ok()) {
+        let visible = Evaluator::new(without_gnss(setup, mask))?
+            .ephemeris(&flown)?
+            .mean_visible;
+        if let Some(before) = before {
+            largest_gain = largest_gain.max(visible - before);
+        }
+        before = Some(visible);
+    }
+    Ok(largest_gain.is_finite().then(|| {
+        Check::new(
+            "analytic/mask",
+            [
+                "gain of mean visible satellites when the mask is raised",
+                "1",
+                "max",
+            ],
+            largest_gain.max(0.0),
+            Some(0.0),
+            "what is above a higher mask is above the lower one",
+        )
+    }))
+}
+
+fn without_gnss(setup: &Setup, mask: Mask) -> Setup {
+    Setup {
+        mask,
+        gnss: Vec::new(),
+        ..setup.clone()
+    }
+}

@@ -1,0 +1,345 @@
+//! What a difference of two trajectories does to visibility decisions, passes and metrics.
+
+use super::distribution::{Distribution, Residual};
+use super::{Check, Findings};
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::evaluate::{Evaluator, Metrics};
+use crate::frames::EarthRotation;
+use crate::ground::Site;
+use crate::units::wrap_pi;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+/// Sites at which passes are timed; more would tell the same.
+const PASS_SITES: usize = 6;
+
+/// Most satellites whose passes are timed.
+const PASS_SATELLITES: usize = 60;
+
+/// Bounds on the change of decisions and metrics; `None` reports only.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct DecisionGates {
+    /// Share of the decisions that flip.
+    pub(super) flips: f64,
+    /// Satellites.
+    pub(super) satellites: f64,
+}
+
+/// Two flights of the same satellites, seen from the points of a study.
+pub(super) struct Seen<'a> {
+    pub(super) evaluator: &'a Evaluator,
+    pub(super) first: &'a Ephemeris,
+    pub(super) second: &'a Ephemeris,
+}
+
+/// Counts of decisions.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    decisions: u64,
+    flips: u64,
+}
+
+impl Seen<'_> {
+    /// Compares decisions, passes and metrics. `name` is the beginning of the names of the checks.
+    pub(super) fn compare(
+        &self,
+        name: &str,
+        gates: Option<DecisionGates>,
+    ) -> Result<Findings, EphemerisError> {
+        let counts = self.count()?;
+        let flips = counts.flips as f64 / counts.decisions.max(1) as f64;
+        let mut findings = Findings::default();
+        findings.checks.push(Check::new(
+            &format!("{name}/flipped-decisions"),
+            ["visibility decisions that flip", "1", "share"],
+            flips,
+            gates.map(|gates| gates.flips),
+            "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude",
+        ));
+        let metrics = [
+            self.evaluator.ephemeris(self.first)?,
+            self.evaluator.ephemeris(self.second)?,
+        ];
+        findings.checks.extend(metric_checks(name, &metrics, gates));
+        self.passes(name, &mut findings)?;
+        Ok(findings)
+    }
+
+    fn rotation(&self, elapsed_s: f64) -> EarthRotation {
+        let epoch = self.evaluator.setup().grid.epoch();
+        EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s))
+    }
+
+    fn count(&self) -> Result<Counts, EphemerisError> {
+        let setup = self.evaluator.setup();
+        let times: Vec<f64> = setup.grid.iter().collect();
+        let one = |&elapsed_s: &f64| {
+            let rotation = self.rotation(elapsed_s);
+            let mut counts = Counts::default();
+            let pairs = self.first.satellites().iter().zip(self.second.satellites());
+            for (a, b) in pairs {
+                let a = rotation.to_earth_fixed(self.first.state(a, elapsed_s)?.position_km);
+                let b = rotation.to_earth_fixed(self.second.state(b, elapsed_s)?.position_km);
+                for site in &setup.sites {
+                    let seen = |target| {
+                        setup
+                            .line_of_sight(setup.mask, &site.local, target)
+                            .is_some()
+                    };
+                    counts.flips += u64::from(seen(a) != seen(b));
+                }
+                counts.decisions += setup.sites.len() as u64;
+            }
+            Ok(counts)
+        };
+        let instants: Vec<Counts> = times.par_iter().map(one).collect::<Result<_, _>>()?;
+        Ok(instants.iter().fold(Counts::default(), |sum, at| Counts {
+            decisions: sum.decisions + at.decisions,
+            flips: sum.flips + at.flips,
+        }))
+    }
+
+    /// Shifts of rise and set and of the duration of passes.
+    fn passes(&self, name: &str, findings: &mut Findings) -> Result<(), EphemerisError> {
+        let sites = thinned(&self.evaluator.setup().sites, PASS_SITES);
+        let pairs: Vec<(&Flown, &Flown)> = self
+            .first
+            .satellites()
+            .iter()
+            .zip(self.second.satellites())
+            .collect();
+        let pairs = thinned(&pairs, PASS_SATELLITES);
+        let shifts: Vec<Vec<Shift>> = pairs
+            .par_iter()
+            .map(|(a, b)| self.pass_shifts(&sites, a, b))
+            .collect::<Result<_, _>>()?;
+        let shifts: Vec<Shift> = shifts.into_iter().flatten().collect();
+        let kinds: [(&str, &str, Measure); 3] = [
+            ("rise", "shift of the rise", |shift| shift.rise_s),
+            ("set", "shift of the set", |shift| shift.set_s),
+            ("duration", "change of the duration of a pass", |shift| {
+                shift.set_s - shift.rise_s
+            }),
+        ];
+        for (kind, quantity, value) in kinds {
+            let residuals: Vec<_> = shifts
+                .iter()
+                .map(|shift| Residual {
+                    value: value(shift),
+                    input: shift,
+                })
+                .collect();
+            findings.distributions.extend(Distribution::of(
+                &format!("{name}/{kind}"),
+                [quantity, "s"],
+                &residuals,
+                |shift| shift.to_string(),
+            ));
+        }
+        Ok(())
+    }
+
+    fn pass_shifts(
+        &self,
+        sites: &[Site],
+        a: &Flown,
+        b: &Flown,
+    ) -> Result<Vec<Shift>, EphemerisError> {
+        let mut shifts = Vec::new();
+        let flights = [
+            Flight::new(self, self.first, a)?,
+            Flight::new(self, self.second, b)?,
+        ];
+        for site in sites {
+            let [first, second] = [flights[0].passes(site)?, flights[1].passes(site)?];
+            for pass in &first {
+                // The same pass is the one in the middle of which the other is under way.
+                let middle = 0.5 * (pass.0 + pass.1);
+                let Some(other) = second.iter().find(|p| p.0 <= middle && middle <= p.1) else {
+                    continue;
+                };
+                shifts.push(Shift {
+                    satellite: a.name.clone(),
+                    latitude_deg: site.latitude_deg,
+                    longitude_deg: site.longitude_deg,
+                    at_s: pass.0,
+                    rise_s: other.0 - pass.0,
+                    set_s: other.1 - pass.1,
+                });
+            }
+        }
+        Ok(shifts)
+    }
+}
+
+/// At most `most` of `all`, evenly chosen, the ends among them.
+fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
+    if all.len() <= most {
+        return all.to_vec();
+    }
+    let place = |k: usize| k * (all.len() - 1) / (most - 1).max(1);
+    (0..most).map(|k| all[place(k)].clone()).collect()
+}
+
+/// What is measured of a shift.
+type Measure = fn(&Shift) -> f64;
+
+/// How a pass moved.
+struct Shift {
+    satellite: String,
+    latitude_deg: f64,
+    longitude_deg: f64,
+    at_s: f64,
+    rise_s: f64,
+    set_s: f64,
+}
+
+impl std::fmt::Display for Shift {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            formatter,
+            "{} from {}, {} deg at {:.0} s",
+            self.satellite, self.latitude_deg, self.longitude_deg, self.at_s
+        )
+    }
+}
+
+/// One satellite along one ephemeris, Earth-fixed.
+struct Flight<'a> {
+    seen: &'a Seen<'a>,
+    ephemeris: &'a Ephemeris,
+    satellite: &'a Flown,
+    sampled_km: Vec<Vector3<f64>>,
+}
+
+impl<'a> Flight<'a> {
+    fn new(
+        seen: &'a Seen<'a>,
+        ephemeris: &'a Ephemeris,
+        satellite: &'a Flown,
+    ) -> Result<Self, EphemerisError> {
+        let mut flight = Self {
+            seen,
+            ephemeris,
+            satellite,
+            sampled_km: Vec::new(),
+        };
+        let grid = seen.evaluator.setup().grid;
+        flight.sampled_km = grid
+            .iter()
+            .map(|elapsed_s| flight.position_km(elapsed_s))
+            .collect::<Result<_, _>>()?;
+        Ok(flight)
+    }
+
+    fn position_km(&self, elapsed_s: f64) -> Result<Vector3<f64>, EphemerisError> {
+        let state = self.ephemeris.state(self.satellite, elapsed_s)?;
+        Ok(self
+            .seen
+            .rotation(elapsed_s)
+            .to_earth_fixed(state.position_km))
+    }
+
+    /// Sine of the elevation less that of the mask.
+    fn height(&self, site: &Site, target_km: Vector3<f64>) -> f64 {
+        let line = target_km - site.local.origin_km;
+        let mask_rad = self.seen.evaluator.setup().mask.degrees().to_radians();
+        site.local.up.dot(&line) / line.norm() - mask_rad.sin()
+    }
+
+    /// Rise and set of the whole passes over a site, s.
+    fn passes(&self, site: &Site) -> Result<Vec<(f64, f64)>, EphemerisError> {
+        let grid = self.seen.evaluator.setup().grid;
+        let heights: Vec<f64> = self
+            .sampled_km
+            .iter()
+            .map(|&target| self.height(site, target))
+            .collect();
+        let mut passes = Vec::new();
+        let mut rise = None;
+        for k in 1..heights.len() {
+            let [before, after] = [heights[k - 1], heights[k]];
+            if (before < 0.0) == (after < 0.0) {
+                continue;
+            }
+            let crossing = self.crossing_s(site, grid.elapsed_s(k - 1), grid.elapsed_s(k))?;
+            if before < 0.0 {
+                rise = Some(crossing);
+            } else if let Some(rise) = rise.take() {
+                passes.push((rise, crossing));
+            }
+        }
+        Ok(passes)
+    }
+
+    /// The instant between two at which the satellite crosses the mask, by bisection to 1 ms.
+    fn crossing_s(&self, site: &Site, low_s: f64, high_s: f64) -> Result<f64, EphemerisError> {
+        let (mut low, mut high) = (low_s, high_s);
+        let below = self.height(site, self.position_km(low)?) < 0.0;
+        while high - low > 1e-3 {
+            let middle = 0.5 * (low + high);
+            if (self.height(site, self.position_km(middle)?) < 0.0) == below {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        Ok(0.5 * (low + high))
+    }
+}
+
+fn metric_checks(
+    name: &str,
+    [first, second]: &[Metrics; 2],
+    gates: Option<DecisionGates>,
+) -> Vec<Check> {
+    // Each flip changes a count by one.
+    let visible_gate = gates.map(|gates| gates.flips * gates.satellites);
+    // A satellite more or less among n changes PDOP by about its 1/n.
+    let relative = gates.map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
+    let mut checks = vec![Check::new(
+        &format!("{name}/mean-visible"),
+        ["change of mean visible satellites", "1", "mean"],
+        second.mean_visible - first.mean_visible,
+        visible_gate,
+        "the bound on flips: each changes a count by one, and flips of both signs cancel",
+    )];
+    let pdop = [
+        ("mean-pdop", first.mean_pdop, second.mean_pdop, Some(1.0)),
+        // The tail is at few satellites, where one weighs several times more.
+        ("cvar-pdop", first.cvar_pdop, second.cvar_pdop, Some(4.0)),
+        ("max-pdop", first.max_pdop, second.max_pdop, None),
+    ];
+    for (quantity, before, after, factor) in pdop {
+        if let (Some(before), Some(after)) = (before, after) {
+            let gate = relative.zip(factor);
+            checks.push(Check::new(
+                &format!("{name}/{quantity}"),
+                [&format!("change of {quantity}"), "1", "difference"],
+                after - before,
+                gate.map(|(relative, factor)| factor * relative * before),
+                "each flip changes PDOP by about 1/n of n satellites; fourfold in the tail, where n is small; the maximum is one sample and has no bound",
+            ));
+        }
+    }
+    checks
+}
+
+/// Share of decisions that flip when satellites are `radial_km` and `along_km` (RMS) away.
+///
+/// The footprint has the half-angle ψ = acos(R cos ε/a) - ε; its edge moves by dψ/da per km of
+/// radius and 1/a per km across it; a strip of width w covers w sin ψ/2 of the sphere.
+pub(super) fn flip_gate(
+    semi_major_axis_km: f64,
+    mask_deg: f64,
+    radial_km: f64,
+    along_km: f64,
+) -> f64 {
+    let radius = crate::earth::RADIUS_KM;
+    let (sin_mask, cos_mask) = mask_deg.to_radians().sin_cos();
+    let reach = radius * cos_mask / semi_major_axis_km;
+    let half_angle = wrap_pi(reach.acos() - sin_mask.atan2(cos_mask));
+    let per_km = reach / (semi_major_axis_km * (1.0 - reach * reach).sqrt());
+    let strip = (per_km * radial_km).hypot(along_km / semi_major_axis_km);
+    3.0 * 0.5 * half_angle.sin() * strip
+}

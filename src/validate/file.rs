@@ -1,0 +1,307 @@
+//! The design against an ephemeris that another program made.
+//!
+//! Objects of the files are matched to the slots of the design, by name or else by place; their
+//! states are compared with ours at their own instants, so that nothing is interpolated; and where
+//! they differ, the conventions that other tools are known to use are tried one after the other, to
+//! see whether one of them explains it. What did not match is a check that fails, never left out
+//! silently.
+
+mod conventions;
+mod matching;
+mod read;
+mod tracks;
+
+pub use conventions::Explanation;
+pub use read::{Comparand, FileError, read};
+
+use super::decisions::Seen;
+use super::distribution::{Distribution, Residual};
+use super::residuals::Ric;
+use super::{Check, Findings, Subject, ValidateError};
+use crate::ephemeris::Ephemeris;
+use crate::frames::ric_basis;
+use crate::orbit::Propagator;
+use crate::stats::line_fit;
+use crate::units::SECONDS_PER_DAY;
+use matching::Matching;
+use nalgebra::Vector3;
+use serde::Serialize;
+use tracks::{Track, tracks};
+
+/// Distance within which a file is the design's own, km: the centimetre of DESIGN's contract, and
+/// what nine decimals of a degree of rotation leave.
+const SAME_KM: f64 = 1e-4;
+
+/// How a satellite of the file differs from its slot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SatelliteDifference {
+    /// The slot.
+    pub slot: String,
+    /// The object of the file.
+    pub object: String,
+    /// Samples that were compared.
+    pub samples: usize,
+    /// Mean difference, km.
+    pub offset_km: Ric,
+    /// Slope of the difference, km/day.
+    pub drift_km_per_day: Ric,
+    /// Root mean square of the difference, km.
+    pub rms_km: Ric,
+    /// Largest distance, km.
+    pub max_km: f64,
+}
+
+/// A comparison with the ephemeris of another program.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FileComparison {
+    /// What was read.
+    pub source: String,
+    /// How objects were matched to slots: `name` or `place`.
+    pub matched_by: String,
+    /// Slots without an object.
+    pub unmatched_slots: Vec<String>,
+    /// Objects without a slot.
+    pub unmatched_objects: Vec<String>,
+    /// The satellites, in the order of the slots.
+    pub satellites: Vec<SatelliteDifference>,
+    /// The convention that explains the difference, if one does, and what it leaves.
+    pub explanation: Option<Explanation>,
+}
+
+/// Compares a design with what was read from files; `source` names them.
+///
+/// # Errors
+/// When nothing of the files can be compared at all: no object has a state, or none lies in the
+/// span of the study.
+pub fn against_file(
+    subject: &Subject<'_>,
+    source: &str,
+    comparands: &[Comparand],
+) -> Result<Findings, ValidateError> {
+    let tracks = tracks(subject, comparands)?;
+    let ours = subject.fly_model()?;
+    let matching = Matching::of(subject, &ours, &tracks);
+    let pairs = matching.pairs(&tracks);
+    if pairs.is_empty() {
+        return Err(FileError::NothingMatches {
+            source_name: source.to_owned(),
+            objects: tracks.len(),
+            slots: ours.satellites().len(),
+        }
+        .into());
+    }
+    let satellites = pairs
+        .iter()
+        .map(|&(slot, track)| difference(&ours, slot, track))
+        .collect::<Result<Vec<_>, _>>()?;
+    let mut findings = Findings::default();
+    findings
+        .checks
+        .extend(coverage_checks(subject, source, &matching, &tracks));
+    findings.checks.extend(size_checks(source, &satellites));
+    findings
+        .distributions
+        .extend(distances(&ours, source, &pairs)?);
+    if matching.is_complete() && tracks.iter().all(|track| track.covers(subject)) {
+        findings.append(metrics(subject, source, &ours, &pairs)?);
+    }
+    let worst = satellites.iter().map(|one| one.max_km).fold(0.0, f64::max);
+    let explanation = if worst > SAME_KM {
+        conventions::explanation(subject, &tracks)?
+    } else {
+        None
+    };
+    findings.files.push(FileComparison {
+        source: source.to_owned(),
+        matched_by: matching.how().to_owned(),
+        unmatched_slots: matching.unmatched_slots(&ours),
+        unmatched_objects: matching.unmatched_objects(&tracks),
+        satellites,
+        explanation,
+    });
+    Ok(findings)
+}
+
+/// Differences of a track from its slot at the instants of the track.
+fn differences(
+    ours: &Ephemeris,
+    slot: usize,
+    track: &Track,
+) -> Result<Vec<(f64, Vector3<f64>)>, ValidateError> {
+    let satellite = &ours.satellites()[slot];
+    let mut found = Vec::with_capacity(track.states.len());
+    for (elapsed_s, theirs) in &track.states {
+        let state = ours.state(satellite, *elapsed_s)?;
+        if let Some(basis) = ric_basis(&state) {
+            found.push((*elapsed_s, basis * (theirs.position_km - state.position_km)));
+        }
+    }
+    Ok(found)
+}
+
+fn difference(
+    ours: &Ephemeris,
+    slot: usize,
+    track: &Track,
+) -> Result<SatelliteDifference, ValidateError> {
+    let found = differences(ours, slot, track)?;
+    let days: Vec<f64> = found.iter().map(|(t, _)| t / SECONDS_PER_DAY).collect();
+    let n = found.len().max(1) as f64;
+    let mean = found.iter().fold(Vector3::zeros(), |sum, (_, d)| sum + d) / n;
+    let squares = found
+        .iter()
+        .fold(Vector3::zeros(), |sum, (_, d)| sum + d.component_mul(d));
+    let slope = |axis: usize| {
+        let values: Vec<f64> = found.iter().map(|(_, d)| d[axis]).collect();
+        line_fit(&days, &values).map_or(0.0, |(_, slope)| slope)
+    };
+    Ok(SatelliteDifference {
+        slot: ours.satellites()[slot].name.clone(),
+        object: track.name.clone(),
+        samples: found.len(),
+        offset_km: Ric::from_vector(mean),
+        drift_km_per_day: Ric::from_vector(Vector3::new(slope(0), slope(1), slope(2))),
+        rms_km: Ric::from_vector((squares / n).map(f64::sqrt)),
+        max_km: found.iter().map(|(_, d)| d.norm()).fold(0.0, f64::max),
+    })
+}
+
+fn coverage_checks(
+    subject: &Subject<'_>,
+    source: &str,
+    matching: &Matching,
+    tracks: &[Track],
+) -> Vec<Check> {
+    let slots = subject.design.satellite_count() as f64;
+    let matched = matching.count() as f64;
+    let count = |name: &str, quantity: &str, value: f64, reason: &str| {
+        Check::new(
+            &format!("file/{source}/{name}"),
+            [quantity, "1", "count"],
+            value,
+            Some(0.0),
+            reason,
+        )
+    };
+    let shortest = tracks
+        .iter()
+        .map(|track| track.covered_share(subject))
+        .fold(1.0, f64::min);
+    vec![
+        count(
+            "unmatched-slots",
+            "slots of the design without an object",
+            slots - matched,
+            "every satellite of the design is in the file",
+        ),
+        count(
+            "unmatched-objects",
+            "objects of the file without a slot",
+            tracks.len() as f64 - matched,
+            "every object of the file is a satellite of the design",
+        ),
+        Check::new(
+            &format!("file/{source}/uncovered-span"),
+            [
+                "share of the span of the study that the shortest object leaves out",
+                "1",
+                "max",
+            ],
+            1.0 - shortest,
+            Some(1e-9),
+            "states reach from the first to the last sample of the study; metrics are compared only then",
+        ),
+    ]
+}
+
+fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
+    let n = satellites.len().max(1) as f64;
+    let square = |value: fn(&Ric) -> f64| {
+        let sum: f64 = satellites
+            .iter()
+            .map(|one| value(&one.rms_km).powi(2))
+            .sum();
+        (sum / n).sqrt()
+    };
+    let drift: f64 = satellites
+        .iter()
+        .map(|one| one.drift_km_per_day.in_track)
+        .sum::<f64>()
+        / n;
+    let reason = "what the file's model and conventions differ by; the explanation names the convention if one does";
+    let rows: [(&str, &str, &str, f64); 4] = [
+        ("radial-rms", "km", "rms", square(|ric| ric.radial)),
+        ("in-track-rms", "km", "rms", square(|ric| ric.in_track)),
+        (
+            "cross-track-rms",
+            "km",
+            "rms",
+            square(|ric| ric.cross_track),
+        ),
+        ("in-track-drift", "km/day", "mean slope", drift),
+    ];
+    rows.into_iter()
+        .map(|(name, unit, statistic, value)| {
+            Check::new(
+                &format!("file/{source}/{name}"),
+                [
+                    &format!("{name} of the file from the design"),
+                    unit,
+                    statistic,
+                ],
+                value,
+                None,
+                reason,
+            )
+        })
+        .collect()
+}
+
+fn distances(
+    ours: &Ephemeris,
+    source: &str,
+    pairs: &[(usize, &Track)],
+) -> Result<Option<Distribution>, ValidateError> {
+    let mut residuals = Vec::new();
+    for &(slot, track) in pairs {
+        for (elapsed_s, apart) in differences(ours, slot, track)? {
+            residuals.push(Residual {
+                value: apart.norm(),
+                input: (slot, elapsed_s),
+            });
+        }
+    }
+    let name = format!("file/{source}");
+    let describe =
+        |&(slot, at): &(usize, f64)| format!("{} at {at} s", ours.satellites()[slot].name);
+    Ok(Distribution::of(
+        &name,
+        ["distance", "km"],
+        &residuals,
+        describe,
+    ))
+}
+
+/// Decisions, passes and metrics when the file flies in place of the design.
+fn metrics(
+    subject: &Subject<'_>,
+    source: &str,
+    ours: &Ephemeris,
+    pairs: &[(usize, &Track)],
+) -> Result<Findings, ValidateError> {
+    let theirs = pairs.iter().map(|&(slot, track)| crate::ephemeris::Flown {
+        name: ours.satellites()[slot].name.clone(),
+        slot: ours.satellites()[slot].slot,
+        propagator: Box::new(track.clone()) as Box<dyn Propagator>,
+    });
+    let theirs = Ephemeris::new(subject.grid(), theirs.collect());
+    let seen = Seen {
+        evaluator: subject.evaluator,
+        first: ours,
+        second: &theirs,
+    };
+    Ok(seen.compare(&format!("file/{source}"), None)?)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,449 @@
+//! Conventions of other tools, tried one after the other on what a file holds.
+
+use super::matching::Matching;
+use super::tracks::Track;
+use crate::constellation::{Design, Pattern, Satellite};
+use crate::earth::{J2, RADIUS_KM};
+use crate::ephemeris::{Ephemeris, Flown, object_name};
+use crate::frames::{Frame, State, from_teme, teme_to_eme2000, to_teme};
+use crate::orbit::j2::{SecularOrbit, SecularRates};
+use crate::orbit::osculating::OsculatingOrbit;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, ZonalHarmonics};
+use crate::orbit::{MeanElements, PropagationError, Propagator};
+use crate::time::Epoch;
+use crate::units::wrap_two_pi;
+use crate::validate::numerical::integrator::Zonals;
+use crate::validate::{Subject, ValidateError};
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// A convention explains a difference when it leaves less than this share of it.
+const EXPLAINED: f64 = 0.2;
+
+/// Samples at which conventions are tried, over all objects.
+const SAMPLES: usize = 600;
+
+/// Radius that other tools count altitudes from, km: the rounded mean radius of the Earth.
+const MEAN_RADIUS_KM: f64 = 6_371.0;
+
+/// The convention that explains a difference.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explanation {
+    /// Its name.
+    pub convention: String,
+    /// What it means.
+    pub meaning: String,
+    /// Root mean square distance before, km.
+    pub before_km: f64,
+    /// What is left with it, km.
+    pub after_km: f64,
+}
+
+/// A satellite as another convention flies it.
+type Flight = Box<dyn Propagator>;
+
+/// A way in which a tool may have flown the design.
+struct Convention {
+    name: &'static str,
+    meaning: &'static str,
+    fly: fn(&Subject<'_>) -> Vec<(String, Flight)>,
+}
+
+/// Secular J2 on other satellites.
+fn j2_of(satellites: Vec<Satellite>) -> Vec<(String, Flight)> {
+    fly_each(&satellites, |elements| Some(SecularOrbit::j2(elements)))
+}
+
+fn fly_each<P: Propagator + 'static>(
+    satellites: &[Satellite],
+    theory: impl Fn(&MeanElements) -> Option<P>,
+) -> Vec<(String, Flight)> {
+    let fly = |satellite: &Satellite| {
+        let flown: Flight = Box::new(theory(&satellite.elements)?);
+        Some((object_name(satellite.slot), flown))
+    };
+    satellites.iter().filter_map(fly).collect()
+}
+
+fn with_elements(
+    subject: &Subject<'_>,
+    change: impl Fn(&Satellite) -> MeanElements,
+) -> Vec<(String, Flight)> {
+    let changed = subject.design.satellites().into_iter();
+    j2_of(
+        changed
+            .map(|satellite| Satellite {
+                elements: change(&satellite),
+                ..satellite
+            })
+            .collect(),
+    )
+}
+
+fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, Flight)> {
+    with_elements(subject, |satellite| MeanElements {
+        semi_major_axis_km: satellite.elements.semi_major_axis_km + extra_km,
+        ..satellite.elements
+    })
+}
+
+/// The design in another pattern or with another phase step, in turns between planes.
+fn with_layout(subject: &Subject<'_>, node_turns: f64, phase_turns: f64) -> Vec<(String, Flight)> {
+    let design = subject.design;
+    let per_plane = design.satellites_per_plane() as f64;
+    with_elements(subject, |satellite| {
+        let (plane, index) = (satellite.slot.plane as f64, satellite.slot.index as f64);
+        MeanElements {
+            raan_rad: TAU * node_turns * plane,
+            mean_anomaly_rad: wrap_two_pi(TAU * (index / per_plane + phase_turns * plane)),
+            ..satellite.elements
+        }
+    })
+}
+
+/// Turns of the node between planes, and of the phase: those of the design.
+fn layout(design: &Design) -> (f64, f64) {
+    let (p, t) = (design.planes() as f64, design.satellite_count() as f64);
+    let f = design.phasing() as f64;
+    match design.pattern() {
+        Pattern::Delta => (1.0 / p, f / t),
+        Pattern::Star => (0.5 / p, f / t),
+        Pattern::Lattice => (1.0 / p, -f / t),
+    }
+}
+
+/// A flight whose states are seen through another clock or frame.
+struct Mislabelled<P> {
+    flight: P,
+    epoch: Epoch,
+    late_s: f64,
+    /// The frame that the states are in, while they are taken for TEME.
+    frame: Frame,
+    /// Whether it is the other way about: TEME states taken for that frame.
+    inverse: bool,
+}
+
+impl<P: Propagator> Propagator for Mislabelled<P> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let state = self.flight.state_at(elapsed_s + self.late_s)?;
+        Ok(if self.inverse {
+            to_teme(state, self.frame, self.epoch, elapsed_s)
+        } else {
+            from_teme(state, self.frame, self.epoch, elapsed_s)
+        })
+    }
+}
+
+fn mislabelled(
+    subject: &Subject<'_>,
+    late_s: f64,
+    frame: Frame,
+    inverse: bool,
+) -> Vec<(String, Flight)> {
+    let epoch = subject.epoch();
+    fly_each(&subject.design.satellites(), |elements| {
+        Some(Mislabelled {
+            flight: SecularOrbit::j2(elements),
+            epoch,
+            late_s,
+            frame,
+            inverse,
+        })
+    })
+}
+
+/// Leap seconds between GPS time and UTC.
+fn gps_minus_utc_s(subject: &Subject<'_>) -> f64 {
+    subject.epoch().leap_seconds() - 19.0
+}
+
+/// Secular J2 about the pole of J2000: the same orbit at the epoch, its elements counted from the
+/// equator of J2000, on which the node regresses.
+struct AboutJ2000 {
+    orbit: SecularOrbit,
+    to_teme: nalgebra::Matrix3<f64>,
+}
+
+impl Propagator for AboutJ2000 {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let state = self.orbit.state(elapsed_s);
+        Ok(State {
+            position_km: self.to_teme * state.position_km,
+            velocity_km_s: self.to_teme * state.velocity_km_s,
+        })
+    }
+}
+
+fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+    let to_j2000 = teme_to_eme2000(subject.epoch());
+    fly_each(&subject.design.satellites(), |elements| {
+        let plane = crate::frames::OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
+        let normal = to_j2000 * plane.node.cross(&plane.ahead);
+        let node = to_j2000 * plane.node;
+        let inclination_rad = normal.z.clamp(-1.0, 1.0).acos();
+        let raan_rad = normal.x.atan2(-normal.y);
+        let turned = crate::frames::OrbitPlane::new(raan_rad, inclination_rad);
+        // The way from the new node to the old one, within the plane.
+        let moved = node.dot(&turned.ahead).atan2(node.dot(&turned.node));
+        let elements = MeanElements {
+            inclination_rad,
+            raan_rad: wrap_two_pi(raan_rad),
+            arg_perigee_rad: wrap_two_pi(elements.arg_perigee_rad + moved),
+            ..*elements
+        };
+        Some(AboutJ2000 {
+            orbit: SecularOrbit::j2(&elements),
+            to_teme: to_j2000.transpose(),
+        })
+    })
+}
+
+/// The elements taken as osculating at the epoch, and J2 integrated.
+struct Integrated {
+    /// One state each [`INTEGRATED_STEP_S`].
+    states: Vec<State>,
+    step_s: f64,
+}
+
+impl Propagator for Integrated {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let last = self.states.len().saturating_sub(1);
+        let before = ((elapsed_s / self.step_s).floor().max(0.0) as usize).min(last);
+        let start = before
+            .saturating_sub(3)
+            .min(self.states.len().saturating_sub(8));
+        let table: Vec<(f64, State)> = (start..self.states.len().min(start + 8))
+            .map(|k| (k as f64 * self.step_s, self.states[k]))
+            .collect();
+        let position_km = crate::formats::interpolation::hermite_position(&table, elapsed_s);
+        Ok(State {
+            position_km,
+            ..self.states[before]
+        })
+    }
+}
+
+fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+    let step_s = 60.0;
+    let grid = subject.grid();
+    let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
+    let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
+    let zonals = Zonals { j2: J2, j3: 0.0 };
+    fly_each(&subject.design.satellites(), |elements| {
+        let start = SecularOrbit::two_body(elements).state(0.0);
+        let states = zonals.integrate(&start, &times).ok()?;
+        Some(Integrated { states, step_s })
+    })
+}
+
+fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, Flight)> {
+    let epoch = subject.epoch();
+    fly_each(&subject.design.satellites(), |elements| {
+        Sgp4Orbit::from_mean_elements(elements, epoch, slot, ZonalHarmonics::Full).ok()
+    })
+}
+
+/// The conventions, cheap ones first.
+const CONVENTIONS: &[Convention] = &[
+    Convention {
+        name: "mean-j2",
+        meaning: "secular J2 on the mean elements, as the model j2 flies it",
+        fly: |subject| j2_of(subject.design.satellites()),
+    },
+    Convention {
+        name: "two-body",
+        meaning: "no J2 at all",
+        fly: |subject| {
+            fly_each(&subject.design.satellites(), |e| {
+                Some(SecularOrbit::two_body(e))
+            })
+        },
+    },
+    Convention {
+        name: "j2-without-mean-anomaly",
+        meaning: "secular J2 on node and perigee, but dM/dt = n",
+        fly: |subject| {
+            fly_each(&subject.design.satellites(), |elements| {
+                let rates = SecularRates {
+                    mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
+                    ..SecularRates::j2(elements)
+                };
+                Some(SecularOrbit::new(elements, rates))
+            })
+        },
+    },
+    Convention {
+        name: "osculating-j2",
+        meaning: "mean elements flown with first-order short-period terms",
+        fly: |subject| {
+            fly_each(&subject.design.satellites(), |e| {
+                Some(OsculatingOrbit::new(e))
+            })
+        },
+    },
+    Convention {
+        name: "elements-taken-as-osculating",
+        meaning: "the elements are osculating at the epoch and J2 is integrated",
+        fly: taken_as_osculating,
+    },
+    Convention {
+        name: "sgp4",
+        meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
+        fly: |subject| sgp4(subject, MeanMotionSlot::Kozai),
+    },
+    Convention {
+        name: "sgp4-kepler-slot",
+        meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
+        fly: |subject| sgp4(subject, MeanMotionSlot::Kepler),
+    },
+    Convention {
+        name: "altitude-over-mean-radius",
+        meaning: "altitudes over a radius of 6371 km",
+        fly: |subject| with_altitude(subject, MEAN_RADIUS_KM - RADIUS_KM),
+    },
+    Convention {
+        name: "star-for-delta",
+        meaning: "nodes over 180 degrees instead of 360",
+        fly: |subject| {
+            let (node, phase) = layout(&subject.design);
+            with_layout(subject, 0.5 * node, phase)
+        },
+    },
+    Convention {
+        name: "delta-for-star",
+        meaning: "nodes over 360 degrees instead of 180",
+        fly: |subject| {
+            let (node, phase) = layout(&subject.design);
+            with_layout(subject, 2.0 * node, phase)
+        },
+    },
+    Convention {
+        name: "phasing-in-slots",
+        meaning: "phase step F 360/P instead of F 360/T",
+        fly: |subject| {
+            let (node, phase) = layout(&subject.design);
+            with_layout(
+                subject,
+                node,
+                phase * subject.design.satellites_per_plane() as f64,
+            )
+        },
+    },
+    Convention {
+        name: "phasing-in-degrees",
+        meaning: "phase step of F degrees",
+        fly: |subject| {
+            let (node, _) = layout(&subject.design);
+            with_layout(subject, node, subject.design.phasing() as f64 / 360.0)
+        },
+    },
+    Convention {
+        name: "phasing-backwards",
+        meaning: "phase step -F 360/T",
+        fly: |subject| {
+            let (node, phase) = layout(&subject.design);
+            with_layout(subject, node, -phase)
+        },
+    },
+    Convention {
+        name: "phasing-halved",
+        meaning: "phase step F 180/T, as lox has for stars",
+        fly: |subject| {
+            let (node, phase) = layout(&subject.design);
+            with_layout(subject, node, 0.5 * phase)
+        },
+    },
+    Convention {
+        name: "teme-taken-for-eme2000",
+        meaning: "TEME states, labelled EME2000: the elements are those of TEME, the frame of the file is not",
+        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, true),
+    },
+    Convention {
+        name: "eme2000-taken-for-teme",
+        meaning: "EME2000 states, labelled TEME",
+        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, false),
+    },
+    Convention {
+        name: "utc-taken-for-gps",
+        meaning: "UTC instants, labelled GPS time",
+        fly: |subject| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
+    },
+    Convention {
+        name: "gps-taken-for-utc",
+        meaning: "GPS instants, labelled UTC",
+        fly: |subject| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
+    },
+    Convention {
+        name: "j2-about-the-j2000-pole",
+        meaning: "secular J2 about the pole of J2000 instead of the true pole of date",
+        fly: about_j2000,
+    },
+];
+
+/// The convention that leaves least, if it leaves little enough.
+///
+/// # Errors
+/// When the design itself cannot be flown.
+pub(super) fn explanation(
+    subject: &Subject<'_>,
+    tracks: &[Track],
+) -> Result<Option<Explanation>, ValidateError> {
+    let Some(before_km) = rms_km(subject, subject.fly_model()?, tracks) else {
+        return Ok(None);
+    };
+    let tried = CONVENTIONS.iter().filter_map(|convention| {
+        let flown = (convention.fly)(subject).into_iter();
+        let satellites = flown.map(|(name, propagator)| Flown {
+            name,
+            slot: None,
+            propagator,
+        });
+        let ephemeris = Ephemeris::new(subject.grid(), satellites.collect());
+        Some((convention, rms_km(subject, ephemeris, tracks)?))
+    });
+    let best = tried.min_by(|a, b| a.1.total_cmp(&b.1));
+    Ok(best
+        .filter(|(_, after_km)| *after_km < EXPLAINED * before_km)
+        .map(|(convention, after_km)| Explanation {
+            convention: convention.name.to_owned(),
+            meaning: convention.meaning.to_owned(),
+            before_km,
+            after_km,
+        }))
+}
+
+/// Root mean square distance of the tracks from an ephemeris, every object counted; `None` when
+/// not all of them match.
+fn rms_km(subject: &Subject<'_>, flown: Ephemeris, tracks: &[Track]) -> Option<f64> {
+    let matching = Matching::of(subject, &flown, tracks);
+    let pairs = matching.pairs(tracks);
+    let with_states = tracks.iter().filter(|t| !t.states.is_empty()).count();
+    if pairs.len() < with_states.min(flown.satellites().len()) {
+        return None;
+    }
+    let per_object = (SAMPLES / pairs.len().max(1)).max(3);
+    let (mut squares, mut samples) = (0.0, 0.0);
+    for (slot, track) in pairs {
+        let stride = track.states.len().div_ceil(per_object).max(1);
+        for (elapsed_s, theirs) in track.states.iter().step_by(stride) {
+            let ours = flown.state(&flown.satellites()[slot], *elapsed_s).ok()?;
+            squares += (theirs.position_km - ours.position_km).norm_squared();
+            samples += 1.0;
+        }
+    }
+    (samples > 0.0).then(|| (squares / samples).sqrt())
+}
+
+#[cfg(test)]
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    CONVENTIONS.iter().map(|convention| convention.name)
+}
+
+/// The design as a convention flies it.
+#[cfg(test)]
+pub(super) fn flown(subject: &Subject<'_>, name: &str) -> Vec<(String, Flight)> {
+    let convention = CONVENTIONS
+        .iter()
+        .find(|convention| convention.name == name);
+    (convention.unwrap().fly)(subject)
+}

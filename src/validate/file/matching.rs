@@ -1,0 +1,127 @@
+//! Which object of a file is which slot.
+
+use super::tracks::Track;
+use crate::ephemeris::Ephemeris;
+use crate::validate::Subject;
+use std::collections::BTreeMap;
+
+/// Pairs of slots and objects.
+pub(super) struct Matching {
+    /// For each slot, its object.
+    object_of_slot: Vec<Option<usize>>,
+    by_name: bool,
+    objects: usize,
+}
+
+impl Matching {
+    /// By name when every object has the name of a slot, or else by place.
+    pub(super) fn of(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
+        Self::by_name(ours, tracks).unwrap_or_else(|| Self::by_place(subject, ours, tracks))
+    }
+
+    fn by_name(ours: &Ephemeris, tracks: &[Track]) -> Option<Self> {
+        let slots: BTreeMap<String, usize> = ours
+            .satellites()
+            .iter()
+            .enumerate()
+            .map(|(n, satellite)| (satellite.name.to_ascii_uppercase(), n))
+            .collect();
+        let mut object_of_slot = vec![None; slots.len()];
+        for (object, track) in tracks.iter().enumerate() {
+            let slot = *slots.get(&track.name.trim().to_ascii_uppercase())?;
+            // Two objects of one name are told apart by place.
+            if object_of_slot[slot].replace(object).is_some() {
+                return None;
+            }
+        }
+        Some(Self {
+            object_of_slot,
+            by_name: true,
+            objects: tracks.len(),
+        })
+    }
+
+    /// The nearest pairs first, as far as they are nearer than half the way to the next slot.
+    fn by_place(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
+        let mut pairs = Vec::new();
+        for (object, track) in tracks.iter().enumerate() {
+            // Compared at the first sample of the object: differences grow with time.
+            let Some((elapsed_s, state)) = track.at(0.0) else {
+                continue;
+            };
+            for (slot, satellite) in ours.satellites().iter().enumerate() {
+                if let Ok(own) = ours.state(satellite, elapsed_s) {
+                    pairs.push(((state.position_km - own.position_km).norm(), slot, object));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let reach_km = reach_km(subject);
+        let mut object_of_slot = vec![None; ours.satellites().len()];
+        let mut taken = vec![false; tracks.len()];
+        for (distance_km, slot, object) in pairs {
+            if distance_km > reach_km {
+                break;
+            }
+            if object_of_slot[slot].is_none() && !taken[object] {
+                object_of_slot[slot] = Some(object);
+                taken[object] = true;
+            }
+        }
+        Self {
+            object_of_slot,
+            by_name: false,
+            objects: tracks.len(),
+        }
+    }
+
+    /// `name` or `place`.
+    pub(super) fn how(&self) -> &'static str {
+        if self.by_name { "name" } else { "place" }
+    }
+
+    /// Pairs found.
+    pub(super) fn count(&self) -> usize {
+        self.object_of_slot.iter().flatten().count()
+    }
+
+    /// Whether every slot has an object and every object a slot.
+    pub(super) fn is_complete(&self) -> bool {
+        self.count() == self.object_of_slot.len() && self.count() == self.objects
+    }
+
+    /// The pairs whose object has states in the span, in the order of the slots.
+    pub(super) fn pairs<'t>(&self, tracks: &'t [Track]) -> Vec<(usize, &'t Track)> {
+        let pair = |(slot, object): (usize, &Option<usize>)| {
+            let track = &tracks[(*object)?];
+            (!track.states.is_empty()).then_some((slot, track))
+        };
+        self.object_of_slot
+            .iter()
+            .enumerate()
+            .filter_map(pair)
+            .collect()
+    }
+
+    pub(super) fn unmatched_slots(&self, ours: &Ephemeris) -> Vec<String> {
+        let slots = ours.satellites().iter().zip(&self.object_of_slot);
+        slots
+            .filter(|(_, object)| object.is_none())
+            .map(|(satellite, _)| satellite.name.clone())
+            .collect()
+    }
+
+    pub(super) fn unmatched_objects(&self, tracks: &[Track]) -> Vec<String> {
+        let is_free = |object: &usize| !self.object_of_slot.contains(&Some(*object));
+        let free = (0..tracks.len()).filter(is_free);
+        free.map(|object| tracks[object].name.clone()).collect()
+    }
+}
+
+/// How far from its slot an object may be: a third of the way to the next satellite of the plane,
+/// and at most 1500 km.
+fn reach_km(subject: &Subject<'_>) -> f64 {
+    let per_plane = subject.design.satellites_per_plane() as f64;
+    let spacing = std::f64::consts::TAU * subject.orbit().semi_major_axis_km / per_plane;
+    (spacing / 3.0).min(1_500.0)
+}

@@ -1,0 +1,179 @@
+//! The objects of files as TEME states on the clock of the study.
+
+use super::read::{Comparand, FileError};
+use crate::formats::interpolation::hermite_position;
+use crate::frames::{State, to_teme};
+use crate::orbit::sgp4::Sgp4Orbit;
+use crate::orbit::{PropagationError, Propagator};
+use crate::validate::{Subject, ValidateError};
+use nalgebra::Vector3;
+
+/// Samples on either side of an instant that an interpolation takes.
+const NODES: usize = 8;
+
+/// Most samples at which an object is compared.
+const MOST_SAMPLES: usize = 2_000;
+
+/// An object: TEME states by the seconds since the epoch of the study.
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    pub(super) name: String,
+    /// States in the span of the study, at most [`MOST_SAMPLES`], for comparing.
+    pub(super) states: Vec<(f64, State)>,
+    /// All states in or next to the span, for interpolating.
+    all: Vec<(f64, State)>,
+    flown: Option<Sgp4Orbit>,
+}
+
+/// The objects in the span of the study.
+///
+/// # Errors
+/// When no state of any object lies in the span, or SGP4 refuses an element set.
+pub(super) fn tracks(
+    subject: &Subject<'_>,
+    comparands: &[Comparand],
+) -> Result<Vec<Track>, ValidateError> {
+    let mut tracks = Vec::with_capacity(comparands.len());
+    for comparand in comparands {
+        tracks.push(match comparand {
+            Comparand::States(trajectory) => sampled(subject, trajectory),
+            Comparand::Elements(set) => of_elements(subject, set)?,
+        });
+    }
+    if tracks.iter().all(|track| track.states.is_empty()) {
+        return Err(another_epoch(subject, comparands).into());
+    }
+    Ok(tracks)
+}
+
+fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Trajectory) -> Track {
+    let epoch = subject.epoch();
+    let last_s = last_s(subject);
+    let all: Vec<(f64, State)> = trajectory
+        .states
+        .iter()
+        .map(|(at, state)| {
+            let elapsed_s = at.seconds_since(epoch);
+            (
+                elapsed_s,
+                to_teme(*state, trajectory.frame, epoch, elapsed_s),
+            )
+        })
+        .collect();
+    let within: Vec<(f64, State)> = all
+        .iter()
+        .filter(|(t, _)| (-1e-6..=last_s + 1e-6).contains(t))
+        .copied()
+        .collect();
+    let stride = within.len().div_ceil(MOST_SAMPLES).max(1);
+    Track {
+        name: trajectory.name.clone(),
+        states: within.into_iter().step_by(stride).collect(),
+        all,
+        flown: None,
+    }
+}
+
+fn of_elements(subject: &Subject<'_>, set: &::sgp4::Elements) -> Result<Track, ValidateError> {
+    let name = set
+        .object_name
+        .clone()
+        .unwrap_or_else(|| set.norad_id.to_string());
+    let failed = |source: PropagationError| FileError::ElementSet {
+        object: name.clone(),
+        source,
+    };
+    let flown = Sgp4Orbit::from_element_set(set, subject.epoch()).map_err(failed)?;
+    let grid = subject.grid();
+    let stride = grid.len().div_ceil(MOST_SAMPLES);
+    let mut states = Vec::new();
+    for elapsed_s in grid.iter().step_by(stride) {
+        states.push((elapsed_s, flown.state_at(elapsed_s).map_err(failed)?));
+    }
+    Ok(Track {
+        name,
+        states,
+        all: Vec::new(),
+        flown: Some(flown),
+    })
+}
+
+fn last_s(subject: &Subject<'_>) -> f64 {
+    subject.grid().elapsed_s(subject.grid().len() - 1)
+}
+
+fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
+    let at = |elapsed_s: f64| subject.epoch().plus_seconds(elapsed_s).to_string();
+    let instants = comparands.iter().find_map(|comparand| match comparand {
+        Comparand::States(trajectory) => {
+            let states = &trajectory.states;
+            Some((states.first()?.0.to_string(), states.last()?.0.to_string()))
+        }
+        Comparand::Elements(_) => None,
+    });
+    let (first, last) = instants.unwrap_or_else(|| ("no state".to_owned(), "none".to_owned()));
+    FileError::AnotherEpoch {
+        objects: comparands.len(),
+        from: at(0.0),
+        to: at(last_s(subject)),
+        first,
+        last,
+    }
+}
+
+impl Track {
+    /// Share of the span of the study that the states reach over.
+    pub(super) fn covered_share(&self, subject: &Subject<'_>) -> f64 {
+        let last_s = last_s(subject);
+        if self.flown.is_some() {
+            return 1.0;
+        }
+        let (Some((first, _)), Some((last, _))) = (self.all.first(), self.all.last()) else {
+            return 0.0;
+        };
+        if last_s <= 0.0 {
+            return 1.0;
+        }
+        ((last.min(last_s) - first.max(0.0)) / last_s).clamp(0.0, 1.0)
+    }
+
+    /// Whether the states reach over the whole span and carry an interpolation.
+    pub(super) fn covers(&self, subject: &Subject<'_>) -> bool {
+        let has_velocity = |(_, state): &(f64, State)| state.velocity_km_s.norm() > 0.0;
+        self.covered_share(subject) > 1.0 - 1e-9
+            && (self.flown.is_some() || self.all.iter().all(has_velocity))
+    }
+
+    /// A state near an instant, by the sample that is nearest in time.
+    pub(super) fn at(&self, elapsed_s: f64) -> Option<(f64, State)> {
+        let apart = |(t, _): &&(f64, State)| (t - elapsed_s).abs();
+        self.states
+            .iter()
+            .min_by(|a, b| apart(a).total_cmp(&apart(b)))
+            .copied()
+    }
+}
+
+impl Propagator for Track {
+    /// The state by Hermite interpolation, or of the sample itself; inside the span only.
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        if let Some(flown) = &self.flown {
+            return flown.state_at(elapsed_s);
+        }
+        let behind = self.all.partition_point(|(t, _)| *t < elapsed_s);
+        let nodes = NODES.min(self.all.len());
+        let start = behind.saturating_sub(nodes / 2).min(self.all.len() - nodes);
+        let table = &self.all[start..start + nodes];
+        let exact = table.iter().find(|(t, _)| (t - elapsed_s).abs() < 1e-9);
+        if let Some((_, state)) = exact {
+            return Ok(*state);
+        }
+        let position = |at: f64| hermite_position(table, at);
+        let velocity_km_s: Vector3<f64> =
+            (position(elapsed_s + 0.5) - position(elapsed_s - 0.5)) / 1.0;
+        Ok(State {
+            position_km: position(elapsed_s),
+            velocity_km_s,
+        })
+    }
+}

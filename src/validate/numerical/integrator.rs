@@ -1,0 +1,116 @@
+//! Point mass with zonal harmonics, integrated numerically.
+//!
+//! Integrator: DOP853 of Dormand and Prince with dense output (Hairer, Nørsett and Wanner, *Solving
+//! Ordinary Differential Equations I* (2nd ed.), section II.5), by the crate
+//! `differential-equations`: maintained, and on the same linear algebra as this library.
+
+use crate::earth::{MU_KM3_S2, RADIUS_KM};
+use crate::frames::State;
+use differential_equations::prelude::*;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+/// Relative and absolute (km, km/s) tolerance of a step.
+const TOLERANCE: f64 = 1e-13;
+
+/// Steps in a revolution, at least: longer steps would be exact at their ends, but not in between,
+/// where the dense output is of one order less.
+const STEPS_PER_REVOLUTION: f64 = 128.0;
+
+/// More steps than 30 days of the lowest orbit take.
+const MAX_STEPS: usize = 5_000_000;
+
+/// An integration that failed.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("the integration over {span_s} s gave {found} of {wanted} states")]
+pub struct IntegrationError {
+    /// Length of the span, s.
+    span_s: f64,
+    /// States asked for.
+    wanted: usize,
+    /// States that came.
+    found: usize,
+}
+
+/// Zonal harmonics, unnormalised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::validate) struct Zonals {
+    pub(in crate::validate) j2: f64,
+    pub(in crate::validate) j3: f64,
+}
+
+impl Zonals {
+    /// The acceleration at a position, km/s².
+    ///
+    /// The gradient of μ/r [1 - Σ Jₙ (R/r)ⁿ Pₙ(s)], s = z/r, is
+    /// -μ r̂/r² + Σ μ Jₙ Rⁿ/rⁿ⁺² [P'ₙ₊₁(s) r̂ - P'ₙ(s) ẑ].
+    fn acceleration(self, position_km: Vector3<f64>) -> Vector3<f64> {
+        let r = position_km.norm();
+        let radial = position_km / r;
+        let s = radial.z;
+        let ratio = RADIUS_KM / r;
+        let second = 3.0 * s;
+        let third = 0.5 * (15.0 * s * s - 3.0);
+        let fourth = 0.5 * s * (35.0 * s * s - 15.0);
+        let along_radial = self.j2 * third + self.j3 * ratio * fourth;
+        let along_pole = self.j2 * second + self.j3 * ratio * third;
+        let gravity = MU_KM3_S2 / (r * r);
+        let perturbed =
+            (radial * along_radial - Vector3::z() * along_pole) * (gravity * ratio * ratio);
+        perturbed - radial * gravity
+    }
+
+    /// Energy per mass, km²/s².
+    pub(in crate::validate) fn energy(self, state: &State) -> f64 {
+        let r = state.position_km.norm();
+        let s = state.position_km.z / r;
+        let ratio = RADIUS_KM / r;
+        let p2 = 0.5 * (3.0 * s * s - 1.0);
+        let p3 = 0.5 * s * (5.0 * s * s - 3.0);
+        let zonal = ratio * ratio * (self.j2 * p2 + self.j3 * ratio * p3);
+        0.5 * state.velocity_km_s.norm_squared() - MU_KM3_S2 / r * (1.0 - zonal)
+    }
+
+    /// The states at `times_s`, which increase from 0, from the state at 0.
+    pub(in crate::validate) fn integrate(
+        self,
+        start: &State,
+        times_s: &[f64],
+    ) -> Result<Vec<State>, IntegrationError> {
+        let span_s = times_s.last().copied().unwrap_or(0.0);
+        let failed = |found: usize| IntegrationError {
+            span_s,
+            wanted: times_s.len(),
+            found,
+        };
+        let derivative = |_: f64, y: &[f64; 6], rate: &mut [f64; 6]| {
+            let pull = self.acceleration(Vector3::new(y[0], y[1], y[2]));
+            *rate = [y[3], y[4], y[5], pull.x, pull.y, pull.z];
+        };
+        let (r, v) = (start.position_km, start.velocity_km_s);
+        let revolution_s = TAU * (r.norm().powi(3) / MU_KM3_S2).sqrt();
+        let solution = IVP::ode_from_fn(derivative, 0.0, span_s, [r.x, r.y, r.z, v.x, v.y, v.z])
+            .t_eval(times_s)
+            .method(
+                ExplicitRungeKutta::dop853()
+                    .rtol(TOLERANCE)
+                    .atol(TOLERANCE)
+                    .h_max(revolution_s / STEPS_PER_REVOLUTION)
+                    .max_steps(MAX_STEPS),
+            )
+            .solve()
+            .map_err(|_| failed(0))?;
+        if solution.y.len() != times_s.len() {
+            return Err(failed(solution.y.len()));
+        }
+        Ok(solution.y.iter().map(state_of).collect())
+    }
+}
+
+fn state_of(y: &[f64; 6]) -> State {
+    State {
+        position_km: Vector3::new(y[0], y[1], y[2]),
+        velocity_km_s: Vector3::new(y[3], y[4], y[5]),
+    }
+}

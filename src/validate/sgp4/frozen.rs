@@ -1,0 +1,114 @@
+//! The eccentricity that J3 forces, and how an element set cancels it.
+
+use super::Scale;
+use super::causes::Causes;
+use crate::earth::RADIUS_KM;
+use crate::ephemeris::EphemerisError;
+use crate::frames::State;
+use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
+use crate::orbit::{MeanElements, PropagationError, Propagator};
+use crate::validate::eccentricity::eccentricity_vector;
+use crate::validate::{Check, Subject};
+use std::f64::consts::TAU;
+
+/// Samples over the first revolution.
+const SAMPLES: usize = 72;
+
+/// The eccentricity vector of one flight less that of another over the first revolution.
+fn vector(
+    orbit: &MeanElements,
+    with: &impl Propagator,
+    without: &impl Propagator,
+) -> Result<Option<[f64; 2]>, PropagationError> {
+    let period_s = TAU / orbit.kepler_mean_motion_rad_s();
+    let radius = |state: State| state.position_km.norm();
+    let mut samples = Vec::with_capacity(SAMPLES);
+    for k in 0..SAMPLES {
+        let turn = k as f64 / SAMPLES as f64;
+        let at_s = period_s * turn;
+        let u = orbit.mean_argument_of_latitude_rad() + TAU * turn;
+        samples.push((
+            u,
+            radius(with.state_at(at_s)?) - radius(without.state_at(at_s)?),
+        ));
+    }
+    Ok(eccentricity_vector(
+        samples.into_iter(),
+        orbit.semi_major_axis_km,
+    ))
+}
+
+/// The frozen eccentricity against its closed form, and what is left when an element set carries it
+/// at the perigee that cancels it. For circular designs.
+pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>, EphemerisError> {
+    let orbit = subject.orbit();
+    if orbit.eccentricity > 0.0 || scale.deep_space {
+        return Ok(Vec::new());
+    }
+    let found = eccentricities(subject, &orbit, &scale.causes);
+    let found = found.map_err(|source| EphemerisError {
+        name: crate::ephemeris::object_name(crate::constellation::Slot { plane: 0, index: 0 }),
+        source,
+    })?;
+    let Some([forced, left]) = found else {
+        return Ok(Vec::new());
+    };
+    let frozen = scale.causes.frozen_km / orbit.semi_major_axis_km;
+    // SGP4's floor of the eccentricity, and terms of order J2 of the forced one.
+    let floor = 3e-6;
+    Ok(vec![
+        Check::new(
+            "sgp4/frozen-eccentricity",
+            ["e sin w that J3 forces", "1", "fit"],
+            forced[1],
+            None,
+            "an element set with e = 0 flies this eccentricity at w = 90 deg",
+        ),
+        Check::new(
+            "sgp4/frozen-eccentricity/closed-form",
+            ["forced e sin w less |J3/(2 J2)| R/a sin i", "1", "fit"],
+            forced[1] - frozen,
+            Some(0.02 * frozen + floor),
+            "first order in J3/J2; SGP4 floors the eccentricity at 1e-6",
+        ),
+        Check::new(
+            "sgp4/frozen-eccentricity/cancelled",
+            [
+                "e left when the set carries the frozen e at the cancelling w",
+                "1",
+                "fit",
+            ],
+            left[0].hypot(left[1]),
+            Some(0.1 * frozen + floor),
+            "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",
+        ),
+    ])
+}
+
+/// The eccentricity vector of SGP4 less that of J2 alone, and what is left of it with the frozen
+/// eccentricity in the set.
+fn eccentricities(
+    subject: &Subject<'_>,
+    orbit: &MeanElements,
+    causes: &Causes,
+) -> Result<Option<[[f64; 2]; 2]>, PropagationError> {
+    let slot = subject.parts.slot;
+    let fly = |elements: &MeanElements, zonals| {
+        Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, zonals)
+    };
+    let plain = fly(orbit, ZonalHarmonics::J2Only)?;
+    let perigee_rad = subject.parts.cancelling_perigee_deg.to_radians();
+    let carrying = MeanElements {
+        eccentricity: causes.frozen_km / orbit.semi_major_axis_km,
+        arg_perigee_rad: perigee_rad,
+        mean_anomaly_rad: orbit.mean_argument_of_latitude_rad() - perigee_rad,
+        ..*orbit
+    };
+    let can_fly = carrying.semi_major_axis_km * (1.0 - carrying.eccentricity) > RADIUS_KM;
+    if !can_fly {
+        return Ok(None);
+    }
+    let forced = vector(orbit, &fly(orbit, ZonalHarmonics::Full)?, &plain)?;
+    let left = vector(orbit, &fly(&carrying, ZonalHarmonics::Full)?, &plain)?;
+    Ok(forced.zip(left).map(|(forced, left)| [forced, left]))
+}

@@ -1,0 +1,112 @@
+//! Rates of the node and the argument of latitude, from states, against their closed forms.
+
+use super::Scale;
+use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::State;
+use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
+use crate::stats::line_fit;
+use crate::units::{SECONDS_PER_DAY, wrap_pi};
+use crate::validate::{Check, Subject};
+
+/// Below this sine of the inclination there is no node to speak of.
+const LEAST_SIN_I: f64 = 0.02;
+
+/// Node and argument of latitude of a state, rad.
+pub(in crate::validate) fn angles(state: &State) -> [f64; 2] {
+    let normal = state.position_km.cross(&state.velocity_km_s);
+    let node = normal.x.atan2(-normal.y);
+    let towards = nalgebra::Vector3::new(node.cos(), node.sin(), 0.0);
+    let ahead = normal.cross(&towards) / normal.norm();
+    let r = state.position_km;
+    [node, r.dot(&ahead).atan2(r.dot(&towards))]
+}
+
+/// Closed forms of the rates for a circular orbit or nearly so, rad/s: the node, and ω + M.
+pub(in crate::validate) fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
+    let orbit = subject.orbit();
+    let a = orbit.semi_major_axis_km;
+    let eta2 = 1.0 - orbit.eccentricity * orbit.eccentricity;
+    let n = (MU_KM3_S2 / (a * a * a)).sqrt();
+    let g = 1.5 * n * J2 * (RADIUS_KM / (a * eta2)).powi(2);
+    let cos_i = orbit.inclination_rad.cos();
+    let c2 = cos_i * cos_i;
+    [
+        -g * cos_i,
+        n + g * (0.5 * (5.0 * c2 - 1.0) + 0.5 * eta2.sqrt() * (3.0 * c2 - 1.0)),
+    ]
+}
+
+/// Slopes of the angles less their closed forms, deg/day: the mean over the constellation.
+fn excess_deg_per_day(
+    subject: &Subject<'_>,
+    flown: &Ephemeris,
+) -> Result<[f64; 2], EphemerisError> {
+    let rates = closed_form(subject);
+    let satellites = subject.satellites();
+    let times: Vec<f64> = flown.grid().iter().collect();
+    let mut means = [vec![0.0; times.len()], vec![0.0; times.len()]];
+    for (satellite, place) in flown.satellites().iter().zip(&satellites) {
+        let elements = &place.elements;
+        let start = [elements.raan_rad, elements.mean_argument_of_latitude_rad()];
+        for (k, &elapsed_s) in times.iter().enumerate() {
+            let found = angles(&flown.state(satellite, elapsed_s)?);
+            for angle in 0..2 {
+                let expected = start[angle] + rates[angle] * elapsed_s;
+                means[angle][k] += wrap_pi(found[angle] - expected) / satellites.len() as f64;
+            }
+        }
+    }
+    let days: Vec<f64> = times.iter().map(|t| t / SECONDS_PER_DAY).collect();
+    Ok(means.map(|mean| line_fit(&days, &mean).map_or(0.0, |(_, slope)| slope.to_degrees())))
+}
+
+/// The rates of our theory and of SGP4 against the closed forms.
+pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>, EphemerisError> {
+    let orbit = subject.orbit();
+    if orbit.inclination_rad.sin() < LEAST_SIN_I {
+        return Ok(Vec::new());
+    }
+    let names = ["node", "argument-of-latitude"];
+    let closed = closed_form(subject).map(|rate| (rate * SECONDS_PER_DAY).to_degrees());
+    let ours = excess_deg_per_day(subject, &subject.fly_mean_j2()?)?;
+    let sgp4 = subject.fly(|elements| {
+        let slot = subject.parts.slot;
+        Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, ZonalHarmonics::Full)
+    })?;
+    let theirs = excess_deg_per_day(subject, &sgp4)?;
+    // Of eccentric orbits the true argument of latitude swings about the mean by 2e.
+    let swing_deg = (2.0 * orbit.eccentricity).to_degrees();
+    let in_track_deg =
+        (scale.causes.growth_gate_km_per_day(scale.days) / orbit.semi_major_axis_km).to_degrees();
+    // What a position is known to is seen from the node under 1/sin i.
+    let lever = 1.0 / orbit.inclination_rad.sin();
+    let leftover_deg = 0.02 * swing_deg / scale.days.min(1.0);
+    let mut checks = Vec::new();
+    for n in 0..2 {
+        let name = names[n];
+        let unit = "deg/day";
+        checks.push(Check::new(
+            &format!("sgp4/rates/{name}"),
+            [&format!("rate of the {name}, closed form"), unit, "rate"],
+            closed[n],
+            None,
+            "secular J2: -g cos i; n + g (2 - 5/2 sin^2 i + sqrt(1 - e^2) (1 - 3/2 sin^2 i))",
+        ));
+        checks.push(Check::new(
+            &format!("sgp4/rates/{name}/mean-j2"),
+            [&format!("rate of the {name} less closed form"), unit, "slope"],
+            ours[n],
+            Some(1e-6 + if n == 1 { leftover_deg } else { 0.0 }),
+            "states of the model against the closed form of its rates: rounding, and what a part of a revolution leaves",
+        ));
+        checks.push(Check::new(
+            &format!("sgp4/rates/{name}/sgp4"),
+            [&format!("rate of the {name} less closed form"), unit, "slope"],
+            theirs[n],
+            scale.gate(lever * in_track_deg + leftover_deg),
+            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and what a part of a revolution leaves"),
+        ));
+    }
+    Ok(checks)
+}
