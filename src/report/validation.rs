@@ -2,11 +2,11 @@
 
 use super::results::Basis;
 use super::{Align, Table, ValidateResult};
+use crate::units::round_decimal;
 use crate::validate::Check;
 use crate::validate::distribution::Distribution;
 use crate::validate::file::FileComparison;
 use crate::validate::residuals::{BudgetLine, Ric};
-use crate::units::round_decimal;
 use quick_xml::escape::escape;
 use std::fmt::Write;
 
@@ -38,8 +38,9 @@ fn budget_table(budget: &[BudgetLine]) -> Table {
         ("I", right),
         ("C (km/day)", right),
     ]);
-    let cells = |ric: &Ric| [ric.radial, ric.in_track, ric.cross_track]
-            .map(|x| format!("{:.3}", round_decimal(x, 3)));
+    let cells = |ric: &Ric| {
+        [ric.radial, ric.in_track, ric.cross_track].map(|x| format!("{:.3}", round_decimal(x, 3)))
+    };
     for line in budget {
         let numbers = [&line.rms_km, &line.max_km, &line.growth_km_per_day].map(cells);
         table.row(

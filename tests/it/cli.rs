@@ -641,3 +641,52 @@ fn choices_that_cannot_be_combined_are_refused() {
     assert!(refused(&unknown).contains("tle"));
     assert!(refused(&["evaluate"]).contains("--design"));
 }
+
+/// A system from element sets gives the same metrics whichever format carries the full digits.
+#[test]
+fn gnss_files_are_tle_or_omm() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for syntax in ["xml", "json", "csv"] {
+        let export = [
+            "export",
+            "--design",
+            "delta:56:24/3/1@21528",
+            "--as",
+            "tle,omm",
+            "--omm-syntax",
+            syntax,
+            "--out",
+            syntax,
+        ];
+        assert_eq!(ran(place, &export).status, 0);
+    }
+    let visible = |file: &str| {
+        let set = format!("gnss.files=[\"{file}\"]");
+        let design = [
+            "evaluate",
+            "--quiet",
+            "--design",
+            "delta:55:24/6/1@925",
+            "--format",
+            "json",
+        ];
+        let small = [
+            "--set",
+            "time.step-s=1200",
+            "--set",
+            "gnss.constellations=[]",
+            "--set",
+            &set,
+        ];
+        let ran = ran(place, &[design.as_slice(), &small].concat());
+        assert_eq!(ran.status, 0, "{file}: {}", ran.stderr);
+        let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+        value["metrics"]["mean_pdop"].as_f64().unwrap()
+    };
+    let json = visible("json/omm.json");
+    assert_eq!(visible("xml/omm.xml"), json);
+    assert_eq!(visible("csv/omm.csv"), json);
+    // A TLE's digits move a satellite by metres: 1e-6 of its distance.
+    assert!((visible("xml/constellation.tle") / json - 1.0).abs() < 1e-5);
+}

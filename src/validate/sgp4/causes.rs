@@ -11,7 +11,7 @@ use std::f64::consts::{SQRT_2, TAU};
 const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
 
 /// -J3/J2 of WGS-72, the constants that SGP4 flies (Vallado et al., AIAA 2006-6753, table 1).
-const J3_OVER_J2_WGS72: f64 = 2.538_81e-6 / 1.082_616e-3;
+const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
 /// Share by which a closed form at e = 0 and first order may be exceeded: terms of order e and
 /// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
