@@ -159,6 +159,16 @@ impl FromTeme {
             Self::Turn(matrix) => turned(teme, *matrix),
         }
     }
+
+    /// A state of the frame in TEME: the way back of [`FromTeme::apply`].
+    #[must_use]
+    pub fn undo(&self, state: State) -> State {
+        match self {
+            Self::Stay => state,
+            Self::EarthFixed(rotation) => rotation.state_to_teme(state),
+            Self::Turn(matrix) => turned(state, matrix.transpose()),
+        }
+    }
 }
 
 /// The TEME state in `frame`, at an instant `elapsed_s` after `epoch`.
@@ -170,20 +180,7 @@ pub fn from_teme(teme: State, frame: Frame, epoch: Epoch, elapsed_s: f64) -> Sta
 /// A state of `frame` in TEME, at an instant `elapsed_s` after `epoch`; undoes [`from_teme`].
 #[must_use]
 pub fn to_teme(state: State, frame: Frame, epoch: Epoch, elapsed_s: f64) -> State {
-    match frame {
-        Frame::Teme => state,
-        Frame::EarthFixed => {
-            EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)).state_to_teme(state)
-        }
-        Frame::Eme2000 => turned(
-            state,
-            teme_to_eme2000(epoch.plus_seconds(elapsed_s)).transpose(),
-        ),
-        Frame::Gcrf => {
-            let from_teme = eme2000_to_gcrf() * teme_to_eme2000(epoch.plus_seconds(elapsed_s));
-            turned(state, from_teme.transpose())
-        }
-    }
+    FromTeme::to(frame, epoch, elapsed_s).undo(state)
 }
 
 /// Both parts of a state under a rotation whose own rate is negligible (precession, 7e-12 rad/s).

@@ -39,6 +39,12 @@ pub enum PropagationError {
         /// What SGP4 says.
         reason: String,
     },
+    /// A sampled trajectory is asked between or beyond its samples.
+    #[error("there is no sample {elapsed_s} s after the epoch")]
+    NotSampled {
+        /// Seconds since the epoch.
+        elapsed_s: f64,
+    },
 }
 
 words! {

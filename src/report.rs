@@ -17,14 +17,17 @@ mod table;
 mod validation;
 
 pub use certificate::{Certificate, Missed};
-pub use csv::{CsvError, checks_csv, dops_csv, front_csv, history_csv, metrics_csv, records_csv};
+pub use csv::{
+    CsvError, checks_csv, constellation_csv, dops_csv, front_csv, history_csv, metrics_csv,
+    records_csv,
+};
 pub use diagnostics::{Diagnostic, at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
 };
 pub use results::{
-    DesignSummary, EvaluateResult, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
-    ValidateResult,
+    ConstellationResult, ConstellationSummary, DesignSummary, EvaluateResult, FrontMember,
+    Hypervolume, OptimizeResult, ScenarioStamp, ValidateResult,
 };
 pub use seeds::{SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};

@@ -3,6 +3,10 @@
 //! A state has a row for each satellite and sample, in TEME and Earth-fixed, so that it serves
 //! as the neutral truth for every other file. Syntax: RFC 4180, with a bare line feed.
 
+mod read;
+
+pub use read::{ElementsRow, parse_elements, parse_states, read_elements, read_states};
+
 use super::WriteError;
 use super::finding::Findings;
 use super::metadata::Object;

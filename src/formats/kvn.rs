@@ -278,6 +278,22 @@ impl Block {
         });
     }
 
+    /// Takes a keyword of the table whose key and value stand at one place, as in XML.
+    pub(super) fn accept_at(
+        &mut self,
+        (key, value): (&str, &str),
+        place: (usize, usize),
+        findings: &mut Findings,
+    ) {
+        let pair = Pair {
+            key,
+            value,
+            key_place: place,
+            value_place: place,
+        };
+        self.accept(&pair, findings);
+    }
+
     /// Reports the mandatory keywords that have not come in.
     pub(super) fn finish(&self, place: (usize, usize), findings: &mut Findings) {
         for (keyword, seen) in self.table.iter().zip(&self.seen) {

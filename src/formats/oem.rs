@@ -1,23 +1,26 @@
-//! CCSDS Orbit Ephemeris Messages in keyword = value notation, written and read.
+//! CCSDS Orbit Ephemeris Messages in keyword = value notation and in XML, written and read.
 //!
-//! Source: CCSDS 502.0-B-3, *Orbit Data Messages* (April 2023), sections 5 and 7; version 2.0
+//! Source: CCSDS 502.0-B-3, *Orbit Data Messages* (April 2023), sections 5, 7 and 8; version 2.0
 //! is that of 502.0-B-2, which differs by the optional header keywords. One object a file
-//! (5.1.3), no comment between ephemeris lines (7.8.9), numbers of at most 16 digits (7.5.6).
+//! (5.1.3), no comment between ephemeris lines (7.8.9), numbers of at most 16 digits (7.5.6). In
+//! XML (505.0-B-2) a combined instantiation holds the messages of several objects.
 
 mod read;
+mod write;
+mod xml;
 
 pub use read::{parse, read};
+pub use write::Writer;
+pub use xml::{parse_xml, read_xml};
 
-use super::WriteError;
 use super::interpolation::Hermite;
-use super::kvn::{Header, Version, write_comments};
+use super::kvn::{Header, write_comments};
 use super::metadata::{Metadata, Object};
-use super::sampled::Sampled;
 use super::stamp::{SecondDigits, calendar};
 use super::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
-use crate::ephemeris::Flown;
 use crate::frames::{Frame, State};
 use crate::time::TimeGrid;
+use crate::words::words;
 use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
@@ -25,6 +28,16 @@ use std::io::{self, Write};
 /// What is said of a message in TEME, which is only written when it is asked for.
 pub(super) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
+
+words! {
+    /// How a message is written down.
+    Notation {
+        /// Keyword = value lines.
+        Kvn = "kvn",
+        /// XML.
+        Xml = "xml",
+    }
+}
 
 /// Keyword of the version.
 const VERSION: &str = "CCSDS_OEM_VERS";
@@ -90,7 +103,7 @@ pub struct StateLine {
 }
 
 impl Oem {
-    /// Writes the message.
+    /// Writes the message in keyword = value notation.
     ///
     /// # Errors
     /// When the output does not take the bytes.
@@ -147,36 +160,6 @@ impl Segment {
             states: self.states.iter().map(instant).collect(),
         })
     }
-}
-
-/// Writes the message of one satellite on the grid of its ephemeris, line by line.
-///
-/// `hermite` is what was measured for these states; without it the file names no interpolation.
-///
-/// # Errors
-/// When the satellite has no state, or the output does not take the bytes.
-pub fn write(
-    out: &mut impl Write,
-    version: Version,
-    metadata: &Metadata,
-    object: &Object,
-    (sampled, satellite): (&Sampled<'_>, &Flown),
-    hermite: Option<Hermite>,
-) -> Result<(), WriteError> {
-    let digits = SecondDigits::of_grid(&sampled.grid());
-    Header::new(version, metadata).write(out, VERSION)?;
-    let segment = segment_metadata(metadata, object, sampled.grid(), hermite);
-    write_metadata(out, &segment, digits)?;
-    for sample in sampled.states(satellite) {
-        let (at, state) = sample?;
-        let line = StateLine {
-            epoch: metadata.time_system.stamp(at),
-            state,
-            acceleration_km_s2: None,
-        };
-        write_state(out, &line, digits)?;
-    }
-    Ok(())
 }
 
 /// What the segment of a satellite says of itself.

@@ -15,7 +15,6 @@ use super::metadata::Metadata;
 use super::stamp::{SecondDigits, calendar};
 use super::{ReadError, WriteError};
 use crate::words::words;
-use quick_xml::escape::escape;
 use std::io::{self, BufRead, Write};
 
 /// Keyword of the version.
@@ -222,10 +221,9 @@ fn write_leaves(
     out: &mut impl Write,
     pairs: impl IntoIterator<Item = (&'static str, Value)>,
 ) -> io::Result<()> {
-    for (key, value) in pairs {
-        writeln!(out, "<{key}>{}</{key}>", escape(value.text()))?;
-    }
-    Ok(())
+    pairs
+        .into_iter()
+        .try_for_each(|(key, value)| super::xml::write_leaves(out, [(key, value.text())]))
 }
 
 /// Writes messages as an array of JSON objects.

@@ -254,18 +254,52 @@ fn resolved(reference: &BytesRef<'_>) -> Option<String> {
     resolve_predefined_entity(&name_of(reference.as_ref())).map(str::to_owned)
 }
 
-/// Begins a combined instantiation (CCSDS 505.0-B-2, section 4; 502.0-B-3, 8.12).
-pub(super) fn begin_ndm(out: &mut impl Write, version: Version) -> io::Result<()> {
-    writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
+/// What the outermost element says of its schema (CCSDS 505.0-B-2, section 4).
+fn schema(version: Version) -> String {
     let schema = match version {
         Version::V2 => "ndmxml-2.0.0-master-2.0.xsd",
         Version::V3 => "ndmxml-3.0.0-master-3.0.xsd",
     };
+    format!(
+        "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" \
+         xsi:noNamespaceSchemaLocation=\"https://sanaregistry.org/r/ndmxml_unqualified/{schema}\""
+    )
+}
+
+const DECLARATION: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
+
+/// Begins a combined instantiation (CCSDS 505.0-B-2, section 4; 502.0-B-3, 8.12).
+pub(super) fn begin_ndm(out: &mut impl Write, version: Version) -> io::Result<()> {
+    writeln!(out, "{DECLARATION}\n<ndm {}>", schema(version))
+}
+
+/// Begins a file of one message.
+pub(super) fn begin_file(
+    out: &mut impl Write,
+    (element, id): (&str, &str),
+    version: Version,
+) -> io::Result<()> {
+    let schema = schema(version);
     writeln!(
         out,
-        "<ndm xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" \
-         xsi:noNamespaceSchemaLocation=\"https://sanaregistry.org/r/ndmxml_unqualified/{schema}\">"
+        "{DECLARATION}\n<{element} {schema} id=\"{id}\" version=\"{version}\">"
     )
+}
+
+/// Writes elements that hold text alone.
+pub(super) fn write_leaves<'a>(
+    out: &mut impl Write,
+    leaves: impl IntoIterator<Item = (&'a str, &'a str)>,
+) -> io::Result<()> {
+    for (key, value) in leaves {
+        writeln!(out, "<{key}>{}</{key}>", escape(value))?;
+    }
+    Ok(())
+}
+
+/// Writes comments.
+pub(super) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
+    write_leaves(out, comments.iter().map(|text| ("COMMENT", text.as_str())))
 }
 
 /// Ends a combined instantiation.
@@ -276,11 +310,9 @@ pub(super) fn end_ndm(out: &mut impl Write) -> io::Result<()> {
 /// The header section of a message.
 pub(super) fn write_header(out: &mut impl Write, header: &Header) -> io::Result<()> {
     writeln!(out, "<header>")?;
-    for comment in &header.comments {
-        writeln!(out, "<COMMENT>{}</COMMENT>", escape(comment.as_str()))?;
-    }
+    write_comments(out, &header.comments)?;
     for (key, value) in header.pairs() {
-        writeln!(out, "<{key}>{}</{key}>", escape(value.as_str()))?;
+        write_leaves(out, [(key, value.as_str())])?;
     }
     writeln!(out, "</header>")
 }

@@ -1,6 +1,6 @@
 //! Results as CSV, with the unit of each column in its header.
 
-use super::{DesignSummary, OptimizeResult};
+use super::{ConstellationResult, DesignSummary, OptimizeResult};
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::Record;
 use crate::stats::Summary;
@@ -100,6 +100,26 @@ pub fn metrics_csv<'a>(
                 .chain(metrics_cells(metrics)),
         )?;
     }
+    text(writer)
+}
+
+/// The metrics of a constellation from files, in one row.
+///
+/// # Errors
+/// Never for a table in memory.
+pub fn constellation_csv(result: &ConstellationResult) -> Result<String, CsvError> {
+    let mut writer = Writer::from_writer(Vec::new());
+    let header = ["constellation", "format", "content", "satellites"];
+    writer.write_record(header.iter().chain(&METRICS_HEADER))?;
+    let constellation = &result.constellation;
+    let mut cells = vec![
+        constellation.name.clone(),
+        constellation.format.clone(),
+        constellation.content.clone(),
+        constellation.satellites.to_string(),
+    ];
+    cells.extend(metrics_cells(&result.metrics));
+    writer.write_record(cells)?;
     text(writer)
 }
 

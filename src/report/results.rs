@@ -107,6 +107,35 @@ impl EvaluateResult {
     }
 }
 
+/// A constellation that comes from files.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstellationSummary {
+    /// Name of its file or directory, without the way to it.
+    pub name: String,
+    /// The format of its files.
+    pub format: String,
+    /// What they hold.
+    pub content: String,
+    /// Number of satellites.
+    pub satellites: usize,
+}
+
+/// What `evaluate --constellation` prints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstellationResult {
+    /// The constellation.
+    pub constellation: ConstellationSummary,
+    /// Its metrics.
+    pub metrics: Metrics,
+    /// All dilutions of precision, when they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dops: Option<DopStatistics>,
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// Version of the program.
+    pub version: &'static str,
+}
+
 /// A non-dominated design of the last population.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontMember {

@@ -4,9 +4,7 @@ use super::{Algorithm, Region, Scenario};
 use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
-use crate::formats::lint::Format;
-use crate::formats::omm::{self, Notation};
-use crate::formats::{ReadError, tle};
+use crate::formats::fleet::{Fleet, ReadFleetError};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals};
@@ -67,20 +65,6 @@ pub enum SetupError {
     ReferenceDesign(#[from] NotationError),
 }
 
-/// The element sets of a file, in the format that it shows: TLE, or OMM in any syntax.
-fn element_sets(file: &str, bytes: &[u8]) -> Result<Vec<sgp4::Elements>, ReadError> {
-    let notation = match Format::of(bytes, Some(file)) {
-        Format::Omm => Notation::Kvn,
-        Format::OmmXml => Notation::Xml,
-        Format::OmmJson => Notation::Json,
-        Format::OmmCsv => Notation::Csv,
-        // What is neither is refused by the first rule of TLE that it breaks.
-        _ => return tle::read(bytes),
-    };
-    let messages = omm::read(bytes, notation)?;
-    Ok(messages.into_iter().map(|message| message.set).collect())
-}
-
 /// Why a file of element sets gives no system.
 #[derive(Debug, Error)]
 pub enum GnssFileError {
@@ -89,7 +73,13 @@ pub enum GnssFileError {
     Io(#[from] io::Error),
     /// A line of it is wrong.
     #[error(transparent)]
-    Format(#[from] ReadError),
+    Format(#[from] ReadFleetError),
+    /// It is no file of element sets.
+    #[error("the file holds {content}; TLE or OMM element sets are needed")]
+    NoSets {
+        /// What it holds.
+        content: &'static str,
+    },
     /// Its sets make no system.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
@@ -160,8 +150,13 @@ impl Scenario {
                 source,
             };
             let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
-            let sets = element_sets(file, &bytes).map_err(|source| error(source.into()))?;
             let name = file.rsplit('/').next().unwrap_or(file);
+            let (_, fleet) =
+                Fleet::read(&bytes, None, Some(name)).map_err(|source| error(source.into()))?;
+            let Fleet::Sets(sets) = fleet else {
+                let content = fleet.content();
+                return Err(error(GnssFileError::NoSets { content }));
+            };
             let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
             let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
             systems.push(system.into());

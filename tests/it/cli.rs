@@ -526,23 +526,143 @@ fn a_closed_pipe_ends_quietly() {
     );
 }
 
+/// What is evaluated from the files of an export is what the design gives, whatever the format.
+#[test]
+fn a_constellation_from_files_is_evaluated_like_its_design() {
+    let directory = TempDir::new().unwrap();
+    let small = ["--set", "region.step-deg=20", "--set", "time.step-s=1200"];
+    let design = ["--design", "delta:55:24/6/1@925"];
+    let in_directory = |arguments: &[&str]| ran(directory.path(), arguments);
+    let json = |arguments: &[&str]| -> Value {
+        let ran = in_directory(&[&["evaluate", "--format", "json"], arguments, &small].concat());
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let export = |out: &str, further: &[&str]| {
+        let arguments = ["export", "--quiet", "--check", "--out", out];
+        let ran = in_directory(&[&arguments, design.as_slice(), &small, further].concat());
+        assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
+        assert!(ran.stdout.contains("passed") && !ran.stdout.contains("FAILED"));
+    };
+    export(
+        "a",
+        &[
+            "--as",
+            "tle,omm,oem,opm,sp3,stk,csv,tle-states",
+            "--omm-syntax",
+            "json",
+        ],
+    );
+    let xml = [
+        "--oem-syntax",
+        "xml",
+        "--oem-combined",
+        "--omm-syntax",
+        "xml",
+    ];
+    export(
+        "b",
+        &[&["--as", "omm,oem", "--time-system", "GPS"], xml.as_slice()].concat(),
+    );
+    let expected = json(&design);
+    let visible = |value: &Value| value["metrics"]["mean_visible"].as_f64().unwrap();
+    for (path, satellites_off) in [
+        ("a/oem", 1e-9),
+        ("a/opm", 1e-9),
+        ("a/stk", 1e-9),
+        ("a/sp3", 1e-9),
+        ("a/elements.csv", 1e-9),
+        ("a/states.csv", 1e-9),
+        ("b/oem.xml", 1e-9),
+        // SGP4 flies up to some 15 km off: 3 % of those in view at most.
+        ("a/constellation.tle", 0.05),
+        ("a/omm.json", 0.05),
+        ("b/omm.xml", 0.05),
+    ] {
+        let found = json(&["--constellation", path]);
+        assert_eq!(found["constellation"]["satellites"], 24, "{path}");
+        let apart = (visible(&found) - visible(&expected)).abs();
+        assert!(apart <= satellites_off, "{path}: {apart}");
+    }
+    // The same file serves as a GNSS, in every syntax.
+    for path in ["a/constellation.tle", "a/omm.json", "b/omm.xml"] {
+        let files = format!("gnss.files=[\"{path}\"]");
+        fs::write(directory.path().join("study.toml"), "name = \"study\"\n").unwrap();
+        let with = [&["study.toml", "--set", files.as_str()], design.as_slice()].concat();
+        assert!(
+            json(&with)["metrics"]["mean_pdop"].as_f64()
+                < expected["metrics"]["mean_pdop"].as_f64()
+        );
+    }
+    let uncovered = in_directory(&["evaluate", "--constellation", "a/oem"]);
+    assert_eq!(uncovered.status, 2);
+    assert!(
+        uncovered
+            .stderr
+            .contains("has no state at 2025-01-01T00:01:00"),
+        "{}",
+        uncovered.stderr
+    );
+}
+
+/// sqrt(mu/a³) in the Kozai slot drifts at 40° by 300 km a day, which a check must not let pass.
+#[test]
+fn a_check_fails_where_the_files_fly_elsewhere() {
+    let directory = TempDir::new().unwrap();
+    let arguments = [
+        "export",
+        "--quiet",
+        "--check",
+        "--as",
+        "tle",
+        "--tle-theory",
+        "kepler",
+        "--out",
+        "a",
+        "--design",
+        "delta:40:6/3/1@925",
+        "--set",
+        "region.step-deg=20",
+        "--set",
+        "time.step-s=1200",
+    ];
+    let ran = ran(directory.path(), &arguments);
+    assert_eq!(ran.status, 1, "{}{}", ran.stdout, ran.stderr);
+    assert!(ran.stdout.contains("FAILED"));
+}
+
+#[test]
+fn choices_that_cannot_be_combined_are_refused() {
+    let export = ["export", "--as", "sp3", "--out", "x", "--frame", "TEME"];
+    assert!(refused(&export).contains("SP3 is Earth-fixed"));
+    let combined = ["export", "--as", "oem", "--out", "x", "--oem-combined"];
+    assert!(refused(&combined).contains("--oem-syntax xml"));
+    let unknown = ["export", "--as", "omm-xml", "--out", "x"];
+    assert!(refused(&unknown).contains("tle"));
+    assert!(refused(&["evaluate"]).contains("--design"));
+}
+
 /// A system from element sets gives the same metrics whichever format carries the full digits.
 #[test]
 fn gnss_files_are_tle_or_omm() {
     let directory = TempDir::new().unwrap();
     let place = directory.path();
-    let export = [
-        "export",
-        "--design",
-        "delta:56:24/3/1@21528",
-        "--as",
-        "tle,omm-xml,omm-json,omm-csv",
-        "--out",
-        "gnss",
-    ];
-    assert_eq!(ran(place, &export).status, 0);
+    for syntax in ["xml", "json", "csv"] {
+        let export = [
+            "export",
+            "--design",
+            "delta:56:24/3/1@21528",
+            "--as",
+            "tle,omm",
+            "--omm-syntax",
+            syntax,
+            "--out",
+            syntax,
+        ];
+        assert_eq!(ran(place, &export).status, 0);
+    }
     let visible = |file: &str| {
-        let set = format!("gnss.files=[\"gnss/{file}\"]");
+        let set = format!("gnss.files=[\"{file}\"]");
         let design = [
             "evaluate",
             "--quiet",
@@ -564,9 +684,9 @@ fn gnss_files_are_tle_or_omm() {
         let value: Value = serde_json::from_str(&ran.stdout).unwrap();
         value["metrics"]["mean_pdop"].as_f64().unwrap()
     };
-    let json = visible("omm.json");
-    assert_eq!(visible("omm.xml"), json);
-    assert_eq!(visible("omm.csv"), json);
+    let json = visible("json/omm.json");
+    assert_eq!(visible("xml/omm.xml"), json);
+    assert_eq!(visible("csv/omm.csv"), json);
     // A TLE's digits move a satellite by metres: 1e-6 of its distance.
-    assert!((visible("constellation.tle") / json - 1.0).abs() < 1e-5);
+    assert!((visible("xml/constellation.tle") / json - 1.0).abs() < 1e-5);
 }

@@ -2,11 +2,12 @@
 """Reads an export with readers that this project did not write.
 
     python -m venv venv && venv/bin/pip install -r requirements.txt
-    navwalker export paper --design delta:55:182/13/1@925 --as tle,tle-states,oem,csv --out DIR
+    navwalker export paper --design delta:55:182/13/1@925 --as tle,tle-states,omm,oem,sp3,csv --omm-syntax xml --out DIR
     venv/bin/python check_exports.py DIR
 
-The tables states.csv and tle-states.csv are the truth. TLEs are read and flown by python-sgp4, OEMs
-are read by the oem package and brought to TEME by ERFA. Prints the largest difference of every
+The tables states.csv and tle-states.csv are the truth. TLEs are read and flown by python-sgp4 and by
+Skyfield, OMMs in XML, JSON and CSV by Skyfield, OEMs in keyword = value notation are read by the oem
+package and brought to TEME by ERFA, SP3 is read by georinex. Prints the largest difference of every
 check with its tolerance; the exit status is 1 if one is exceeded or a file is missing or refused.
 """
 
@@ -20,10 +21,14 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 import erfa
+import georinex
 import numpy as np
 from oem import OrbitEphemerisMessage
+from sgp4 import omm as sgp4_omm
 from sgp4.api import SGP4_ERRORS, Satrec
 from sgp4.io import compute_checksum
+from skyfield.api import EarthSatellite, load
+from skyfield.sgp4lib import TEME
 
 # Two programs of the same theory from the same digits: rounding only.
 SGP4_KM = 1e-6
@@ -31,6 +36,12 @@ SGP4_KM = 1e-6
 OEM_KM = 1e-5
 # A centimetre a revolution.
 OEM_KM_S = 1e-8
+# Skyfield keeps time in Julian days of two doubles, and turns TEME to GCRS and back.
+SKYFIELD_KM = 1e-5
+# SP3 has six decimals of a kilometre in three components.
+SP3_KM = 1e-6
+# Velocities of SP3 have six decimals of a decimetre a second in three components.
+SP3_KM_S = 1e-10
 # A TLE epoch steps by 1e-8 day, and its elements belong to the rounded instant.
 TLE_EPOCH_S = 0.5e-8 * 86400 * 1.01
 
@@ -184,6 +195,69 @@ def check_oem(directory, entries, manifest, report):
     report.number("OEM: velocity against the table", velocity_km_s, OEM_KM_S, "km/s")
 
 
+def skyfield_apart(satellites, epoch, truth):
+    """Largest distance in TEME between Skyfield's states and a table, km."""
+    scale = load.timescale(builtin=True)
+    apart = 0.0
+    for name, satellite in satellites.items():
+        seconds = epoch.second + epoch.microsecond * 1e-6 + truth[name][:, 0]
+        times = scale.utc(epoch.year, epoch.month, epoch.day, epoch.hour, epoch.minute, seconds)
+        positions = satellite.at(times).frame_xyz(TEME).km.T
+        apart = max(apart, worst(positions - truth[name][:, POSITION["TEME"]]))
+    return apart
+
+
+def check_tle_by_skyfield(directory, entry, manifest, report):
+    _, truth = states(directory / "tle-states.csv")
+    found = {satellite.name: satellite for satellite in load.tle_file(str(directory / entry["path"]))}
+    report.same(f"{entry['path']}: names by Skyfield", sorted(found) == sorted(truth), True)
+    apart = skyfield_apart(found, utc(manifest["epoch"]), truth)
+    report.number(f"{entry['path']}: Skyfield against ours", apart, SKYFIELD_KM, "km")
+
+
+def check_omm(directory, entry, tle, manifest, report):
+    """The unrounded elements, against the states of the rounded: as far as rounding explains."""
+    path = directory / entry["path"]
+    with open(path, newline="") as file:
+        if path.suffix == ".json":
+            records = json.load(file)
+        else:
+            records = list({".xml": sgp4_omm.parse_xml, ".csv": sgp4_omm.parse_csv}[path.suffix](file))
+    report.same(f"{entry['path']}: messages", len(records), entry["objects"])
+    scale = load.timescale(builtin=True)
+    found = {record["OBJECT_NAME"]: EarthSatellite.from_omm(scale, record) for record in records}
+    _, truth = states(directory / "tle-states.csv")
+    report.same(f"{entry['path']}: names", sorted(found) == sorted(truth), True)
+    apart = skyfield_apart(found, utc(manifest["epoch"]), truth)
+    # The manifest looks at the rounding about once an hour; a metre for what it misses.
+    rounding = 1.2 * tle["loss"]["quantisation_max_km"] + 1e-3
+    report.number(f"{entry['path']}: Skyfield against the rounded sets", apart, rounding, "km")
+
+
+def check_sp3(directory, entries, manifest, report):
+    _, truth = states(directory / "states.csv")
+    names = iter(truth)
+    position_km, velocity_km_s, count, late = 0.0, 0.0, 0, 0.0
+    # GPS time has been 18 s ahead of UTC since 2017.
+    start = np.datetime64(utc(manifest["epoch"]).replace(tzinfo=None), "us") + np.timedelta64(18, "s")
+    for entry in entries:
+        read = georinex.load(directory / entry["path"])
+        seconds = (read.time.values.astype("datetime64[us]") - start) / np.timedelta64(1, "s")
+        for sv in read.sv.values:
+            rows = truth[next(names)]
+            late = max(late, float(np.max(np.abs(seconds - rows[:, 0]))))
+            one = read.sel(sv=sv)
+            position_km = max(position_km, worst(one.position.values - rows[:, POSITION["ITRF"]]))
+            velocity = one.velocity.values * 1e-4  # from dm/s
+            velocity_km_s = max(velocity_km_s, worst(velocity - rows[:, VELOCITY["ITRF"]]))
+            count += 1
+    report.same("SP3: satellites", count, len(truth))
+    # georinex keeps microseconds.
+    report.number("SP3: epochs by georinex", late, 1.5e-6, "s")
+    report.number("SP3: position against the table", position_km, SP3_KM, "km")
+    report.number("SP3: velocity against the table", velocity_km_s, SP3_KM_S, "km/s")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", type=Path, help="directory of an export, with states.csv and tle-states.csv")
@@ -195,8 +269,16 @@ def main():
     checked = 0
     for entry in of("tle"):
         check_tle(directory, entry, manifest, report)
+        check_tle_by_skyfield(directory, entry, manifest, report)
         checked += 1
-    if of("oem"):
+    for entry in of("omm"):
+        if of("tle") and not entry["path"].endswith(".omm"):
+            check_omm(directory, entry, of("tle")[0], manifest, report)
+            checked += 1
+    if of("sp3"):
+        check_sp3(directory, of("sp3"), manifest, report)
+        checked += 1
+    if of("oem") and of("oem")[0]["path"].endswith(".oem"):
         check_oem(directory, of("oem"), manifest, report)
         checked += 1
     report.same("nothing to check", checked == 0, False)

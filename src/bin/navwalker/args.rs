@@ -6,10 +6,11 @@ pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
-use navwalker::formats::CcsdsVersion;
 use navwalker::formats::export::Product;
 use navwalker::formats::metadata::ElementChoice;
 use navwalker::formats::sp3::Version as Sp3Version;
+use navwalker::formats::stamp::TimeSystem;
+use navwalker::formats::{CcsdsVersion, oem, omm};
 use navwalker::frames::Frame;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -56,13 +57,14 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Optimize(OptimizeArgs),
 
-    /// Compute visibility, PDOP, its tail and cost of one design.
+    /// Compute visibility, PDOP, its tail and cost of one design, or of satellites from files.
     ///
     /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
-    /// Check files against the standard of their format: TLE, OMM, OEM, SP3, STK ephemeris.
+    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris,
+    /// and tables of elements and states.
     ///
     /// Example: navwalker lint constellation.tle oem/*.oem
     #[command(verbatim_doc_comment)]
@@ -80,7 +82,7 @@ pub(crate) enum Command {
     /// Write a design into files that other tools read, with a manifest of what each says and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
-    #[command(verbatim_doc_comment)]
+    #[command(verbatim_doc_comment, after_help = PRODUCTS)]
     Export(ExportArgs),
 
     /// Check a design's propagation against independent standards, with gates that have reasons.
@@ -148,6 +150,18 @@ pub(crate) enum Command {
         out: Option<PathBuf>,
     },
 }
+
+/// What `--as` takes.
+const PRODUCTS: &str = "\
+Products:
+  tle         two-line element sets with names (SGP4), one file
+  omm         CCSDS Orbit Mean-Elements Messages (SGP4): kvn, xml, json or csv
+  oem         CCSDS Orbit Ephemeris Messages: kvn or xml
+  opm         CCSDS Orbit Parameter Messages: state, osculating and mean elements at the epoch
+  sp3         SP3-c or -d, positions and velocities in GPS time, Earth-fixed
+  stk         STK ephemerides (.e), one file for each satellite
+  csv         tables of mean elements and of states, TEME and Earth-fixed
+  tle-states  table of what SGP4 makes of the element sets as written";
 
 /// Which study a command works on.
 #[derive(Debug, Clone, Args)]
@@ -222,8 +236,17 @@ pub(crate) struct EvaluateArgs {
     pub(crate) study: StudyArgs,
 
     /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
-    #[arg(long, value_name = "NOTATION")]
-    pub(crate) design: Design,
+    #[arg(
+        long,
+        value_name = "NOTATION",
+        required_unless_present = "constellation"
+    )]
+    pub(crate) design: Option<Design>,
+
+    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, or a table
+    /// of elements or states; a directory stands for its files; may be repeated.
+    #[arg(long, value_name = "FILE", conflicts_with = "design")]
+    pub(crate) constellation: Vec<PathBuf>,
 
     /// Add GDOP, HDOP, VDOP and the TDOP of each system: mean and tail.
     #[arg(long)]
@@ -328,8 +351,7 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// Products, separated by commas: tle, omm, oem, sp3, stk, csv, and others; see the error of a
-    /// wrong name for the list.
+    /// Products, separated by commas; they are listed below.
     #[arg(
         long = "as",
         value_name = "PRODUCTS",
@@ -346,14 +368,25 @@ pub(crate) struct ExportArgs {
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Frame of sampled states: EME2000, GCRF, ITRF, or TEME.
-    #[arg(
-        long,
-        value_name = "FRAME",
-        default_value = "EME2000",
-        ignore_case = true
-    )]
-    pub(crate) frame: Frame,
+    /// Frame of OEM, OPM and STK states: EME2000, GCRF, ITRF, or TEME [default: EME2000].
+    #[arg(long, value_name = "FRAME")]
+    pub(crate) frame: Option<Frame>,
+
+    /// Time system of OEM and OPM: UTC, TAI, GPS or TT.
+    #[arg(long, value_name = "SYSTEM", default_value = "UTC")]
+    pub(crate) time_system: TimeSystem,
+
+    /// Notation of the OMM: kvn, xml, json or csv.
+    #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
+    pub(crate) omm_syntax: omm::Notation,
+
+    /// Notation of the OEM: kvn or xml.
+    #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
+    pub(crate) oem_syntax: oem::Notation,
+
+    /// Write the OEM of all satellites into one XML file; needs `--oem-syntax xml`.
+    #[arg(long)]
+    pub(crate) oem_combined: bool,
 
     /// How element sets are made: kozai (the J2 mean elements), fit (least squares of SGP4 to the
     /// trajectory), or kepler (the common mistake, for comparisons).
@@ -367,6 +400,11 @@ pub(crate) struct ExportArgs {
     /// Version of SP3: c or d.
     #[arg(long, value_name = "VERSION", default_value = "d")]
     pub(crate) sp3_version: Sp3Version,
+
+    /// Read every product back, evaluate the scenario from it, and print how far it is from the
+    /// design; status 1 if it is farther than its digits and theory explain.
+    #[arg(long)]
+    pub(crate) check: bool,
 
     /// Letter of the satellite ids of SP3.
     #[arg(long, value_name = "LETTER", default_value = "L")]

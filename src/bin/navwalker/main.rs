@@ -4,6 +4,7 @@ mod args;
 mod chart;
 mod commands;
 mod files;
+mod fleets;
 mod look;
 mod output;
 mod progress;

@@ -1,4 +1,4 @@
-//! The progress bar of a search, on a terminal only.
+//! The progress of a search and of an export, on a terminal only.
 
 use crate::output;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -38,6 +38,36 @@ impl Progress {
     }
 
     /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Counts the files of an export, which several threads write.
+pub(crate) struct FileCount(Option<ProgressBar>);
+
+impl FileCount {
+    pub(crate) fn new() -> Self {
+        if !output::shows_progress() {
+            return Self(None);
+        }
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {pos} files, {elapsed}") {
+            bar.set_style(style);
+        }
+        Self(Some(bar))
+    }
+
+    /// Another file has been begun.
+    pub(crate) fn one_more(&self) {
+        if let Some(bar) = &self.0 {
+            bar.inc(1);
+        }
+    }
+
+    /// Removes the count.
     pub(crate) fn finish(&self) {
         if let Some(bar) = &self.0 {
             bar.finish_and_clear();

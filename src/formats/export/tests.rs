@@ -1,29 +1,9 @@
+use super::testing::in_memory;
 use super::*;
 use crate::formats::oem;
+use crate::formats::tle;
 use sha2::{Digest, Sha256};
-use std::cell::RefCell;
 use std::collections::BTreeMap;
-use std::rc::Rc;
-
-type Contents = Rc<RefCell<BTreeMap<String, Vec<u8>>>>;
-
-/// Keeps files in memory.
-struct Kept(Contents, String);
-
-impl Write for Kept {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let mut files = self.0.borrow_mut();
-        files
-            .entry(self.1.clone())
-            .or_default()
-            .extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
 
 fn subject() -> Subject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
@@ -41,10 +21,7 @@ fn subject() -> Subject {
 }
 
 fn exported(products: &[Product], choices: Choices) -> (Manifest, BTreeMap<String, Vec<u8>>) {
-    let contents = Contents::default();
-    let mut sink = |path: &str| Ok(Kept(Rc::clone(&contents), path.to_owned()));
-    let manifest = export(&subject(), products, choices, &mut sink).unwrap();
-    (manifest, contents.take())
+    in_memory(&subject(), products, choices)
 }
 
 #[test]
@@ -138,7 +115,7 @@ fn tables_agree_with_the_files() {
 
 #[test]
 fn a_failing_sink_is_an_error() {
-    let mut sink = |_: &str| -> io::Result<Vec<u8>> { Err(io::Error::other("disk full")) };
-    let error = export(&subject(), &[Product::Tle], Choices::default(), &mut sink).unwrap_err();
+    let sink = |_: &str| -> io::Result<Vec<u8>> { Err(io::Error::other("disk full")) };
+    let error = export(&subject(), &[Product::Tle], Choices::default(), &sink).unwrap_err();
     assert_eq!(error.to_string(), "disk full");
 }

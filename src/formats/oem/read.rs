@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
 /// Table 5-2.
-const HEADER: &[Keyword] = &[
+pub(super) const HEADER: &[Keyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     must("CREATION_DATE"),
@@ -22,7 +22,7 @@ const HEADER: &[Keyword] = &[
 ];
 
 /// Table 5-3.
-const METADATA: &[Keyword] = &[
+pub(super) const METADATA: &[Keyword] = &[
     must("OBJECT_NAME"),
     must("OBJECT_ID"),
     must("CENTER_NAME"),
@@ -171,13 +171,7 @@ impl Parser {
         };
         let metadata = metadata(block, number, findings);
         if let Some(metadata) = &metadata {
-            let first = self
-                .time_system
-                .get_or_insert_with(|| metadata.time_system.clone());
-            if *first != metadata.time_system {
-                let message = format!("TIME_SYSTEM was {first} before; it must not change");
-                findings.error(block.place("TIME_SYSTEM"), "oem-time-system", message);
-            }
+            check_time_system(&mut self.time_system, metadata, block, findings);
         }
         self.segments += 1;
         self.segment = metadata.map(|metadata| Segment {
@@ -222,32 +216,10 @@ impl Parser {
     }
 
     fn end_segment(&mut self, findings: &mut Findings, take: &mut impl FnMut(Segment)) {
-        let Some(segment) = self.segment.take() else {
-            return;
-        };
-        let place = (self.segment_line, 1);
-        let lines = segment.states.len();
-        let needed = match &segment.metadata.interpolation {
-            Some((method, degree)) if method.eq_ignore_ascii_case("HERMITE") => degree / 2 + 1,
-            Some((_, degree)) => degree.saturating_add(1),
-            None => 1,
-        };
-        if lines == 0 {
-            findings.error(place, "oem-empty", "the segment has no ephemeris line");
-        } else if lines < needed {
-            let message =
-                format!("{lines} lines do not carry the interpolation; it needs {needed}");
-            findings.warning(place, "oem-interpolation", message);
+        if let Some(segment) = self.segment.take() {
+            check_segment(&segment, (self.segment_line, 1), findings);
+            take(segment);
         }
-        if segment
-            .states
-            .last()
-            .is_some_and(|last| last.epoch < segment.metadata.stop_time)
-        {
-            let message = "the last line is before STOP_TIME: is the file cut short?";
-            findings.warning(place, "oem-span", message);
-        }
-        take(segment);
     }
 
     fn end(
@@ -273,17 +245,59 @@ impl Parser {
     }
 }
 
+/// All segments share the time system of the first (5.2.4.5).
+pub(super) fn check_time_system(
+    first: &mut Option<String>,
+    metadata: &SegmentMetadata,
+    block: &Block,
+    findings: &mut Findings,
+) {
+    let first = first.get_or_insert_with(|| metadata.time_system.clone());
+    if *first != metadata.time_system {
+        let message = format!("TIME_SYSTEM was {first} before; it must not change");
+        findings.error(block.place("TIME_SYSTEM"), "oem-time-system", message);
+    }
+}
+
+/// What must hold for a segment as a whole.
+pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: &mut Findings) {
+    let lines = segment.states.len();
+    let needed = match &segment.metadata.interpolation {
+        Some((method, degree)) if method.eq_ignore_ascii_case("HERMITE") => degree / 2 + 1,
+        Some((_, degree)) => degree.saturating_add(1),
+        None => 1,
+    };
+    if lines == 0 {
+        findings.error(place, "oem-empty", "the segment has no ephemeris line");
+    } else if lines < needed {
+        let message = format!("{lines} lines do not carry the interpolation; it needs {needed}");
+        findings.warning(place, "oem-interpolation", message);
+    }
+    if segment
+        .states
+        .last()
+        .is_some_and(|last| last.epoch < segment.metadata.stop_time)
+    {
+        let message = "the last line is before STOP_TIME: is the file cut short?";
+        findings.warning(place, "oem-span", message);
+    }
+}
+
 fn misplaced_marker(marker: &str, number: usize, findings: &mut Findings) {
     let message = format!("{marker} does not belong here");
     findings.error((number, 1), "oem-marker", message);
 }
 
-fn header(block: &Block, number: usize, findings: &mut Findings) -> Option<Header> {
+pub(super) fn header(block: &Block, number: usize, findings: &mut Findings) -> Option<Header> {
     block.finish((number, 1), findings);
     Header::read(block, VERSION, findings)
 }
 
-fn metadata(block: &Block, number: usize, findings: &mut Findings) -> Option<SegmentMetadata> {
+pub(super) fn metadata(
+    block: &Block,
+    number: usize,
+    findings: &mut Findings,
+) -> Option<SegmentMetadata> {
     block.finish((number, 1), findings);
     let interpolation = match block.text("INTERPOLATION") {
         Some(method) => {
@@ -349,7 +363,12 @@ fn state_line(line: &Line, findings: &mut Findings) -> Option<StateLine> {
 }
 
 /// Whether a line comes after the one before it and inside the span of its segment.
-fn in_order(segment: &Segment, line: &StateLine, number: usize, findings: &mut Findings) -> bool {
+pub(super) fn in_order(
+    segment: &Segment,
+    line: &StateLine,
+    number: usize,
+    findings: &mut Findings,
+) -> bool {
     let previous: Option<NaiveDateTime> = segment.states.last().map(|last| last.epoch);
     if previous.is_some_and(|previous| line.epoch <= previous) {
         let message = "the time is not after that of the line before";

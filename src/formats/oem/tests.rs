@@ -4,6 +4,7 @@ use crate::ephemeris::Ephemeris;
 use crate::formats::CcsdsVersion as Version;
 use crate::formats::finding::{Finding, Findings, Severity};
 use crate::formats::metadata::Theory;
+use crate::formats::sampled::Sampled;
 use crate::formats::stamp::TimeSystem;
 use crate::frames::to_teme;
 use crate::orbit::Model;
@@ -97,15 +98,13 @@ fn written(ephemeris: &Ephemeris, metadata: &Metadata, version: Version) -> Stri
     let sampled = Sampled::new(ephemeris, metadata.frame);
     let hermite = Hermite::measured(&sampled, satellite).unwrap();
     let mut out = Vec::new();
-    write(
-        &mut out,
+    let writer = Writer {
         version,
         metadata,
-        &object,
-        (&sampled, satellite),
+        sampled: &sampled,
         hermite,
-    )
-    .unwrap();
+    };
+    writer.kvn(&mut out, satellite, &object).unwrap();
     String::from_utf8(out).unwrap()
 }
 
@@ -312,6 +311,112 @@ fn files_that_are_no_message_are_refused() {
     assert_eq!(findings(tabs)[0].rule, "tab");
 }
 
+/// The message of the standard in XML, as 505.0-B-2 lays it out, with a covariance.
+fn blue_book_xml() -> String {
+    let mut out = Vec::new();
+    read(BLUE_BOOK.as_bytes())
+        .unwrap()
+        .write_xml(&mut out)
+        .unwrap();
+    let covariance = "<covarianceMatrix><EPOCH>2019-12-28T21:29:07.267</EPOCH>\
+                      <CX_X>3.3e-04</CX_X></covarianceMatrix></data>";
+    String::from_utf8(out)
+        .unwrap()
+        .replacen("</data>", covariance, 1)
+}
+
+fn findings_xml(text: impl AsRef<[u8]>) -> Vec<Finding> {
+    let mut findings = Findings::of_linter(50);
+    parse_xml(text.as_ref(), &mut findings, |_| ()).unwrap();
+    findings.into_vec()
+}
+
+#[test]
+fn xml_means_what_the_lines_mean() {
+    let text = blue_book_xml();
+    assert_eq!(findings_xml(&text), []);
+    assert_eq!(
+        read_xml(text.as_bytes()).unwrap(),
+        [read(BLUE_BOOK.as_bytes()).unwrap()]
+    );
+    // Units, which the schema allows, and foreign layout.
+    let foreign = text
+        .replace("<X>", "\n\t<X units=\"km\">")
+        .replace('\n', "\r\n");
+    assert_eq!(
+        read_xml(foreign.as_bytes()).unwrap(),
+        read_xml(text.as_bytes()).unwrap()
+    );
+}
+
+#[test]
+fn combined_xml_reads_back_satellite_by_satellite() {
+    let ephemeris = ephemeris(600.0);
+    let epoch = ephemeris.grid().epoch();
+    let metadata = metadata(Frame::Gcrf, TimeSystem::Tai);
+    let sampled = Sampled::new(&ephemeris, metadata.frame);
+    let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
+    let writer = Writer {
+        version: Version::V3,
+        metadata: &metadata,
+        sampled: &sampled,
+        hermite: None,
+    };
+    let mut combined = Vec::new();
+    let satellites = ephemeris.satellites().iter();
+    writer
+        .combined_xml(&mut combined, satellites.clone().zip(&objects))
+        .unwrap();
+    assert_eq!(findings_xml(&combined), []);
+    let messages = read_xml(combined.as_slice()).unwrap();
+    assert_eq!(messages.len(), 6);
+    for ((satellite, object), message) in satellites.zip(&objects).zip(&messages) {
+        let (mut lines, mut alone) = (Vec::new(), Vec::new());
+        writer.kvn(&mut lines, satellite, object).unwrap();
+        assert_eq!(read(lines.as_slice()).unwrap(), *message);
+        // Write, read, write is the identity.
+        writer.xml(&mut alone, satellite, object).unwrap();
+        let mut again = Vec::new();
+        read_xml(alone.as_slice()).unwrap()[0]
+            .write_xml(&mut again)
+            .unwrap();
+        assert_eq!(
+            String::from_utf8(again).unwrap(),
+            String::from_utf8(alone).unwrap()
+        );
+    }
+}
+
+#[test]
+fn broken_rules_of_xml_are_named() {
+    for (from, to, rule) in [
+        ("<X>2783.419", "<X>NaN", "ccsds-number"),
+        ("<Y>-308.143000000</Y>\n", "", "ccsds-missing"),
+        (
+            "<Y>-308.143000000</Y>",
+            "<Y>1</Y><Y>2</Y>",
+            "ccsds-repeated",
+        ),
+        (
+            "12:01:00.331</EPOCH>",
+            "12:00:00.331</EPOCH>",
+            "oem-time-order",
+        ),
+        ("<TIME_SYSTEM>UTC", "<TIME_SYSTEM>TAI", "oem-time-system"),
+        ("version=\"3.0\"", "version=\"9.0\"", "ccsds-version"),
+        ("<ORIGINATOR>", "<AUTHOR/><ORIGINATOR>", "ccsds-keyword"),
+        ("</oem>", "", "xml-truncated"),
+    ] {
+        let text = blue_book_xml().replacen(from, to, 1);
+        let found = findings_xml(&text);
+        assert!(found.iter().any(|f| f.rule == rule), "{to}: {found:#?}");
+        assert!(read_xml(text.as_bytes()).is_err(), "{to}");
+    }
+    for text in ["", "<", "<ndm></ndm>", "<oem></oem>", "<oem/>", "plain"] {
+        assert!(read_xml(text.as_bytes()).is_err(), "{text}");
+    }
+}
+
 proptest! {
     #[test]
     fn truncated_files_are_refused_or_whole(at in 0..BLUE_BOOK.len()) {
@@ -325,5 +430,14 @@ proptest! {
         bytes[at] = byte;
         bytes.drain(at..(at + cut).min(BLUE_BOOK.len()));
         let _ = findings(&bytes);
+    }
+
+    #[test]
+    fn damaged_xml_never_panics(share in 0.0..1.0_f64, byte in any::<u8>(), cut in 0_usize..40) {
+        let mut bytes = blue_book_xml().into_bytes();
+        let at = (share * bytes.len() as f64) as usize;
+        bytes[at] = byte;
+        bytes.drain(at..(at + cut).min(bytes.len()));
+        let _ = findings_xml(&bytes);
     }
 }

@@ -4,7 +4,7 @@ use super::{METADATA, Omm, VERSION};
 use crate::formats::csv::bounded;
 use crate::formats::finding::Findings;
 use crate::formats::json::Objects;
-use crate::formats::kvn::{Block, Header, Item, Keyword, Pair, item, may, must, should};
+use crate::formats::kvn::{Block, Header, Item, Keyword, item, may, must, should};
 use crate::formats::lines::Lines;
 use crate::formats::xml::{Node, Nodes};
 use std::io::{self, BufRead};
@@ -162,7 +162,7 @@ pub fn parse_xml(
             (Node::Open(name, version), _) if name == "omm" => {
                 let mut block = Block::new(MESSAGE);
                 if let Some(version) = version {
-                    accept(&mut block, (VERSION, &version), place, findings);
+                    block.accept_at((VERSION, &version), place, findings);
                 }
                 any = true;
                 message = Some((place.0, block));
@@ -176,7 +176,7 @@ pub fn parse_xml(
             (Node::Leaf(name, text), Some((_, block))) => match name.as_str() {
                 "COMMENT" => block.comments.push(text),
                 _ if name.starts_with(USER_DEFINED) => {}
-                _ => accept(block, (&name, text.trim()), place, findings),
+                _ => block.accept_at((&name, text.trim()), place, findings),
             },
             _ => {}
         }
@@ -188,21 +188,6 @@ pub fn parse_xml(
         findings.error(nodes.place(), "omm-empty", "there is no message");
     }
     Ok(())
-}
-
-fn accept(
-    block: &mut Block,
-    (key, value): (&str, &str),
-    place: (usize, usize),
-    findings: &mut Findings,
-) {
-    let pair = Pair {
-        key,
-        value,
-        key_place: place,
-        value_place: place,
-    };
-    block.accept(&pair, findings);
 }
 
 /// Reads an array of JSON objects, or one object.
@@ -222,7 +207,7 @@ pub fn parse_json(
         let mut block = Block::unordered(RECORD);
         for (key, value) in &members {
             if block.knows(key) && !value.is_empty() {
-                accept(&mut block, (key, value), object.place_of(key), findings);
+                block.accept_at((key, value), object.place_of(key), findings);
             }
         }
         let place = object.place_of("");
@@ -264,7 +249,7 @@ pub fn parse_csv(
         let mut block = Block::unordered(RECORD);
         for (column, (key, value)) in keys.iter().zip(&row).enumerate() {
             if block.knows(key) && !value.is_empty() {
-                accept(&mut block, (key, value), (line, column + 1), findings);
+                block.accept_at((key, value), (line, column + 1), findings);
             }
         }
         record_of(&block, (line, 1), findings)

@@ -2,36 +2,26 @@
 
 use crate::args::{EvaluateArgs, Format};
 use crate::study::Study;
-use crate::{Status, files, output};
+use crate::{Status, files, fleets, output};
 use anyhow::Result;
+use navwalker::constellation::Design;
 use navwalker::ephemeris::Ephemeris;
-use navwalker::evaluate::{DopStatistics, Evaluator};
-use navwalker::report::{Align, EvaluateResult, Table, dops_csv, metrics_csv, records_csv};
-use std::path::Path;
+use navwalker::evaluate::{DopStatistics, Evaluator, Metrics};
+use navwalker::report::{
+    Align, ConstellationResult, ConstellationSummary, CsvError, EvaluateResult, Table, VERSION,
+    constellation_csv, dops_csv, metrics_csv, records_csv,
+};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     if let Some(directory) = &args.series {
         files::require_vacant(directory, args.force)?;
     }
     let study = Study::load(&args.study, &[])?;
-    let evaluator = study.evaluator()?;
-    let setup = evaluator.setup();
-    let ephemeris = Ephemeris::of_design(&args.design, setup.model, setup.grid)?;
-    let metrics = evaluator.design(&args.design)?;
-    let dops = args.dops.then(|| evaluator.dops(&ephemeris)).transpose()?;
-    if let Some(directory) = &args.series {
-        write_series(&evaluator, &ephemeris, directory)?;
-    }
-    let result = EvaluateResult::new(&args.design, metrics, dops, &study.scenario);
-    match args.format {
-        Format::Text => output::result(&text(&study, &result))?,
-        Format::Json => output::result(&serde_json::to_string_pretty(&result)?)?,
-        Format::Csv => {
-            output::result(&metrics_csv([(&result.design, &result.metrics)])?)?;
-            if let Some(dops) = &result.dops {
-                output::result(&format!("\n{}", dops_csv(dops)?))?;
-            }
-        }
+    match &args.design {
+        Some(design) => run_design(args, &study, design)?,
+        None => run_constellation(args, &study)?,
     }
     if let Some(directory) = &args.series {
         output::hint(&format!(
@@ -39,11 +29,93 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
             directory.display()
         ));
     }
-    output::hint(&format!(
-        "\nnext: navwalker validate {} --design {} --against sgp4",
-        args.study.scenario, args.design
-    ));
+    if let Some(design) = &args.design {
+        output::hint(&format!(
+            "\nnext: navwalker validate {} --design {design} --against sgp4",
+            args.study.scenario
+        ));
+    }
     Ok(Status::Done)
+}
+
+fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()> {
+    let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
+    let metrics = evaluator.design(design)?;
+    let dops = further(args, &evaluator, &ephemeris)?;
+    let result = EvaluateResult::new(design, metrics, dops, &study.scenario);
+    let csv = || metrics_csv([(&result.design, &result.metrics)]);
+    let notation = &result.design.notation;
+    let measured = (&result.metrics, result.dops.as_ref());
+    print(args, (study, notation), measured, &result, csv)
+}
+
+fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
+    let (format, fleet) = fleets::read(&args.constellation)?;
+    let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    let ephemeris = fleet.fly(setup.grid, setup.model)?;
+    let metrics = evaluator.ephemeris(&ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris)?;
+    let name = |path: &PathBuf| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
+    let result = ConstellationResult {
+        constellation: ConstellationSummary {
+            name: names.join("+"),
+            format: format.to_string(),
+            content: fleet.content().to_owned(),
+            satellites: fleet.len(),
+        },
+        metrics,
+        dops,
+        scenario: (&study.scenario).into(),
+        version: VERSION,
+    };
+    let title = format!(
+        "{} ({} satellites, {})",
+        result.constellation.name, result.constellation.satellites, result.constellation.content
+    );
+    let measured = (&result.metrics, result.dops.as_ref());
+    print(args, (study, &title), measured, &result, || {
+        constellation_csv(&result)
+    })
+}
+
+/// All dilutions and the series, as far as they were asked for.
+fn further(
+    args: &EvaluateArgs,
+    evaluator: &Evaluator,
+    ephemeris: &Ephemeris,
+) -> Result<Option<DopStatistics>> {
+    let dops = args.dops.then(|| evaluator.dops(ephemeris)).transpose()?;
+    if let Some(directory) = &args.series {
+        write_series(evaluator, ephemeris, directory)?;
+    }
+    Ok(dops)
+}
+
+fn print(
+    args: &EvaluateArgs,
+    (study, title): (&Study, &str),
+    (metrics, dops): (&Metrics, Option<&DopStatistics>),
+    result: &impl Serialize,
+    csv: impl Fn() -> Result<String, CsvError>,
+) -> Result<()> {
+    match args.format {
+        Format::Text => output::result(&text(study, title, metrics, dops)),
+        Format::Json => output::result(&serde_json::to_string_pretty(result)?),
+        Format::Csv => {
+            output::result(&csv()?)?;
+            match dops {
+                Some(dops) => output::result(&format!("\n{}", dops_csv(dops)?)),
+                None => Ok(()),
+            }
+        }
+    }
 }
 
 fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) -> Result<()> {
@@ -57,9 +129,8 @@ fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) 
     staged.commit()
 }
 
-fn text(study: &Study, result: &EvaluateResult) -> String {
+fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatistics>) -> String {
     let scenario = &study.scenario;
-    let metrics = &result.metrics;
     let mut table = Table::new(&[("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     let mut row = |name: &str, value: Option<f64>, digits: usize, note: String| {
         let value = value.map_or_else(|| "none".to_owned(), |v| format!("{v:.digits$}"));
@@ -105,13 +176,9 @@ fn text(study: &Study, result: &EvaluateResult) -> String {
         4,
         "satellites per visible satellite".to_owned(),
     );
-    let dops = result
-        .dops
-        .as_ref()
-        .map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
+    let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
     format!(
-        "{} in scenario {}\n{}{dops}",
-        result.design.notation,
+        "{title} in scenario {}\n{}{dops}",
         scenario.name,
         table.to_text()
     )

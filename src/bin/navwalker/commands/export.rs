@@ -1,18 +1,26 @@
 //! `navwalker export`.
 
 use crate::args::ExportArgs;
-use crate::study::study_and_design;
-use crate::{Status, files, output};
-use anyhow::{Context, Result};
+use crate::progress::FileCount;
+use crate::study::{Study, study_and_design};
+use crate::{Status, files, fleets, output};
+use anyhow::{Context, Result, bail};
+use navwalker::constellation::Design;
 use navwalker::formats::export::{Choices, Product, Subject, export};
-use navwalker::formats::manifest::{Manifest, Study};
+use navwalker::formats::lint::Format as LintFormat;
+use navwalker::formats::manifest::{Manifest, Study as StudyStamp};
 use navwalker::formats::metadata::ElementChoice;
+use navwalker::formats::oem;
+use navwalker::formats::recheck::{Difference, Original};
 use navwalker::frames::Frame;
 use navwalker::report::{Align, Table};
 use navwalker::time::Epoch;
+use navwalker::words::Word;
 use std::fs::{self, File};
+use std::path::PathBuf;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
+    check_choices(args)?;
     files::require_vacant(&args.out, args.force)?;
     let (study, design) = study_and_design(&args.study, &args.design)?;
     let scenario = &study.scenario;
@@ -20,40 +28,137 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         design,
         model: scenario.propagation.model,
         grid: scenario.time_grid()?,
-        study: Study {
+        study: StudyStamp {
             name: scenario.name.clone(),
             hash: study.hash()?,
         },
         originator: scenario.export.originator.clone(),
         creation: Epoch::from_utc(scenario.export.creation_date),
     };
+    let products = products(args);
     let choices = Choices {
-        frame: args.frame,
+        frame: args.frame.unwrap_or(Frame::Eme2000),
+        time_system: args.time_system,
+        omm: args.omm_syntax,
+        oem: args.oem_syntax,
+        oem_combined: args.oem_combined,
         elements: args.tle_theory,
         ccsds_version: args.ccsds_version,
         sp3_version: args.sp3_version,
         sp3_letter: args.sp3_letter,
     };
     let staged = files::StagedDirectory::new(&args.out)?;
-    let mut sink = |path: &str| {
+    let progress = FileCount::new();
+    let sink = |path: &str| {
         let path = staged.path().join(path);
         path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        progress.one_more();
         File::create(path)
     };
-    let manifest = export(&subject, &products(args), choices, &mut sink)
+    let manifest = export(&subject, &products, choices, &sink)
         .with_context(|| format!("cannot export to {}", args.out.display()))?;
+    progress.finish();
     staged.commit()?;
     output::result(&text(args, &manifest))?;
+    warn(args);
+    if args.check {
+        return check(args, &study, &subject.design, &manifest);
+    }
+    Ok(Status::Done)
+}
+
+/// Says what the products cost that were asked for.
+fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(
             "the mean motion slot holds sqrt(mu/a^3): SGP4 flies the design away from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
         );
     }
-    if args.frame == Frame::Teme {
+    if args.frame == Some(Frame::Teme) {
         output::warning("TEME is no frame of CCSDS ephemerides; not every reader takes it");
     }
-    Ok(Status::Done)
+}
+
+/// Reads the products back and prints what the scenario makes of each.
+fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest) -> Result<Status> {
+    let evaluator = study.evaluator()?;
+    let original = Original::new(&evaluator, design)?;
+    let mut table = Table::new(&[
+        ("read back", Align::Left),
+        ("position (m)", Align::Right),
+        ("at most", Align::Right),
+        ("mean visible", Align::Right),
+        ("at most", Align::Right),
+        ("mean PDOP", Align::Right),
+        ("at most", Align::Right),
+        ("", Align::Left),
+    ]);
+    let mut passed = true;
+    for (name, paths) in groups(args, manifest) {
+        let (format, fleet) = fleets::read(&paths)?;
+        // States of SGP4 have the theory and the digits of the element sets.
+        let format = if name == Product::TleStates.word() {
+            LintFormat::Tle
+        } else {
+            format
+        };
+        let found = original
+            .check(format, &fleet)
+            .with_context(|| format!("cannot check {name}"))?;
+        passed &= found.passed();
+        let cells = |difference: Option<Difference>, scale: f64| {
+            let number = |value: f64| format!("{:.2e}", value * scale);
+            let gate = difference.and_then(|difference| difference.gate);
+            [difference.map(|difference| difference.value), gate]
+                .map(|value| value.map_or_else(|| "none".to_owned(), number))
+        };
+        let mut row = vec![name];
+        row.extend(cells(Some(found.position_km), 1000.0));
+        row.extend(cells(Some(found.mean_visible), 1.0));
+        row.extend(cells(found.mean_pdop, 1.0));
+        row.push(if found.passed() { "passed" } else { "FAILED" }.to_owned());
+        table.row(row);
+    }
+    output::result(&format!("\n{}", table.to_text()))?;
+    Ok(if passed { Status::Done } else { Status::Failed })
+}
+
+/// The files that make the constellation once: those of a product, but each table for itself.
+fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
+    let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
+    for file in &manifest.files {
+        let name = if file.format == Product::Csv.word() {
+            file.path.clone()
+        } else {
+            file.format.clone()
+        };
+        let path = args.out.join(&file.path);
+        match groups.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, paths)) => paths.push(path),
+            None => groups.push((name, vec![path])),
+        }
+    }
+    groups
+}
+
+/// Refuses choices that no product of the export can keep.
+fn check_choices(args: &ExportArgs) -> Result<()> {
+    let asked = |product| args.products.contains(&product);
+    if args.oem_combined && args.oem_syntax != oem::Notation::Xml {
+        bail!("--oem-combined needs --oem-syntax xml: a KVN file holds one satellite");
+    }
+    let has_frame = [Product::Oem, Product::Opm, Product::Stk]
+        .into_iter()
+        .any(asked);
+    if let Some(frame) = args.frame
+        && asked(Product::Sp3)
+        && !has_frame
+        && frame != Frame::EarthFixed
+    {
+        bail!("SP3 is Earth-fixed; --frame {frame} cannot be combined with it");
+    }
+    Ok(())
 }
 
 /// Each product once, in the order in which it was asked for.

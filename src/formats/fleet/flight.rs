@@ -1,0 +1,220 @@
+//! From the satellites of a file to an ephemeris on the grid of a study.
+
+use super::Fleet;
+use crate::constellation::gnss::{ElementSetError, ElementSets};
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::formats::trajectory::Trajectory;
+use crate::frames::{FromTeme, State};
+use crate::orbit::{Model, PropagationError, Propagator};
+use crate::time::{Epoch, TimeGrid};
+use nalgebra::Vector3;
+use std::collections::HashSet;
+use thiserror::Error;
+
+/// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
+/// 10 ns of SP3 and the microseconds of some writers.
+const SAME_INSTANT_S: f64 = 1e-6;
+
+/// Positions from which a velocity is derived.
+const NEIGHBOURS: usize = 9;
+
+/// Why the satellites of a file do not fly a study.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FleetError {
+    /// No satellite.
+    #[error("there is no satellite")]
+    Empty,
+    /// Element sets that make no constellation.
+    #[error(transparent)]
+    Sets(#[from] ElementSetError),
+    /// A model that refuses the elements.
+    #[error(transparent)]
+    Flight(#[from] EphemerisError),
+    /// Two satellites of one name.
+    #[error("satellite {0} is given twice")]
+    Repeated(String),
+    /// A satellite without a sample at an instant of the study.
+    #[error(
+        "{name} has no state at {missing}; its {samples} states run from {first} to {last}: \
+         change time.epoch, time.duration-h or time.step-s"
+    )]
+    NotCovered {
+        /// The satellite.
+        name: String,
+        /// First instant without a state.
+        missing: Epoch,
+        /// Number of its states.
+        samples: usize,
+        /// The first of them.
+        first: Epoch,
+        /// The last.
+        last: Epoch,
+    },
+}
+
+/// States at the instants of a grid, TEME.
+struct Samples {
+    step_s: f64,
+    states: Vec<State>,
+}
+
+impl Propagator for Samples {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let k = (elapsed_s / self.step_s).round();
+        let missing = PropagationError::NotSampled { elapsed_s };
+        if !(k >= 0.0 && (elapsed_s - k * self.step_s).abs() <= SAME_INSTANT_S) {
+            return Err(missing);
+        }
+        self.states.get(k as usize).copied().ok_or(missing)
+    }
+}
+
+/// A propagator whose elements hold at another instant than the epoch of the study.
+struct Shifted {
+    propagator: Box<dyn Propagator>,
+    /// Seconds from the epoch of the elements to that of the study.
+    ahead_s: f64,
+}
+
+impl Propagator for Shifted {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        self.propagator.state_at(elapsed_s + self.ahead_s)
+    }
+}
+
+impl Fleet {
+    /// The satellites on the grid of a study; `model` flies mean elements.
+    ///
+    /// # Errors
+    /// When there is no satellite or one twice, a theory refuses one, or its samples do not cover
+    /// the grid.
+    pub fn fly(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, FleetError> {
+        if self.is_empty() {
+            return Err(FleetError::Empty);
+        }
+        let satellites = match self {
+            Self::Sets(sets) => {
+                let sets = ElementSets::new("element sets", sets)?;
+                return Ok(Ephemeris::of_gnss(sets.satellites(grid.epoch()), grid));
+            }
+            Self::Elements(rows) => {
+                let fly = |row: &super::ElementsRow| {
+                    let propagator = model.propagator(&row.elements, row.epoch);
+                    let propagator = propagator.map_err(|source| EphemerisError {
+                        name: row.name.clone(),
+                        source,
+                    })?;
+                    let ahead_s = grid.epoch().seconds_since(row.epoch);
+                    let shifted = Shifted {
+                        propagator,
+                        ahead_s,
+                    };
+                    Ok(flown(&row.name, shifted))
+                };
+                rows.iter()
+                    .map(fly)
+                    .collect::<Result<Vec<_>, FleetError>>()?
+            }
+            Self::Sampled(trajectories) => sampled(trajectories, grid)?,
+        };
+        let mut names = HashSet::new();
+        match satellites.iter().find(|one| !names.insert(&one.name)) {
+            Some(twice) => Err(FleetError::Repeated(twice.name.clone())),
+            None => Ok(Ephemeris::new(grid, satellites)),
+        }
+    }
+}
+
+fn flown(name: &str, propagator: impl Propagator + 'static) -> Flown {
+    Flown {
+        name: name.to_owned(),
+        slot: None,
+        propagator: Box::new(propagator),
+    }
+}
+
+/// Satellites of one file share its frame, so that its rotations are kept from one to the next.
+fn sampled(trajectories: &[Trajectory], grid: TimeGrid) -> Result<Vec<Flown>, FleetError> {
+    let mut rotations: Vec<FromTeme> = Vec::new();
+    let mut frame = None;
+    let mut satellites = Vec::with_capacity(trajectories.len());
+    for trajectory in trajectories {
+        if frame != Some(trajectory.frame) {
+            let rotation = |t| FromTeme::to(trajectory.frame, grid.epoch(), t);
+            rotations = grid.iter().map(rotation).collect();
+            frame = Some(trajectory.frame);
+        }
+        let states = grid
+            .iter()
+            .zip(&rotations)
+            .map(|(elapsed_s, rotation)| {
+                Ok(rotation.undo(state_at(trajectory, grid.epoch(), elapsed_s)?))
+            })
+            .collect::<Result<_, FleetError>>()?;
+        let samples = Samples {
+            step_s: grid.step_s(),
+            states,
+        };
+        satellites.push(flown(&trajectory.name, samples));
+    }
+    Ok(satellites)
+}
+
+/// The sample of an instant, in the frame of the file.
+fn state_at(trajectory: &Trajectory, epoch: Epoch, elapsed_s: f64) -> Result<State, FleetError> {
+    let states = &trajectory.states;
+    let (Some((first, _)), Some((last, _))) = (states.first(), states.last()) else {
+        return Err(FleetError::Empty);
+    };
+    let after = |at: &Epoch| at.seconds_since(epoch) - elapsed_s;
+    let next = states.partition_point(|(at, _)| after(at) < -SAME_INSTANT_S);
+    match states.get(next) {
+        Some((at, state)) if after(at) <= SAME_INSTANT_S => Ok(*state),
+        _ => Err(FleetError::NotCovered {
+            name: trajectory.name.clone(),
+            missing: epoch.plus_seconds(elapsed_s),
+            samples: states.len(),
+            first: *first,
+            last: *last,
+        }),
+    }
+}
+
+/// Velocities of positions at distinct instants, km/s: at each the derivative of the polynomial
+/// through the nine nearest. None for fewer than two.
+pub(super) fn velocities(positions: &[(Epoch, Vector3<f64>)]) -> Option<Vec<Vector3<f64>>> {
+    if positions.len() < 2 {
+        return None;
+    }
+    let count = positions.len().min(NEIGHBOURS);
+    let derivative = |at: usize| {
+        let from = at.saturating_sub(count / 2).min(positions.len() - count);
+        let window = &positions[from..from + count];
+        derivative_at(window, at - from)
+    };
+    let found: Vec<_> = (0..positions.len()).map(derivative).collect();
+    let all_finite = found.iter().flat_map(Vector3::iter).all(|x| x.is_finite());
+    all_finite.then_some(found)
+}
+
+/// Derivative at node `j` of the Lagrange polynomial: the sum of f_i l_i'(t_j).
+fn derivative_at(window: &[(Epoch, Vector3<f64>)], j: usize) -> Vector3<f64> {
+    let t: Vec<f64> = window
+        .iter()
+        .map(|(at, _)| at.seconds_since(window[j].0))
+        .collect();
+    let mut sum = Vector3::zeros();
+    for (i, (_, position)) in window.iter().enumerate() {
+        let others = || (0..t.len()).filter(move |m| *m != i && *m != j);
+        let weight: f64 = if i == j {
+            others().map(|m| 1.0 / (t[j] - t[m])).sum()
+        } else {
+            others()
+                .map(|m| (t[j] - t[m]) / (t[i] - t[m]))
+                .product::<f64>()
+                / (t[i] - t[j])
+        };
+        sum += position * weight;
+    }
+    sum
+}
