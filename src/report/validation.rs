@@ -193,6 +193,9 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
             digits(found.after_km),
             digits(found.before_km)
         ),
+        None if comparison.agrees => {
+            "the states are those of the design, to a decimetre".to_owned()
+        }
         None => {
             "no known convention explains the difference better than the design itself".to_owned()
         }

@@ -28,8 +28,8 @@ use nalgebra::Vector3;
 use serde::Serialize;
 use tracks::{Track, tracks};
 
-/// Distance within which a file is the design's own, km: the centimetre of DESIGN's contract, and
-/// what nine decimals of a degree of rotation leave.
+/// Distance within which a file is the design's own, km: a decimetre, above what the digits of any
+/// format of states lose.
 const SAME_KM: f64 = 1e-4;
 
 /// How a satellite of the file differs from its slot.
@@ -62,6 +62,8 @@ pub struct FileComparison {
     pub unmatched_slots: Vec<String>,
     /// Objects without a slot.
     pub unmatched_objects: Vec<String>,
+    /// Whether all that was compared is the design's own to a decimetre.
+    pub agrees: bool,
     /// The satellites, in the order of the slots.
     pub satellites: Vec<SatelliteDifference>,
     /// The convention that explains the difference, if one does, and what it leaves.
@@ -116,6 +118,7 @@ pub fn against_file(
         matched_by: matching.how().to_owned(),
         unmatched_slots: matching.unmatched_slots(&ours),
         unmatched_objects: matching.unmatched_objects(&tracks),
+        agrees: worst <= SAME_KM,
         satellites,
         explanation,
     });
