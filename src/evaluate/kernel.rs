@@ -160,7 +160,7 @@ impl Kernel {
         rotations: &[EarthRotation],
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
-        let tiles = Tiles::new(&setup.sites, setup.mask);
+        let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
         let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
         let scene = Scene {
             tiles,

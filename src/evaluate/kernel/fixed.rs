@@ -1,10 +1,13 @@
 //! The GNSS part of the geometry, which no design changes.
 
 use super::super::Setup;
+use super::candidates::{Candidates, bits};
 use super::flight::Positions;
 use super::instructions::{InstructionSet, Work};
-use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, split};
-use super::tiles::{Tile, Tiles};
+use super::lanes::{
+    FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, nearest, remainder,
+};
+use super::tiles::{Horizon, Tile, Tiles};
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -139,7 +142,7 @@ impl Fixed {
         for system in &self.systems {
             let mut positions = Positions::new(system.satellites().len());
             positions.ask(system, elapsed_s, rotation)?;
-            systems.push(positions);
+            systems.push(System::new(positions, &tiles.fixed_horizon));
         }
         self.instructions.run(Make {
             fixed: self,
@@ -151,19 +154,17 @@ impl Fixed {
     }
 
     #[inline(always)]
-    fn push_tile(&self, tile: &Tile, systems: &[Positions], to: &mut FixedTiles) {
+    fn push_tile(&self, tile: &Tile, systems: &[System], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
         let mut surplus = [0_u8; LANES];
-        let groups: &[&[Positions]] = match self.clocks {
-            Clocks::PerSystem => &systems.chunks(1).collect::<Vec<_>>(),
-            Clocks::Shared => &[systems],
+        let together = match self.clocks {
+            Clocks::PerSystem => 1,
+            Clocks::Shared => systems.len(),
         };
-        for group in groups {
+        for group in systems.chunks(together) {
             let mut sums = Sums::<f64>::zero();
-            for positions in *group {
-                for n in 0..positions.count {
-                    sums.add(&tile.double, positions.at(n), &self.mask);
-                }
+            for system in group {
+                system.add_to(&mut sums, tile, &self.mask);
             }
             add_group(&sums, &mut normal);
             match self.clocks {
@@ -176,10 +177,40 @@ impl Fixed {
                 Clocks::Shared => to.shared.push(shared_clock(&sums)),
             }
         }
-        let parts = normal.each_ref().map(split);
-        to.normals.push(parts.map(|(nearest, _)| nearest));
-        to.remainders.push(parts.map(|(_, remainder)| remainder));
+        to.normals
+            .push(std::array::from_fn(|n| nearest(&normal[n])));
+        to.remainders
+            .push(std::array::from_fn(|n| remainder(&normal[n])));
         to.surpluses.push(surplus);
+    }
+}
+
+/// One system at one sample.
+struct System {
+    positions: Positions,
+    candidates: Candidates,
+    slack_km: f32,
+}
+
+impl System {
+    fn new(positions: Positions, horizon: &Horizon) -> Self {
+        let mut candidates = Candidates::with_capacity(positions.count);
+        candidates.fill(&positions, horizon);
+        Self {
+            slack_km: Horizon::cap_slack_km(&positions),
+            positions,
+            candidates,
+        }
+    }
+
+    /// Adds the satellites that the points of a tile see.
+    #[inline(always)]
+    fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
+        for block in self.candidates.blocks() {
+            for n in bits(block.inside(&tile.fixed_cap, self.slack_km)) {
+                sums.add(&tile.double, self.positions.at(block.index(n)), mask);
+            }
+        }
     }
 }
 
@@ -187,7 +218,7 @@ impl Fixed {
 struct Make<'a> {
     fixed: &'a Fixed,
     tiles: &'a [Tile],
-    systems: &'a [Positions],
+    systems: &'a [System],
     to: &'a mut FixedTiles,
 }
 
@@ -220,13 +251,13 @@ fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
 
 #[inline(always)]
 fn shared_clock(sums: &Sums<f64>) -> SharedClock {
-    let parts = [&sums.x, &sums.y, &sums.z].map(|sum| {
+    let means = [&sums.x, &sums.y, &sums.z].map(|sum| {
         let mean = |l: usize| sum.0[l] / f64::from(sums.count.0[l].max(1));
-        split(&Lanes(std::array::from_fn(mean)))
+        Lanes(std::array::from_fn(mean))
     });
     SharedClock {
-        mean: parts.map(|(nearest, _)| nearest),
-        remainder: parts.map(|(_, remainder)| remainder),
+        mean: means.each_ref().map(nearest),
+        remainder: means.each_ref().map(remainder),
         count: sums.count,
     }
 }

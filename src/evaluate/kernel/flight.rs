@@ -1,9 +1,12 @@
 //! Earth-fixed positions of all satellites at one sample.
 //!
-//! The satellites of a pattern under a secular model share a, i and all rates. Their angles are
-//! those of the epoch plus one angle of the sample, so that two sines and cosines a sample turn
-//! the whole pattern by the addition theorems; the node and the Earth turn about one axis and
-//! are one angle. Anything else is asked of its propagators one by one.
+//! The satellites of a pattern under a secular model share a, e, i, the perigee and all rates. Their
+//! angles are those of the epoch plus one angle of the sample, so that a few sines and cosines a
+//! sample turn the whole pattern by the addition theorems; the node and the Earth turn about one
+//! axis and are one angle. Kepler's equation is solved in lanes, without a sine ([`anomaly`]).
+//! Anything else is asked of its propagators one by one.
+
+mod anomaly;
 
 use crate::constellation::{Design, Satellite};
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -78,25 +81,30 @@ impl Positions {
     }
 }
 
-/// A circular pattern under a secular model.
+/// A pattern under a secular model.
 #[derive(Debug, Clone)]
 pub(super) struct PatternFlight {
     semi_major_axis_km: f64,
+    eccentricity: f64,
     sin_i: f64,
     cos_i: f64,
     raan_rate_rad_s: f64,
-    latitude_rate_rad_s: f64,
+    /// Of what `PatternBlock` calls the phase.
+    phase_rate_rad_s: f64,
+    arg_perigee_rad: f64,
+    arg_perigee_rate_rad_s: f64,
     blocks: Vec<PatternBlock>,
 }
 
-/// Cosines and sines of node and argument of latitude at the epoch.
+/// Cosines and sines of node and phase at the epoch. The phase is the mean anomaly, and in a
+/// circular pattern, which has no perigee, the argument of latitude.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 struct PatternBlock {
     cos_node: [f64; BLOCK],
     sin_node: [f64; BLOCK],
-    cos_latitude: [f64; BLOCK],
-    sin_latitude: [f64; BLOCK],
+    cos_phase: [f64; BLOCK],
+    sin_phase: [f64; BLOCK],
 }
 
 impl PatternBlock {
@@ -105,25 +113,38 @@ impl PatternBlock {
             std::array::from_fn(|n| satellites.get(n).map_or(f64::NAN, |s| function(of(s))))
         };
         let node = |s: &Satellite| s.elements.raan_rad;
-        let latitude = |s: &Satellite| s.elements.arg_perigee_rad + s.elements.mean_anomaly_rad;
+        let phase: fn(&Satellite) -> f64 = |s| match s.elements.eccentricity {
+            0.0 => s.elements.arg_perigee_rad + s.elements.mean_anomaly_rad,
+            _ => s.elements.mean_anomaly_rad,
+        };
         Self {
             cos_node: angle(node, f64::cos),
             sin_node: angle(node, f64::sin),
-            cos_latitude: angle(latitude, f64::cos),
-            sin_latitude: angle(latitude, f64::sin),
+            cos_phase: angle(phase, f64::cos),
+            sin_phase: angle(phase, f64::sin),
         }
     }
 
+    /// Positions of the satellites; `in_plane` takes cosine and sine of the phase to the place
+    /// along the node and a quarter of a turn ahead of it, km.
     #[inline(always)]
-    fn fly(&self, orbit: &PatternFlight, turn: &Turn, to: &mut PositionBlock) {
-        let (a, sin_i, cos_i) = (orbit.semi_major_axis_km, orbit.sin_i, orbit.cos_i);
+    fn fly(
+        &self,
+        orbit: &PatternFlight,
+        turn: &Turn,
+        in_plane: impl Fn(f64, f64) -> (f64, f64),
+        to: &mut PositionBlock,
+    ) {
+        let (sin_i, cos_i) = (orbit.sin_i, orbit.cos_i);
         for n in 0..BLOCK {
             let (cos_o, sin_o) = (self.cos_node[n], self.sin_node[n]);
-            let (cos_u, sin_u) = (self.cos_latitude[n], self.sin_latitude[n]);
+            let (cos_p, sin_p) = (self.cos_phase[n], self.sin_phase[n]);
             let cos_node = cos_o * turn.cos_node - sin_o * turn.sin_node;
             let sin_node = sin_o * turn.cos_node + cos_o * turn.sin_node;
-            let along = a * (cos_u * turn.cos_latitude - sin_u * turn.sin_latitude);
-            let ahead = a * (sin_u * turn.cos_latitude + cos_u * turn.sin_latitude);
+            let (along, ahead) = in_plane(
+                cos_p * turn.cos_phase - sin_p * turn.sin_phase,
+                sin_p * turn.cos_phase + cos_p * turn.sin_phase,
+            );
             let level = ahead * cos_i;
             to.x[n] = cos_node * along - sin_node * level;
             to.y[n] = sin_node * along + cos_node * level;
@@ -133,7 +154,8 @@ impl PatternBlock {
 }
 
 impl PatternFlight {
-    /// The flight of a design; `None` when it is not circular or its model not secular.
+    /// The flight of a design; `None` when its model is not secular or its ellipse too long for
+    /// the lanes.
     pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
         let satellites = design.satellites();
         let first = satellites.first()?.elements;
@@ -142,49 +164,76 @@ impl PatternFlight {
             Model::TwoBody => SecularRates::two_body(&first),
             _ => return None,
         };
-        if design.eccentricity() != 0.0 {
+        let eccentricity = design.eccentricity();
+        if eccentricity > anomaly::LARGEST_ECCENTRICITY {
             return None;
         }
         let (sin_i, cos_i) = first.inclination_rad.sin_cos();
+        let phase_rate_rad_s = match eccentricity {
+            0.0 => rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
+            _ => rates.mean_anomaly_rad_s,
+        };
         Some(Self {
             semi_major_axis_km: first.semi_major_axis_km,
+            eccentricity,
             sin_i,
             cos_i,
             raan_rate_rad_s: rates.raan_rad_s,
-            latitude_rate_rad_s: rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
+            phase_rate_rad_s,
+            arg_perigee_rad: first.arg_perigee_rad,
+            arg_perigee_rate_rad_s: rates.arg_perigee_rad_s,
             blocks: satellites.chunks(BLOCK).map(PatternBlock::new).collect(),
         })
     }
 
     /// What turns the pattern from the epoch to a sample.
     pub(super) fn turn(&self, elapsed_s: f64, rotation: EarthRotation) -> Turn {
-        let (sin_latitude, cos_latitude) = (self.latitude_rate_rad_s * elapsed_s).sin_cos();
+        let (sin_phase, cos_phase) = (self.phase_rate_rad_s * elapsed_s).sin_cos();
         let (sin_raan, cos_raan) = (self.raan_rate_rad_s * elapsed_s).sin_cos();
+        let arg_perigee_rad = self.arg_perigee_rad + self.arg_perigee_rate_rad_s * elapsed_s;
+        let (sin_perigee, cos_perigee) = arg_perigee_rad.sin_cos();
         let node = rotation.to_earth_fixed(Vector3::new(cos_raan, sin_raan, 0.0));
         Turn {
             cos_node: node.x,
             sin_node: node.y,
-            cos_latitude,
-            sin_latitude,
+            cos_phase,
+            sin_phase,
+            cos_perigee,
+            sin_perigee,
         }
     }
 
     /// Positions at a sample.
     #[inline(always)]
     pub(super) fn fly(&self, turn: &Turn, positions: &mut Positions) {
-        for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
-            from.fly(self, turn, to);
+        let (a, e) = (self.semi_major_axis_km, self.eccentricity);
+        let blocks = self.blocks.iter().zip(&mut positions.blocks);
+        if e > 0.0 {
+            let semi_minor_axis_km = a * (1.0 - e * e).sqrt();
+            let ellipse = |cos_mean: f64, sin_mean: f64| {
+                let (cos_e, sin_e) = anomaly::eccentric(cos_mean, sin_mean, e);
+                let (x, y) = (a * (cos_e - e), semi_minor_axis_km * sin_e);
+                let (cos_w, sin_w) = (turn.cos_perigee, turn.sin_perigee);
+                (cos_w * x - sin_w * y, sin_w * x + cos_w * y)
+            };
+            blocks.for_each(|(from, to)| from.fly(self, turn, ellipse, to));
+        } else {
+            let circle =
+                |cos_latitude: f64, sin_latitude: f64| (a * cos_latitude, a * sin_latitude);
+            blocks.for_each(|(from, to)| from.fly(self, turn, circle, to));
         }
-        positions.nearest_km = self.semi_major_axis_km;
-        positions.farthest_km = self.semi_major_axis_km;
+        positions.nearest_km = a * (1.0 - e);
+        positions.farthest_km = a * (1.0 + e);
     }
 }
 
-/// The rotation of a pattern from its epoch to a sample.
+/// The rotation of a pattern from its epoch to a sample, and its perigee then.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Turn {
     cos_node: f64,
     sin_node: f64,
-    cos_latitude: f64,
-    sin_latitude: f64,
+    cos_phase: f64,
+    sin_phase: f64,
+    cos_perigee: f64,
+    sin_perigee: f64,
 }

@@ -37,6 +37,8 @@ pub(super) trait Real:
     /// A number from its f32 nearest and what that leaves over.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
+    /// One over the root of a squared range.
+    fn inverse_root(self) -> Self;
     /// Whether a satellite at this height over the horizon plane and this squared range is at or
     /// above the mask, and whether it may be; `sine` is height over range.
     fn above(mask: &MaskTerms<Self>, height: Self, range2: Self, sine: Self) -> (bool, bool);
@@ -66,6 +68,11 @@ impl Real for f32 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        1.0 / self.sqrt()
     }
 
     /// What may be but need not be above the mask is looked at again.
@@ -101,6 +108,14 @@ impl Real for f64 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    /// That of f32 and one step of Newton, which squares its error of 1e-7: 2e-14, at a third of
+    /// the time of a root and a division in f64.
+    #[inline(always)]
+    fn inverse_root(self) -> Self {
+        let seed = f64::from((self as f32).inverse_root());
+        seed * (1.5 - 0.5 * self * seed * seed)
     }
 
     /// The comparison of [`Mask::line_of_sight`], operation by operation.
@@ -208,7 +223,7 @@ impl<R: Real> Sums<R> {
             let dz = satellite[2] - origin_z.0[l];
             let height = up_x.0[l] * dx + up_y.0[l] * dy + up_z.0[l] * dz;
             let range2 = dx * dx + dy * dy + dz * dz;
-            let inverse = R::ONE / range2.root();
+            let inverse = range2.inverse_root();
             let sine = height * inverse;
             let (seen, possible) = R::above(mask, height, range2, sine);
             let scale = if seen { inverse } else { R::ZERO };
@@ -280,11 +295,18 @@ impl FixedTile<'_> {
     }
 }
 
-/// Numbers as the f32 nearest to each and what that leaves over.
-pub(super) fn split(values: &Lanes<f64>) -> (Lanes<f32>, Lanes<f32>) {
-    let nearest = values.0.map(|value| value as f32);
-    let remainder = std::array::from_fn(|l| (values.0[l] - f64::from(nearest[l])) as f32);
-    (Lanes(nearest), Lanes(remainder))
+/// The f32 nearest to each number.
+#[inline(always)]
+pub(super) fn nearest(values: &Lanes<f64>) -> Lanes<f32> {
+    Lanes(std::array::from_fn(|l| values.0[l] as f32))
+}
+
+/// What the nearest f32 leaves over.
+#[inline(always)]
+pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
+    Lanes(std::array::from_fn(|l| {
+        (values.0[l] - f64::from(values.0[l] as f32)) as f32
+    }))
 }
 
 /// PDOP at the points of a tile, and satellites less clock states.

@@ -44,6 +44,8 @@ pub(super) struct Tile {
     pub(super) single: SiteLanes<f32>,
     pub(super) double: SiteLanes<f64>,
     pub(super) cap: Cap,
+    /// The same for the GNSS, which may have a mask of its own.
+    pub(super) fixed_cap: Cap,
 }
 
 /// Tiles next to each other.
@@ -59,6 +61,8 @@ pub(super) struct Tiles {
     pub(super) tiles: Vec<Tile>,
     pub(super) groups: Vec<Group>,
     pub(super) horizon: Horizon,
+    /// That of the GNSS.
+    pub(super) fixed_horizon: Horizon,
 }
 
 /// What bounds the sight of all points together.
@@ -199,13 +203,13 @@ impl Cap {
 }
 
 impl Tiles {
-    pub(super) fn new(sites: &[Site], mask: Mask) -> Self {
-        let horizon = Horizon::new(sites, mask);
+    pub(super) fn new(sites: &[Site], mask: Mask, fixed_mask: Mask) -> Self {
         let mut members: Vec<u32> = (0..sites.len() as u32).collect();
         let mut tiles = Self {
             tiles: Vec::with_capacity(sites.len().div_ceil(LANES)),
             groups: Vec::new(),
-            horizon,
+            horizon: Horizon::new(sites, mask),
+            fixed_horizon: Horizon::new(sites, fixed_mask),
         };
         tiles.split(sites, &mut members);
         tiles
@@ -240,10 +244,12 @@ impl Tiles {
             self.split_group(sites, right);
             return;
         }
+        let circle = Circle::around(sites, members);
         self.tiles.push(Tile {
             single: site_lanes(sites, members, |x| x as f32, f32::NAN),
             double: site_lanes(sites, members, |x| x, f64::NAN),
-            cap: self.horizon.cap(Circle::around(sites, members)),
+            cap: self.horizon.cap(circle),
+            fixed_cap: self.fixed_horizon.cap(circle),
             members: members.to_vec(),
         });
     }
