@@ -27,6 +27,12 @@ pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
 
+/// Gravitational parameter that users of GPS ephemerides compute with, m³/s² (IS-GPS-200, 20.3.3.4.3.3).
+pub const GPS_MU_M3_S2: f64 = 3.986_005e14;
+
+/// Rotation rate of the Earth that they compute with, rad/s (the same place).
+pub const GPS_EARTH_RATE_RAD_S: f64 = 7.292_115_146_7e-5;
+
 words! {
     /// What ground points, their heights and their verticals refer to.
     Surface {

@@ -12,6 +12,7 @@ pub mod finding;
 pub mod fit;
 pub mod fleet;
 pub mod geojson;
+pub mod gmat;
 pub mod interpolation;
 mod json;
 pub mod kml;
@@ -35,6 +36,7 @@ pub mod tle;
 pub mod tracks;
 pub mod trajectory;
 mod xml;
+pub mod yuma;
 
 pub use element_set::element_set;
 pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};
@@ -62,6 +64,16 @@ pub enum WriteError {
     /// A product that shows a scenario, without one.
     #[error("{0} shows the whole scenario; it needs the region and the GNSS")]
     NoScene(&'static str),
+    /// Something of the scenario that the format has no words for.
+    #[error("{product} cannot say {what}; {instead}")]
+    CannotSay {
+        /// The product.
+        product: &'static str,
+        /// What it cannot say.
+        what: String,
+        /// What to do.
+        instead: &'static str,
+    },
     /// More ground points than a viewer loads.
     #[error(
         "{points} ground points are more than a viewer loads ({} for {product}); use a coarser \

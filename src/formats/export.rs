@@ -1,6 +1,7 @@
 //! An export: the files of the products that are asked for, and the manifest that names them.
 
 mod products;
+mod rebuilt;
 mod scenes;
 mod source;
 
@@ -32,7 +33,7 @@ words! {
         Opm = "opm",
         /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c).
         Sp3 = "sp3",
-        /// STK ephemerides, one file for each satellite.
+        /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
         Stk = "stk",
         /// Tables of mean elements and of states.
         Csv = "csv",
@@ -42,6 +43,10 @@ words! {
         Geojson = "geojson",
         /// KML: the same for Google Earth.
         Kml = "kml",
+        /// GMAT: a script that flies the design under J2 alone.
+        Gmat = "gmat",
+        /// YUMA almanacs of the nominal GNSS.
+        Yuma = "yuma",
     }
 }
 
@@ -159,11 +164,13 @@ pub fn export_scene(
             Product::Oem => source.oem(&files)?,
             Product::Opm => source.opm(&files)?,
             Product::Sp3 => source.sp3(&files)?,
-            Product::Stk => source.stk(&files)?,
+            Product::Stk => source.stk_with(&files, scene)?,
             Product::Csv => source.csv(&files)?,
             Product::Czml => source.czml(&files, scene.ok_or_else(lacking)?)?,
             Product::Geojson => source.geojson(&files, scene.ok_or_else(lacking)?)?,
             Product::Kml => source.kml(&files, scene.ok_or_else(lacking)?)?,
+            Product::Gmat => source.gmat(&files)?,
+            Product::Yuma => source.yuma(&files, scene.ok_or_else(lacking)?)?,
         });
     }
     let manifest = source.manifest(entries);

@@ -21,7 +21,13 @@ use std::fs::{self, File};
 use std::path::PathBuf;
 
 /// The products that show or rebuild the whole scenario.
-const SCENES: [Product; 3] = [Product::Czml, Product::Geojson, Product::Kml];
+const SCENES: [Product; 5] = [
+    Product::Czml,
+    Product::Geojson,
+    Product::Kml,
+    Product::Stk,
+    Product::Yuma,
+];
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
@@ -139,8 +145,9 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
 
 /// Whether a file holds satellites that can be read.
 fn is_read_back(file: &FileEntry) -> bool {
-    let is = |product: Product| file.format == product.word();
-    !(is(Product::Geojson) || is(Product::Kml))
+    let unread = [Product::Geojson, Product::Kml, Product::Gmat, Product::Yuma];
+    let is = |product: &Product| file.format == product.word();
+    !(unread.iter().any(is) || file.path.starts_with("stk-scenario/"))
 }
 
 /// The files that make the constellation once: those of a product, but each table for itself.
