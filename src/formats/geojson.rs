@@ -5,11 +5,10 @@
 //! `FeatureCollection`.
 
 use super::WriteError;
-use super::scene::{Scale, Scene, colour_of, shown};
+use super::scene::{Scale, Scene, colour_of, point_place, shown};
 use super::shapes::{Place, cell_rings};
 use super::tracks::Ground;
 use crate::evaluate::PointMetrics;
-use crate::units::round_decimal;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -26,7 +25,7 @@ pub fn write_region(out: &mut impl Write, scene: &Scene<'_>) -> Result<(), Write
     let features = points.iter().map(|point| {
         let geometry = match scene.cell(point) {
             Some(corners) => areas(&cell_rings(corners)),
-            None => json!({"type": "Point", "coordinates": centre(point)}),
+            None => json!({"type": "Point", "coordinates": point_place(point)}),
         };
         feature(&geometry, &point_properties(point, scale.as_ref()))
     });
@@ -72,12 +71,6 @@ fn areas(rings: &[Vec<Place>]) -> Value {
             json!({"type": "MultiPolygon", "coordinates": polygons})
         }
     }
-}
-
-/// The point within ±180°.
-fn centre(point: &PointMetrics) -> Place {
-    let longitude = (point.longitude_deg + 180.0).rem_euclid(360.0) - 180.0;
-    [round_decimal(longitude, 9), point.latitude_deg]
 }
 
 /// `fill` is the colour by mean PDOP, as viewers that follow simplestyle show it.

@@ -43,7 +43,7 @@ pub fn script_name(name: &str) -> String {
 pub fn calendar(epoch: Epoch) -> Option<String> {
     let utc = epoch.utc();
     let milliseconds = utc.nanosecond() / 1_000_000;
-    (utc.nanosecond() % 1_000_000 == 0).then(|| {
+    utc.nanosecond().is_multiple_of(1_000_000).then(|| {
         let month = super::stk::MONTHS[utc.month0() as usize];
         format!(
             "{:02} {month} {} {:02}:{:02}:{:02}.{milliseconds:03}",

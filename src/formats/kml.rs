@@ -5,7 +5,7 @@
 //! as `aabbggrr` (16.5). Areas and lines are cut at the antimeridian, which viewers do not do alike.
 
 use super::WriteError;
-use super::scene::{Scale, Scene, UNSOLVED, colour_of, plane_colour, shown};
+use super::scene::{Scale, Scene, UNSOLVED, colour_of, plane_colour, point_place, shown};
 use super::shapes::{Place, cell_rings};
 use super::tracks::Ground;
 use crate::constellation::Design;
@@ -127,10 +127,7 @@ fn place(
             .iter()
             .map(|ring| polygon(ring))
             .collect(),
-        None => format!(
-            "<Point>{}</Point>",
-            coordinates(&[[point.longitude_deg, point.latitude_deg]])
-        ),
+        None => format!("<Point>{}</Point>", coordinates(&[point_place(point)])),
     };
     let (line, area) = (hex(colour, 0xff), hex(colour, CELL_OPACITY));
     write!(

@@ -158,6 +158,16 @@ impl<'a> Scene<'a> {
     }
 }
 
+/// A longitude in [-180°, 180°).
+pub(super) fn wrapped(longitude_deg: f64) -> f64 {
+    round_decimal((longitude_deg + 180.0).rem_euclid(360.0) - 180.0, 9)
+}
+
+/// Where a point lies on a map.
+pub(super) fn point_place(point: &PointMetrics) -> Place {
+    [wrapped(point.longitude_deg), point.latitude_deg]
+}
+
 /// A point's metric with the digits that a map needs.
 pub(super) fn shown(value: f64) -> f64 {
     round_decimal(value, 4)

@@ -1,8 +1,11 @@
 //! What can be typed.
 
 mod look;
+mod products;
 
 pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
+
+use products::PRODUCTS;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
@@ -150,18 +153,6 @@ pub(crate) enum Command {
         out: Option<PathBuf>,
     },
 }
-
-/// What `--as` takes.
-const PRODUCTS: &str = "\
-Products:
-  tle         two-line element sets with names (SGP4), one file
-  omm         CCSDS Orbit Mean-Elements Messages (SGP4): kvn, xml, json or csv
-  oem         CCSDS Orbit Ephemeris Messages: kvn or xml
-  opm         CCSDS Orbit Parameter Messages: state, osculating and mean elements at the epoch
-  sp3         SP3-c or -d, positions and velocities in GPS time, Earth-fixed
-  stk         STK ephemerides (.e), one file for each satellite
-  csv         tables of mean elements and of states, TEME and Earth-fixed
-  tle-states  table of what SGP4 makes of the element sets as written";
 
 /// Which study a command works on.
 #[derive(Debug, Clone, Args)]

@@ -6,7 +6,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
 use crate::formats::sampled::Sampled;
-use crate::formats::scene::{Scale, Scene, colour_of, plane_colour, shown};
+use crate::formats::scene::{Scale, Scene, colour_of, plane_colour, point_place, shown, wrapped};
 use crate::formats::shapes::Place;
 use crate::frames::Frame;
 use crate::ground::Grid;
@@ -56,7 +56,7 @@ pub fn write(
     let mut worst_km = packets.satellites(&shown, ephemeris, &|satellite| {
         design_look(satellite, design)
     })?;
-    let mut ids = std::collections::HashMap::new();
+    let mut ids = std::collections::BTreeMap::new();
     for (system, satellites) in scene.systems() {
         // Two files of one name are two systems.
         let count = ids.entry(system.name().to_owned()).or_insert(0_usize);
@@ -370,18 +370,12 @@ fn place(scene: &Scene<'_>, scale: Option<&Scale>, (n, point): (usize, &PointMet
             });
         }
         None => {
-            let longitude = wrapped(point.longitude_deg);
-            packet["position"] =
-                json!({"cartographicDegrees": [longitude, point.latitude_deg, 0.0]});
+            let [longitude, latitude] = point_place(point);
+            packet["position"] = json!({"cartographicDegrees": [longitude, latitude, 0.0]});
             packet["point"] = json!({"pixelSize": 8, "color": rgba(colour, 255)});
         }
     }
     packet
-}
-
-/// A longitude in [-180°, 180°).
-fn wrapped(longitude_deg: f64) -> f64 {
-    round_decimal((longitude_deg + 180.0).rem_euclid(360.0) - 180.0, 9)
 }
 
 /// West, south, east and north of a cell within ±180°; across the antimeridian east is less than west.
@@ -453,7 +447,7 @@ fn legend(grid: &Grid, scale: Option<&Scale>) -> Vec<Value> {
     let label = |(k, (value, colour)): (usize, &(f64, [u8; 3]))| {
         let longitude = wrapped(west + (k as f64 + 0.5) * width);
         let text = if k == 0 {
-            format!("mean PDOP {value:.2}")
+            format!("mean PDOP\n{value:.2}")
         } else {
             format!("{value:.2}")
         };

@@ -71,8 +71,10 @@ pub(crate) fn in_memory(
     let sink = |path: &str| Ok(Kept(Arc::clone(&contents), path.to_owned()));
     let evaluator = Evaluator::new(setup(subject)).unwrap();
     let scene = Scene::new(&evaluator, subject.design, Surface::Wgs84, Some(GRID));
-    let asked = (products, choices);
-    let manifest = export_scene(subject, Some(&scene), asked, &sink).unwrap();
+    // The ephemerides of STK alone have none.
+    let shown = [Product::Czml, Product::Geojson, Product::Kml, Product::Yuma];
+    let scene = Some(&scene).filter(|_| products.iter().any(|one| shown.contains(one)));
+    let manifest = export_scene(subject, scene, (products, choices), &sink).unwrap();
     let files = std::mem::take(&mut *contents.lock().unwrap());
     (manifest, files)
 }

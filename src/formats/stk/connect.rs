@@ -10,6 +10,7 @@
 //! alone; what they cannot say is in [`by_hand`].
 
 use super::{FORMAT_VERSION, MONTHS};
+use crate::formats::scene::wrapped;
 use crate::ground::Site;
 use crate::orbit::MeanElements;
 use crate::time::{Epoch, TimeGrid};
@@ -198,8 +199,7 @@ impl Scenario<'_> {
     pub fn write_points(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "stk.v.{FORMAT_VERSION}\nBegin PointList")?;
         for site in self.sites {
-            let longitude = (site.longitude_deg + 180.0).rem_euclid(360.0) - 180.0;
-            writeln!(out, "{} {}", site.latitude_deg, round_decimal(longitude, 9))?;
+            writeln!(out, "{} {}", site.latitude_deg, wrapped(site.longitude_deg))?;
         }
         writeln!(out, "End PointList")
     }
