@@ -116,12 +116,30 @@ pub(super) fn rings(corners: &[Place]) -> Vec<Vec<Place>> {
     let turns = ((longitude - first[0]) / 360.0).round();
     if turns == 0.0 {
         unwrapped.pop();
-    } else {
-        // Counterclockwise around the north pole is eastwards, around the south pole westwards.
-        let pole = 90.0_f64.copysign(turns);
-        unwrapped.extend([[longitude, pole], [first[0], pole]]);
+        return cut(&unwrapped);
     }
-    cut(&unwrapped)
+    cut(&around_pole(&unwrapped, turns))
+}
+
+/// A line once around a pole, its last corner the first a turn later, as an area that begins and ends at
+/// the antimeridian: so it is one ring on the map.
+fn around_pole(line: &[Place], turns: f64) -> Vec<Place> {
+    let turn = |place: &Place| ((place[0] + 180.0) / 360.0).floor();
+    let crosses = |pair: &[Place]| turn(&pair[0]) != turn(&pair[1]);
+    // A whole turn of longitude crosses it somewhere.
+    let before = line.windows(2).position(crosses).unwrap_or(0);
+    let (from, to) = (line[before], line[before + 1]);
+    let meridian = 360.0 * turn(&from).max(turn(&to)) - 180.0;
+    let latitude = from[1] + (to[1] - from[1]) * (meridian - from[0]) / (to[0] - from[0]);
+    let mut area = vec![[meridian, latitude]];
+    area.extend(&line[before + 1..line.len() - 1]);
+    let later = |place: &Place| [place[0] + 360.0 * turns, place[1]];
+    area.extend(line[..=before].iter().map(later));
+    area.push(later(&[meridian, latitude]));
+    // Counterclockwise around the north pole is eastwards, around the south pole westwards.
+    let pole = 90.0_f64.copysign(turns);
+    area.extend([later(&[meridian, pole]), [meridian, pole]]);
+    area
 }
 
 /// An area with continuous longitudes, cut into closed rings within ±180°.

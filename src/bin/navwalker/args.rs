@@ -66,7 +66,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
-    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris,
+    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML,
     /// and tables of elements and states.
     ///
     /// Example: navwalker lint constellation.tle oem/*.oem
@@ -234,8 +234,8 @@ pub(crate) struct EvaluateArgs {
     )]
     pub(crate) design: Option<Design>,
 
-    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, or a table
-    /// of elements or states; a directory stands for its files; may be repeated.
+    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, or a
+    /// table of elements or states; a directory stands for its files; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub(crate) constellation: Vec<PathBuf>,
 

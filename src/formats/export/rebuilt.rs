@@ -171,7 +171,7 @@ impl Source<'_> {
         };
         let systems = scene.systems();
         if systems.is_empty() {
-            let what = "a LEO design; it holds GNSS, and gnss.constellations is empty".to_owned();
+            let what = "a study without GNSS: gnss.constellations is empty, and a LEO design has no almanac".to_owned();
             return Err(cannot(what, "use --as sp3 or tle for the design"));
         }
         let epoch = self.subject.grid.epoch();

@@ -98,6 +98,24 @@ fn footprints_hold_what_sees_the_satellite() {
     }
 }
 
+/// A cap over a pole is one ring from the one side of the map to the other, wherever its first corner is.
+#[test]
+fn caps_over_a_pole_are_one_ring() {
+    for place in [[33.0, 85.0], [-120.0, -89.9], [180.0, -80.0], [0.0, 90.0]] {
+        let rings = rings(&footprint(Surface::Sphere, over(place, 925.0), 0.0));
+        well_formed(&rings);
+        assert_eq!(rings.len(), 1, "{place:?}");
+        let longitudes = || rings[0].iter().map(|corner| corner[0]);
+        assert_eq!(longitudes().reduce(f64::min), Some(-180.0));
+        assert_eq!(longitudes().reduce(f64::max), Some(180.0));
+        let pole = 90.0_f64.copysign(place[1]);
+        assert_eq!(
+            rings[0].iter().filter(|corner| corner[1] == pole).count(),
+            2
+        );
+    }
+}
+
 #[test]
 fn areas_are_cut_at_the_antimeridian() {
     let cut = rings(&[[170.0, 0.0], [-170.0, 0.0], [-170.0, 10.0], [170.0, 10.0]]);
