@@ -27,6 +27,12 @@ pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
 
+/// Gravitational parameter that users of GPS ephemerides compute with, m³/s² (IS-GPS-200, 20.3.3.4.3.3).
+pub const GPS_MU_M3_S2: f64 = 3.986_005e14;
+
+/// Rotation rate of the Earth that they compute with, rad/s (the same place).
+pub const GPS_EARTH_RATE_RAD_S: f64 = 7.292_115_146_7e-5;
+
 words! {
     /// What ground points, their heights and their verticals refer to.
     Surface {
@@ -64,6 +70,29 @@ impl Surface {
             n * cos_lat * sin_lon,
             n * (1.0 - e2) * sin_lat,
         )
+    }
+
+    /// Latitude and longitude below an Earth-fixed position, radians: where the vertical of the
+    /// surface goes through it (M-45). Bowring, *Survey Review* 23 (1976) 323, repeated until
+    /// it stands still; at the centre of the Earth, which has none, 0.
+    #[must_use]
+    pub fn below_rad(self, position_km: Vector3<f64>) -> (f64, f64) {
+        let f = self.flattening();
+        let e2 = f * (2.0 - f);
+        let polar_km = RADIUS_KM * (1.0 - f);
+        let second_e2 = e2 / (1.0 - e2);
+        let axis_km = position_km.x.hypot(position_km.y);
+        // The parametric latitude, from that of the sphere through the position.
+        let mut reduced = (position_km.z * RADIUS_KM).atan2(axis_km * polar_km);
+        let mut latitude = 0.0;
+        for _ in 0..4 {
+            let (sin, cos) = reduced.sin_cos();
+            let up = position_km.z + second_e2 * polar_km * sin.powi(3);
+            let out = axis_km - e2 * RADIUS_KM * cos.powi(3);
+            latitude = up.atan2(out);
+            reduced = ((1.0 - f) * latitude.sin()).atan2(latitude.cos());
+        }
+        (latitude, position_km.y.atan2(position_km.x))
     }
 
     /// Earth-fixed unit vector of the local vertical, upwards.
@@ -106,6 +135,23 @@ mod tests {
         assert!(pole.x.abs() < 1e-9);
         let pole = Surface::Sphere.position_km(std::f64::consts::FRAC_PI_2, 0.0);
         assert!((pole.z - RADIUS_KM).abs() < 1e-9);
+    }
+
+    /// The point below comes back to the place from which its height was laid off.
+    #[test]
+    fn a_point_lies_below_its_own_vertical() {
+        for surface in [Surface::Wgs84, Surface::Sphere] {
+            for latitude in [-1.56, -0.8, 0.0, 0.3, 1.2, 1.5] {
+                for height_km in [0.0, 400.0, 36_000.0] {
+                    let vertical = surface.vertical(latitude, 2.5);
+                    let above = surface.position_km(latitude, 2.5) + vertical * height_km;
+                    let (found, longitude) = surface.below_rad(above);
+                    // A part in 1e12 is 6 micrometres on the ground.
+                    assert!((found - latitude).abs() < 1e-12, "{latitude} {height_km}");
+                    assert!((longitude - 2.5).abs() < 1e-12);
+                }
+            }
+        }
     }
 
     /// Geodetic 45°: the geocentric latitude is atan((1 - f)²), 11.5 arcmin less.

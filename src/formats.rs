@@ -5,13 +5,17 @@
 //! [`finding::Finding`] with the line, the column and the rule of the standard.
 
 pub mod csv;
+pub mod czml;
 mod element_set;
 pub mod export;
 pub mod finding;
 pub mod fit;
 pub mod fleet;
+pub mod geojson;
+pub mod gmat;
 pub mod interpolation;
 mod json;
+pub mod kml;
 mod kvn;
 mod lines;
 pub mod lint;
@@ -22,13 +26,17 @@ pub mod omm;
 pub mod opm;
 pub mod recheck;
 pub mod sampled;
+pub mod scene;
+mod shapes;
 pub mod sp3;
 mod spread;
 pub mod stamp;
 pub mod stk;
 pub mod tle;
+pub mod tracks;
 pub mod trajectory;
 mod xml;
+pub mod yuma;
 
 pub use element_set::element_set;
 pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};
@@ -53,6 +61,31 @@ pub enum WriteError {
     /// SP3 does not hold the satellites.
     #[error(transparent)]
     Sp3(#[from] sp3::Sp3Error),
+    /// A product that shows a scenario, without one.
+    #[error("{0} shows the whole scenario; it needs the region and the GNSS")]
+    NoScene(&'static str),
+    /// Something of the scenario that the format has no words for.
+    #[error("{product} cannot say {what}; {instead}")]
+    CannotSay {
+        /// The product.
+        product: &'static str,
+        /// What it cannot say.
+        what: String,
+        /// What to do.
+        instead: &'static str,
+    },
+    /// More ground points than a viewer loads.
+    #[error(
+        "{points} ground points are more than a viewer loads ({} for {product}); use a coarser \
+         region.step-deg, or --as geojson for a GIS",
+        scene::MAX_SHOWN_POINTS
+    )]
+    TooManyPoints {
+        /// The product.
+        product: &'static str,
+        /// Points of the region.
+        points: usize,
+    },
     /// There is no name for a satellite.
     #[error(transparent)]
     Identity(#[from] metadata::IdentityError),

@@ -1,10 +1,13 @@
 //! An export: the files of the products that are asked for, and the manifest that names them.
 
 mod products;
+mod rebuilt;
+mod scenes;
 mod source;
 
 use super::manifest::{FILE_NAME, FileEntry, HashingWriter, Loss, Manifest, Study};
 use super::metadata::{ElementChoice, Metadata};
+use super::scene::Scene;
 use super::stamp::TimeSystem;
 use super::{CcsdsVersion, WriteError, oem, omm, sp3};
 use crate::constellation::Design;
@@ -30,10 +33,20 @@ words! {
         Opm = "opm",
         /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c).
         Sp3 = "sp3",
-        /// STK ephemerides, one file for each satellite.
+        /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
         Stk = "stk",
         /// Tables of mean elements and of states.
         Csv = "csv",
+        /// CZML: satellites, orbits and region for CesiumJS.
+        Czml = "czml",
+        /// GeoJSON: region with metrics, ground tracks, footprints.
+        Geojson = "geojson",
+        /// KML: the same for Google Earth.
+        Kml = "kml",
+        /// GMAT: a script that flies the design under J2 alone.
+        Gmat = "gmat",
+        /// YUMA almanacs of the nominal GNSS.
+        Yuma = "yuma",
     }
 }
 
@@ -118,18 +131,32 @@ impl Default for Choices {
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// When a satellite cannot be flown or named, an element does not fit its format, or a file
-/// cannot be written.
+/// When a satellite cannot be flown or named, an element does not fit its format, a file
+/// cannot be written, or a product needs the scenario.
 pub fn export(
     subject: &Subject,
     products: &[Product],
     choices: Choices,
     sink: &impl Sink,
 ) -> Result<Manifest, WriteError> {
+    export_scene(subject, None, (products, choices), sink)
+}
+
+/// Like [`export`], with the scenario around the design for the products that show it.
+///
+/// # Errors
+/// As [`export`], and when the scenario does not fit a format.
+pub fn export_scene(
+    subject: &Subject,
+    scene: Option<&Scene<'_>>,
+    (products, choices): (&[Product], Choices),
+    sink: &impl Sink,
+) -> Result<Manifest, WriteError> {
     let source = Source::new(subject, choices)?;
     let files = Files { sink };
     let mut entries = Vec::new();
     for product in products {
+        let lacking = || WriteError::NoScene(product.word());
         entries.extend(match product {
             Product::Tle => source.tle(&files)?,
             Product::Omm => source.omm(&files)?,
@@ -137,8 +164,13 @@ pub fn export(
             Product::Oem => source.oem(&files)?,
             Product::Opm => source.opm(&files)?,
             Product::Sp3 => source.sp3(&files)?,
-            Product::Stk => source.stk(&files)?,
+            Product::Stk => source.stk_with(&files, scene)?,
             Product::Csv => source.csv(&files)?,
+            Product::Czml => source.czml(&files, scene.ok_or_else(lacking)?)?,
+            Product::Geojson => source.geojson(&files, scene.ok_or_else(lacking)?)?,
+            Product::Kml => source.kml(&files, scene.ok_or_else(lacking)?)?,
+            Product::Gmat => source.gmat(&files)?,
+            Product::Yuma => source.yuma(&files, scene.ok_or_else(lacking)?)?,
         });
     }
     let manifest = source.manifest(entries);

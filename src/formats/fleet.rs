@@ -10,7 +10,7 @@ pub use flight::FleetError;
 use super::lint::Format;
 use super::omm::Notation;
 use super::trajectory::{TrajectoryError, frame_of_name, time_system_of_name};
-use super::{ReadError, csv, oem, omm, opm, sp3, stk, tle};
+use super::{ReadError, csv, czml, oem, omm, opm, sp3, stk, tle};
 use crate::formats::csv::ElementsRow;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
@@ -28,6 +28,8 @@ pub enum Fleet {
     Elements(Vec<ElementsRow>),
     /// States.
     Sampled(Vec<super::trajectory::Trajectory>),
+    /// Positions with the polynomials between them.
+    Tracks(Vec<super::czml::Track>),
 }
 
 /// Why a file gives no satellites.
@@ -88,6 +90,7 @@ impl Fleet {
             Format::Sp3 => Self::of_sp3(sp3::read(bytes)?)?,
             Format::Stk => Self::of_stk(stk::read(bytes)?, file_name),
             Format::ElementsCsv => Self::Elements(csv::read_elements(bytes)?),
+            Format::Czml => Self::Tracks(czml::read(bytes)?),
             Format::StatesCsv => Self::Sampled(csv::read_states(bytes)?),
         };
         Ok((format, fleet))
@@ -180,6 +183,7 @@ impl Fleet {
             (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),
             (Self::Elements(rows), Self::Elements(more)) => rows.extend(more),
             (Self::Sampled(states), Self::Sampled(more)) => states.extend(more),
+            (Self::Tracks(tracks), Self::Tracks(more)) => tracks.extend(more),
             (first, second) => {
                 return Err(ReadFleetError::Mixed {
                     first: first.content(),
@@ -197,6 +201,7 @@ impl Fleet {
             Self::Sets(_) => "SGP4 element sets",
             Self::Elements(_) => "mean elements",
             Self::Sampled(_) => "sampled states",
+            Self::Tracks(_) => "interpolated positions",
         }
     }
 
@@ -207,6 +212,7 @@ impl Fleet {
             Self::Sets(sets) => sets.len(),
             Self::Elements(rows) => rows.len(),
             Self::Sampled(trajectories) => trajectories.len(),
+            Self::Tracks(tracks) => tracks.len(),
         }
     }
 

@@ -30,25 +30,14 @@ impl Object {
         self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
     }
 
+    /// The object as a value; a finding if it is no JSON.
+    pub(super) fn value(&self, findings: &mut Findings) -> Option<serde_json::Value> {
+        self.parsed(findings)
+    }
+
     /// The members of the object as texts; a finding if it is no object of plain values.
     pub(super) fn members(&self, findings: &mut Findings) -> Option<Vec<(String, String)>> {
-        let parsed: Result<serde_json::Map<String, serde_json::Value>, _> =
-            serde_json::from_str(&self.text);
-        let members = match parsed {
-            Ok(members) => members,
-            Err(error) => {
-                let lines = self.start.0 + error.line().saturating_sub(1);
-                let column = match error.line() {
-                    0 | 1 => self.start.1 + error.column().saturating_sub(1),
-                    _ => error.column().max(1),
-                };
-                let text = error.to_string();
-                // The place that serde_json adds is one inside the object.
-                let message = text.split(" at line ").next().unwrap_or_default();
-                findings.error((lines, column), "json-syntax", message);
-                return None;
-            }
-        };
+        let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
         let text = |(key, value): (String, serde_json::Value)| match value {
             serde_json::Value::String(text) => Some((key, text)),
             serde_json::Value::Number(number) => Some((key, number.to_string())),
@@ -56,6 +45,23 @@ impl Object {
             _ => None,
         };
         Some(members.into_iter().filter_map(text).collect())
+    }
+
+    fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut Findings) -> Option<T> {
+        let error = match serde_json::from_str(&self.text) {
+            Ok(parsed) => return Some(parsed),
+            Err(error) => error,
+        };
+        let lines = self.start.0 + error.line().saturating_sub(1);
+        let column = match error.line() {
+            0 | 1 => self.start.1 + error.column().saturating_sub(1),
+            _ => error.column().max(1),
+        };
+        let text = error.to_string();
+        // The place that serde_json adds is one inside the object.
+        let message = text.split(" at line ").next().unwrap_or_default();
+        findings.error((lines, column), "json-syntax", message);
+        None
     }
 }
 

@@ -93,6 +93,9 @@ pub struct FileEntry {
     pub theory: String,
     /// What the format costs against the model.
     pub loss: Loss,
+    /// What the program that reads it must be told to get the same numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
     /// SHA-256 of its bytes, in lower-case hexadecimal digits.
     pub sha256: String,
 }
@@ -134,7 +137,17 @@ impl FileEntry {
             time_system: metadata.time_system.to_string(),
             theory: metadata.theory.to_string(),
             loss,
+            assumptions: Vec::new(),
             sha256,
+        }
+    }
+
+    /// The same entry with what a reader must be told.
+    #[must_use]
+    pub fn assuming(self, assumptions: Vec<String>) -> Self {
+        Self {
+            assumptions,
+            ..self
         }
     }
 }

@@ -22,6 +22,10 @@ const STATES_KM: f64 = 1e-8;
 /// Six decimals of a kilometre in three components, and epochs to 1e-8 s, km.
 const SP3_KM: f64 = 1e-6;
 
+/// The metre between samples for which their spacing is chosen on one satellite, twice for the others,
+/// and a decimetre of digits, km.
+const CZML_KM: f64 = 2.0 * super::czml::TARGET_KM + 2e-4;
+
 /// SGP4 against a theory of J2 alone, km: the frozen eccentricity of J3 (8.1 km up and down, 16.2
 /// along the track at most), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
 /// 10.6 km at most); M-30 to M-33.
@@ -195,6 +199,7 @@ impl<'a> Original<'a> {
                 theory.map(|km| km + 1e-8 * (1.0 + days))
             }
             Format::Sp3 => Some(SP3_KM),
+            Format::Czml => Some(CZML_KM),
             // Nine decimals of a kilometre of a: 3/2 da n t along the track.
             Format::Opm => Some(STATES_KM + 1.5 * 0.5e-9 * turned_rad),
             Format::Oem

@@ -5,6 +5,7 @@
 //! less than the number of samples that an interpolation takes; the file never names
 //! `InterpolationOrder`, which other readers refuse.
 
+pub mod connect;
 mod read;
 
 pub use read::{parse, read};
@@ -22,7 +23,7 @@ use std::io::{self, Write};
 pub const FORMAT_VERSION: &str = "12.0";
 
 /// Names of months in STK's calendar dates.
-const MONTHS: [&str; 12] = [
+pub(super) const MONTHS: [&str; 12] = [
     "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
 ];
 

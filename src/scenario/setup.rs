@@ -178,16 +178,27 @@ impl Scenario {
         }
     }
 
-    fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
-        let surface = self.earth.surface;
+    /// The region, if it is a grid.
+    #[must_use]
+    pub fn ground_grid(&self) -> Option<ground::Grid> {
         match &self.region {
-            Region::Grid(grid) => Ok(ground::Grid {
+            Region::Grid(grid) => Some(ground::Grid {
                 latitude_deg: grid.latitude_deg,
                 longitude_deg: grid.longitude_deg,
                 step_deg: grid.step_deg,
                 weights: grid.weights,
-            }
-            .sites(surface)?),
+            }),
+            Region::Points { .. } => None,
+        }
+    }
+
+    fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
+        let surface = self.earth.surface;
+        match &self.region {
+            Region::Grid(_) => match self.ground_grid() {
+                Some(grid) => Ok(grid.sites(surface)?),
+                None => Ok(Vec::new()),
+            },
             Region::Points { file } => {
                 let bytes = read(file).map_err(|source| SetupError::PointsFile {
                     file: file.clone(),

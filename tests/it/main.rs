@@ -6,5 +6,6 @@ mod cli;
 mod evidence;
 mod look;
 mod reference;
+mod scenes;
 mod study;
 mod tidy;

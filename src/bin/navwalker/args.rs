@@ -1,8 +1,11 @@
 //! What can be typed.
 
 mod look;
+mod products;
 
 pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
+
+use products::PRODUCTS;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
@@ -63,7 +66,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
-    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris,
+    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML,
     /// and tables of elements and states.
     ///
     /// Example: navwalker lint constellation.tle oem/*.oem
@@ -151,18 +154,6 @@ pub(crate) enum Command {
     },
 }
 
-/// What `--as` takes.
-const PRODUCTS: &str = "\
-Products:
-  tle         two-line element sets with names (SGP4), one file
-  omm         CCSDS Orbit Mean-Elements Messages (SGP4): kvn, xml, json or csv
-  oem         CCSDS Orbit Ephemeris Messages: kvn or xml
-  opm         CCSDS Orbit Parameter Messages: state, osculating and mean elements at the epoch
-  sp3         SP3-c or -d, positions and velocities in GPS time, Earth-fixed
-  stk         STK ephemerides (.e), one file for each satellite
-  csv         tables of mean elements and of states, TEME and Earth-fixed
-  tle-states  table of what SGP4 makes of the element sets as written";
-
 /// Which study a command works on.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
@@ -243,8 +234,8 @@ pub(crate) struct EvaluateArgs {
     )]
     pub(crate) design: Option<Design>,
 
-    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, or a table
-    /// of elements or states; a directory stands for its files; may be repeated.
+    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, or a
+    /// table of elements or states; a directory stands for its files; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub(crate) constellation: Vec<PathBuf>,
 

@@ -18,14 +18,14 @@ use crate::words::Word;
 use rayon::prelude::*;
 
 /// The files of a product, or why one is not written.
-type Written = Result<Vec<FileEntry>, WriteError>;
+pub(super) type Written = Result<Vec<FileEntry>, WriteError>;
 
 impl Source<'_> {
     fn sgp4_metadata(&self) -> Metadata {
         self.metadata(Frame::Teme, Theory::Sgp4Elements(self.choices.elements))
     }
 
-    fn flown_metadata(&self, frame: Frame) -> Metadata {
+    pub(super) fn flown_metadata(&self, frame: Frame) -> Metadata {
         self.metadata(frame, Theory::Flown(self.subject.model))
     }
 

@@ -116,6 +116,11 @@ impl Fleet {
                     .collect::<Result<Vec<_>, FleetError>>()?
             }
             Self::Sampled(trajectories) => sampled(trajectories, grid)?,
+            Self::Tracks(tracks) => {
+                let instants = || grid.iter().map(|t| grid.epoch().plus_seconds(t));
+                let states = tracks.iter().map(|track| track.trajectory(instants()));
+                sampled(&states.collect::<Vec<_>>(), grid)?
+            }
         };
         let mut names = HashSet::new();
         match satellites.iter().find(|one| !names.insert(&one.name)) {

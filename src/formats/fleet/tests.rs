@@ -96,6 +96,9 @@ fn every_product_flies_where_the_design_does() {
     let sp3 = fleet(&exported(&[Product::Sp3], Choices::default()));
     // Six decimals of a kilometre in three components.
     assert!(apart_km(&sp3.fly(grid(), Model::J2).unwrap()) < 1e-6);
+    let czml = fleet(&exported(&[Product::Czml], Choices::default()));
+    // The metre between samples, and decimetres.
+    assert!(apart_km(&czml.fly(grid(), Model::J2).unwrap()) < 2.2e-3);
     let mut tables = exported(&[Product::Csv], Choices::default());
     let states = tables.remove("states.csv").unwrap();
     assert!(apart_km(&fleet(&tables).fly(grid(), Model::J2).unwrap()) < 1e-8);

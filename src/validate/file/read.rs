@@ -88,6 +88,10 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Vec<Comparand>, FileError> {
                 .filter(|one| !one.states.is_empty());
             sampled.map(Comparand::States).collect()
         }
+        Fleet::Tracks(tracks) => {
+            let sampled = tracks.iter().map(crate::formats::czml::Track::sampled);
+            sampled.map(Comparand::States).collect()
+        }
         Fleet::Elements(_) => return Err(FileError::MeanElements(file.to_owned())),
     };
     if found.is_empty() {

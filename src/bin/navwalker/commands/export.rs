@@ -6,18 +6,28 @@ use crate::study::{Study, study_and_design};
 use crate::{Status, files, fleets, output};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
-use navwalker::formats::export::{Choices, Product, Subject, export};
+use navwalker::formats::export::{Choices, Product, Subject, export_scene};
 use navwalker::formats::lint::Format as LintFormat;
-use navwalker::formats::manifest::{Manifest, Study as StudyStamp};
+use navwalker::formats::manifest::{FileEntry, Manifest, Study as StudyStamp};
 use navwalker::formats::metadata::ElementChoice;
 use navwalker::formats::oem;
 use navwalker::formats::recheck::{Difference, Original};
+use navwalker::formats::scene::Scene;
 use navwalker::frames::Frame;
 use navwalker::report::{Align, Table};
 use navwalker::time::Epoch;
 use navwalker::words::Word;
 use std::fs::{self, File};
 use std::path::PathBuf;
+
+/// The products that show or rebuild the whole scenario.
+const SCENES: [Product; 5] = [
+    Product::Czml,
+    Product::Geojson,
+    Product::Kml,
+    Product::Stk,
+    Product::Yuma,
+];
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
@@ -55,7 +65,16 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         progress.one_more();
         File::create(path)
     };
-    let manifest = export(&subject, &products, choices, &sink)
+    let evaluator = products
+        .iter()
+        .any(|product| SCENES.contains(product))
+        .then(|| study.evaluator())
+        .transpose()?;
+    let scene = evaluator.as_ref().map(|evaluator| {
+        let (surface, grid) = (scenario.earth.surface, scenario.ground_grid());
+        Scene::new(evaluator, subject.design, surface, grid)
+    });
+    let manifest = export_scene(&subject, scene.as_ref(), (&products, choices), &sink)
         .with_context(|| format!("cannot export to {}", args.out.display()))?;
     progress.finish();
     staged.commit()?;
@@ -124,10 +143,17 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     Ok(if passed { Status::Done } else { Status::Failed })
 }
 
+/// Whether a file holds satellites that can be read.
+fn is_read_back(file: &FileEntry) -> bool {
+    let unread = [Product::Geojson, Product::Kml, Product::Gmat, Product::Yuma];
+    let is = |product: &Product| file.format == product.word();
+    !(unread.iter().any(is) || file.path.starts_with("stk-scenario/"))
+}
+
 /// The files that make the constellation once: those of a product, but each table for itself.
 fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
     let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
-    for file in &manifest.files {
+    for file in manifest.files.iter().filter(|file| is_read_back(file)) {
         let name = if file.format == Product::Csv.word() {
             file.path.clone()
         } else {
