@@ -167,9 +167,14 @@ fn satellite_table(comparison: &FileComparison) -> Table {
 /// How a comparison went, in sentences.
 fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
     let mut lines = vec![format!(
-        "{} satellites matched by {}",
+        "{} satellites matched by {}{}",
         comparison.satellites.len(),
-        comparison.matched_by
+        comparison.matched_by,
+        if comparison.satellites.len() > LISTED {
+            format!("; the {LISTED} that differ most are listed, JSON has all")
+        } else {
+            String::new()
+        }
     )];
     for (what, names) in [
         ("slots without an object", &comparison.unmatched_slots),
@@ -186,15 +191,26 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
         }
     }
     lines.push(match &comparison.explanation {
-        Some(found) => format!(
-            "explained by {}: {}; it leaves {} of {} km rms",
-            found.convention,
-            found.meaning,
-            digits(found.after_km),
-            digits(found.before_km)
-        ),
+        Some(found) => {
+            let left = match found.before_km {
+                Some(before_km) => format!(
+                    "it leaves {} of {} km rms",
+                    digits(found.after_km),
+                    digits(before_km)
+                ),
+                None => format!(
+                    "with it every object has a slot, {} km rms away",
+                    digits(found.after_km)
+                ),
+            };
+            format!("explained by {}: {}; {left}", found.convention, found.meaning)
+        }
         None if comparison.agrees => {
             "the states are those of the design, to a decimetre".to_owned()
+        }
+        None if comparison.matched_agree() => {
+            "the objects that matched are the design's own, to a decimetre; the rest is missing or another design"
+                .to_owned()
         }
         None => {
             "no known convention explains the difference better than the design itself".to_owned()

@@ -17,14 +17,17 @@ use crate::validate::{Subject, ValidateError};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// A convention explains a difference when it leaves less than this share of it.
-const EXPLAINED: f64 = 0.2;
+/// A convention explains a difference when it leaves less than this share of it...
+const EXPLAINED: f64 = 0.1;
+
+/// ... and less than this, km: what is left must be a matter of the force model, not of the pattern.
+const MOST_LEFT_KM: f64 = 50.0;
 
 /// Samples at which conventions are tried, over all objects.
 const SAMPLES: usize = 600;
 
-/// Radius that other tools count altitudes from, km: the rounded mean radius of the Earth.
-const MEAN_RADIUS_KM: f64 = 6_371.0;
+/// Digit to which a fitted radius is rounded, km: a decimetre.
+const RADIUS_DIGIT_KM: f64 = 1e-4;
 
 /// The convention that explains a difference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,8 +36,8 @@ pub struct Explanation {
     pub convention: String,
     /// What it means.
     pub meaning: String,
-    /// Root mean square distance before, km.
-    pub before_km: f64,
+    /// Root mean square distance before, km; `None` when not every object was near a slot.
+    pub before_km: Option<f64>,
     /// What is left with it, km.
     pub after_km: f64,
 }
@@ -46,7 +49,35 @@ type Flight = Box<dyn Propagator>;
 struct Convention {
     name: &'static str,
     meaning: &'static str,
-    fly: fn(&Subject<'_>) -> Vec<(String, Flight)>,
+    fly: fn(&Subject<'_>, Fitted) -> Vec<(String, Flight)>,
+}
+
+/// What conventions take from the files.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Fitted {
+    /// How much larger the orbits of the files are at their first samples, km.
+    pub(super) radius_offset_km: f64,
+}
+
+impl Fitted {
+    /// The mean excess of the radii at the first samples, at which nothing has drifted yet, as an
+    /// excess of the semi-major axis; zero when not every object is near a slot.
+    fn to(subject: &Subject<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
+        let ours = subject.fly_model()?;
+        let matching = Matching::of(subject, &ours, tracks);
+        let pairs = matching.pairs(tracks);
+        let mut sum = 0.0;
+        for (slot, track) in &pairs {
+            if let Some((elapsed_s, theirs)) = track.at(0.0) {
+                let own = ours.state(&ours.satellites()[*slot], elapsed_s)?;
+                sum += theirs.position_km.norm() / own.position_km.norm() - 1.0;
+            }
+        }
+        let mean = sum / pairs.len().max(1) as f64;
+        let offset_km = mean * subject.orbit().semi_major_axis_km;
+        let radius_offset_km = (offset_km / RADIUS_DIGIT_KM).round() * RADIUS_DIGIT_KM;
+        Ok(Self { radius_offset_km })
+    }
 }
 
 /// Secular J2 on other satellites.
@@ -243,17 +274,20 @@ fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, Flight)> {
     })
 }
 
+/// The convention whose radius is fitted.
+const ANOTHER_RADIUS: &str = "altitude-over-another-radius";
+
 /// The conventions, cheap ones first.
 const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
         meaning: "secular J2 on the mean elements, as the model j2 flies it",
-        fly: |subject| j2_of(subject.design.satellites()),
+        fly: |subject, _| j2_of(subject.design.satellites()),
     },
     Convention {
         name: "two-body",
         meaning: "no J2 at all",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
             })
@@ -262,7 +296,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "j2-without-mean-anomaly",
         meaning: "secular J2 on node and perigee, but dM/dt = n",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |elements| {
                 let rates = SecularRates {
                     mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
@@ -275,7 +309,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "osculating-j2",
         meaning: "mean elements flown with first-order short-period terms",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |e| {
                 Some(OsculatingOrbit::new(e))
             })
@@ -284,27 +318,27 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "elements-taken-as-osculating",
         meaning: "the elements are osculating at the epoch and J2 is integrated",
-        fly: taken_as_osculating,
+        fly: |subject, _| taken_as_osculating(subject),
     },
     Convention {
         name: "sgp4",
         meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
-        fly: |subject| sgp4(subject, MeanMotionSlot::Kozai),
+        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
     },
     Convention {
         name: "sgp4-kepler-slot",
         meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
-        fly: |subject| sgp4(subject, MeanMotionSlot::Kepler),
+        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
     },
     Convention {
-        name: "altitude-over-mean-radius",
-        meaning: "altitudes over a radius of 6371 km",
-        fly: |subject| with_altitude(subject, MEAN_RADIUS_KM - RADIUS_KM),
+        name: ANOTHER_RADIUS,
+        meaning: "altitudes over another radius of the Earth",
+        fly: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
     },
     Convention {
         name: "star-for-delta",
         meaning: "nodes over 180 degrees instead of 360",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 0.5 * node, phase)
         },
@@ -312,7 +346,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "delta-for-star",
         meaning: "nodes over 360 degrees instead of 180",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 2.0 * node, phase)
         },
@@ -320,7 +354,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-slots",
         meaning: "phase step F 360/P instead of F 360/T",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(
                 subject,
@@ -332,7 +366,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-degrees",
         meaning: "phase step of F degrees",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, _) = layout(&subject.design);
             with_layout(subject, node, subject.design.phasing() as f64 / 360.0)
         },
@@ -340,7 +374,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-backwards",
         meaning: "phase step -F 360/T",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, -phase)
         },
@@ -348,35 +382,53 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-halved",
         meaning: "phase step F 180/T, as lox has for stars",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, 0.5 * phase)
         },
     },
     Convention {
+        name: "phasing-ignored",
+        meaning: "no phase step between planes: F = 0",
+        fly: |subject, _| {
+            let (node, _) = layout(&subject.design);
+            with_layout(subject, node, 0.0)
+        },
+    },
+    Convention {
         name: "teme-taken-for-eme2000",
-        meaning: "TEME states, labelled EME2000: the elements are those of TEME, the frame of the file is not",
-        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, true),
+        meaning: "TEME states, labelled EME2000; or, the same, elements and pole of J2 counted from the equator of J2000",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
     },
     Convention {
         name: "eme2000-taken-for-teme",
         meaning: "EME2000 states, labelled TEME",
-        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, false),
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
+    },
+    Convention {
+        name: "teme-taken-for-earth-fixed",
+        meaning: "TEME states, labelled as of the rotating Earth",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
+    },
+    Convention {
+        name: "earth-fixed-taken-for-teme",
+        meaning: "states of the rotating Earth, labelled TEME",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
     },
     Convention {
         name: "utc-taken-for-gps",
         meaning: "UTC instants, labelled GPS time",
-        fly: |subject| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
+        fly: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "gps-taken-for-utc",
         meaning: "GPS instants, labelled UTC",
-        fly: |subject| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
+        fly: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "j2-about-the-j2000-pole",
         meaning: "secular J2 about the pole of J2000 instead of the true pole of date",
-        fly: about_j2000,
+        fly: |subject, _| about_j2000(subject),
     },
 ];
 
@@ -388,11 +440,10 @@ pub(super) fn explanation(
     subject: &Subject<'_>,
     tracks: &[Track],
 ) -> Result<Option<Explanation>, ValidateError> {
-    let Some(before_km) = rms_km(subject, subject.fly_model()?, tracks) else {
-        return Ok(None);
-    };
+    let before_km = rms_km(subject, subject.fly_model()?, tracks);
+    let fitted = Fitted::to(subject, tracks)?;
     let tried = CONVENTIONS.iter().filter_map(|convention| {
-        let flown = (convention.fly)(subject).into_iter();
+        let flown = (convention.fly)(subject, fitted).into_iter();
         let satellites = flown.map(|(name, propagator)| Flown {
             name,
             slot: None,
@@ -402,11 +453,19 @@ pub(super) fn explanation(
         Some((convention, rms_km(subject, ephemeris, tracks)?))
     });
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1));
+    let enough_km = before_km.map_or(MOST_LEFT_KM, |before_km| {
+        (EXPLAINED * before_km).min(MOST_LEFT_KM)
+    });
     Ok(best
-        .filter(|(_, after_km)| *after_km < EXPLAINED * before_km)
+        .filter(|(_, after_km)| *after_km < enough_km)
         .map(|(convention, after_km)| Explanation {
             convention: convention.name.to_owned(),
-            meaning: convention.meaning.to_owned(),
+            meaning: if convention.name == ANOTHER_RADIUS {
+                let radius_km = RADIUS_KM + fitted.radius_offset_km;
+                format!("altitudes over a radius of {radius_km:.4} km (fitted)")
+            } else {
+                convention.meaning.to_owned()
+            },
             before_km,
             after_km,
         }))
@@ -441,9 +500,9 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
 
 /// The design as a convention flies it.
 #[cfg(test)]
-pub(super) fn flown(subject: &Subject<'_>, name: &str) -> Vec<(String, Flight)> {
+pub(super) fn flown(subject: &Subject<'_>, name: &str, fitted: Fitted) -> Vec<(String, Flight)> {
     let convention = CONVENTIONS
         .iter()
         .find(|convention| convention.name == name);
-    (convention.unwrap().fly)(subject)
+    (convention.unwrap().fly)(subject, fitted)
 }
