@@ -377,7 +377,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     assert_eq!(ran(directory.path(), &arguments).status, 0);
     let checkpoint = directory.path().join("run/checkpoint");
     let good = fs::read(&checkpoint).unwrap();
-    fs::write(directory.path().join("run/checkpoint.previous"), &good).unwrap();
+    let front = fs::read(directory.path().join("run/front.json")).unwrap();
     fs::write(&checkpoint, &good[..good.len() / 2]).unwrap();
     let resumed = ran(
         directory.path(),
@@ -388,7 +388,12 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         resumed.stderr.contains("is damaged")
             && resumed.stderr.contains("the one before it is used")
     );
-    fs::write(&checkpoint, b"nonsense").unwrap();
+    // The last generation was repeated: nothing is lost.
+    assert!(fs::read(&checkpoint).unwrap() == good);
+    assert!(fs::read(directory.path().join("run/front.json")).unwrap() == front);
+    for name in ["checkpoint", "checkpoint.previous"] {
+        fs::write(directory.path().join("run").join(name), b"nonsense").unwrap();
+    }
     let hopeless = ran(
         directory.path(),
         &[arguments, vec!["--resume", "--force"]].concat(),

@@ -8,3 +8,4 @@ mod look;
 mod reference;
 mod study;
 mod tidy;
+mod trust;
