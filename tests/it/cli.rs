@@ -188,7 +188,7 @@ fn what_cannot_be_run_says_why() {
         ),
         (
             refused(&["validate", "--against", "stk"]),
-            "unknown target 'stk'",
+            "unknown word \"stk\" (choices: sgp4,",
         ),
         (refused(&["frobnicate"]), "unrecognized subcommand"),
     ];
@@ -261,6 +261,7 @@ fn the_run_directory_is_whole_and_repeatable() {
     names.sort();
     let expected = [
         "checkpoint",
+        "checkpoint.previous",
         "front.csv",
         "front.json",
         "history.csv",
