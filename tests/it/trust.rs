@@ -163,3 +163,32 @@ fn a_validation_in_a_run_directory_survives() {
     assert!(forced.stderr.contains("validation"), "{}", forced.stderr);
     assert!(!report.exists());
 }
+
+/// With BeiDou alone every sample is solved: availability depends on nothing, and with the number of
+/// satellites as the other objective nothing depends on inclination and altitude.
+#[test]
+fn what_does_not_matter_is_said() {
+    let directory = TempDir::new().unwrap();
+    let arguments = [
+        "--format",
+        "json",
+        "--set",
+        "objectives.minimize=[\"availability\", \"satellites\"]",
+        "--set",
+        "objectives.availability-pdop=50",
+    ];
+    let ran = ran(directory.path(), &optimize(&arguments));
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let result: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let diagnostics = result["diagnostics"].as_array().unwrap();
+    let message = |code: &str| {
+        let found = diagnostics.iter().find(|one| one["code"] == code);
+        found.unwrap_or_else(|| panic!("no {code} in {diagnostics:?}"))["message"]
+            .as_str()
+            .unwrap()
+    };
+    assert!(message("independent:availability").contains("planes and satellites-per-plane"));
+    for variable in ["inclination-deg", "altitude-km"] {
+        assert!(message(&format!("idle:{variable}")).contains(variable));
+    }
+}
