@@ -31,13 +31,25 @@ pub enum PropagationError {
         /// What SGP4 says.
         reason: String,
     },
-    /// SGP4 gives up at a later time, as for a decayed orbit.
+    /// SGP4 gives up at a later time, as when drag drives the eccentricity out of its range.
     #[error("SGP4 stops {elapsed_s} s after the epoch: {reason}")]
     Sgp4State {
         /// Seconds since the epoch of the elements.
         elapsed_s: f64,
         /// What SGP4 says.
         reason: String,
+    },
+    /// SGP4 puts the satellite under the ground.
+    #[error(
+        "the orbit has decayed {elapsed_s} s after the epoch: SGP4 puts it at a radius of {radius_km:.3} km, and the Earth has {least_km} km"
+    )]
+    Decayed {
+        /// Seconds since the epoch.
+        elapsed_s: f64,
+        /// The radius, km.
+        radius_km: f64,
+        /// Equatorial radius of the theory, km.
+        least_km: f64,
     },
     /// A sampled trajectory is asked between or beyond its samples.
     #[error("there is no sample {elapsed_s} s after the epoch")]

@@ -14,6 +14,7 @@ pub mod paper;
 pub mod residuals;
 pub mod sgp4;
 
+use self::sgp4::SweepCell;
 use crate::constellation::{Design, Satellite, Slot};
 use crate::dop::Clocks;
 use crate::earth::Surface;
@@ -25,6 +26,7 @@ use crate::orbit::sgp4::MeanMotionSlot;
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
+use crate::words::{Word, words};
 use distribution::Distribution;
 use residuals::BudgetLine;
 use serde::Serialize;
@@ -117,6 +119,9 @@ pub struct Findings {
     /// The error budget by cause, for comparisons of trajectories.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetLine>,
+    /// The budget over inclinations and altitudes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sweep: Vec<SweepCell>,
     /// How residuals are distributed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub distributions: Vec<Distribution>,
@@ -136,6 +141,7 @@ impl Findings {
     pub fn append(&mut self, mut other: Self) {
         self.checks.append(&mut other.checks);
         self.budget.append(&mut other.budget);
+        self.sweep.append(&mut other.sweep);
         self.distributions.append(&mut other.distributions);
         self.files.append(&mut other.files);
     }
@@ -176,6 +182,56 @@ impl Default for Parts {
             clocks: |meant| meant,
             look_angles: LocalFrame::look_angles,
         }
+    }
+}
+
+words! {
+    /// What a design can be held against.
+    Target {
+        /// SGP4: an error budget by cause.
+        Sgp4 = "sgp4",
+        /// Geodesics on the ellipsoid.
+        GeographicLib = "geographiclib",
+        /// Numerical integration.
+        Numerical = "numerical",
+        /// Closed forms and symmetries.
+        Analytic = "analytic",
+        /// The tables of the paper.
+        Paper = "paper",
+        /// Every one of these that there is for the study.
+        All = "all",
+    }
+}
+
+impl Target {
+    /// Holds a design against this standard; `All` holds it against each of the others.
+    ///
+    /// # Errors
+    /// When the validation cannot be carried out.
+    pub fn findings(self, subject: &Subject<'_>) -> Result<Findings, ValidateError> {
+        match self {
+            Self::Sgp4 => sgp4::against_sgp4(subject),
+            Self::GeographicLib => geodesic::against_geodesics(subject),
+            Self::Numerical => numerical::against_integration(subject),
+            Self::Analytic => analytic::against_closed_forms(subject),
+            Self::Paper => Ok(paper::against_paper(subject.evaluator.setup())?),
+            Self::All => {
+                let mut findings = Findings::default();
+                for target in self.each() {
+                    findings.append(target.findings(subject)?);
+                }
+                Ok(findings)
+            }
+        }
+    }
+
+    /// The targets that this one stands for: for `All` each of the others.
+    pub fn each(self) -> impl Iterator<Item = Self> {
+        let stands_for = move |target: &&Self| match self {
+            Self::All => **target != Self::All,
+            one => **target == one,
+        };
+        Self::ALL.iter().filter(stands_for).copied()
     }
 }
 
@@ -225,9 +281,18 @@ impl<'a> Subject<'a> {
         (self.parts.satellites)(&self.design)
     }
 
-    /// The design flown by a theory.
+    /// The design flown by a theory over the study.
     fn fly<P: Propagator + 'static>(
         &self,
+        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
+    ) -> Result<Ephemeris, EphemerisError> {
+        self.fly_on(self.grid(), theory)
+    }
+
+    /// The design flown by a theory over a grid.
+    fn fly_on<P: Propagator + 'static>(
+        &self,
+        grid: TimeGrid,
         theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
     ) -> Result<Ephemeris, EphemerisError> {
         let one = |satellite: &Satellite| {
@@ -242,7 +307,7 @@ impl<'a> Subject<'a> {
             }
         };
         let satellites = self.satellites().iter().map(one).collect::<Result<_, _>>();
-        Ok(Ephemeris::new(self.grid(), satellites?))
+        Ok(Ephemeris::new(grid, satellites?))
     }
 
     /// The design flown by the model of the study.
@@ -277,6 +342,12 @@ pub enum ValidateError {
     /// An integration fails.
     #[error(transparent)]
     Integration(#[from] numerical::integrator::IntegrationError),
+    /// A design of a sweep is none.
+    #[error(transparent)]
+    Design(#[from] crate::constellation::DesignError),
+    /// A span is no grid of time.
+    #[error(transparent)]
+    Time(#[from] crate::time::TimeError),
     /// There is no identity for a satellite.
     #[error(transparent)]
     Identity(#[from] crate::formats::metadata::IdentityError),

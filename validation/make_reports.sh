@@ -11,3 +11,9 @@ for scenario in paper regional; do
             > "validation/reports/$scenario.${form##*:}"
     done
 done
+repeated=$(mktemp -d)
+{
+    echo "<!-- navwalker reproduce --quiet --format markdown > validation/reports/reproduce.md -->"
+    "$program" reproduce --quiet --out "$repeated/study" --format markdown
+} > validation/reports/reproduce.md
+rm -r "$repeated"

@@ -126,6 +126,8 @@ impl MeanMotionSlot {
 pub struct Sgp4Orbit {
     constants: ::sgp4::Constants,
     mode: Sgp4Mode,
+    /// Equatorial radius of the theory, km; below it an orbit has decayed.
+    least_km: f64,
     /// Seconds from the time origin of [`Propagator::state_at`] to the epoch of the set.
     epoch_offset_s: f64,
 }
@@ -223,6 +225,7 @@ impl Sgp4Orbit {
         Ok(Self {
             constants,
             mode: theory.mode,
+            least_km: theory.geopotential.ae,
             epoch_offset_s,
         })
     }
@@ -233,6 +236,7 @@ impl Sgp4Orbit {
         Self {
             constants: self.constants.clone(),
             mode: self.mode,
+            least_km: self.least_km,
             epoch_offset_s: self.epoch_offset_s - seconds,
         }
     }
@@ -255,8 +259,18 @@ impl Propagator for Sgp4Orbit {
             elapsed_s,
             reason: error.to_string(),
         })?;
+        let position_km = Vector3::from(prediction.position);
+        let radius_km = position_km.norm();
+        // Error 6 of the authors' code, which the crate leaves to its caller.
+        if radius_km < self.least_km {
+            return Err(PropagationError::Decayed {
+                elapsed_s,
+                radius_km,
+                least_km: self.least_km,
+            });
+        }
         Ok(State {
-            position_km: Vector3::from(prediction.position),
+            position_km,
             velocity_km_s: Vector3::from(prediction.velocity),
         })
     }
@@ -272,6 +286,26 @@ mod tests {
         "1 00005U 58002B   00179.78495062  .00000023  00000-0  28098-4 0  4753",
         "2 00005  34.2682 348.7242 1859667 331.7664  19.3264 10.82419157413667",
     );
+
+    /// Set 29141 of the same list, which decays 440 minutes after its epoch (error 6 of the authors'
+    /// code); its last printed state, at 420 minutes, is 4.5 km above the radius.
+    #[test]
+    fn validate_a_published_decay() {
+        let set = ::sgp4::Elements::from_tle(
+            None,
+            b"1 29141U 85108AA  06170.26783845  .99999999  00000-0  13519-0 0   718",
+            b"2 29141  82.4288 273.4882 0015848 277.2124  83.9133 15.93343074  6828",
+        )
+        .unwrap();
+        let orbit =
+            Sgp4Orbit::from_element_set(&set, Epoch::from_utc(set.datetime.and_utc())).unwrap();
+        assert!(orbit.state_at(420.0 * 60.0).is_ok());
+        let error = orbit.state_at(440.0 * 60.0).unwrap_err();
+        assert!(
+            matches!(error, PropagationError::Decayed { elapsed_s, .. } if elapsed_s == 26_400.0),
+            "{error}"
+        );
+    }
 
     #[test]
     fn validate_a_published_verification_case() {

@@ -7,6 +7,7 @@ use crate::validate::Check;
 use crate::validate::distribution::Distribution;
 use crate::validate::file::FileComparison;
 use crate::validate::residuals::{BudgetLine, Ric};
+use crate::validate::sgp4::SweepCell;
 use quick_xml::escape::escape;
 use std::fmt::Write;
 
@@ -167,9 +168,14 @@ fn satellite_table(comparison: &FileComparison) -> Table {
 /// How a comparison went, in sentences.
 fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
     let mut lines = vec![format!(
-        "{} satellites matched by {}",
+        "{} satellites matched by {}{}",
         comparison.satellites.len(),
-        comparison.matched_by
+        comparison.matched_by,
+        if comparison.satellites.len() > LISTED {
+            format!("; the {LISTED} that differ most are listed, JSON has all")
+        } else {
+            String::new()
+        }
     )];
     for (what, names) in [
         ("slots without an object", &comparison.unmatched_slots),
@@ -186,15 +192,26 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
         }
     }
     lines.push(match &comparison.explanation {
-        Some(found) => format!(
-            "explained by {}: {}; it leaves {} of {} km rms",
-            found.convention,
-            found.meaning,
-            digits(found.after_km),
-            digits(found.before_km)
-        ),
+        Some(found) => {
+            let left = match found.before_km {
+                Some(before_km) => format!(
+                    "it leaves {} of {} km rms",
+                    digits(found.after_km),
+                    digits(before_km)
+                ),
+                None => format!(
+                    "with it every object has a slot, {} km rms away",
+                    digits(found.after_km)
+                ),
+            };
+            format!("explained by {}: {}; {left}", found.convention, found.meaning)
+        }
         None if comparison.agrees => {
             "the states are those of the design, to a decimetre".to_owned()
+        }
+        None if comparison.matched_agree() => {
+            "the objects that matched are the design's own, to a decimetre; the rest is missing or another design"
+                .to_owned()
         }
         None => {
             "no known convention explains the difference better than the design itself".to_owned()
@@ -223,6 +240,44 @@ fn verdict(result: &ValidateResult) -> String {
     }
 }
 
+/// The budget by cause over inclination and altitude.
+fn sweep_table(sweep: &[SweepCell]) -> Table {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("i (deg)", right),
+        ("h (km)", right),
+        ("mean-j2/sgp4 R", right),
+        ("I", right),
+        ("C", right),
+        ("no J3, J4: R", right),
+        ("I", right),
+        ("C", right),
+        ("osculating: R", right),
+        ("I", right),
+        ("C (km rms)", right),
+        ("Kepler slot (km/day)", right),
+        ("of gate", right),
+    ]);
+    for cell in sweep {
+        let mut cells = vec![
+            cell.inclination_deg.to_string(),
+            cell.altitude_km.to_string(),
+        ];
+        for line in cell.budget.iter().take(3) {
+            let ric = &line.rms_km;
+            let rms = [ric.radial, ric.in_track, ric.cross_track];
+            cells.extend(rms.map(|km| format!("{km:.3}")));
+        }
+        let kepler = cell.budget.iter().find(|line| line.case == "kepler-slot");
+        cells.push(kepler.map_or_else(String::new, |line| {
+            format!("{:.1}", line.growth_km_per_day.in_track)
+        }));
+        cells.push(format!("{:.2}", cell.share_of_gate));
+        table.row(cells);
+    }
+    table
+}
+
 /// The validation for a terminal.
 #[must_use]
 pub fn validation_text(result: &ValidateResult) -> String {
@@ -245,6 +300,10 @@ pub fn validation_text(result: &ValidateResult) -> String {
                 line.case, line.cause, worst.satellite, worst.elapsed_s, worst.distance_km
             );
         }
+    }
+    if !result.findings.sweep.is_empty() {
+        text += "\nOver inclination and altitude, circular patterns; the cases are those of the budget\n";
+        text += &sweep_table(&result.findings.sweep).to_text();
     }
     text += "\nChecks\n";
     text += &check_table(&result.findings.checks).to_text();
@@ -310,6 +369,10 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
                 digits(worst.distance_km)
             );
         }
+    }
+    if !result.findings.sweep.is_empty() {
+        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; the cases are those of the budget, and the last column is the largest share of a gate.\n\n";
+        text += &sweep_table(&result.findings.sweep).to_markdown();
     }
     text += "\n## Checks\n\n";
     text += &check_table(&result.findings.checks).to_markdown();

@@ -116,6 +116,26 @@ pub enum Fault {
         /// Objectives.
         expected: usize,
     },
+    /// Two bounds of one quantity that leave nothing between them.
+    #[error("{lower} and {upper} leave no design")]
+    Contradiction {
+        /// The bound below, as written.
+        lower: String,
+        /// The bound above, as written.
+        upper: String,
+    },
+    /// Ellipses of which none stays above ground.
+    #[error(
+        "at {eccentricity} and {altitude_km} km the perigee is {perigee_km:.1} km over the Earth's radius, and no other design of the search is higher"
+    )]
+    Underground {
+        /// The least eccentricity.
+        eccentricity: f64,
+        /// The greatest altitude, km.
+        altitude_km: f64,
+        /// Height of the perigee over the Earth's radius, km.
+        perigee_km: f64,
+    },
     /// A phasing that no design of the search can have.
     #[error("the lowest phasing is {lowest}, but with at most {planes} planes it is at most {}", .planes.saturating_sub(1))]
     PhasingAbovePlanes {

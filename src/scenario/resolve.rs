@@ -10,6 +10,7 @@ use super::resolved::{
 use super::rule::{Reading, Rule};
 use super::written::Written;
 use super::{Algorithm, LaunchCost, PointWeights, Quantity};
+use crate::earth::RADIUS_KM;
 
 /// Samples in time: 366 days at every 3.2 seconds.
 const MOST_SAMPLES: u64 = 10_000_000;
@@ -277,7 +278,25 @@ impl Resolver<'_, '_> {
             "satellites in a design",
             &keys,
         )?;
+        self.above_ground(&space)?;
         Some(space)
+    }
+
+    /// At least the roundest and highest design of a search has its perigee above ground.
+    fn above_ground(&mut self, space: &SearchSpace) -> Option<()> {
+        let (eccentricity, altitude_km) = (space.eccentricity[0], space.altitude_km[1]);
+        let perigee_km = (RADIUS_KM + altitude_km) * (1.0 - eccentricity) - RADIUS_KM;
+        if perigee_km > 0.0 {
+            return Some(());
+        }
+        let keys: [&dyn AnyKey; 2] = [&table::ECCENTRICITY, &table::ALTITUDE_KM];
+        let fault = Fault::Underground {
+            eccentricity,
+            altitude_km,
+            perigee_km,
+        };
+        self.report(&keys, fault);
+        None
     }
 
     /// The phasing; its default is cut for a search of one plane alone, where only 0 exists.

@@ -16,6 +16,9 @@ const PASS_SITES: usize = 6;
 /// Most satellites whose passes are timed.
 const PASS_SATELLITES: usize = 60;
 
+/// Why there is no bound.
+const UNBOUNDED: &str = "reported only: what the difference of the states does to the result";
+
 /// Bounds on the change of decisions and metrics; `None` reports only.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DecisionGates {
@@ -54,7 +57,7 @@ impl Seen<'_> {
             ["visibility decisions that flip", "1", "share"],
             flips,
             gates.map(|gates| gates.flips),
-            "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude",
+            gates.map_or(UNBOUNDED, |_| "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude"),
         ));
         let metrics = [
             self.evaluator.ephemeris(self.first)?,
@@ -302,7 +305,10 @@ fn metric_checks(
         ["change of mean visible satellites", "1", "mean"],
         second.mean_visible - first.mean_visible,
         visible_gate,
-        "the bound on flips: each changes a count by one, and flips of both signs cancel",
+        gates.map_or(
+            UNBOUNDED,
+            |_| "the bound on flips: each changes a count by one, and flips of both signs cancel",
+        ),
     )];
     let pdop = [
         ("mean-pdop", first.mean_pdop, second.mean_pdop, Some(1.0)),
@@ -318,7 +324,7 @@ fn metric_checks(
                 [&format!("change of {quantity}"), "1", "difference"],
                 after - before,
                 gate.map(|(relative, factor)| factor * relative * before),
-                "each flip changes PDOP by about 1/n of n satellites; fourfold in the tail, where n is small; the maximum is one sample and has no bound",
+                gates.map_or(UNBOUNDED, |_| "each flip changes PDOP by about 1/n of n satellites; fourfold in the tail, where n is small; the maximum is one sample and has no bound"),
             ));
         }
     }

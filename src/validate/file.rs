@@ -62,12 +62,20 @@ pub struct FileComparison {
     pub unmatched_slots: Vec<String>,
     /// Objects without a slot.
     pub unmatched_objects: Vec<String>,
-    /// Whether all that was compared is the design's own to a decimetre.
+    /// Whether every slot and object matched and all states are the design's own to a decimetre.
     pub agrees: bool,
     /// The satellites, in the order of the slots.
     pub satellites: Vec<SatelliteDifference>,
     /// The convention that explains the difference, if one does, and what it leaves.
     pub explanation: Option<Explanation>,
+}
+
+impl FileComparison {
+    /// Whether the objects that matched are the design's own to a decimetre, whatever is missing.
+    #[must_use]
+    pub fn matched_agree(&self) -> bool {
+        !self.satellites.is_empty() && self.satellites.iter().all(|one| one.max_km <= SAME_KM)
+    }
 }
 
 /// Compares a design with what was read from files; `source` names them.
@@ -84,7 +92,18 @@ pub fn against_file(
     let ours = subject.fly_model()?;
     let matching = Matching::of(subject, &ours, &tracks);
     let pairs = matching.pairs(&tracks);
-    if pairs.is_empty() {
+    let satellites = pairs
+        .iter()
+        .map(|&(slot, track)| difference(&ours, slot, track))
+        .collect::<Result<Vec<_>, _>>()?;
+    let worst = satellites.iter().map(|one| one.max_km).fold(0.0, f64::max);
+    let agrees = matching.is_complete() && worst <= SAME_KM;
+    let explanation = if agrees {
+        None
+    } else {
+        conventions::explanation(subject, &tracks)?
+    };
+    if pairs.is_empty() && explanation.is_none() {
         return Err(FileError::NothingMatches {
             source_name: source.to_owned(),
             objects: tracks.len(),
@@ -92,14 +111,12 @@ pub fn against_file(
         }
         .into());
     }
-    let satellites = pairs
-        .iter()
-        .map(|&(slot, track)| difference(&ours, slot, track))
-        .collect::<Result<Vec<_>, _>>()?;
     let mut findings = Findings::default();
     findings
         .checks
         .extend(coverage_checks(subject, source, &matching, &tracks));
+    let misplaced = matching.misplaced(subject, &ours, &tracks)?;
+    findings.checks.push(misplaced_check(source, misplaced));
     findings.checks.extend(size_checks(source, &satellites));
     findings
         .distributions
@@ -107,18 +124,12 @@ pub fn against_file(
     if matching.is_complete() && tracks.iter().all(|track| track.covers(subject)) {
         findings.append(metrics(subject, source, &ours, &pairs)?);
     }
-    let worst = satellites.iter().map(|one| one.max_km).fold(0.0, f64::max);
-    let explanation = if worst > SAME_KM {
-        conventions::explanation(subject, &tracks)?
-    } else {
-        None
-    };
     findings.files.push(FileComparison {
         source: source.to_owned(),
         matched_by: matching.how().to_owned(),
         unmatched_slots: matching.unmatched_slots(&ours),
         unmatched_objects: matching.unmatched_objects(&tracks),
-        agrees: worst <= SAME_KM,
+        agrees,
         satellites,
         explanation,
     });
@@ -206,19 +217,32 @@ fn coverage_checks(
         Check::new(
             &format!("file/{source}/uncovered-span"),
             [
-                "share of the span of the study that the shortest object leaves out",
+                "share of the span of the study that an object leaves out at most",
                 "1",
                 "max",
             ],
             1.0 - shortest,
             Some(1e-9),
-            "states reach from the first to the last sample of the study; metrics are compared only then",
+            "states reach from the first to the last sample of the study without a gap of more than a tenth of a revolution; metrics are compared only then",
         ),
     ]
 }
 
+fn misplaced_check(source: &str, misplaced: usize) -> Check {
+    Check::new(
+        &format!("file/{source}/misplaced-objects"),
+        ["objects far from the slot of their name", "1", "count"],
+        misplaced as f64,
+        Some(0.0),
+        "at its first sample an object is nearer to its own slot than to the next: else it is another pattern, frame or time",
+    )
+}
+
 fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
-    let n = satellites.len().max(1) as f64;
+    if satellites.is_empty() {
+        return Vec::new();
+    }
+    let n = satellites.len() as f64;
     let square = |value: fn(&Ric) -> f64| {
         let sum: f64 = satellites
             .iter()

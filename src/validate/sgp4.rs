@@ -9,6 +9,7 @@ pub(super) mod causes;
 mod element_sets;
 mod frozen;
 pub(super) mod rates;
+mod sweep;
 mod verification;
 
 use super::decisions::{DecisionGates, Seen, flip_gate};
@@ -17,8 +18,10 @@ use super::{Check, Findings, Subject, ValidateError};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::orbit::osculating::OsculatingOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Mode, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
+use crate::time::TimeGrid;
 use causes::{Causes, is_deep_space};
 
+pub use sweep::{SweepCell, SweepLine};
 pub use verification::against_the_verification_set;
 
 /// The design flown by SGP4 and by J2, each once.
@@ -34,9 +37,9 @@ struct Flights {
 }
 
 impl Flights {
-    fn new(subject: &Subject<'_>) -> Result<Self, EphemerisError> {
+    fn new(subject: &Subject<'_>, grid: TimeGrid) -> Result<Self, EphemerisError> {
         let by = |slot: MeanMotionSlot, theory: Sgp4Theory| {
-            subject.fly(|elements| {
+            subject.fly_on(grid, |elements| {
                 Sgp4Orbit::from_mean_elements_with(elements, subject.epoch(), slot, theory)
             })
         };
@@ -46,8 +49,8 @@ impl Flights {
         };
         let slot = subject.parts.slot;
         Ok(Self {
-            mean_j2: subject.fly_mean_j2()?,
-            osculating_j2: subject.fly(|elements| Ok(OsculatingOrbit::new(elements)))?,
+            mean_j2: subject.fly_on(grid, |elements| Ok((subject.parts.mean_j2)(elements)))?,
+            osculating_j2: subject.fly_on(grid, |elements| Ok(OsculatingOrbit::new(elements)))?,
             sgp4: by(slot, Sgp4Theory::STANDARD)?,
             no_j3j4: by(slot, zonals(ZonalHarmonics::J2Only))?,
             no_j3: by(slot, zonals(ZonalHarmonics::WithoutJ3))?,
@@ -63,8 +66,9 @@ impl Flights {
         })
     }
 
-    /// The budget: first the cases of J2 against SGP4, then what SGP4's own variants amount to.
-    fn budget(&self) -> Result<Vec<BudgetLine>, EphemerisError> {
+    /// The budget: first the cases of J2 against SGP4, then what SGP4's own variants amount to; the
+    /// first `count` of these.
+    fn budget(&self, count: usize) -> Result<Vec<BudgetLine>, EphemerisError> {
         let cases: [(&str, &str, &Ephemeris, &Ephemeris); 8] = [
             (
                 "mean-j2/sgp4",
@@ -112,6 +116,7 @@ impl Flights {
         ];
         cases
             .into_iter()
+            .take(count)
             .map(|(case, cause, first, second)| compare((case, cause), first, second))
             .collect()
     }
@@ -127,10 +132,11 @@ impl Flights {
 /// When SGP4 refuses a satellite, as for an orbit that decays.
 pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = against_the_verification_set();
-    let flights = Flights::new(subject)?;
-    let budget = flights.budget()?;
+    let flights = Flights::new(subject, subject.grid())?;
+    let budget = flights.budget(usize::MAX)?;
     let scale = Scale::of(subject);
     findings.checks.extend(scale.budget_checks(&budget));
+    findings.append(sweep::over_inclination_and_altitude(subject)?);
     findings.checks.extend(rates::checks(subject, &scale)?);
     findings.checks.extend(frozen::checks(subject, &scale)?);
     let written = element_sets::Written::new(subject)?;

@@ -188,7 +188,7 @@ fn what_cannot_be_run_says_why() {
         ),
         (
             refused(&["validate", "--against", "stk"]),
-            "unknown target 'stk'",
+            "unknown word \"stk\" (choices: sgp4,",
         ),
         (refused(&["frobnicate"]), "unrecognized subcommand"),
     ];
@@ -261,6 +261,7 @@ fn the_run_directory_is_whole_and_repeatable() {
     names.sort();
     let expected = [
         "checkpoint",
+        "checkpoint.previous",
         "front.csv",
         "front.json",
         "history.csv",
@@ -377,7 +378,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     assert_eq!(ran(directory.path(), &arguments).status, 0);
     let checkpoint = directory.path().join("run/checkpoint");
     let good = fs::read(&checkpoint).unwrap();
-    fs::write(directory.path().join("run/checkpoint.previous"), &good).unwrap();
+    let front = fs::read(directory.path().join("run/front.json")).unwrap();
     fs::write(&checkpoint, &good[..good.len() / 2]).unwrap();
     let resumed = ran(
         directory.path(),
@@ -388,7 +389,12 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
         resumed.stderr.contains("is damaged")
             && resumed.stderr.contains("the one before it is used")
     );
-    fs::write(&checkpoint, b"nonsense").unwrap();
+    // The last generation was repeated: nothing is lost.
+    assert!(fs::read(&checkpoint).unwrap() == good);
+    assert!(fs::read(directory.path().join("run/front.json")).unwrap() == front);
+    for name in ["checkpoint", "checkpoint.previous"] {
+        fs::write(directory.path().join("run").join(name), b"nonsense").unwrap();
+    }
     let hopeless = ran(
         directory.path(),
         &[arguments, vec!["--resume", "--force"]].concat(),

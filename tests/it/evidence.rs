@@ -64,6 +64,44 @@ fn regress_the_regional_report() {
     assert_same_checks("regional");
 }
 
+/// The table of designs of the repeated study, and the scenario it says it is of.
+#[test]
+fn regress_the_repeated_study() {
+    let reports = Path::new(env!("CARGO_MANIFEST_DIR")).join("validation/reports");
+    let text = fs::read_to_string(reports.join("reproduce.md")).unwrap();
+    let hash = committed("paper")["scenario"]["hash"]
+        .as_str()
+        .unwrap()
+        .to_owned();
+    assert!(text.contains(&hash), "reproduce.md is of another scenario");
+    let rows = text
+        .lines()
+        .skip_while(|line| *line != "## Table II")
+        .skip(6);
+    let mut count = 0;
+    for row in rows.take_while(|row| row.starts_with("| ")) {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+        let output = assert_cmd::Command::cargo_bin("navwalker")
+            .unwrap()
+            .args(["evaluate", "--design", cells[1], "--format", "json"])
+            .output()
+            .unwrap();
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        for (printed, metric, digits) in [(cells[3], "mean_visible", 3), (cells[6], "mean_pdop", 4)]
+        {
+            let value = found["metrics"][metric].as_f64().unwrap();
+            assert_eq!(
+                format!("{value:.digits$}"),
+                printed,
+                "{} {metric}",
+                cells[0]
+            );
+        }
+        count += 1;
+    }
+    assert_eq!(count, 11);
+}
+
 /// The versions in the reports are those that are built in.
 #[test]
 fn judges_are_those_of_the_lock_file() {

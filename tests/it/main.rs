@@ -9,3 +9,4 @@ mod reference;
 mod scenes;
 mod study;
 mod tidy;
+mod trust;

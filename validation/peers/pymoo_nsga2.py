@@ -21,6 +21,7 @@ from functools import lru_cache
 import numpy as np
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.core.problem import Problem
+from pymoo.core.repair import Repair
 from pymoo.indicators.hv import HV
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
@@ -55,8 +56,17 @@ def functions(seeds):
         report(name, [volume(run, [1.1] * problem.n_obj) for run in runs])
 
 
+class WholeCounts(Repair):
+    """Planes and satellites are whole in the genome, as pymoo's own RoundingRepair does it."""
+
+    def _do(self, _problem, x, **_kwargs):
+        x = x.copy()
+        x[:, :2] = np.rint(x[:, :2])
+        return x
+
+
 class Paper(Problem):
-    """The paper's search space; integers are rounded before they are evaluated."""
+    """The paper's search space."""
 
     def __init__(self, binary):
         super().__init__(n_var=4, n_obj=2, xl=[11, 11, 40, 400], xu=[15, 15, 60, 1000])
@@ -87,7 +97,8 @@ def paper(binary, seeds):
         "pymoo's defaults": {},
     }
     for name, operators in settings.items():
-        algorithm = NSGA2(pop_size=30, **operators)
+        # Rounded at evaluation alone, genomes drift on plateaus: 0.592 and 0.598 in place of 0.609.
+        algorithm = NSGA2(pop_size=30, repair=WholeCounts(), **operators)
         runs = [minimize(problem, algorithm, ("n_gen", 30), seed=s) for s in range(1, seeds + 1)]
         report(name, [volume(run, [2.0, 22.0]) for run in runs])
 

@@ -5,8 +5,8 @@ mod products;
 
 pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
 
+use crate::pick::Pick;
 use products::PRODUCTS;
-
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
 use navwalker::formats::export::Product;
@@ -291,32 +291,6 @@ pub(crate) struct ReproduceArgs {
     pub(crate) format: StudyFormat,
 }
 
-/// Which design of a run to take.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pick {
-    /// The pick of the fuzzy decision.
-    Fuzzy,
-    /// The member that bulges furthest towards the ideal point.
-    Knee,
-    /// A member by its index.
-    Index(usize),
-}
-
-impl std::str::FromStr for Pick {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        match text {
-            "fuzzy" => Ok(Self::Fuzzy),
-            "knee" => Ok(Self::Knee),
-            _ => match text.parse() {
-                Ok(index) if index > 0 => Ok(Self::Index(index)),
-                _ => Err("expected fuzzy, knee, or the index of a front member from 1".to_owned()),
-            },
-        }
-    }
-}
-
 /// One design: given, or picked from a run.
 #[derive(Debug, Args)]
 #[group(required = false, multiple = true)]
@@ -329,7 +303,7 @@ pub(crate) struct DesignArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) run: Option<PathBuf>,
 
-    /// Which design of the run: fuzzy, knee, or the index of a front member.
+    /// Which design of the run: fuzzy, sum, topsis, knee, or the index of a front member.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
     pub(crate) pick: Pick,
 }
@@ -434,6 +408,10 @@ pub(crate) struct ValidateArgs {
     /// Also write the report in every form into this directory.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+
+    /// Replace a directory that holds something.
+    #[arg(long, requires = "out")]
+    pub(crate) force: bool,
 
     /// Form of the result on stdout.
     #[arg(long, value_enum, default_value = "text")]

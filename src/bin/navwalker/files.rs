@@ -1,6 +1,7 @@
 //! Files and directories that are either whole or absent: written beside, then renamed.
 
 use anyhow::{Context, Result, bail};
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,11 @@ impl StagedDirectory {
 
     /// Puts the directory in its place, replacing what is there.
     pub(crate) fn commit(self) -> Result<()> {
+        self.commit_keeping(&[])
+    }
+
+    /// The same, but entries of these names are taken over from what is replaced.
+    pub(crate) fn commit_keeping(self, kept: &[OsString]) -> Result<()> {
         let replace = || -> std::io::Result<()> {
             if self.place.exists() {
                 let old = beside(&self.place.with_extension("old"));
@@ -56,6 +62,9 @@ impl StagedDirectory {
                 if let Err(error) = fs::rename(&self.staging, &self.place) {
                     fs::rename(&old, &self.place)?;
                     return Err(error);
+                }
+                for name in kept.iter().filter(|name| old.join(name).exists()) {
+                    fs::rename(old.join(name), self.place.join(name))?;
                 }
                 fs::remove_dir_all(old)
             } else {

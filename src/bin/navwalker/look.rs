@@ -1,12 +1,12 @@
 //! A run directory as `report` and `plot` look at it: what is there, and what can be computed anew.
 
-use crate::args::{Pick, RunArgs};
+use crate::args::RunArgs;
 use crate::output;
+use crate::pick::Pick;
 use crate::study::Study;
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
 use navwalker::evaluate::Evaluator;
-use navwalker::optimize::{best, knee};
 use navwalker::report::figures::{Baseline, NamedFront};
 use navwalker::report::run::{RunFiles, StoredMember, StoredRun, stored_front};
 use navwalker::scenario::{Quantity, Word};
@@ -67,15 +67,8 @@ impl Look {
     /// The member that is picked.
     pub(crate) fn pick(&self, pick: Pick) -> Result<&StoredMember> {
         let members = &self.run.front.members;
-        let found = match pick {
-            Pick::Fuzzy => members.iter().find(|member| member.chosen),
-            Pick::Index(index) => members.iter().find(|member| member.index == index),
-            Pick::Knee => {
-                let points: Vec<Vec<f64>> = members.iter().map(minimised).collect();
-                let scores = knee(&points).ok();
-                scores.and_then(|scores| best(&scores)).map(|n| &members[n])
-            }
-        };
+        let points: Vec<Vec<f64>> = members.iter().map(minimised).collect();
+        let found = pick.place(&points).map(|(place, _)| &members[place]);
         found.with_context(|| format!("the front has {} members and not that one", members.len()))
     }
 }

@@ -7,6 +7,7 @@ mod files;
 mod fleets;
 mod look;
 mod output;
+mod pick;
 mod progress;
 mod run;
 mod study;

@@ -1,15 +1,16 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
-use crate::args::Pick;
+use crate::pick::Pick;
 use crate::{files, output};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
-use navwalker::optimize::{Search, best, knee};
+use navwalker::optimize::{Search, Strategy};
 use navwalker::report::{OptimizeResult, VERSION, front_csv, history_csv};
 use navwalker::scenario::Scenario;
 use navwalker::search::Quantity;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -43,29 +44,90 @@ struct Header {
     sha256: String,
 }
 
+/// Files of a run; whatever else lies in its directory was put there about it.
+const OWN: [&str; 7] = [
+    CHECKPOINT,
+    PREVIOUS,
+    "scenario.toml",
+    "front.json",
+    "front.csv",
+    "history.json",
+    "history.csv",
+];
+
 /// A directory in which a run is under way.
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
+    /// What else the directory holds about the same run: a validation, a report.
+    kept: Vec<OsString>,
 }
 
 impl RunDirectory {
     /// The directory at `path`, which is created where it is missing.
     pub(crate) fn open(path: PathBuf, identity: Identity, force: bool) -> Result<Self> {
-        let run = Self { path, identity };
-        if !force
-            && !files::is_vacant(&run.path)?
-            && run.found_identity().as_ref() != Some(&run.identity)
-        {
-            bail!(
-                "{} holds something else than a run of this scenario, seed and version; \
-                 choose another --out, or replace it with --force",
-                run.path.display()
-            );
+        let mut run = Self {
+            path,
+            identity,
+            kept: Vec::new(),
+        };
+        if !files::is_vacant(&run.path)? {
+            let others = run.others()?;
+            if run.found_identity().as_ref() == Some(&run.identity) {
+                run.kept = others;
+            } else if !force {
+                bail!(
+                    "{} holds {}; choose another --out, or replace it with --force",
+                    run.path.display(),
+                    run.what_else()
+                );
+            } else if !others.is_empty() {
+                let names: Vec<_> = others.iter().map(|name| name.to_string_lossy()).collect();
+                output::warning(&format!(
+                    "{} is replaced, and with it {}",
+                    run.path.display(),
+                    names.join(", ")
+                ));
+            }
         }
         fs::create_dir_all(&run.path)
             .with_context(|| format!("cannot create {}", run.path.display()))?;
         Ok(run)
+    }
+
+    /// What the directory holds besides the files of a run, by name.
+    fn others(&self) -> Result<Vec<OsString>> {
+        let cannot = || format!("cannot read {}", self.path.display());
+        let mut others = Vec::new();
+        for entry in fs::read_dir(&self.path).with_context(cannot)? {
+            let name = entry.with_context(cannot)?.file_name();
+            if !OWN.iter().any(|own| name == *own) {
+                others.push(name);
+            }
+        }
+        others.sort();
+        Ok(others)
+    }
+
+    /// What the directory holds when it is not this run.
+    fn what_else(&self) -> String {
+        match self.found_identity() {
+            Some(found) if found.version != self.identity.version => {
+                let (theirs, ours) = (found.version, &self.identity.version);
+                format!("a run by version {theirs}, and this is {ours}")
+            }
+            Some(found) if found.scenario_hash != self.identity.scenario_hash => {
+                "a run of another scenario".to_owned()
+            }
+            Some(found) => format!(
+                "the run of seed {}, and this is seed {}",
+                found.seed, self.identity.seed
+            ),
+            None if self.path.join(CHECKPOINT).exists() => {
+                "a run whose checkpoint is damaged, and no earlier one is whole".to_owned()
+            }
+            None => "something else than a run of this scenario, seed and version".to_owned(),
+        }
     }
 
     /// What the directory says it is a run of, by either checkpoint.
@@ -77,7 +139,7 @@ impl RunDirectory {
         })
     }
 
-    /// Writes the state of a search, keeping the state before it.
+    /// Writes the state of a search, keeping the state before it; before the first there is none.
     pub(crate) fn save(&self, search: &Search) -> Result<()> {
         let state = serde_json::to_string(search)?;
         let header = Header {
@@ -86,11 +148,17 @@ impl RunDirectory {
         };
         let text = format!("{}\n{state}\n", serde_json::to_string(&header)?);
         let path = self.path.join(CHECKPOINT);
-        if path.exists() {
-            fs::rename(&path, self.path.join(PREVIOUS))
-                .with_context(|| format!("cannot write in {}", self.path.display()))?;
+        let previous = self.path.join(PREVIOUS);
+        let cannot = || format!("cannot write in {}", self.path.display());
+        let is_first = search.progress().step <= 1;
+        if path.exists() && !is_first {
+            fs::rename(&path, &previous).with_context(cannot)?;
         }
-        files::write_atomically(&path, text.as_bytes())
+        files::write_atomically(&path, text.as_bytes())?;
+        if previous.exists() && is_first {
+            fs::remove_file(&previous).with_context(cannot)?;
+        }
+        Ok(())
     }
 
     /// The state to go on from: the last whole checkpoint; `None` when there is none at all.
@@ -105,6 +173,9 @@ impl RunDirectory {
                 Ok((identity, search)) if identity == self.identity => {
                     if let Some(reason) = damaged.first() {
                         output::warning(&format!("{reason}; the one before it is used"));
+                        // Lest it takes the place of the one before at the next generation.
+                        fs::remove_file(self.path.join(CHECKPOINT))
+                            .with_context(|| format!("cannot write in {}", self.path.display()))?;
                     }
                     return Ok(Some(search));
                 }
@@ -151,9 +222,15 @@ impl RunDirectory {
         Self {
             path: staged.path().to_owned(),
             identity: self.identity.clone(),
+            kept: Vec::new(),
         }
         .save(search)?;
-        staged.commit()
+        let previous = self.path.join(PREVIOUS);
+        if previous.exists() {
+            fs::copy(&previous, staged.path().join(PREVIOUS))
+                .with_context(|| format!("cannot copy {}", previous.display()))?;
+        }
+        staged.commit_keeping(&self.kept)
     }
 }
 
@@ -183,10 +260,8 @@ struct StoredFront {
 
 #[derive(Deserialize)]
 struct StoredMember {
-    index: usize,
     design: StoredDesign,
     objectives: serde_json::Map<String, serde_json::Value>,
-    chosen: bool,
 }
 
 #[derive(Deserialize)]
@@ -208,28 +283,18 @@ fn stored_front(directory: &Path) -> Result<(PathBuf, Vec<StoredMember>)> {
     Ok((path, stored.front))
 }
 
-/// The design that `pick` names in the front of a run.
-pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<Design> {
+/// The design that `pick` names in the front of a run, and why it is that.
+pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     let (path, members) = stored_front(directory)?;
-    let found = match pick {
-        Pick::Fuzzy => members.iter().find(|member| member.chosen),
-        Pick::Index(index) => members.iter().find(|member| member.index == index),
-        Pick::Knee => {
-            let points: Vec<Vec<f64>> = members.iter().map(minimised).collect::<Result<_>>()?;
-            knee(&points)
-                .ok()
-                .and_then(|scores| best(&scores))
-                .map(|n| &members[n])
-        }
-    };
-    let Some(member) = found else {
+    let points: Vec<Vec<f64>> = members.iter().map(minimised).collect::<Result<_>>()?;
+    let Some((place, why)) = pick.place(&points) else {
         bail!(
             "{} has {} members and not that one",
             path.display(),
             members.len()
         );
     };
-    Ok(member.design.notation.parse()?)
+    Ok((members[place].design.notation.parse()?, why))
 }
 
 fn minimised(member: &StoredMember) -> Result<Vec<f64>> {

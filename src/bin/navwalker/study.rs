@@ -1,6 +1,6 @@
 //! From what was typed to a scenario and what it needs.
 
-use crate::args::{DesignArgs, Pick, StudyArgs};
+use crate::args::{DesignArgs, StudyArgs};
 use crate::{output, run};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
@@ -144,13 +144,8 @@ pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result
             );
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let picked = run::pick(directory, design.pick)?;
-        let how = match design.pick {
-            Pick::Fuzzy => "the pick of the fuzzy decision".to_owned(),
-            Pick::Knee => "the knee".to_owned(),
-            Pick::Index(index) => format!("member {index}"),
-        };
-        output::hint(&format!("{picked}: {how} of {}", directory.display()));
+        let (picked, why) = run::pick(directory, design.pick)?;
+        output::hint(&format!("{picked} of {}: {why}", directory.display()));
         return Ok((loaded, picked));
     }
     let loaded = Study::load(study, &[])?;

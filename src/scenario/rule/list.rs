@@ -11,7 +11,7 @@ use super::{Node, Number, Reading, Rule, Text};
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
 use crate::scenario::resolved::MaskPoint;
-use crate::search::{Constraint, ConstraintError};
+use crate::search::{Constraint, ConstraintError, Relation};
 use crate::visibility::MaskTable;
 use crate::words::Word;
 
@@ -151,11 +151,38 @@ impl Rule for OneConstraint {
     }
 }
 
+/// Why two bounds of one quantity do not go together.
+fn conflict(first: &Constraint, second: &Constraint) -> Option<Fault> {
+    let (lower, upper) = match (first.relation, second.relation) {
+        (Relation::AtLeast, Relation::AtMost) => (first, second),
+        (Relation::AtMost, Relation::AtLeast) => (second, first),
+        _ => {
+            return Some(Fault::Repeated {
+                found: format!("{} {}", second.quantity, second.relation),
+            });
+        }
+    };
+    (lower.bound > upper.bound).then(|| Fault::Contradiction {
+        lower: lower.to_string(),
+        upper: upper.to_string(),
+    })
+}
+
 impl Rule for Constraints {
     type Value = Vec<Constraint>;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<Constraint>> {
-        read_list(&OneConstraint, node, reading)
+        let constraints = read_list(&OneConstraint, node, reading)?;
+        let fault = constraints.iter().enumerate().find_map(|(n, one)| {
+            let before = constraints[..n].iter();
+            let same = before.filter(|other| other.quantity == one.quantity);
+            same.into_iter().find_map(|other| conflict(other, one))
+        });
+        if let Some(fault) = fault {
+            reading.report(node.span(), fault);
+            return None;
+        }
+        Some(constraints)
     }
 
     fn accepted(&self) -> String {

@@ -118,7 +118,14 @@ fn objectives() -> impl Strategy<Value = Objectives> {
     );
     (scalars, lists).prop_map(|(scalars, lists)| {
         let (cvar_weight, cvar_level, availability_pdop, launch_cost) = scalars;
-        let (minimize, constraints, given, coordinate) = lists;
+        let (minimize, mut constraints, given, coordinate) = lists;
+        // One bound of each quantity: two may contradict each other.
+        let mut bounded = Vec::new();
+        constraints.retain(|one| {
+            let is_new = !bounded.contains(&one.quantity);
+            bounded.push(one.quantity);
+            is_new
+        });
         let usual: Option<Vec<f64>> = minimize
             .iter()
             .map(|quantity| quantity.default_reference())
@@ -169,6 +176,9 @@ fn search() -> impl Strategy<Value = SearchSpace> {
             let (eccentricity, arg_perigee_deg, eccentricity_step, arg_perigee_step_deg) = ellipse;
             let (inclination_deg, altitude_km, inclination_step_deg, altitude_step_km) = real;
             phasing[0] = phasing[0].min(planes[1] - 1);
+            // At least the roundest and highest design is above ground.
+            let mut eccentricity: [f64; 2] = eccentricity;
+            eccentricity[0] = eccentricity[0].min(altitude_km[1] / 2e5);
             SearchSpace {
                 pattern,
                 planes,

@@ -224,6 +224,36 @@ fn constraints_are_a_quantity_a_relation_and_a_number() {
 }
 
 #[test]
+fn bounds_of_one_quantity_go_together() {
+    let line = "constraints = [\"planes >= 12\", \"planes <= 12\"]";
+    assert_eq!(accepts("objectives", line).objectives.constraints.len(), 2);
+    for (line, message) in [
+        (
+            "constraints = [\"planes <= 12\", \"satellites <= 200\", \"planes <= 13\"]",
+            "planes <= appears more than once",
+        ),
+        (
+            "constraints = [\"max-pdop <= 2\", \"max-pdop >= 3\"]",
+            "max-pdop >= 3 and max-pdop <= 2 leave no design",
+        ),
+    ] {
+        refuses("objectives", line, "constraints", message);
+    }
+}
+
+#[test]
+fn ellipses_that_all_go_underground_are_no_search() {
+    let error = super::parse("[search]\neccentricity = [0.5, 0.6]\n", &[]).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains("at 0.5 and 1000 km the perigee is -2689.1 km over the Earth's radius"),
+        "{text}"
+    );
+    // One design of the search is enough.
+    assert!(super::parse("[search]\neccentricity = [0.1, 0.6]\n", &[]).is_ok());
+}
+
+#[test]
 fn words_are_known() {
     let refuses = |section: &str, key: &str, word: &str, message: &str| {
         super::refuses(section, &format!("{key} = {word}"), key, message);

@@ -1,30 +1,34 @@
 //! Conventions of other tools, tried one after the other on what a file holds.
 
+mod flights;
+
 use super::matching::Matching;
 use super::tracks::Track;
 use crate::constellation::{Design, Pattern, Satellite};
-use crate::earth::{J2, RADIUS_KM};
+use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, Flown, object_name};
-use crate::frames::{Frame, State, from_teme, teme_to_eme2000, to_teme};
+use crate::frames::Frame;
 use crate::orbit::j2::{SecularOrbit, SecularRates};
 use crate::orbit::osculating::OsculatingOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, ZonalHarmonics};
-use crate::orbit::{MeanElements, PropagationError, Propagator};
-use crate::time::Epoch;
+use crate::orbit::{MeanElements, Propagator};
 use crate::units::wrap_two_pi;
-use crate::validate::numerical::integrator::Zonals;
 use crate::validate::{Subject, ValidateError};
+use flights::{about_j2000, gps_minus_utc_s, mislabelled, taken_as_osculating};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
-/// A convention explains a difference when it leaves less than this share of it.
-const EXPLAINED: f64 = 0.2;
+/// A convention explains a difference when it leaves less than this share of it...
+const EXPLAINED: f64 = 0.1;
+
+/// ... and less than this, km: what is left must be a matter of the force model, not of the pattern.
+const MOST_LEFT_KM: f64 = 50.0;
 
 /// Samples at which conventions are tried, over all objects.
 const SAMPLES: usize = 600;
 
-/// Radius that other tools count altitudes from, km: the rounded mean radius of the Earth.
-const MEAN_RADIUS_KM: f64 = 6_371.0;
+/// Digit to which a fitted radius is rounded, km: a decimetre.
+const RADIUS_DIGIT_KM: f64 = 1e-4;
 
 /// The convention that explains a difference.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,8 +37,8 @@ pub struct Explanation {
     pub convention: String,
     /// What it means.
     pub meaning: String,
-    /// Root mean square distance before, km.
-    pub before_km: f64,
+    /// Root mean square distance before, km; `None` when not every object was near a slot.
+    pub before_km: Option<f64>,
     /// What is left with it, km.
     pub after_km: f64,
 }
@@ -46,7 +50,35 @@ type Flight = Box<dyn Propagator>;
 struct Convention {
     name: &'static str,
     meaning: &'static str,
-    fly: fn(&Subject<'_>) -> Vec<(String, Flight)>,
+    fly: fn(&Subject<'_>, Fitted) -> Vec<(String, Flight)>,
+}
+
+/// What conventions take from the files.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Fitted {
+    /// How much larger the orbits of the files are at their first samples, km.
+    pub(super) radius_offset_km: f64,
+}
+
+impl Fitted {
+    /// The mean excess of the radii at the first samples, at which nothing has drifted yet, as an
+    /// excess of the semi-major axis; zero when not every object is near a slot.
+    fn to(subject: &Subject<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
+        let ours = subject.fly_model()?;
+        let matching = Matching::of(subject, &ours, tracks);
+        let pairs = matching.pairs(tracks);
+        let mut sum = 0.0;
+        for (slot, track) in &pairs {
+            if let Some((elapsed_s, theirs)) = track.at(0.0) {
+                let own = ours.state(&ours.satellites()[*slot], elapsed_s)?;
+                sum += theirs.position_km.norm() / own.position_km.norm() - 1.0;
+            }
+        }
+        let mean = sum / pairs.len().max(1) as f64;
+        let offset_km = mean * subject.orbit().semi_major_axis_km;
+        let radius_offset_km = (offset_km / RADIUS_DIGIT_KM).round() * RADIUS_DIGIT_KM;
+        Ok(Self { radius_offset_km })
+    }
 }
 
 /// Secular J2 on other satellites.
@@ -112,130 +144,6 @@ fn layout(design: &Design) -> (f64, f64) {
     }
 }
 
-/// A flight whose states are seen through another clock or frame.
-struct Mislabelled<P> {
-    flight: P,
-    epoch: Epoch,
-    late_s: f64,
-    /// The frame that the states are in, while they are taken for TEME.
-    frame: Frame,
-    /// Whether it is the other way about: TEME states taken for that frame.
-    inverse: bool,
-}
-
-impl<P: Propagator> Propagator for Mislabelled<P> {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
-        let state = self.flight.state_at(elapsed_s + self.late_s)?;
-        Ok(if self.inverse {
-            to_teme(state, self.frame, self.epoch, elapsed_s)
-        } else {
-            from_teme(state, self.frame, self.epoch, elapsed_s)
-        })
-    }
-}
-
-fn mislabelled(
-    subject: &Subject<'_>,
-    late_s: f64,
-    frame: Frame,
-    inverse: bool,
-) -> Vec<(String, Flight)> {
-    let epoch = subject.epoch();
-    fly_each(&subject.design.satellites(), |elements| {
-        Some(Mislabelled {
-            flight: SecularOrbit::j2(elements),
-            epoch,
-            late_s,
-            frame,
-            inverse,
-        })
-    })
-}
-
-/// Leap seconds between GPS time and UTC.
-fn gps_minus_utc_s(subject: &Subject<'_>) -> f64 {
-    subject.epoch().leap_seconds() - 19.0
-}
-
-/// Secular J2 about the pole of J2000: the same orbit at the epoch, its elements counted from the
-/// equator of J2000, on which the node regresses.
-struct AboutJ2000 {
-    orbit: SecularOrbit,
-    to_teme: nalgebra::Matrix3<f64>,
-}
-
-impl Propagator for AboutJ2000 {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
-        let state = self.orbit.state(elapsed_s);
-        Ok(State {
-            position_km: self.to_teme * state.position_km,
-            velocity_km_s: self.to_teme * state.velocity_km_s,
-        })
-    }
-}
-
-fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
-    let to_j2000 = teme_to_eme2000(subject.epoch());
-    fly_each(&subject.design.satellites(), |elements| {
-        let plane = crate::frames::OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
-        let normal = to_j2000 * plane.node.cross(&plane.ahead);
-        let node = to_j2000 * plane.node;
-        let inclination_rad = normal.z.clamp(-1.0, 1.0).acos();
-        let raan_rad = normal.x.atan2(-normal.y);
-        let turned = crate::frames::OrbitPlane::new(raan_rad, inclination_rad);
-        // The way from the new node to the old one, within the plane.
-        let moved = node.dot(&turned.ahead).atan2(node.dot(&turned.node));
-        let elements = MeanElements {
-            inclination_rad,
-            raan_rad: wrap_two_pi(raan_rad),
-            arg_perigee_rad: wrap_two_pi(elements.arg_perigee_rad + moved),
-            ..*elements
-        };
-        Some(AboutJ2000 {
-            orbit: SecularOrbit::j2(&elements),
-            to_teme: to_j2000.transpose(),
-        })
-    })
-}
-
-/// The elements taken as osculating at the epoch, and J2 integrated.
-struct Integrated {
-    /// One state each [`INTEGRATED_STEP_S`].
-    states: Vec<State>,
-    step_s: f64,
-}
-
-impl Propagator for Integrated {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
-        let last = self.states.len().saturating_sub(1);
-        let before = ((elapsed_s / self.step_s).floor().max(0.0) as usize).min(last);
-        let start = before
-            .saturating_sub(3)
-            .min(self.states.len().saturating_sub(8));
-        let table: Vec<(f64, State)> = (start..self.states.len().min(start + 8))
-            .map(|k| (k as f64 * self.step_s, self.states[k]))
-            .collect();
-        let position_km = crate::formats::interpolation::hermite_position(&table, elapsed_s);
-        Ok(State {
-            position_km,
-            ..self.states[before]
-        })
-    }
-}
-
-fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, Flight)> {
-    let step_s = 60.0;
-    let grid = subject.grid();
-    let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
-    let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
-    let zonals = Zonals { j2: J2, j3: 0.0 };
-    fly_each(&subject.design.satellites(), |elements| {
-        let start = SecularOrbit::two_body(elements).state(0.0);
-        let states = zonals.integrate(&start, &times).ok()?;
-        Some(Integrated { states, step_s })
-    })
-}
-
 fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, Flight)> {
     let epoch = subject.epoch();
     fly_each(&subject.design.satellites(), |elements| {
@@ -243,17 +151,20 @@ fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, Flight)> {
     })
 }
 
+/// The convention whose radius is fitted.
+const ANOTHER_RADIUS: &str = "altitude-over-another-radius";
+
 /// The conventions, cheap ones first.
 const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
         meaning: "secular J2 on the mean elements, as the model j2 flies it",
-        fly: |subject| j2_of(subject.design.satellites()),
+        fly: |subject, _| j2_of(subject.design.satellites()),
     },
     Convention {
         name: "two-body",
         meaning: "no J2 at all",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
             })
@@ -262,7 +173,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "j2-without-mean-anomaly",
         meaning: "secular J2 on node and perigee, but dM/dt = n",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |elements| {
                 let rates = SecularRates {
                     mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
@@ -275,7 +186,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "osculating-j2",
         meaning: "mean elements flown with first-order short-period terms",
-        fly: |subject| {
+        fly: |subject, _| {
             fly_each(&subject.design.satellites(), |e| {
                 Some(OsculatingOrbit::new(e))
             })
@@ -284,27 +195,27 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "elements-taken-as-osculating",
         meaning: "the elements are osculating at the epoch and J2 is integrated",
-        fly: taken_as_osculating,
+        fly: |subject, _| taken_as_osculating(subject),
     },
     Convention {
         name: "sgp4",
         meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
-        fly: |subject| sgp4(subject, MeanMotionSlot::Kozai),
+        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
     },
     Convention {
         name: "sgp4-kepler-slot",
         meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
-        fly: |subject| sgp4(subject, MeanMotionSlot::Kepler),
+        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
     },
     Convention {
-        name: "altitude-over-mean-radius",
-        meaning: "altitudes over a radius of 6371 km",
-        fly: |subject| with_altitude(subject, MEAN_RADIUS_KM - RADIUS_KM),
+        name: ANOTHER_RADIUS,
+        meaning: "altitudes over another radius of the Earth",
+        fly: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
     },
     Convention {
         name: "star-for-delta",
         meaning: "nodes over 180 degrees instead of 360",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 0.5 * node, phase)
         },
@@ -312,7 +223,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "delta-for-star",
         meaning: "nodes over 360 degrees instead of 180",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 2.0 * node, phase)
         },
@@ -320,7 +231,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-slots",
         meaning: "phase step F 360/P instead of F 360/T",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(
                 subject,
@@ -332,7 +243,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-degrees",
         meaning: "phase step of F degrees",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, _) = layout(&subject.design);
             with_layout(subject, node, subject.design.phasing() as f64 / 360.0)
         },
@@ -340,7 +251,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-backwards",
         meaning: "phase step -F 360/T",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, -phase)
         },
@@ -348,35 +259,53 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-halved",
         meaning: "phase step F 180/T, as lox has for stars",
-        fly: |subject| {
+        fly: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, 0.5 * phase)
         },
     },
     Convention {
+        name: "phasing-ignored",
+        meaning: "no phase step between planes: F = 0",
+        fly: |subject, _| {
+            let (node, _) = layout(&subject.design);
+            with_layout(subject, node, 0.0)
+        },
+    },
+    Convention {
         name: "teme-taken-for-eme2000",
-        meaning: "TEME states, labelled EME2000: the elements are those of TEME, the frame of the file is not",
-        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, true),
+        meaning: "TEME states, labelled EME2000; or, the same, elements and pole of J2 counted from the equator of J2000",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
     },
     Convention {
         name: "eme2000-taken-for-teme",
         meaning: "EME2000 states, labelled TEME",
-        fly: |subject| mislabelled(subject, 0.0, Frame::Eme2000, false),
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
+    },
+    Convention {
+        name: "teme-taken-for-earth-fixed",
+        meaning: "TEME states, labelled as of the rotating Earth",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
+    },
+    Convention {
+        name: "earth-fixed-taken-for-teme",
+        meaning: "states of the rotating Earth, labelled TEME",
+        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
     },
     Convention {
         name: "utc-taken-for-gps",
         meaning: "UTC instants, labelled GPS time",
-        fly: |subject| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
+        fly: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "gps-taken-for-utc",
         meaning: "GPS instants, labelled UTC",
-        fly: |subject| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
+        fly: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "j2-about-the-j2000-pole",
         meaning: "secular J2 about the pole of J2000 instead of the true pole of date",
-        fly: about_j2000,
+        fly: |subject, _| about_j2000(subject),
     },
 ];
 
@@ -388,11 +317,10 @@ pub(super) fn explanation(
     subject: &Subject<'_>,
     tracks: &[Track],
 ) -> Result<Option<Explanation>, ValidateError> {
-    let Some(before_km) = rms_km(subject, subject.fly_model()?, tracks) else {
-        return Ok(None);
-    };
+    let before_km = rms_km(subject, subject.fly_model()?, tracks);
+    let fitted = Fitted::to(subject, tracks)?;
     let tried = CONVENTIONS.iter().filter_map(|convention| {
-        let flown = (convention.fly)(subject).into_iter();
+        let flown = (convention.fly)(subject, fitted).into_iter();
         let satellites = flown.map(|(name, propagator)| Flown {
             name,
             slot: None,
@@ -402,11 +330,19 @@ pub(super) fn explanation(
         Some((convention, rms_km(subject, ephemeris, tracks)?))
     });
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1));
+    let enough_km = before_km.map_or(MOST_LEFT_KM, |before_km| {
+        (EXPLAINED * before_km).min(MOST_LEFT_KM)
+    });
     Ok(best
-        .filter(|(_, after_km)| *after_km < EXPLAINED * before_km)
+        .filter(|(_, after_km)| *after_km < enough_km)
         .map(|(convention, after_km)| Explanation {
             convention: convention.name.to_owned(),
-            meaning: convention.meaning.to_owned(),
+            meaning: if convention.name == ANOTHER_RADIUS {
+                let radius_km = RADIUS_KM + fitted.radius_offset_km;
+                format!("altitudes over a radius of {radius_km:.4} km (fitted)")
+            } else {
+                convention.meaning.to_owned()
+            },
             before_km,
             after_km,
         }))
@@ -441,9 +377,9 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
 
 /// The design as a convention flies it.
 #[cfg(test)]
-pub(super) fn flown(subject: &Subject<'_>, name: &str) -> Vec<(String, Flight)> {
+pub(super) fn flown(subject: &Subject<'_>, name: &str, fitted: Fitted) -> Vec<(String, Flight)> {
     let convention = CONVENTIONS
         .iter()
         .find(|convention| convention.name == name);
-    (convention.unwrap().fly)(subject)
+    (convention.unwrap().fly)(subject, fitted)
 }

@@ -1,7 +1,8 @@
 //! Which object of a file is which slot.
 
 use super::tracks::Track;
-use crate::ephemeris::Ephemeris;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::State;
 use crate::validate::Subject;
 use std::collections::BTreeMap;
 
@@ -51,12 +52,13 @@ impl Matching {
             };
             for (slot, satellite) in ours.satellites().iter().enumerate() {
                 if let Ok(own) = ours.state(satellite, elapsed_s) {
-                    pairs.push(((state.position_km - own.position_km).norm(), slot, object));
+                    pairs.push((apart_km(subject, &state, &own), slot, object));
                 }
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let reach_km = reach_km(subject);
+        // A satellite that is late on its circle is as late in its course.
+        let reach_km = reach_km(subject) * std::f64::consts::SQRT_2;
         let mut object_of_slot = vec![None; ours.satellites().len()];
         let mut taken = vec![false; tracks.len()];
         for (distance_km, slot, object) in pairs {
@@ -73,6 +75,25 @@ impl Matching {
             by_name: false,
             objects: tracks.len(),
         }
+    }
+
+    /// How many pairs of names are no pairs of places: farther apart at their first sample than
+    /// objects are matched by place.
+    pub(super) fn misplaced(
+        &self,
+        subject: &Subject<'_>,
+        ours: &Ephemeris,
+        tracks: &[Track],
+    ) -> Result<usize, EphemerisError> {
+        let reach_km = reach_km(subject);
+        let mut misplaced = 0;
+        for (slot, track) in self.pairs(tracks) {
+            if let Some((elapsed_s, state)) = track.at(0.0) {
+                let own = ours.state(&ours.satellites()[slot], elapsed_s)?;
+                misplaced += usize::from((state.position_km - own.position_km).norm() > reach_km);
+            }
+        }
+        Ok(misplaced)
     }
 
     /// `name` or `place`.
@@ -116,6 +137,17 @@ impl Matching {
         let free = (0..tracks.len()).filter(is_free);
         free.map(|object| tracks[object].name.clone()).collect()
     }
+}
+
+/// Distance of two states, km, velocities counted by the way in a radian of the orbit: satellites of
+/// two planes that cross are in one place, but not on one course.
+fn apart_km(subject: &Subject<'_>, theirs: &State, own: &State) -> f64 {
+    let apart_km = (theirs.position_km - own.position_km).norm();
+    if theirs.velocity_km_s.norm() == 0.0 {
+        return apart_km;
+    }
+    let rate_rad_s = subject.orbit().kepler_mean_motion_rad_s();
+    apart_km.hypot((theirs.velocity_km_s - own.velocity_km_s).norm() / rate_rad_s)
 }
 
 /// How far from its slot an object may be: a third of the way to the next satellite of the plane,

@@ -7,9 +7,14 @@ use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::validate::{Subject, ValidateError};
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 /// Samples on either side of an instant that an interpolation takes.
 const NODES: usize = 8;
+
+/// Widest gap between states that is interpolated, revolutions: Hermite's polynomial through eight of
+/// them is then good to metres.
+const WIDEST_GAP_TURNS: f64 = 0.1;
 
 /// Most samples at which an object is compared.
 const MOST_SAMPLES: usize = 2_000;
@@ -122,19 +127,23 @@ fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
 }
 
 impl Track {
-    /// Share of the span of the study that the states reach over.
+    /// Share of the span of the study that the states reach over without a gap too wide to be
+    /// interpolated.
     pub(super) fn covered_share(&self, subject: &Subject<'_>) -> f64 {
         let last_s = last_s(subject);
         if self.flown.is_some() {
             return 1.0;
         }
-        let (Some((first, _)), Some((last, _))) = (self.all.first(), self.all.last()) else {
-            return 0.0;
-        };
         if last_s <= 0.0 {
-            return 1.0;
+            return if self.states.is_empty() { 0.0 } else { 1.0 };
         }
-        ((last.min(last_s) - first.max(0.0)) / last_s).clamp(0.0, 1.0)
+        let most_s = WIDEST_GAP_TURNS * TAU / subject.orbit().kepler_mean_motion_rad_s();
+        let steps = self.all.windows(2).map(|pair| (pair[0].0, pair[1].0));
+        let covered_s: f64 = steps
+            .filter(|(from, to)| to - from <= most_s)
+            .map(|(from, to)| (to.min(last_s) - from.max(0.0)).max(0.0))
+            .sum();
+        (covered_s / last_s).clamp(0.0, 1.0)
     }
 
     /// Whether the states reach over the whole span and carry an interpolation.

@@ -1,6 +1,6 @@
 //! What can be typed to look at a run.
 
-use super::Pick;
+use crate::pick::Pick;
 use clap::Args;
 use navwalker::constellation::Design;
 use navwalker::report::figures::draw::Form;

@@ -3,6 +3,7 @@
 mod seeds;
 
 use crate::args::{Format, OptimizeArgs};
+use crate::pick::Pick;
 use crate::progress::Progress;
 use crate::run::{Identity, RunDirectory};
 use crate::study::Study;
@@ -12,7 +13,8 @@ use navwalker::evaluate::Evaluator;
 use navwalker::optimize::{Search, Strategy};
 use navwalker::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
 use navwalker::scenario::Algorithm;
-use navwalker::search::DesignProblem;
+use navwalker::scenario::Word;
+use navwalker::search::{DesignProblem, Quantity};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -245,11 +247,39 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
             chosen.design.notation, chosen.membership
         );
     }
+    text += &other_picks(result);
     if let Some(certificate) = &result.certificate {
         text += &certificate.to_text();
     }
     for diagnostic in &result.diagnostics {
         text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);
+    }
+    text
+}
+
+/// What the other methods of decision pick, and why.
+fn other_picks(result: &OptimizeResult) -> String {
+    let values = |member: &FrontMember| {
+        let minimised = |(name, value): &(String, f64)| {
+            Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
+        };
+        member.objectives.iter().map(minimised).collect()
+    };
+    let points: Vec<Vec<f64>> = result.front.iter().map(values).collect();
+    let mut text = String::new();
+    for pick in Pick::METHODS
+        .into_iter()
+        .filter(|pick| *pick != Pick::Fuzzy)
+    {
+        if let Some((place, why)) = pick.place(&points) {
+            let member = &result.front[place];
+            text += &format!(
+                "  --pick {}: {} {}, {why}\n",
+                pick.word(),
+                member.index,
+                member.design.notation
+            );
+        }
     }
     text
 }

@@ -9,63 +9,36 @@ use navwalker::report::{
     ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
 };
 use navwalker::scenario::{Scenario, builtin};
-use navwalker::validate::analytic::against_closed_forms;
 use navwalker::validate::file::{Comparand, against_file, read};
-use navwalker::validate::geodesic::against_geodesics;
-use navwalker::validate::numerical::against_integration;
-use navwalker::validate::paper::against_paper;
-use navwalker::validate::sgp4::against_sgp4;
-use navwalker::validate::{Findings, Subject, ValidateError};
+use navwalker::validate::{Findings, Subject, Target};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a design is held against.
-type Standard = fn(&Subject<'_>) -> Result<Findings, ValidateError>;
-
-/// The standards that can be named.
-const STANDARDS: [(&str, Standard); 5] = [
-    ("sgp4", against_sgp4),
-    ("geographiclib", against_geodesics),
-    ("numerical", against_integration),
-    ("analytic", against_closed_forms),
-    ("paper", |subject| {
-        Ok(against_paper(subject.evaluator.setup())?)
-    }),
-];
-
 /// A standard, or files of another program.
-enum Target {
-    Standard(Standard),
-    /// Every standard that there is for the study.
-    All,
+enum Against {
+    Standard(Target),
     Files(PathBuf),
 }
 
 /// The targets that were typed; one with a dot or a slash in it is a file or a directory.
-fn targets(typed: &[String]) -> Result<Vec<Target>> {
-    let mut targets = Vec::new();
-    for name in typed {
-        if let Some((_, standard)) = STANDARDS.iter().find(|(known, _)| known == name) {
-            targets.push(Target::Standard(*standard));
-        } else if name == "all" {
-            targets.push(Target::All);
-        } else if name.contains(['.', '/', '\\']) {
-            targets.push(Target::Files(PathBuf::from(name)));
-        } else {
-            let known = STANDARDS.map(|(known, _)| known).join(", ");
-            bail!(
-                "unknown target '{name}' for --against; the targets are: {known}, all, or a file or directory with a '.' or '/' in its path"
-            );
+fn targets(typed: &[String]) -> Result<Vec<Against>> {
+    let one = |name: &String| {
+        if name.contains(['.', '/', '\\']) {
+            return Ok(Against::Files(PathBuf::from(name)));
         }
-    }
-    Ok(targets)
+        let target = name.parse().with_context(|| {
+            format!("--against {name}: a file or directory has a '.' or '/' in its path")
+        })?;
+        Ok(Against::Standard(target))
+    };
+    typed.iter().map(one).collect()
 }
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let targets = targets(&args.against)?;
     if let Some(directory) = &args.out {
-        files::require_vacant(directory, false)?;
+        files::require_vacant(directory, args.force)?;
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
     let evaluator = study.evaluator()?;
@@ -73,13 +46,12 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let mut findings = Findings::default();
     for target in &targets {
         match target {
-            Target::Standard(standard) => findings.append(standard(&subject)?),
-            Target::All => {
-                for standard in standards_for(&study)? {
-                    findings.append(standard(&subject)?);
+            Against::Standard(target) => {
+                for each in standards_for(*target, &study)? {
+                    findings.append(each.findings(&subject)?);
                 }
             }
-            Target::Files(path) => {
+            Against::Files(path) => {
                 for (source, comparands) in comparisons(path)? {
                     findings.append(against_file(&subject, &source, &comparands)?);
                 }
@@ -98,8 +70,9 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     })
 }
 
-/// All standards; the tables of the paper only for its own study, as no other has its mask.
-fn standards_for(study: &Study) -> Result<Vec<Standard>> {
+/// What a target stands for; of all standards the tables of the paper only for its own study, as no
+/// other has its mask.
+fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     let ours = &study.scenario;
     let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
     let sees_the_same = ours.time == paper.time
@@ -107,9 +80,8 @@ fn standards_for(study: &Study) -> Result<Vec<Standard>> {
         && ours.region == paper.region
         && ours.visibility == paper.visibility
         && ours.gnss == paper.gnss;
-    let applies = |name: &str| name != "paper" || sees_the_same;
-    let standards = STANDARDS.into_iter().filter(|(name, _)| applies(name));
-    Ok(standards.map(|(_, standard)| standard).collect())
+    let applies = |each: &Target| target != Target::All || *each != Target::Paper || sees_the_same;
+    Ok(target.each().filter(applies).collect())
 }
 
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
@@ -128,6 +100,9 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
         let mut all = Vec::new();
         for file in sorted_files(path)? {
             all.extend(read_one(&file)?);
+        }
+        if all.is_empty() {
+            bail!("{} has no file to compare with", path.display());
         }
         return Ok(vec![(name, all)]);
     }

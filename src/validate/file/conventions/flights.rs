@@ -1,0 +1,135 @@
+//! Flights that are more than other elements: mislabelled states, another pole, an integration.
+
+use super::{Flight, fly_each};
+use crate::earth::J2;
+use crate::frames::{Frame, State, from_teme, teme_to_eme2000, to_teme};
+use crate::orbit::j2::SecularOrbit;
+use crate::orbit::{MeanElements, PropagationError, Propagator};
+use crate::time::Epoch;
+use crate::units::wrap_two_pi;
+use crate::validate::Subject;
+use crate::validate::numerical::integrator::Zonals;
+
+/// A flight whose states are seen through another clock or frame.
+struct Mislabelled<P> {
+    flight: P,
+    epoch: Epoch,
+    late_s: f64,
+    /// The frame that the states are in, while they are taken for TEME.
+    frame: Frame,
+    /// Whether it is the other way about: TEME states taken for that frame.
+    inverse: bool,
+}
+
+impl<P: Propagator> Propagator for Mislabelled<P> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let state = self.flight.state_at(elapsed_s + self.late_s)?;
+        Ok(if self.inverse {
+            to_teme(state, self.frame, self.epoch, elapsed_s)
+        } else {
+            from_teme(state, self.frame, self.epoch, elapsed_s)
+        })
+    }
+}
+
+pub(super) fn mislabelled(
+    subject: &Subject<'_>,
+    late_s: f64,
+    frame: Frame,
+    inverse: bool,
+) -> Vec<(String, Flight)> {
+    let epoch = subject.epoch();
+    fly_each(&subject.design.satellites(), |elements| {
+        Some(Mislabelled {
+            flight: SecularOrbit::j2(elements),
+            epoch,
+            late_s,
+            frame,
+            inverse,
+        })
+    })
+}
+
+/// Leap seconds between GPS time and UTC.
+pub(super) fn gps_minus_utc_s(subject: &Subject<'_>) -> f64 {
+    subject.epoch().leap_seconds() - 19.0
+}
+
+/// Secular J2 about the pole of J2000: the same orbit at the epoch, its elements counted from the
+/// equator of J2000, on which the node regresses.
+struct AboutJ2000 {
+    orbit: SecularOrbit,
+    to_teme: nalgebra::Matrix3<f64>,
+}
+
+impl Propagator for AboutJ2000 {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let state = self.orbit.state(elapsed_s);
+        Ok(State {
+            position_km: self.to_teme * state.position_km,
+            velocity_km_s: self.to_teme * state.velocity_km_s,
+        })
+    }
+}
+
+pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+    let to_j2000 = teme_to_eme2000(subject.epoch());
+    fly_each(&subject.design.satellites(), |elements| {
+        let plane = crate::frames::OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
+        let normal = to_j2000 * plane.node.cross(&plane.ahead);
+        let node = to_j2000 * plane.node;
+        let inclination_rad = normal.z.clamp(-1.0, 1.0).acos();
+        let raan_rad = normal.x.atan2(-normal.y);
+        let turned = crate::frames::OrbitPlane::new(raan_rad, inclination_rad);
+        // The way from the new node to the old one, within the plane.
+        let moved = node.dot(&turned.ahead).atan2(node.dot(&turned.node));
+        let elements = MeanElements {
+            inclination_rad,
+            raan_rad: wrap_two_pi(raan_rad),
+            arg_perigee_rad: wrap_two_pi(elements.arg_perigee_rad + moved),
+            ..*elements
+        };
+        Some(AboutJ2000 {
+            orbit: SecularOrbit::j2(&elements),
+            to_teme: to_j2000.transpose(),
+        })
+    })
+}
+
+/// The elements taken as osculating at the epoch, and J2 integrated.
+struct Integrated {
+    /// One state each [`INTEGRATED_STEP_S`].
+    states: Vec<State>,
+    step_s: f64,
+}
+
+impl Propagator for Integrated {
+    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+        let last = self.states.len().saturating_sub(1);
+        let before = ((elapsed_s / self.step_s).floor().max(0.0) as usize).min(last);
+        let start = before
+            .saturating_sub(3)
+            .min(self.states.len().saturating_sub(8));
+        let table: Vec<(f64, State)> = (start..self.states.len().min(start + 8))
+            .map(|k| (k as f64 * self.step_s, self.states[k]))
+            .collect();
+        let position_km = crate::formats::interpolation::hermite_position(&table, elapsed_s);
+        Ok(State {
+            position_km,
+            ..self.states[before]
+        })
+    }
+}
+
+pub(super) fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+    let step_s = 60.0;
+    let grid = subject.grid();
+    let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
+    let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
+    let zonals = Zonals { j2: J2, j3: 0.0 };
+    fly_each(&subject.design.satellites(), |elements| {
+        let start = SecularOrbit::two_body(elements).state(0.0);
+        let states = zonals.integrate(&start, &times).ok()?;
+        Some(Integrated { states, step_s })
+    })
+}
