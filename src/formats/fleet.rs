@@ -17,6 +17,7 @@ use crate::time::Epoch;
 use crate::words::UnknownWord;
 use flight::velocities;
 use nalgebra::Vector3;
+use std::io::BufRead;
 use thiserror::Error;
 
 /// Satellites as files give them.
@@ -67,30 +68,33 @@ impl Fleet {
     /// # Errors
     /// When the file breaks its format, or its states mean nothing here.
     pub fn read(
-        bytes: &[u8],
+        mut input: impl BufRead,
         format: Option<Format>,
         file_name: Option<&str>,
     ) -> Result<(Format, Self), ReadFleetError> {
-        let format = format.unwrap_or_else(|| Format::of(bytes, file_name));
-        let messages = |notation| {
-            let sets = omm::read(bytes, notation)?.into_iter().map(|omm| omm.set);
-            Ok::<_, ReadFleetError>(Self::Sets(sets.collect()))
+        let format = match format {
+            Some(format) => format,
+            None => Format::of(input.fill_buf().map_err(ReadError::Io)?, file_name),
         };
         let fleet = match format {
-            Format::Tle => Self::Sets(tle::read(bytes)?),
-            Format::Omm => messages(Notation::Kvn)?,
-            Format::OmmXml => messages(Notation::Xml)?,
-            Format::OmmJson => messages(Notation::Json)?,
-            Format::OmmCsv => messages(Notation::Csv)?,
-            Format::Oem => Self::of_oem(vec![oem::read(bytes)?])?,
-            Format::OemXml => Self::of_oem(oem::read_xml(bytes)?)?,
-            Format::Opm => Self::of_opm(opm::read(bytes)?)?,
-            Format::Sp3 => Self::of_sp3(sp3::read(bytes)?)?,
-            Format::Stk => Self::of_stk(stk::read(bytes)?, file_name),
-            Format::ElementsCsv => Self::Elements(csv::read_elements(bytes)?),
-            Format::StatesCsv => Self::Sampled(csv::read_states(bytes)?),
+            Format::Tle => Self::Sets(tle::read(input)?),
+            Format::Omm => Self::of_omm(omm::read(input, Notation::Kvn)?),
+            Format::OmmXml => Self::of_omm(omm::read(input, Notation::Xml)?),
+            Format::OmmJson => Self::of_omm(omm::read(input, Notation::Json)?),
+            Format::OmmCsv => Self::of_omm(omm::read(input, Notation::Csv)?),
+            Format::Oem => Self::of_oem(vec![oem::read(input)?])?,
+            Format::OemXml => Self::of_oem(oem::read_xml(input)?)?,
+            Format::Opm => Self::of_opm(opm::read(input)?)?,
+            Format::Sp3 => Self::of_sp3(sp3::read(input)?)?,
+            Format::Stk => Self::of_stk(stk::read(input)?, file_name),
+            Format::ElementsCsv => Self::Elements(csv::read_elements(input)?),
+            Format::StatesCsv => Self::Sampled(csv::read_states(input)?),
         };
         Ok((format, fleet))
+    }
+
+    fn of_omm(messages: Vec<omm::Omm>) -> Self {
+        Self::Sets(messages.into_iter().map(|message| message.set).collect())
     }
 
     /// The segments of one satellite follow each other.

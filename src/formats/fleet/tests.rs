@@ -99,7 +99,7 @@ fn every_product_flies_where_the_design_does() {
     let mut tables = exported(&[Product::Csv], Choices::default());
     let states = tables.remove("states.csv").unwrap();
     assert!(apart_km(&fleet(&tables).fly(grid(), Model::J2).unwrap()) < 1e-8);
-    let (_, states) = Fleet::read(&states, None, None).unwrap();
+    let (_, states) = Fleet::read(states.as_slice(), None, None).unwrap();
     assert!(apart_km(&states.fly(grid(), Model::J2).unwrap()) < 1e-8);
     for notation in Notation::ALL {
         let choices = Choices {

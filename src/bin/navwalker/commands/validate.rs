@@ -17,7 +17,8 @@ use navwalker::validate::paper::against_paper;
 use navwalker::validate::sgp4::against_sgp4;
 use navwalker::validate::{Findings, Subject, ValidateError};
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// What a design is held against.
@@ -115,8 +116,9 @@ fn standards_for(study: &Study) -> Result<Vec<Standard>> {
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
 fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_one = |file: &Path| -> Result<Vec<Comparand>> {
-        let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        Ok(read(&file.to_string_lossy(), &bytes)?)
+        let opened = File::open(file);
+        let opened = opened.with_context(|| format!("cannot read {}", file.display()))?;
+        Ok(read(&file.to_string_lossy(), BufReader::new(opened))?)
     };
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();
