@@ -5,6 +5,7 @@
 //! [`finding::Finding`] with the line, the column and the rule of the standard.
 
 pub mod csv;
+mod derivative;
 mod element_set;
 pub mod export;
 pub mod finding;
@@ -68,3 +69,6 @@ pub enum ReadError {
     #[error(transparent)]
     Rule(#[from] finding::Finding),
 }
+
+#[cfg(test)]
+mod tests;

@@ -7,6 +7,7 @@ mod flight;
 
 pub use flight::FleetError;
 
+use super::derivative::velocities;
 use super::lint::Format;
 use super::omm::Notation;
 use super::trajectory::{TrajectoryError, frame_of_name, time_system_of_name};
@@ -15,7 +16,6 @@ use crate::formats::csv::ElementsRow;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use crate::words::UnknownWord;
-use flight::velocities;
 use nalgebra::Vector3;
 use std::io::BufRead;
 use thiserror::Error;
@@ -108,7 +108,7 @@ impl Fleet {
                     .iter_mut()
                     .find(|before| before.id == next.id && before.frame == next.frame);
                 match same {
-                    Some(before) => before.states.extend(next.states),
+                    Some(before) => join(&mut before.states, next.states),
                     None => trajectories.push(next),
                 }
             }
@@ -221,11 +221,23 @@ impl Fleet {
     }
 }
 
-/// SP3 names a realisation of the Earth-fixed frame in five characters: `IGS14`, `WGS84`, `ITR08`.
+/// Puts the states of a later segment behind those of an earlier one, in the order of time;
+/// segments may share an instant or overlap, and then the earlier one's states stand.
+fn join(before: &mut Vec<(Epoch, State)>, next: Vec<(Epoch, State)>) {
+    before.extend(next);
+    if !before.is_sorted_by(|(one, _), (other, _)| one < other) {
+        // The sort is stable.
+        before.sort_by_key(|(at, _)| *at);
+        before.dedup_by_key(|(at, _)| *at);
+    }
+}
+
+/// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,
+/// `ITR08`; positions are Earth-fixed also where the name is left out.
 fn frame_of_sp3(name: &str) -> Result<Frame, UnknownWord> {
-    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ"];
+    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ", "SLR", "UNDEF"];
     let upper = name.to_ascii_uppercase();
-    if earth_fixed.iter().any(|start| upper.starts_with(start)) {
+    if upper.is_empty() || earth_fixed.iter().any(|start| upper.starts_with(start)) {
         return Ok(Frame::EarthFixed);
     }
     frame_of_name(name)

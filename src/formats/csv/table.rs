@@ -6,10 +6,28 @@ use std::io::{self, BufRead, Read};
 /// Longest row, in bytes, line feeds within quotes included; the buffer of the reader comes on top.
 const MAX_ROW: usize = 1 << 16;
 
-/// Refuses to give more bytes for one row than it may have.
+/// Refuses to give more bytes for one row than it may have, and ends every line with a line feed,
+/// so that lines are counted as in every other format.
 struct Bounded<R> {
     input: R,
     since_row: usize,
+    after_carriage_return: bool,
+}
+
+impl<R> Bounded<R> {
+    /// Turns CR and CR LF into LF; returns how many bytes are left.
+    fn unify_line_ends(&mut self, bytes: &mut [u8]) -> usize {
+        let mut kept = 0;
+        for at in 0..bytes.len() {
+            let byte = bytes[at];
+            let is_second = std::mem::replace(&mut self.after_carriage_return, byte == b'\r');
+            if !(is_second && byte == b'\n') {
+                bytes[kept] = if byte == b'\r' { b'\n' } else { byte };
+                kept += 1;
+            }
+        }
+        kept
+    }
 }
 
 impl<R: Read> Read for Bounded<R> {
@@ -17,9 +35,15 @@ impl<R: Read> Read for Bounded<R> {
         if self.since_row > MAX_ROW {
             return Err(io::ErrorKind::InvalidData.into());
         }
-        let count = self.input.read(buffer)?;
-        self.since_row += count;
-        Ok(count)
+        loop {
+            let count = self.input.read(buffer)?;
+            let kept = self.unify_line_ends(&mut buffer[..count]);
+            self.since_row += kept;
+            // Nothing left of something read is no end of the input.
+            if kept > 0 || count == 0 {
+                return Ok(kept);
+            }
+        }
     }
 }
 
@@ -33,6 +57,7 @@ impl<R: BufRead> Table<R> {
         let bounded = Bounded {
             input,
             since_row: 0,
+            after_carriage_return: false,
         };
         Self {
             rows: ::csv::ReaderBuilder::new()
