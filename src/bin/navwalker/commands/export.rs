@@ -6,6 +6,7 @@ use crate::study::{Study, study_and_design};
 use crate::{Status, files, fleets, output};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
+use navwalker::constellation::gnss::Preset;
 use navwalker::formats::export::{Choices, Product, Subject, export};
 use navwalker::formats::lint::Format as LintFormat;
 use navwalker::formats::manifest::{Manifest, Study as StudyStamp};
@@ -22,7 +23,12 @@ use std::path::PathBuf;
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
     files::require_vacant(&args.out, args.force)?;
-    let (study, design) = study_and_design(&args.study, &args.design)?;
+    let mut asked = args.study.clone();
+    if let Some(date) = &args.creation_date {
+        let key = format!("export.creation-date=\"{date}\"");
+        asked.overrides.push(key);
+    }
+    let (study, design) = study_and_design(&asked, &args.design)?;
     let scenario = &study.scenario;
     let subject = Subject {
         design,
@@ -46,6 +52,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         ccsds_version: args.ccsds_version,
         sp3_version: args.sp3_version,
         sp3_letter: args.sp3_letter,
+        sp3_gnss: std::array::from_fn(|at| args.gnss.contains(&Preset::ALL[at])),
     };
     let staged = files::StagedDirectory::new(&args.out)?;
     let progress = FileCount::new();
@@ -88,6 +95,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         ("read back", Align::Left),
         ("position (m)", Align::Right),
         ("at most", Align::Right),
+        ("theory (m)", Align::Right),
         ("mean visible", Align::Right),
         ("at most", Align::Right),
         ("mean PDOP", Align::Right),
@@ -104,7 +112,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
             format
         };
         let found = original
-            .check(format, &fleet)
+            .check(format, args.tle_theory, &fleet)
             .with_context(|| format!("cannot check {name}"))?;
         passed &= found.passed();
         let cells = |difference: Option<Difference>, scale: f64| {
@@ -115,6 +123,8 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         };
         let mut row = vec![name];
         row.extend(cells(Some(found.position_km), 1000.0));
+        let theory = found.theory_km.map(|km| format!("{:.2e}", km * 1000.0));
+        row.push(theory.unwrap_or_else(|| "-".to_owned()));
         row.extend(cells(Some(found.mean_visible), 1.0));
         row.extend(cells(found.mean_pdop, 1.0));
         row.push(if found.passed() { "passed" } else { "FAILED" }.to_owned());
@@ -127,7 +137,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
 /// The files that make the constellation once: those of a product, but each table for itself.
 fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
     let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
-    for file in &manifest.files {
+    for file in manifest.files.iter().filter(|file| file.is_of_design()) {
         let name = if file.format == Product::Csv.word() {
             file.path.clone()
         } else {
@@ -147,6 +157,9 @@ fn check_choices(args: &ExportArgs) -> Result<()> {
     let asked = |product| args.products.contains(&product);
     if args.oem_combined && args.oem_syntax != oem::Notation::Xml {
         bail!("--oem-combined needs --oem-syntax xml: a KVN file holds one satellite");
+    }
+    if !args.gnss.is_empty() && !asked(Product::Sp3) {
+        bail!("--gnss writes SP3; add sp3 to --as");
     }
     let has_frame = [Product::Oem, Product::Opm, Product::Stk]
         .into_iter()

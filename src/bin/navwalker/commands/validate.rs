@@ -139,7 +139,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
         .with_context(|| format!("{} is no manifest of an export", manifest.display()))?;
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
-        if COMPARED.contains(&file.format.as_str()) {
+        if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
             let found = read_one(&path.join(&file.path))?;
             by_format.entry(file.format).or_default().extend(found);
         }
