@@ -6,6 +6,7 @@
 
 pub mod csv;
 pub mod czml;
+mod derivative;
 mod element_set;
 pub mod export;
 pub mod finding;
@@ -101,3 +102,6 @@ pub enum ReadError {
     #[error(transparent)]
     Rule(#[from] finding::Finding),
 }
+
+#[cfg(test)]
+mod tests;

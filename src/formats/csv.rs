@@ -4,11 +4,12 @@
 //! as the neutral truth for every other file. Syntax: RFC 4180, with a bare line feed.
 
 mod read;
+mod table;
 
 pub use read::{ElementsRow, parse_elements, parse_states, read_elements, read_states};
+pub(super) use table::Table;
 
 use super::WriteError;
-use super::finding::Findings;
 use super::metadata::Object;
 use super::sampled::Sampled;
 use super::stamp::{SecondDigits, calendar};
@@ -17,7 +18,7 @@ use crate::ephemeris::Ephemeris;
 use crate::frames::{Frame, State};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
-use std::io::{self, BufRead, Write};
+use std::io::{self, Write};
 
 /// Columns of the table of elements: mean elements at the epoch, in TEME.
 const ELEMENTS: [&str; 14] = [
@@ -121,37 +122,6 @@ pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), W
         }
     }
     table.flush()?;
-    Ok(())
-}
-
-/// Most bytes of a table that are read: a field of that length would have to be kept.
-const MAX_TABLE: u64 = 1 << 28;
-
-/// A reader of tables: the first row is the header, blanks around fields do not matter.
-pub(super) fn bounded<R: BufRead>(input: R) -> ::csv::Reader<io::Take<R>> {
-    ::csv::ReaderBuilder::new()
-        .trim(::csv::Trim::All)
-        .from_reader(input.take(MAX_TABLE))
-}
-
-/// Turns a row that cannot be read into a finding.
-pub(super) fn report(error: ::csv::Error, findings: &mut Findings) -> io::Result<()> {
-    let line = error
-        .position()
-        .map_or(1, |position| position.line() as usize);
-    match error.into_kind() {
-        ::csv::ErrorKind::Io(error) => return Err(error),
-        ::csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => {
-            let message = format!("the row has {len} fields; the header has {expected_len}");
-            findings.error((line, 1), "csv-fields", message);
-        }
-        ::csv::ErrorKind::Utf8 { .. } => {
-            findings.error((line, 1), "character", "the row is not UTF-8");
-        }
-        other => findings.error((line, 1), "csv-syntax", format!("{other:?}")),
-    }
     Ok(())
 }
 

@@ -11,6 +11,7 @@ use super::scene::Scene;
 use super::stamp::TimeSystem;
 use super::{CcsdsVersion, WriteError, oem, omm, sp3};
 use crate::constellation::Design;
+use crate::constellation::gnss::Preset;
 use crate::frames::Frame;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
@@ -31,7 +32,7 @@ words! {
         Oem = "oem",
         /// CCSDS Orbit Parameter Messages, one file for each satellite: the state at the epoch.
         Opm = "opm",
-        /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c).
+        /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c), and of GNSS by choice.
         Sp3 = "sp3",
         /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
         Stk = "stk",
@@ -110,6 +111,8 @@ pub struct Choices {
     pub sp3_version: sp3::Version,
     /// Letter of the SP3 ids.
     pub sp3_letter: char,
+    /// For each of [`Preset::ALL`], whether SP3 gets a file of that constellation too.
+    pub sp3_gnss: [bool; Preset::ALL.len()],
 }
 
 impl Default for Choices {
@@ -124,6 +127,7 @@ impl Default for Choices {
             elements: ElementChoice::Kozai,
             sp3_version: sp3::Version::D,
             sp3_letter: 'L',
+            sp3_gnss: [false; Preset::ALL.len()],
         }
     }
 }

@@ -61,6 +61,12 @@ impl Findings {
         self.found.len() >= self.limit
     }
 
+    /// Whether there is an error among them.
+    pub(crate) fn has_errors(&self) -> bool {
+        let mut found = self.found.iter();
+        found.any(|finding| finding.severity == Severity::Error)
+    }
+
     /// Adds an error, unless the list is full.
     pub(crate) fn error(
         &mut self,

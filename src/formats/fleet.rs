@@ -7,6 +7,7 @@ mod flight;
 
 pub use flight::FleetError;
 
+use super::derivative::velocities;
 use super::lint::Format;
 use super::omm::Notation;
 use super::trajectory::{TrajectoryError, frame_of_name, time_system_of_name};
@@ -15,8 +16,8 @@ use crate::formats::csv::ElementsRow;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use crate::words::UnknownWord;
-use flight::velocities;
 use nalgebra::Vector3;
+use std::io::BufRead;
 use thiserror::Error;
 
 /// Satellites as files give them.
@@ -69,31 +70,34 @@ impl Fleet {
     /// # Errors
     /// When the file breaks its format, or its states mean nothing here.
     pub fn read(
-        bytes: &[u8],
+        mut input: impl BufRead,
         format: Option<Format>,
         file_name: Option<&str>,
     ) -> Result<(Format, Self), ReadFleetError> {
-        let format = format.unwrap_or_else(|| Format::of(bytes, file_name));
-        let messages = |notation| {
-            let sets = omm::read(bytes, notation)?.into_iter().map(|omm| omm.set);
-            Ok::<_, ReadFleetError>(Self::Sets(sets.collect()))
+        let format = match format {
+            Some(format) => format,
+            None => Format::of(input.fill_buf().map_err(ReadError::Io)?, file_name),
         };
         let fleet = match format {
-            Format::Tle => Self::Sets(tle::read(bytes)?),
-            Format::Omm => messages(Notation::Kvn)?,
-            Format::OmmXml => messages(Notation::Xml)?,
-            Format::OmmJson => messages(Notation::Json)?,
-            Format::OmmCsv => messages(Notation::Csv)?,
-            Format::Oem => Self::of_oem(vec![oem::read(bytes)?])?,
-            Format::OemXml => Self::of_oem(oem::read_xml(bytes)?)?,
-            Format::Opm => Self::of_opm(opm::read(bytes)?)?,
-            Format::Sp3 => Self::of_sp3(sp3::read(bytes)?)?,
-            Format::Stk => Self::of_stk(stk::read(bytes)?, file_name),
-            Format::ElementsCsv => Self::Elements(csv::read_elements(bytes)?),
-            Format::Czml => Self::Tracks(czml::read(bytes)?),
-            Format::StatesCsv => Self::Sampled(csv::read_states(bytes)?),
+            Format::Tle => Self::Sets(tle::read(input)?),
+            Format::Omm => Self::of_omm(omm::read(input, Notation::Kvn)?),
+            Format::OmmXml => Self::of_omm(omm::read(input, Notation::Xml)?),
+            Format::OmmJson => Self::of_omm(omm::read(input, Notation::Json)?),
+            Format::OmmCsv => Self::of_omm(omm::read(input, Notation::Csv)?),
+            Format::Oem => Self::of_oem(vec![oem::read(input)?])?,
+            Format::OemXml => Self::of_oem(oem::read_xml(input)?)?,
+            Format::Opm => Self::of_opm(opm::read(input)?)?,
+            Format::Sp3 => Self::of_sp3(sp3::read(input)?)?,
+            Format::Stk => Self::of_stk(stk::read(input)?, file_name),
+            Format::ElementsCsv => Self::Elements(csv::read_elements(input)?),
+            Format::Czml => Self::Tracks(czml::read(input)?),
+            Format::StatesCsv => Self::Sampled(csv::read_states(input)?),
         };
         Ok((format, fleet))
+    }
+
+    fn of_omm(messages: Vec<omm::Omm>) -> Self {
+        Self::Sets(messages.into_iter().map(|message| message.set).collect())
     }
 
     /// The segments of one satellite follow each other.
@@ -107,7 +111,7 @@ impl Fleet {
                     .iter_mut()
                     .find(|before| before.id == next.id && before.frame == next.frame);
                 match same {
-                    Some(before) => before.states.extend(next.states),
+                    Some(before) => join(&mut before.states, next.states),
                     None => trajectories.push(next),
                 }
             }
@@ -223,11 +227,23 @@ impl Fleet {
     }
 }
 
-/// SP3 names a realisation of the Earth-fixed frame in five characters: `IGS14`, `WGS84`, `ITR08`.
+/// Puts the states of a later segment behind those of an earlier one, in the order of time;
+/// segments may share an instant or overlap, and then the earlier one's states stand.
+fn join(before: &mut Vec<(Epoch, State)>, next: Vec<(Epoch, State)>) {
+    before.extend(next);
+    if !before.is_sorted_by(|(one, _), (other, _)| one < other) {
+        // The sort is stable.
+        before.sort_by_key(|(at, _)| *at);
+        before.dedup_by_key(|(at, _)| *at);
+    }
+}
+
+/// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,
+/// `ITR08`; positions are Earth-fixed also where the name is left out.
 fn frame_of_sp3(name: &str) -> Result<Frame, UnknownWord> {
-    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ"];
+    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ", "SLR", "UNDEF"];
     let upper = name.to_ascii_uppercase();
-    if earth_fixed.iter().any(|start| upper.starts_with(start)) {
+    if upper.is_empty() || earth_fixed.iter().any(|start| upper.starts_with(start)) {
         return Ok(Frame::EarthFixed);
     }
     frame_of_name(name)

@@ -22,6 +22,8 @@ pub(super) struct Lines<R> {
     input: R,
     number: usize,
     after_carriage_return: bool,
+    /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
+    takes_tabs: bool,
 }
 
 /// How the bytes of a line were taken.
@@ -37,6 +39,15 @@ impl<R: BufRead> Lines<R> {
             input,
             number: 0,
             after_carriage_return: false,
+            takes_tabs: false,
+        }
+    }
+
+    /// Lines of a format that separates its words by tabs too.
+    pub(super) fn with_tabs(input: R) -> Self {
+        Self {
+            takes_tabs: true,
+            ..Self::new(input)
         }
     }
 
@@ -85,8 +96,10 @@ impl<R: BufRead> Lines<R> {
         for (at, byte) in bytes.iter_mut().enumerate() {
             if *byte == b'\t' {
                 *byte = b' ';
-                let message = "a tab stands where a blank belongs";
-                findings.warning((self.number, at + 1), "tab", message);
+                if !self.takes_tabs {
+                    let message = "a tab stands where a blank belongs";
+                    findings.warning((self.number, at + 1), "tab", message);
+                }
             }
         }
     }

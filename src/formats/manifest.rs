@@ -11,6 +11,9 @@ use std::io::{self, Write};
 /// Name of the manifest among the files of an export.
 pub const FILE_NAME: &str = "manifest.json";
 
+/// Where the files of GNSS beside the design are.
+pub(super) const GNSS_DIRECTORY: &str = "gnss/";
+
 /// What an export consists of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -118,6 +121,12 @@ pub struct Loss {
 }
 
 impl FileEntry {
+    /// Whether the file is of the design, and not of a GNSS beside it.
+    #[must_use]
+    pub fn is_of_design(&self) -> bool {
+        !self.path.starts_with(GNSS_DIRECTORY)
+    }
+
     /// The entry of a file that `metadata` describes.
     #[must_use]
     pub fn new(

@@ -1,17 +1,25 @@
 //! Products of an export, read back and evaluated again: what the scenario makes of each file.
 //!
-//! Gates follow from the digits of a format and from the theory that its readers fly. A satellite
-//! that is d km from its place moves the circle that sees it by as much; at 400 km the circle's
-//! radius is 1600 km and its area changes by less than d/500 km of itself, which bounds the mean
-//! number in view, and the geometry changes by d over the distance, 400 km or more.
+//! A file is held against what its theory makes of the design: states and mean elements against
+//! the flown design, element sets against SGP4 of the unrounded sets. So the digits of a format
+//! alone explain a difference, and gates follow from them; what SGP4 and the model of the study
+//! are apart is told beside. A satellite that is d km from its place moves the circle that sees it
+//! by as much; at 400 km the circle's radius is 1600 km and its area changes by less than d/500 km
+//! of itself, which bounds the mean number in view, and the geometry changes by d over the
+//! distance, 400 km or more.
 
 use super::fleet::{Fleet, FleetError};
 use super::lint::Format;
-use crate::constellation::Design;
+use super::metadata::{ElementChoice, IdentityError, Object};
+use super::{element_set, tle};
+use crate::constellation::{Design, Satellite};
 use crate::earth::RADIUS_KM;
-use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::orbit::Model;
+use crate::orbit::j2::SecularOrbit;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
+use crate::time::Epoch;
 use crate::units::SECONDS_PER_DAY;
 use std::f64::consts::TAU;
 use thiserror::Error;
@@ -49,6 +57,9 @@ pub enum RecheckError {
     /// A satellite has no state.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
+    /// There is no name for a satellite.
+    #[error(transparent)]
+    Identity(#[from] IdentityError),
     /// Other satellites than the design has.
     #[error("{found} satellites were read back; the design has {expected}")]
     Satellites {
@@ -79,8 +90,11 @@ impl Difference {
 /// What a product says of the design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recheck {
-    /// Largest distance of a satellite from its place, km.
+    /// Largest distance of a satellite from where the theory of the file has it, km.
     pub position_km: Difference,
+    /// Largest distance between the theory of the file and the flown design, km; none where they
+    /// are the same.
+    pub theory_km: Option<f64>,
     /// Mean number of visible satellites.
     pub mean_visible: Difference,
     /// Mean PDOP; none where one side has no solved sample.
@@ -100,10 +114,16 @@ impl Recheck {
 /// The design that products are checked against.
 pub struct Original<'a> {
     evaluator: &'a Evaluator,
-    ephemeris: Ephemeris,
-    metrics: Metrics,
+    design: Design,
+    flown: Seen,
     semi_major_axis_km: f64,
     eccentricity: f64,
+}
+
+/// Satellites and what the scenario makes of them.
+struct Seen {
+    ephemeris: Ephemeris,
+    metrics: Metrics,
 }
 
 impl<'a> Original<'a> {
@@ -115,84 +135,125 @@ impl<'a> Original<'a> {
         let setup = evaluator.setup();
         Ok(Self {
             evaluator,
-            ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
-            metrics: evaluator.design(design)?,
+            design: *design,
+            flown: Seen {
+                ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
+                metrics: evaluator.design(design)?,
+            },
             semi_major_axis_km: RADIUS_KM + design.altitude_km(),
             eccentricity: design.eccentricity(),
         })
     }
 
+    /// The design flown by SGP4 from its unrounded element sets at `epoch`.
+    fn by_sgp4(&self, epoch: Epoch) -> Result<Seen, RecheckError> {
+        let grid = self.evaluator.setup().grid;
+        let since_s = epoch.seconds_since(grid.epoch());
+        let satellites = self.flown.ephemeris.satellites();
+        let objects = Object::all(satellites, grid.epoch())?;
+        let fly = |((satellite, object), flown): ((&Satellite, &Object), &Flown)| {
+            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
+            let set = element_set(&elements, object, epoch, MeanMotionSlot::Kozai);
+            let orbit = Sgp4Orbit::from_element_set(&set, grid.epoch());
+            Ok(Flown {
+                name: flown.name.clone(),
+                slot: flown.slot,
+                propagator: Box::new(orbit.map_err(|source| EphemerisError {
+                    name: flown.name.clone(),
+                    source,
+                })?),
+            })
+        };
+        let of_design = self.design.satellites();
+        let flown = of_design.iter().zip(&objects).zip(satellites).map(fly);
+        let ephemeris = Ephemeris::new(grid, flown.collect::<Result<_, EphemerisError>>()?);
+        let metrics = self.evaluator.ephemeris(&ephemeris)?;
+        Ok(Seen { ephemeris, metrics })
+    }
+
     /// Flies what was read back and compares it; satellites stand in the order of the design.
-    /// `format` is the one whose digits and theory the file has.
+    /// `format` is the one whose digits and theory the file has, `sets` how its element sets are
+    /// made, if it has any.
     ///
     /// # Errors
     /// When the satellites do not fly the study, or are not those of the design.
-    pub fn check(&self, format: Format, fleet: &Fleet) -> Result<Recheck, RecheckError> {
+    pub fn check(
+        &self,
+        format: Format,
+        sets: ElementChoice,
+        fleet: &Fleet,
+    ) -> Result<Recheck, RecheckError> {
         let setup = self.evaluator.setup();
-        let (found, expected) = (fleet.len(), self.ephemeris.satellites().len());
+        let (found, expected) = (fleet.len(), self.flown.ephemeris.satellites().len());
         if found != expected {
             return Err(RecheckError::Satellites { found, expected });
         }
-        let flown = fleet.fly(setup.grid, setup.model)?;
-        let metrics = self.evaluator.ephemeris(&flown)?;
-        let gate_km = self.position_gate_km(format);
+        let epoch = match format {
+            // A fitted set follows the flown design, not the one that it started from.
+            _ if sets == ElementChoice::Fit => None,
+            Format::Tle => Some(tle::rounded_epoch(setup.grid.epoch())),
+            Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
+                Some(setup.grid.epoch())
+            }
+            _ => None,
+        };
+        let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
+        let reference = by_sgp4.as_ref().unwrap_or(&self.flown);
+        let read_back = fleet.fly(setup.grid, setup.model)?;
+        let metrics = self.evaluator.ephemeris(&read_back)?;
+        let gate_km = self.position_gate_km(format, sets);
         let relative = gate_km.map(|km| km / SCALE_KM);
         let flips = FLIPS / setup.sample_count() as f64;
         let of = |value: f64| relative.map(|relative| value * relative + flips);
-        let pdop = self.metrics.mean_pdop.zip(metrics.mean_pdop);
-        let visible = self.metrics.mean_visible;
+        let pdop = reference.metrics.mean_pdop.zip(metrics.mean_pdop);
+        let visible = reference.metrics.mean_visible;
+        let theory = by_sgp4.as_ref().map(|seen| &seen.ephemeris);
         Ok(Recheck {
             position_km: Difference {
-                value: self.apart_km(&flown)?,
+                value: apart_km(&read_back, &reference.ephemeris)?,
                 gate: gate_km,
             },
+            theory_km: theory
+                .map(|theory| apart_km(theory, &self.flown.ephemeris))
+                .transpose()?,
             mean_visible: Difference {
                 value: metrics.mean_visible - visible,
                 gate: of(visible),
             },
             // A satellite more or less at a sample changes its PDOP by less than the whole.
-            mean_pdop: pdop.map(|(ours, theirs)| Difference {
-                value: theirs - ours,
-                gate: of(ours),
+            mean_pdop: pdop.map(|(expected, found)| Difference {
+                value: found - expected,
+                gate: of(expected),
             }),
         })
     }
 
-    fn apart_km(&self, flown: &Ephemeris) -> Result<f64, EphemerisError> {
-        let pairs = flown.satellites().iter().zip(self.ephemeris.satellites());
-        let mut worst_km = 0.0_f64;
-        for (theirs, ours) in pairs {
-            for elapsed_s in self.ephemeris.grid().iter() {
-                let theirs = flown.state(theirs, elapsed_s)?.position_km;
-                let ours = self.ephemeris.state(ours, elapsed_s)?.position_km;
-                worst_km = worst_km.max((theirs - ours).norm());
-            }
-        }
-        Ok(worst_km)
-    }
-
-    /// How far the satellites of a file may be from their places, km; none for a theory that
-    /// SGP4 does not approximate.
-    fn position_gate_km(&self, format: Format) -> Option<f64> {
+    /// How far the satellites of a file may be from where its theory has them, km; none for sets
+    /// fitted to a theory that SGP4 does not approximate.
+    fn position_gate_km(&self, format: Format, sets: ElementChoice) -> Option<f64> {
         let setup = self.evaluator.setup();
         let a = self.semi_major_axis_km;
         let span_s = setup.grid.elapsed_s(setup.grid.len() - 1);
         let days = span_s / SECONDS_PER_DAY;
         // A low orbit turns by 16 revolutions a day at most.
         let turned_rad = 16.0 * TAU * days;
-        let theory = match setup.model {
-            Model::Sgp4 => Some(0.0),
-            Model::J2 | Model::J2Osculating => {
+        let theory = match (sets, setup.model) {
+            (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
+            (ElementChoice::Fit, Model::Sgp4) => Some(0.0),
+            (ElementChoice::Fit, Model::J2 | Model::J2Osculating) => {
                 Some((1.0 + 8.0 * self.eccentricity) * (SGP4_KM + SGP4_KM_PER_DAY * days))
             }
-            Model::TwoBody => None,
+            (ElementChoice::Fit, Model::TwoBody) => None,
         };
         match format {
-            // Four angles to 1e-4°, e to 1e-7, the mean motion to 1e-8 rev/day.
+            // Four angles to 1e-4°, e to 1e-7 (twice that along the track), the mean motion to
+            // 1e-8 rev/day; an inclination off by half a digit turns each of three angles, which
+            // J2 moves by 10° a day at most, by three times as much as itself at most.
             Format::Tle => {
-                let angles = 4.0 * 0.5e-4_f64.to_radians();
-                let digits = a * (angles + 1e-7 + TAU * 0.5e-8 * days);
-                theory.map(|km| km + digits)
+                let half_digit = 0.5e-4_f64.to_radians();
+                let rates = 3.0 * 3.0 * 10_f64.to_radians() * half_digit;
+                let grown = (TAU * 0.5e-8 + rates) * days;
+                theory.map(|km| km + STATES_KM + a * (4.0 * half_digit + 1e-7 + grown))
             }
             // Twelve decimals of a degree, fifteen of e, thirteen of the mean motion.
             Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
@@ -210,3 +271,19 @@ impl<'a> Original<'a> {
         }
     }
 }
+
+/// Largest distance of satellites that stand in the same order, at the samples of the second.
+fn apart_km(one: &Ephemeris, other: &Ephemeris) -> Result<f64, EphemerisError> {
+    let mut worst_km = 0.0_f64;
+    for (first, second) in one.satellites().iter().zip(other.satellites()) {
+        for elapsed_s in other.grid().iter() {
+            let first = one.state(first, elapsed_s)?.position_km;
+            let second = other.state(second, elapsed_s)?.position_km;
+            worst_km = worst_km.max((first - second).norm());
+        }
+    }
+    Ok(worst_km)
+}
+
+#[cfg(test)]
+mod tests;

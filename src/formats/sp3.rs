@@ -13,6 +13,7 @@ use super::WriteError;
 use super::metadata::{Metadata, Object};
 use super::sampled::Sampled;
 use super::stamp::TimeSystem;
+use crate::constellation::gnss::Preset;
 use crate::ephemeris::Flown;
 use crate::frames::State;
 use crate::time::Epoch;
@@ -67,6 +68,25 @@ pub enum Sp3Error {
     /// A letter that is none.
     #[error("'{0}' is no capital letter, as an SP3 id begins with")]
     Letter(char),
+    /// The letter of a GNSS for the satellites of a design beside it.
+    #[error("'{letter}' is the letter of {preset} in SP3; choose another one for the design")]
+    LetterOfGnss {
+        /// The letter.
+        letter: char,
+        /// The system that has it.
+        preset: Preset,
+    },
+}
+
+/// The letter of a system's ids (SP3-d, "satellite id").
+#[must_use]
+pub fn letter_of(preset: Preset) -> char {
+    match preset {
+        Preset::Beidou3 => 'C',
+        Preset::Gps => 'G',
+        Preset::Galileo => 'E',
+        Preset::Glonass => 'R',
+    }
 }
 
 /// The accuracy code of an unknown accuracy.

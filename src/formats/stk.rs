@@ -130,10 +130,11 @@ fn write_tail(out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "\nEND Ephemeris")
 }
 
-/// `1 Jan 2025 00:00:00.000000000`.
+/// `01 Jan 2025 00:00:00.000000000`: STK itself writes no zero in front, but takes it, and Orekit
+/// refuses a day of one digit.
 fn calendar_date(stamp: NaiveDateTime) -> String {
     format!(
-        "{} {} {} {}.{:09}",
+        "{:02} {} {} {}.{:09}",
         stamp.day(),
         MONTHS[stamp.month0() as usize],
         stamp.year(),

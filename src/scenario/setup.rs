@@ -151,8 +151,8 @@ impl Scenario {
             };
             let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
             let name = file.rsplit('/').next().unwrap_or(file);
-            let (_, fleet) =
-                Fleet::read(&bytes, None, Some(name)).map_err(|source| error(source.into()))?;
+            let (_, fleet) = Fleet::read(bytes.as_slice(), None, Some(name))
+                .map_err(|source| error(source.into()))?;
             let Fleet::Sets(sets) = fleet else {
                 let content = fleet.content();
                 return Err(error(GnssFileError::NoSets { content }));

@@ -4,6 +4,8 @@
 
 mod cli;
 mod evidence;
+mod gallery;
+mod interchange;
 mod look;
 mod reference;
 mod scenes;

@@ -2,19 +2,23 @@
 
 mod look;
 mod products;
+mod scenario;
 
 pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
+pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
 use crate::pick::Pick;
-use products::PRODUCTS;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use navwalker::constellation::Design;
+use navwalker::constellation::gnss::Preset;
 use navwalker::formats::export::Product;
 use navwalker::formats::metadata::ElementChoice;
 use navwalker::formats::sp3::Version as Sp3Version;
 use navwalker::formats::stamp::TimeSystem;
+use navwalker::formats::trajectory::{frame_of_name, time_system_of_name};
 use navwalker::formats::{CcsdsVersion, oem, omm};
 use navwalker::frames::Frame;
+use products::PRODUCTS;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -334,11 +338,11 @@ pub(crate) struct ExportArgs {
     pub(crate) force: bool,
 
     /// Frame of OEM, OPM and STK states: EME2000, GCRF, ITRF, or TEME [default: EME2000].
-    #[arg(long, value_name = "FRAME")]
+    #[arg(long, value_name = "FRAME", value_parser = frame_of_name)]
     pub(crate) frame: Option<Frame>,
 
     /// Time system of OEM and OPM: UTC, TAI, GPS or TT.
-    #[arg(long, value_name = "SYSTEM", default_value = "UTC")]
+    #[arg(long, value_name = "SYSTEM", default_value = "UTC", value_parser = time_system_of_name)]
     pub(crate) time_system: TimeSystem,
 
     /// Notation of the OMM: kvn, xml, json or csv.
@@ -370,6 +374,16 @@ pub(crate) struct ExportArgs {
     /// design; status 1 if it is farther than its digits and theory explain.
     #[arg(long)]
     pub(crate) check: bool,
+
+    /// When the CCSDS messages say that they were made, as in 2025-01-01T00:00:00Z; the same as
+    /// `--set export.creation-date=...`, whose default is the epoch of the study.
+    #[arg(long, value_name = "UTC")]
+    pub(crate) creation_date: Option<String>,
+
+    /// Also write SP3 of these nominal constellations, each into a file of its own under gnss/:
+    /// beidou-3 (ids C01 ...), gps (G01 ...), galileo (E01 ...), glonass (R01 ...).
+    #[arg(long, value_name = "SYSTEMS", value_delimiter = ',')]
+    pub(crate) gnss: Vec<Preset>,
 
     /// Letter of the satellite ids of SP3.
     #[arg(long, value_name = "LETTER", default_value = "L")]
@@ -431,35 +445,4 @@ pub(crate) struct LintArgs {
     /// Form of the result on stdout.
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: Format,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ScenarioArgs {
-    #[command(subcommand)]
-    pub(crate) action: ScenarioAction,
-}
-
-#[derive(Debug, Subcommand)]
-pub(crate) enum ScenarioAction {
-    /// List the built-in scenarios.
-    List {
-        /// Form of the result on stdout.
-        #[arg(long, value_enum, default_value = "text")]
-        format: Format,
-    },
-    /// Print a scenario with every default filled in.
-    ///
-    /// Example: navwalker scenario show regional --set visibility.mask-deg=15
-    #[command(verbatim_doc_comment)]
-    Show {
-        #[command(flatten)]
-        study: StudyArgs,
-    },
-    /// Print a commented scenario file with every key, to start from.
-    ///
-    /// Example: navwalker scenario new > study.toml
-    #[command(verbatim_doc_comment)]
-    New,
-    /// Print the JSON schema of scenario files, for editors.
-    Schema,
 }

@@ -3,7 +3,8 @@
 use anyhow::{Context, Result, bail};
 use navwalker::formats::fleet::Fleet;
 use navwalker::formats::lint::Format;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// The satellites of files and directories, in the order of the names, and the first format.
@@ -12,9 +13,9 @@ pub(crate) fn read(paths: &[PathBuf]) -> Result<(Format, Fleet)> {
     for path in paths {
         for file in files_of(path)? {
             let read = || -> Result<(Format, Fleet)> {
-                let bytes = fs::read(&file)?;
+                let input = BufReader::new(File::open(&file)?);
                 let name = file.file_name().map(|name| name.to_string_lossy());
-                Ok(Fleet::read(&bytes, None, name.as_deref())?)
+                Ok(Fleet::read(input, None, name.as_deref())?)
             };
             let (format, fleet) =
                 read().with_context(|| format!("cannot read {}", file.display()))?;

@@ -1,7 +1,7 @@
 //! Reads tables of elements and of states. Columns are found by their names, in any order; others
 //! are passed over.
 
-use super::{bounded, report};
+use super::Table;
 use crate::formats::ReadError;
 use crate::formats::finding::Findings;
 use crate::formats::stamp;
@@ -217,16 +217,13 @@ fn rows<T: Copy, const N: usize>(
     findings: &mut Findings,
     mut see: impl FnMut(T, &Row<'_>, &mut Findings),
 ) -> io::Result<()> {
-    let mut table = bounded(input);
-    let header = match table.headers() {
-        Ok(header) => header.clone(),
-        Err(error) => return report(error, findings),
+    let mut table = Table::new(input);
+    let Some(header) = table.header(findings)? else {
+        return Ok(());
     };
     let column = |name: &&str| {
-        header.iter().position(|cell| {
-            cell.trim_start_matches('\u{feff}')
-                .eq_ignore_ascii_case(name)
-        })
+        let mut cells = header.iter();
+        cells.position(|cell| cell.eq_ignore_ascii_case(name))
     };
     let known = tables.iter().find_map(|(kind, names)| {
         let columns: Option<Vec<usize>> = names.iter().map(column).collect();
@@ -240,13 +237,8 @@ fn rows<T: Copy, const N: usize>(
     };
     let mut any = false;
     let mut record = ::csv::StringRecord::new();
-    loop {
-        match table.read_record(&mut record) {
-            Ok(true) => any = true,
-            Ok(false) => break,
-            Err(error) => return report(error, findings),
-        }
-        let line = record.position().map_or(1, |place| place.line() as usize);
+    while let Some(line) = table.next(&mut record, findings)? {
+        any = true;
         let row = Row {
             line,
             record: &record,
@@ -257,7 +249,7 @@ fn rows<T: Copy, const N: usize>(
             return Ok(());
         }
     }
-    if !any {
+    if !any && !findings.has_errors() {
         findings.error((2, 1), "csv-empty", "the table has no row");
     }
     Ok(())

@@ -3,16 +3,19 @@
 use super::source::{Source, failed};
 use super::{Files, Product, Sink};
 use crate::constellation::Satellite;
+use crate::constellation::gnss::Preset;
 use crate::ephemeris::{Ephemeris, Flown};
 use crate::formats::interpolation::Hermite;
-use crate::formats::manifest::{FileEntry, Loss};
+use crate::formats::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
 use crate::formats::metadata::{Metadata, Object, Theory};
 use crate::formats::omm::Notation;
 use crate::formats::opm::Opm;
 use crate::formats::sampled::Sampled;
+use crate::formats::sp3::Sp3Error;
 use crate::formats::stamp::TimeSystem;
 use crate::formats::{WriteError, csv, oem, omm, sp3, stk, tle};
 use crate::frames::{Frame, from_teme};
+use crate::orbit::Model;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::words::Word;
 use rayon::prelude::*;
@@ -239,7 +242,46 @@ impl Source<'_> {
             })
         };
         let parts = satellites.par_chunks(version.most_satellites());
-        parts.enumerate().map(one).collect()
+        let mut entries: Vec<FileEntry> = parts.enumerate().map(one).collect::<Result<_, _>>()?;
+        for (preset, _) in Preset::ALL
+            .iter()
+            .zip(self.choices.sp3_gnss)
+            .filter(|(_, chosen)| *chosen)
+        {
+            entries.push(self.sp3_of_gnss(files, *preset)?);
+        }
+        Ok(entries)
+    }
+
+    /// A nominal constellation under the letter of its system, in a file of its own, as readers
+    /// that take several files join them.
+    fn sp3_of_gnss(
+        &self,
+        files: &Files<'_, impl Sink>,
+        preset: Preset,
+    ) -> Result<FileEntry, WriteError> {
+        let (version, letter) = (self.choices.sp3_version, sp3::letter_of(preset));
+        if letter == self.choices.sp3_letter {
+            return Err(Sp3Error::LetterOfGnss { letter, preset }.into());
+        }
+        let grid = self.subject.grid;
+        let ephemeris = Ephemeris::of_gnss(preset.satellites(grid.epoch()), grid);
+        let objects = Object::all(ephemeris.satellites(), grid.epoch())?;
+        let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
+        let sampled = Sampled::new(&ephemeris, Frame::EarthFixed);
+        let mut metadata = self.metadata(Frame::EarthFixed, Theory::Flown(Model::J2));
+        metadata.time_system = TimeSystem::Gps;
+        let note = format!("nominal {preset}: slots, not the satellites in orbit");
+        metadata.subject.insert(0, note.clone());
+        let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
+        let about = (satellites.len(), &metadata);
+        files.add(&path, (Product::Sp3, version.word()), about, |out| {
+            sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
+            Ok(Loss {
+                note: Some(note),
+                ..Loss::default()
+            })
+        })
     }
 
     pub(super) fn csv(&self, files: &Files<'_, impl Sink>) -> Written {

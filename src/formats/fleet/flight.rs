@@ -7,16 +7,12 @@ use crate::formats::trajectory::Trajectory;
 use crate::frames::{FromTeme, State};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
-use nalgebra::Vector3;
 use std::collections::HashSet;
 use thiserror::Error;
 
 /// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
 /// 10 ns of SP3 and the microseconds of some writers.
 const SAME_INSTANT_S: f64 = 1e-6;
-
-/// Positions from which a velocity is derived.
-const NEIGHBOURS: usize = 9;
 
 /// Why the satellites of a file do not fly a study.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -183,43 +179,4 @@ fn state_at(trajectory: &Trajectory, epoch: Epoch, elapsed_s: f64) -> Result<Sta
             last: *last,
         }),
     }
-}
-
-/// Velocities of positions at distinct instants, km/s: at each the derivative of the polynomial
-/// through the nine nearest. None for fewer than two.
-pub(super) fn velocities(positions: &[(Epoch, Vector3<f64>)]) -> Option<Vec<Vector3<f64>>> {
-    if positions.len() < 2 {
-        return None;
-    }
-    let count = positions.len().min(NEIGHBOURS);
-    let derivative = |at: usize| {
-        let from = at.saturating_sub(count / 2).min(positions.len() - count);
-        let window = &positions[from..from + count];
-        derivative_at(window, at - from)
-    };
-    let found: Vec<_> = (0..positions.len()).map(derivative).collect();
-    let all_finite = found.iter().flat_map(Vector3::iter).all(|x| x.is_finite());
-    all_finite.then_some(found)
-}
-
-/// Derivative at node `j` of the Lagrange polynomial: the sum of f_i l_i'(t_j).
-fn derivative_at(window: &[(Epoch, Vector3<f64>)], j: usize) -> Vector3<f64> {
-    let t: Vec<f64> = window
-        .iter()
-        .map(|(at, _)| at.seconds_since(window[j].0))
-        .collect();
-    let mut sum = Vector3::zeros();
-    for (i, (_, position)) in window.iter().enumerate() {
-        let others = || (0..t.len()).filter(move |m| *m != i && *m != j);
-        let weight: f64 = if i == j {
-            others().map(|m| 1.0 / (t[j] - t[m])).sum()
-        } else {
-            others()
-                .map(|m| (t[j] - t[m]) / (t[i] - t[m]))
-                .product::<f64>()
-                / (t[i] - t[j])
-        };
-        sum += position * weight;
-    }
-    sum
 }

@@ -7,7 +7,7 @@ use crate::formats::manifest::Study;
 use crate::formats::stamp::TimeSystem;
 use crate::formats::trajectory::Trajectory;
 use crate::orbit::Model;
-use crate::time::TimeGrid;
+use crate::time::{Epoch, TimeGrid};
 use crate::words::Word;
 use std::collections::BTreeMap;
 
@@ -39,7 +39,9 @@ fn exported(products: &[Product], choices: Choices) -> BTreeMap<String, Vec<u8>>
 
 fn fleet(files: &BTreeMap<String, Vec<u8>>) -> Fleet {
     let read = |(path, bytes): (&String, &Vec<u8>)| {
-        Fleet::read(bytes, None, path.rsplit('/').next()).unwrap().1
+        Fleet::read(bytes.as_slice(), None, path.rsplit('/').next())
+            .unwrap()
+            .1
     };
     let mut fleets = files.iter().map(read);
     let mut first = fleets.next().unwrap();
@@ -102,7 +104,7 @@ fn every_product_flies_where_the_design_does() {
     let mut tables = exported(&[Product::Csv], Choices::default());
     let states = tables.remove("states.csv").unwrap();
     assert!(apart_km(&fleet(&tables).fly(grid(), Model::J2).unwrap()) < 1e-8);
-    let (_, states) = Fleet::read(&states, None, None).unwrap();
+    let (_, states) = Fleet::read(states.as_slice(), None, None).unwrap();
     assert!(apart_km(&states.fly(grid(), Model::J2).unwrap()) < 1e-8);
     for notation in Notation::ALL {
         let choices = Choices {

@@ -1,7 +1,7 @@
 //! Reads messages in every notation into element sets.
 
 use super::{METADATA, Omm, VERSION};
-use crate::formats::csv::bounded;
+use crate::formats::csv::Table;
 use crate::formats::finding::Findings;
 use crate::formats::json::Objects;
 use crate::formats::kvn::{Block, Header, Item, Keyword, item, may, must, should};
@@ -230,22 +230,16 @@ pub fn parse_csv(
     findings: &mut Findings,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
-    let mut table = bounded(input);
-    let keys = match table.headers() {
-        Ok(keys) => keys.clone(),
-        Err(error) => return crate::formats::csv::report(error, findings),
+    let mut table = Table::new(input);
+    let Some(keys) = table.header(findings)? else {
+        return Ok(());
     };
     if keys.iter().all(|key| !Block::unordered(RECORD).knows(key)) {
         findings.error((1, 1), "csv-header", "no column is a keyword of an OMM");
         return Ok(());
     }
-    for (index, row) in table.records().enumerate() {
-        let row = match row {
-            Ok(row) => row,
-            Err(error) => return crate::formats::csv::report(error, findings),
-        };
-        // One row a line: the header is the first.
-        let line = index + 2;
+    let mut row = ::csv::StringRecord::new();
+    while let Some(line) = table.next(&mut row, findings)? {
         let mut block = Block::unordered(RECORD);
         for (column, (key, value)) in keys.iter().zip(&row).enumerate() {
             if block.knows(key) && !value.is_empty() {

@@ -42,6 +42,10 @@ struct Parser {
     type_lines: usize,
     epochs: usize,
     at: Option<Epoch>,
+    /// Satellites whose position at this epoch is marked as missing.
+    missing: Vec<usize>,
+    /// Seconds by which the time system of the file, when it is none of ours, is behind ours.
+    behind_s: f64,
     ended: bool,
     any: bool,
 }
@@ -61,6 +65,8 @@ impl Parser {
             type_lines: 0,
             epochs: 0,
             at: None,
+            missing: Vec::new(),
+            behind_s: 0.0,
             ended: false,
             any: false,
         }
@@ -152,10 +158,27 @@ impl Parser {
             return;
         }
         let name = line.text.get(9..12).unwrap_or_default().trim();
+        let (name, behind_s) = match name.to_ascii_uppercase().as_str() {
+            // Times of other systems that are steered to GPS time within some tens of ns: 1 mm.
+            "GAL" | "QZS" | "IRN" => ("GPS", 0.0),
+            // The UTC of GLONASS, without Moscow's three hours.
+            "GLO" => ("UTC", 0.0),
+            // BeiDou time began in 2006 without the leap seconds since 1980 (BDS-SIS-ICD).
+            "BDT" => ("GPS", 14.0),
+            "CCC" | "" => {
+                let message = "no time system is named; GPS time is assumed";
+                findings.warning((line.number, 10), "sp3-time-system", message);
+                ("GPS", 0.0)
+            }
+            _ => (name, 0.0),
+        };
+        self.behind_s = behind_s;
         match time_system_of_name(name) {
             Ok(time_system) => self.file.time_system = time_system,
             Err(_) => {
-                let message = format!("time system '{name}' is not GPS, UTC, TAI or TT");
+                let message = format!(
+                    "time system '{name}' is not GPS, UTC, TAI, TT, GAL, GLO, BDT, QZS or IRN"
+                );
                 findings.error((line.number, 10), "sp3-time-system", message);
             }
         }
@@ -169,6 +192,8 @@ impl Parser {
             return;
         };
         let at = self.file.time_system.epoch(stamp);
+        let at = at.plus_seconds(self.behind_s);
+        self.missing.clear();
         if self.at.is_some_and(|before| at <= before) {
             let message = "the epoch is not after the one before";
             findings.error((line.number, 4), "sp3-time-order", message);
@@ -207,6 +232,7 @@ impl Parser {
         };
         // A position of zeros stands for a missing one.
         if position_km.norm_squared() == 0.0 {
+            self.missing.push(index);
             return;
         }
         let states = &mut self.file.states[index];
@@ -230,6 +256,7 @@ impl Parser {
             Some(last) if Some(last.at) == self.at => {
                 last.velocity_km_s = Some(velocity_dm_s / DM_IN_KM);
             }
+            _ if self.missing.contains(&index) => {}
             _ => {
                 let message = "a velocity without a position before it";
                 findings.error((line.number, 1), "sp3-velocity", message);

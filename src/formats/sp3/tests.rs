@@ -130,7 +130,7 @@ fn broken_rules_are_named_with_their_place() {
         ("+    6 ", "+    7 ", (114, 1, "sp3-count")),
         ("L02L03", "L02L02", (3, 16, "sp3-id")),
         ("L02L03", "L020X3", (3, 16, "sp3-id")),
-        ("cc GPS", "cc GLO", (13, 10, "sp3-time-system")),
+        ("cc GPS", "cc LOC", (13, 10, "sp3-time-system")),
         (
             "*  2025  1  1  0  1 55",
             "*  2025  1  1  0  0 17",

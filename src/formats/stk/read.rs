@@ -2,10 +2,12 @@
 
 use super::{MONTHS, StkEphemeris};
 use crate::formats::ReadError;
+use crate::formats::derivative::velocities;
 use crate::formats::finding::Findings;
 use crate::formats::kvn::{read_number, words};
 use crate::formats::lines::{Line, Lines};
 use crate::frames::{Frame, State};
+use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
@@ -38,7 +40,7 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<StkEphemeris>> {
-    let mut lines = Lines::new(input);
+    let mut lines = Lines::with_tabs(input);
     let mut parser = Parser::default();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
@@ -67,6 +69,8 @@ struct Parser {
     frame: Option<Frame>,
     /// Kilometres in the unit of length; metres if none is named.
     unit_km: Option<f64>,
+    /// Whether the rows have positions alone.
+    positions_only: bool,
     states: Vec<(f64, State)>,
 }
 
@@ -137,13 +141,17 @@ impl Parser {
             }
             "distanceunit" => {
                 self.unit_km = match value.to_ascii_lowercase().as_str() {
-                    "kilometers" => Some(1.0),
-                    "meters" => Some(1e-3),
+                    "kilometers" | "kilometer" | "km" => Some(1.0),
+                    "meters" | "meter" | "m" => Some(1e-3),
                     _ => None,
                 };
                 known(self.unit_km.is_some(), findings);
             }
             "ephemeristimeposvel" => self.begin_table(place, findings),
+            "ephemeristimepos" => {
+                self.positions_only = true;
+                self.begin_table(place, findings);
+            }
             _ if PASSED_OVER.iter().any(|passed| is(key, passed)) => {}
             _ => {
                 let message = format!("keyword {key} is not one that is read here");
@@ -166,9 +174,10 @@ impl Parser {
     }
 
     fn row(&mut self, line: &Line, findings: &mut Findings) {
+        let needed = if self.positions_only { 4 } else { 7 };
         let fields: Vec<_> = words(&line.text).take(8).collect();
-        if fields.len() != 7 {
-            let message = format!("the row has {} fields; it needs 7", fields.len());
+        if fields.len() != needed {
+            let message = format!("the row has {} fields; it needs {needed}", fields.len());
             findings.error((line.number, 1), "stk-fields", message);
             return;
         }
@@ -198,7 +207,26 @@ impl Parser {
         self.states.push((elapsed_s, state));
     }
 
-    fn end(self, number: usize, findings: &mut Findings) -> Option<StkEphemeris> {
+    fn derive_velocities(&mut self, number: usize, findings: &mut Findings) {
+        let Some(epoch) = self.epoch else { return };
+        let epoch = Epoch::from_utc(epoch.and_utc());
+        let position =
+            |(elapsed_s, state): &(f64, State)| (epoch.plus_seconds(*elapsed_s), state.position_km);
+        let positions: Vec<_> = self.states.iter().map(position).collect();
+        match velocities(&positions) {
+            Some(velocities) => {
+                for ((_, state), velocity) in self.states.iter_mut().zip(velocities) {
+                    state.velocity_km_s = velocity;
+                }
+            }
+            None => {
+                let message = "the positions have no velocities and are too few to derive them";
+                findings.error((number, 1), "stk-velocity", message);
+            }
+        }
+    }
+
+    fn end(mut self, number: usize, findings: &mut Findings) -> Option<StkEphemeris> {
         if self.part != Part::After {
             findings.error((number, 1), "stk-truncated", "END Ephemeris is missing");
         }
@@ -213,6 +241,7 @@ impl Parser {
             _ if self.states.is_empty() => {
                 findings.error((number, 1), "stk-empty", "there is no point");
             }
+            _ if self.positions_only => self.derive_velocities(number, findings),
             _ => {}
         }
         Some(StkEphemeris {
@@ -232,8 +261,10 @@ fn is(word: &str, name: &str) -> bool {
 fn frame(name: &str) -> Option<Frame> {
     match name.to_ascii_lowercase().as_str() {
         "j2000" => Some(Frame::Eme2000),
-        "icrf" => Some(Frame::Gcrf),
+        // The inertial axes of STK's Earth are those of the ICRF.
+        "icrf" | "inertial" => Some(Frame::Gcrf),
         "fixed" => Some(Frame::EarthFixed),
+        name if name.starts_with("itrf") => Some(Frame::EarthFixed),
         "temeofdate" => Some(Frame::Teme),
         _ => None,
     }

@@ -85,7 +85,7 @@ fn what_is_written_reads_back_and_writes_the_same() {
         assert_eq!(String::from_utf8(again).unwrap(), text);
     }
     let text = written(Frame::Eme2000, 60.0);
-    assert!(text.contains("\nScenarioEpoch 1 Jan 2025 00:00:00.250000000\n"));
+    assert!(text.contains("\nScenarioEpoch 01 Jan 2025 00:00:00.250000000\n"));
     assert!(text.contains("\nInterpolationSamplesM1 3\n") && !text.contains("Order"));
 }
 

@@ -2,6 +2,7 @@
 
 use crate::formats::fleet::{Fleet, ReadFleetError};
 use crate::formats::trajectory::Trajectory;
+use std::io::BufRead;
 use thiserror::Error;
 
 /// Why a file cannot be compared with a design.
@@ -72,8 +73,8 @@ pub enum Comparand {
 ///
 /// # Errors
 /// When the file breaks its format, or its states are in a frame or time that is not known.
-pub fn read(file: &str, bytes: &[u8]) -> Result<Vec<Comparand>, FileError> {
-    let (_, fleet) = Fleet::read(bytes, None, Some(file)).map_err(|source| FileError::Read {
+pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError> {
+    let (_, fleet) = Fleet::read(input, None, Some(file)).map_err(|source| FileError::Read {
         file: file.to_owned(),
         source,
     })?;

@@ -208,7 +208,7 @@ fn exported_files_are_the_design() {
         let mut comparands = Vec::new();
         for (path, bytes) in &files {
             if path != "manifest.json" {
-                comparands.extend(read(path, bytes).unwrap());
+                comparands.extend(read(path, bytes.as_slice()).unwrap());
             }
         }
         let findings = compared(&comparands).unwrap();
@@ -298,7 +298,7 @@ fn a_gap_is_no_coverage() {
 
 #[test]
 fn a_file_that_breaks_its_format_is_named() {
-    let error = read("x.oem", b"CCSDS_OEM_VERS = 9.0\n")
+    let error = read("x.oem", "CCSDS_OEM_VERS = 9.0\n".as_bytes())
         .unwrap_err()
         .to_string();
     assert!(error.starts_with("x.oem: line 1"), "{error}");

@@ -6,6 +6,7 @@ use crate::study::{Study, study_and_design};
 use crate::{Status, files, fleets, output};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
+use navwalker::constellation::gnss::Preset;
 use navwalker::formats::export::{Choices, Product, Subject, export_scene};
 use navwalker::formats::lint::Format as LintFormat;
 use navwalker::formats::manifest::{FileEntry, Manifest, Study as StudyStamp};
@@ -32,7 +33,12 @@ const SCENES: [Product; 5] = [
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
     files::require_vacant(&args.out, args.force)?;
-    let (study, design) = study_and_design(&args.study, &args.design)?;
+    let mut asked = args.study.clone();
+    if let Some(date) = &args.creation_date {
+        let key = format!("export.creation-date=\"{date}\"");
+        asked.overrides.push(key);
+    }
+    let (study, design) = study_and_design(&asked, &args.design)?;
     let scenario = &study.scenario;
     let subject = Subject {
         design,
@@ -56,6 +62,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         ccsds_version: args.ccsds_version,
         sp3_version: args.sp3_version,
         sp3_letter: args.sp3_letter,
+        sp3_gnss: std::array::from_fn(|at| args.gnss.contains(&Preset::ALL[at])),
     };
     let staged = files::StagedDirectory::new(&args.out)?;
     let progress = FileCount::new();
@@ -107,6 +114,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         ("read back", Align::Left),
         ("position (m)", Align::Right),
         ("at most", Align::Right),
+        ("theory (m)", Align::Right),
         ("mean visible", Align::Right),
         ("at most", Align::Right),
         ("mean PDOP", Align::Right),
@@ -123,7 +131,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
             format
         };
         let found = original
-            .check(format, &fleet)
+            .check(format, args.tle_theory, &fleet)
             .with_context(|| format!("cannot check {name}"))?;
         passed &= found.passed();
         let cells = |difference: Option<Difference>, scale: f64| {
@@ -134,6 +142,8 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         };
         let mut row = vec![name];
         row.extend(cells(Some(found.position_km), 1000.0));
+        let theory = found.theory_km.map(|km| format!("{:.2e}", km * 1000.0));
+        row.push(theory.unwrap_or_else(|| "-".to_owned()));
         row.extend(cells(Some(found.mean_visible), 1.0));
         row.extend(cells(found.mean_pdop, 1.0));
         row.push(if found.passed() { "passed" } else { "FAILED" }.to_owned());
@@ -143,11 +153,11 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     Ok(if passed { Status::Done } else { Status::Failed })
 }
 
-/// Whether a file holds satellites that can be read.
+/// Whether a file holds satellites of the design that can be read.
 fn is_read_back(file: &FileEntry) -> bool {
     let unread = [Product::Geojson, Product::Kml, Product::Gmat, Product::Yuma];
     let is = |product: &Product| file.format == product.word();
-    !(unread.iter().any(is) || file.path.starts_with("stk-scenario/"))
+    file.is_of_design() && !unread.iter().any(is) && !file.path.starts_with("stk-scenario/")
 }
 
 /// The files that make the constellation once: those of a product, but each table for itself.
@@ -173,6 +183,9 @@ fn check_choices(args: &ExportArgs) -> Result<()> {
     let asked = |product| args.products.contains(&product);
     if args.oem_combined && args.oem_syntax != oem::Notation::Xml {
         bail!("--oem-combined needs --oem-syntax xml: a KVN file holds one satellite");
+    }
+    if !args.gnss.is_empty() && !asked(Product::Sp3) {
+        bail!("--gnss writes SP3; add sp3 to --as");
     }
     let has_frame = [Product::Oem, Product::Opm, Product::Stk]
         .into_iter()

@@ -12,7 +12,8 @@ use navwalker::scenario::{Scenario, builtin};
 use navwalker::validate::file::{Comparand, against_file, read};
 use navwalker::validate::{Findings, Subject, Target};
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// A standard, or files of another program.
@@ -87,8 +88,9 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
 fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_one = |file: &Path| -> Result<Vec<Comparand>> {
-        let bytes = fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        Ok(read(&file.to_string_lossy(), &bytes)?)
+        let opened = File::open(file);
+        let opened = opened.with_context(|| format!("cannot read {}", file.display()))?;
+        Ok(read(&file.to_string_lossy(), BufReader::new(opened))?)
     };
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();
@@ -112,7 +114,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
         .with_context(|| format!("{} is no manifest of an export", manifest.display()))?;
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
-        if COMPARED.contains(&file.format.as_str()) {
+        if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
             let found = read_one(&path.join(&file.path))?;
             by_format.entry(file.format).or_default().extend(found);
         }

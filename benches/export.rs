@@ -1,0 +1,172 @@
+//! How fast every format is written and read.
+//!
+//! `cargo bench --bench export`; `DIVAN_SAMPLE_COUNT` sets the samples of each case. One thread;
+//! 24 satellites at 360 instants.
+
+use divan::Bencher;
+use divan::counter::{BytesCount, ItemsCount};
+use navwalker::formats::export::{Choices, Product, Subject, export};
+use navwalker::formats::fleet::Fleet;
+use navwalker::formats::manifest::Study;
+use navwalker::formats::{oem, omm};
+use navwalker::orbit::Model;
+use navwalker::time::{Epoch, TimeGrid};
+use std::io;
+use std::sync::Mutex;
+
+fn main() {
+    divan::main();
+}
+
+const SOUND: &str = "the design can be exported";
+const SATELLITES: usize = 24;
+const SAMPLES: usize = 360;
+
+/// A product and its notation.
+const CASES: [(&str, Product, omm::Notation, oem::Notation); 12] = [
+    ("tle", Product::Tle, omm::Notation::Kvn, oem::Notation::Kvn),
+    (
+        "omm-kvn",
+        Product::Omm,
+        omm::Notation::Kvn,
+        oem::Notation::Kvn,
+    ),
+    (
+        "omm-xml",
+        Product::Omm,
+        omm::Notation::Xml,
+        oem::Notation::Kvn,
+    ),
+    (
+        "omm-json",
+        Product::Omm,
+        omm::Notation::Json,
+        oem::Notation::Kvn,
+    ),
+    (
+        "omm-csv",
+        Product::Omm,
+        omm::Notation::Csv,
+        oem::Notation::Kvn,
+    ),
+    (
+        "oem-kvn",
+        Product::Oem,
+        omm::Notation::Kvn,
+        oem::Notation::Kvn,
+    ),
+    (
+        "oem-xml",
+        Product::Oem,
+        omm::Notation::Kvn,
+        oem::Notation::Xml,
+    ),
+    ("opm", Product::Opm, omm::Notation::Kvn, oem::Notation::Kvn),
+    ("sp3", Product::Sp3, omm::Notation::Kvn, oem::Notation::Kvn),
+    ("stk", Product::Stk, omm::Notation::Kvn, oem::Notation::Kvn),
+    ("csv", Product::Csv, omm::Notation::Kvn, oem::Notation::Kvn),
+    (
+        "tle-states",
+        Product::TleStates,
+        omm::Notation::Kvn,
+        oem::Notation::Kvn,
+    ),
+];
+
+fn names() -> impl Iterator<Item = &'static str> {
+    CASES.iter().map(|(name, ..)| *name)
+}
+
+fn subject() -> Subject {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
+    Subject {
+        design: format!("delta:55:{SATELLITES}/6/1@925")
+            .parse()
+            .expect(SOUND),
+        model: Model::J2,
+        grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
+        study: Study {
+            name: "bench".to_owned(),
+            hash: String::new(),
+        },
+        originator: "NAVWALKER".to_owned(),
+        creation: epoch,
+    }
+}
+
+fn case(name: &str) -> (Product, Choices) {
+    let (_, product, omm, oem) = CASES
+        .iter()
+        .find(|(known, ..)| *known == name)
+        .expect(SOUND);
+    let choices = Choices {
+        omm: *omm,
+        oem: *oem,
+        ..Choices::default()
+    };
+    (*product, choices)
+}
+
+/// A file that is kept.
+struct Kept<'a>(&'a Mutex<Vec<(String, Vec<u8>)>>, String, Vec<u8>);
+
+impl io::Write for Kept<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.2.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Drop for Kept<'_> {
+    fn drop(&mut self) {
+        let file = (std::mem::take(&mut self.1), std::mem::take(&mut self.2));
+        self.0.lock().expect(SOUND).push(file);
+    }
+}
+
+fn files(name: &str) -> Vec<(String, Vec<u8>)> {
+    let (product, choices) = case(name);
+    let kept = Mutex::new(Vec::new());
+    let sink = |path: &str| Ok(Kept(&kept, path.to_owned(), Vec::new()));
+    export(&subject(), &[product], choices, &sink).expect(SOUND);
+    let mut files = kept.into_inner().expect(SOUND);
+    files.retain(|(path, _)| path != "manifest.json");
+    files
+}
+
+fn one_thread() -> rayon::ThreadPool {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    pool.build().expect(SOUND)
+}
+
+/// The whole export, propagation, hashes and the looks at the loss included.
+#[divan::bench(args = names())]
+fn write(bencher: Bencher, name: &str) {
+    let bytes: usize = files(name).iter().map(|(_, bytes)| bytes.len()).sum();
+    let (product, choices) = case(name);
+    let (subject, pool) = (subject(), one_thread());
+    let sink = |_: &str| Ok(io::sink());
+    bencher
+        .counter(BytesCount::new(bytes))
+        .counter(ItemsCount::new(SATELLITES * SAMPLES))
+        .bench_local(|| {
+            pool.install(|| export(&subject, &[product], choices, &sink).expect(SOUND))
+        });
+}
+
+#[divan::bench(args = names())]
+fn read(bencher: Bencher, name: &str) {
+    let files = files(name);
+    let bytes: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
+    bencher.counter(BytesCount::new(bytes)).bench_local(|| {
+        let fleets = files.iter().map(|(path, bytes)| {
+            let (_, fleet) = Fleet::read(bytes.as_slice(), None, Some(path)).expect(SOUND);
+            fleet.len()
+        });
+        fleets.sum::<usize>()
+    });
+}

@@ -1,0 +1,111 @@
+//! Formats whose writers take satellites on a grid: what is read is flown, written and read back.
+
+use navwalker::ephemeris::{Ephemeris, Flown};
+use navwalker::formats::csv;
+use navwalker::formats::fleet::Fleet;
+use navwalker::formats::lint::Format;
+use navwalker::formats::metadata::{Metadata, Object, Theory};
+use navwalker::formats::sampled::Sampled;
+use navwalker::formats::sp3::{self as format, Version};
+use navwalker::formats::stamp::TimeSystem;
+use navwalker::formats::trajectory::Trajectory;
+use navwalker::frames::Frame;
+use navwalker::orbit::Model;
+use navwalker::time::TimeGrid;
+
+/// The grid that the samples of the first satellite show, if the others have no more.
+fn flown(trajectories: &[Trajectory]) -> Option<Ephemeris> {
+    let states = &trajectories.first()?.states;
+    let (first, last) = (states.first()?.0, states.last()?.0);
+    let step_s = match states.get(1) {
+        Some((second, _)) => second.seconds_since(first),
+        None => 1.0,
+    };
+    let span_s = last.seconds_since(first) + 0.5 * step_s;
+    if span_s / step_s > 1_000.0 {
+        return None;
+    }
+    let grid = TimeGrid::new(first, span_s, step_s).ok()?;
+    // Samples between the instants of the grid would not be written.
+    if trajectories
+        .iter()
+        .any(|one| one.states.len() != grid.len())
+    {
+        return None;
+    }
+    Fleet::Sampled(trajectories.to_vec())
+        .fly(grid, Model::J2)
+        .ok()
+}
+
+fn same(one: &[Trajectory], other: &[Trajectory], (km, km_s): (f64, f64)) {
+    assert_eq!(one.len(), other.len());
+    for (one, other) in one.iter().zip(other) {
+        for ((at, one), (expected, other)) in one.states.iter().zip(&other.states) {
+            // The microsecond within which a sample is that of an instant.
+            assert!(at.seconds_since(*expected).abs() <= 1.1e-6);
+            // Turned to TEME and back: a few roundings of the numbers' own size.
+            let size = 1e-14 * (1.0 + other.position_km.norm());
+            assert!((one.position_km - other.position_km).norm() <= km + size);
+            let size = 1e-14 * (1.0 + other.velocity_km_s.norm() + other.position_km.norm());
+            assert!((one.velocity_km_s - other.velocity_km_s).norm() <= km_s + size);
+        }
+    }
+}
+
+/// A table of states.
+pub(crate) fn states(trajectories: &[Trajectory]) {
+    let Some(ephemeris) = flown(trajectories) else {
+        return;
+    };
+    let mut out = Vec::new();
+    csv::write_states(&mut out, &ephemeris).expect("what is read can be written");
+    let again = csv::read_states(out.as_slice()).expect("our own file is read");
+    let names = |of: &[Trajectory]| of.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&again), names(trajectories));
+    if trajectories.iter().all(|one| one.frame == Frame::Teme) {
+        same(&again, trajectories, (1e-9, 1e-12));
+    }
+}
+
+/// SP3 files.
+pub fn sp3(bytes: &[u8]) {
+    if format::read(bytes).is_err() {
+        return;
+    }
+    let Ok((_, Fleet::Sampled(trajectories))) = Fleet::read(bytes, Some(Format::Sp3), None) else {
+        return;
+    };
+    let Some(ephemeris) = flown(&trajectories) else {
+        return;
+    };
+    let epoch = ephemeris.grid().epoch();
+    let Ok(objects) = Object::all(ephemeris.satellites(), epoch) else {
+        return;
+    };
+    let metadata = Metadata {
+        originator: "FUZZ".to_owned(),
+        creation: epoch,
+        frame: Frame::EarthFixed,
+        time_system: TimeSystem::Gps,
+        theory: Theory::Flown(Model::J2),
+        subject: Vec::new(),
+    };
+    let sampled = Sampled::new(&ephemeris, Frame::EarthFixed);
+    let pairs: Vec<(&Flown, &Object)> = ephemeris.satellites().iter().zip(&objects).collect();
+    let mut out = Vec::new();
+    // What its columns do not hold is refused with a reason.
+    if format::write(&mut out, Version::D, 'L', &metadata, &sampled, &pairs).is_err() {
+        return;
+    }
+    let (_, again) =
+        Fleet::read(out.as_slice(), Some(Format::Sp3), None).expect("our own file is read");
+    if let Fleet::Sampled(again) = again
+        && trajectories
+            .iter()
+            .all(|one| one.frame == Frame::EarthFixed)
+    {
+        // Six decimals of a kilometre and of a decimetre a second in three components.
+        same(&again, &trajectories, (1e-6, 1e-10));
+    }
+}

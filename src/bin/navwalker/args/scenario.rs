@@ -1,0 +1,35 @@
+//! Arguments of `navwalker scenario`.
+
+use super::{Format, StudyArgs};
+use clap::{Args, Subcommand};
+
+#[derive(Debug, Args)]
+pub(crate) struct ScenarioArgs {
+    #[command(subcommand)]
+    pub(crate) action: ScenarioAction,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum ScenarioAction {
+    /// List the built-in scenarios.
+    List {
+        /// Form of the result on stdout.
+        #[arg(long, value_enum, default_value = "text")]
+        format: Format,
+    },
+    /// Print a scenario with every default filled in.
+    ///
+    /// Example: navwalker scenario show regional --set visibility.mask-deg=15
+    #[command(verbatim_doc_comment)]
+    Show {
+        #[command(flatten)]
+        study: StudyArgs,
+    },
+    /// Print a commented scenario file with every key, to start from.
+    ///
+    /// Example: navwalker scenario new > study.toml
+    #[command(verbatim_doc_comment)]
+    New,
+    /// Print the JSON schema of scenario files, for editors.
+    Schema,
+}
