@@ -42,19 +42,20 @@ fn near(one: f64, other: f64, digits: i32) -> bool {
     (one - other).abs() <= rounding + 4.0 * f64::EPSILON * one.abs()
 }
 
-fn write_tle(sets: &[sgp4::Elements]) -> Option<Vec<u8>> {
-    let mut out = Vec::new();
-    sets.iter()
-        .try_for_each(|set| tle::write(&mut out, set))
-        .ok()?;
-    Some(out)
-}
-
 /// Two-line element sets.
 pub fn tle(bytes: &[u8]) {
     let Ok(sets) = tle::read(bytes) else { return };
-    let write = |sets: &Vec<sgp4::Elements>| write_tle(sets).expect("what is read can be written");
-    assert_eq!(settled(|bytes: &[u8]| tle::read(bytes), write, &sets), sets);
+    let write = |sets: &Vec<sgp4::Elements>| {
+        let mut out = Vec::new();
+        let written = sets.iter().try_for_each(|set| tle::write(&mut out, set));
+        written.expect("what is read can be written");
+        out
+    };
+    let again = settled(|bytes: &[u8]| tle::read(bytes), write, &sets);
+    assert_eq!(again.len(), sets.len());
+    for (one, other) in again.iter().zip(&sets) {
+        assert!(same_set(one, other), "{one:?}\nis not\n{other:?}");
+    }
 }
 
 fn same_set(one: &sgp4::Elements, other: &sgp4::Elements) -> bool {

@@ -22,7 +22,8 @@ fn flown(trajectories: &[Trajectory]) -> Option<Ephemeris> {
         None => 1.0,
     };
     let span_s = last.seconds_since(first) + 0.5 * step_s;
-    if span_s / step_s > 1_000.0 {
+    // Beyond thirty years a double of seconds does not hold the microsecond of a sample.
+    if span_s > 1e9 || span_s / step_s > 1_000.0 {
         return None;
     }
     let grid = TimeGrid::new(first, span_s, step_s).ok()?;

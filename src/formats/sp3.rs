@@ -52,7 +52,7 @@ impl Version {
 }
 
 /// What SP3 cannot hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum Sp3Error {
     /// More satellites than a file holds, or none.
     #[error("{found} satellites do not fit an SP3-{version} file; 1 to {most} do", most = version.most_satellites())]
@@ -68,6 +68,16 @@ pub enum Sp3Error {
     /// A letter that is none.
     #[error("'{0}' is no capital letter, as an SP3 id begins with")]
     Letter(char),
+    /// A coordinate or a velocity that is too large.
+    #[error("{letter}{number:02}: {value} km or dm/s does not fit the 14 columns of an SP3 number")]
+    Columns {
+        /// Letter of the satellite.
+        letter: char,
+        /// Its number.
+        number: usize,
+        /// The value.
+        value: f64,
+    },
     /// The letter of a GNSS for the satellites of a design beside it.
     #[error("'{letter}' is the letter of {preset} in SP3; choose another one for the design")]
     LetterOfGnss {
@@ -138,8 +148,8 @@ pub fn write(
         let elapsed_s = grid.elapsed_s(k);
         let at = grid.epoch().plus_seconds(elapsed_s);
         writeln!(out, "*  {}", epoch_fields(TimeSystem::Gps.stamp(at)))?;
-        for ((satellite, _), id) in satellites.iter().zip(&ids) {
-            write_state(out, id, &sampled.state_at(satellite, k)?)?;
+        for (number, (satellite, _)) in (1..).zip(satellites) {
+            write_state(out, (letter, number), &sampled.state_at(satellite, k)?)?;
         }
     }
     writeln!(out, "EOF")?;
@@ -282,10 +292,30 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// A position in km and a velocity in dm/s, to a millimetre and 1e-7 m/s.
-fn write_state(out: &mut impl Write, id: &str, state: &State) -> io::Result<()> {
-    let (r, v) = (state.position_km, state.velocity_km_s * DM_IN_KM);
-    writeln!(out, "P{id}{:14.6}{:14.6}{:14.6}{NO_CLOCK}", r.x, r.y, r.z)?;
-    writeln!(out, "V{id}{:14.6}{:14.6}{:14.6}{NO_CLOCK}", v.x, v.y, v.z)
+fn write_state(
+    out: &mut impl Write,
+    (letter, number): (char, usize),
+    state: &State,
+) -> Result<(), WriteError> {
+    let velocity_dm_s = state.velocity_km_s * DM_IN_KM;
+    for (kind, vector) in [('P', state.position_km), ('V', velocity_dm_s)] {
+        write!(out, "{kind}{letter}{number:02}")?;
+        for value in &vector {
+            let field = format!("{value:14.6}");
+            if field.len() > 14 {
+                let value = *value;
+                return Err(Sp3Error::Columns {
+                    letter,
+                    number,
+                    value,
+                }
+                .into());
+            }
+            write!(out, "{field}")?;
+        }
+        writeln!(out, "{NO_CLOCK}")?;
+    }
+    Ok(())
 }
 
 /// Decimetres in a kilometre.

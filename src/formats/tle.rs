@@ -148,11 +148,13 @@ fn checksum(line: &[u8]) -> u32 {
     line.iter().map(value).sum::<u32>() % 10
 }
 
-fn name_field(name: &str) -> Result<&str, TleFieldError> {
+/// A name that begins with what marks a name line is marked itself.
+fn name_field(name: &str) -> Result<String, TleFieldError> {
     let printable = name.bytes().all(|byte| (b' '..=b'~').contains(&byte));
     let fits = (1..=NAME).contains(&name.len()) && printable && name.trim() == name;
-    if fits && !name.starts_with("0 ") {
-        return Ok(name);
+    if fits {
+        let mark = if name.starts_with("0 ") { "0 " } else { "" };
+        return Ok(format!("{mark}{name}"));
     }
     Err(TleFieldError::Text {
         field: "name",
@@ -219,13 +221,18 @@ fn rate_field(value: f64) -> Result<String, TleFieldError> {
 
 /// `-0.11606e-4` as `-11606-4`: five digits behind an assumed point, and a power of ten.
 fn exponent_field(field: &'static str, value: f64) -> Result<String, TleFieldError> {
-    if value == 0.0 {
+    // Below the smallest power of ten the mantissa has zeros in front; less than half a digit is 0.
+    let last_digits = (value.abs() * 1e14).round();
+    if last_digits == 0.0 {
         return Ok(" 00000-0".to_owned());
+    }
+    if last_digits < 10_000.0 {
+        return Ok(format!("{}{last_digits:05}-9", sign(value)));
     }
     let wrong = TleFieldError::Number {
         field,
         value,
-        bound: "its columns hold 0.1e-9 to 0.99999e9",
+        bound: "its columns hold less than 1e9",
     };
     // One digit before the point in Rust's notation, none in a TLE's.
     let scientific = format!("{:.4e}", value.abs());

@@ -3,8 +3,24 @@
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+
+/// Most bytes of a file that is kept in memory as a whole: a scenario, or what it names.
+const MOST_BYTES: u64 = 64 << 20;
+
+/// The bytes of a file that is not too long to be kept.
+pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(MOST_BYTES + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MOST_BYTES {
+        let message = format!("the file is longer than {} MiB", MOST_BYTES >> 20);
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
+    }
+    Ok(bytes)
+}
 
 /// Writes a file beside its place and renames it.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
@@ -55,7 +71,7 @@ impl StagedDirectory {
 
     /// The same, but entries of these names are taken over from what is replaced.
     pub(crate) fn commit_keeping(self, kept: &[OsString]) -> Result<()> {
-        let replace = || -> std::io::Result<()> {
+        let replace = || -> io::Result<()> {
             if self.place.exists() {
                 let old = beside(&self.place.with_extension("old"));
                 fs::rename(&self.place, &old)?;
@@ -90,7 +106,7 @@ fn absolute(path: &Path) -> Result<PathBuf> {
 pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
     match fs::read_dir(path) {
         Ok(mut entries) => Ok(entries.next().is_none()),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
         Err(error) => Err(error).with_context(|| format!("cannot use {}", path.display())),
     }
 }

@@ -1,7 +1,7 @@
 //! From what was typed to a scenario and what it needs.
 
 use crate::args::{DesignArgs, StudyArgs};
-use crate::{output, run};
+use crate::{files, output, run};
 use anyhow::{Context, Result, bail};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::System;
@@ -33,7 +33,7 @@ impl Study {
     /// The scenario that a run was made with.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
         let path = directory.join("scenario.toml");
-        let bytes = fs::read(&path)
+        let bytes = files::read_whole(&path)
             .with_context(|| format!("{} is no run directory", directory.display()))
             .with_context(|| format!("cannot read {}", path.display()))?;
         let scenario = Scenario::parse(&path.to_string_lossy(), &bytes, overrides)?;
@@ -54,7 +54,7 @@ impl Study {
     pub(crate) fn hash(&self) -> Result<String> {
         let read = |file: &str| {
             let path = self.directory.join(file);
-            fs::read(&path).with_context(|| format!("cannot read {}", path.display()))
+            files::read_whole(&path).with_context(|| format!("cannot read {}", path.display()))
         };
         let contents: Vec<Vec<u8>> = self
             .scenario
@@ -69,7 +69,7 @@ impl Study {
 
     /// What an evaluation depends on; refuses what would not fit into memory.
     pub(crate) fn setup(&self) -> Result<Setup> {
-        let read = |file: &str| fs::read(self.directory.join(file));
+        let read = |file: &str| files::read_whole(&self.directory.join(file));
         let setup = self.scenario.setup(&read)?;
         check_memory(&setup)?;
         for system in &setup.gnss {
@@ -99,7 +99,8 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
         return Ok((text.as_bytes().to_vec(), PathBuf::new()));
     }
     let path = Path::new(name);
-    let bytes = fs::read(path).with_context(|| format!("cannot read the scenario {name}"))?;
+    let bytes =
+        files::read_whole(path).with_context(|| format!("cannot read the scenario {name}"))?;
     let directory = path.parent().map_or_else(PathBuf::new, Path::to_owned);
     Ok((bytes, directory))
 }

@@ -169,6 +169,8 @@ fn in_another_frame(fleet: &mut Fleet) {
     }
 }
 
+type Mistake = fn(&mut Fleet);
+
 #[test]
 fn planted_mistakes_fail() {
     let evaluator = evaluator();
@@ -177,7 +179,7 @@ fn planted_mistakes_fail() {
         frame: Frame::Teme,
         ..Choices::default()
     };
-    let mistakes: [(&str, fn(&mut Fleet)); 3] = [
+    let mistakes: [(&str, Mistake); 3] = [
         ("swapped", swapped),
         ("late", a_second_late),
         ("frame", in_another_frame),

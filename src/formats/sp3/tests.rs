@@ -6,6 +6,7 @@ use crate::formats::metadata::Theory;
 use crate::frames::{Frame, from_teme};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
+use nalgebra::Vector3;
 use proptest::prelude::*;
 
 fn ephemeris(design: &str) -> Ephemeris {
@@ -173,5 +174,41 @@ proptest! {
         let end = (at + cut).min(bytes.len());
         bytes.drain(at..end);
         let _ = findings(&bytes);
+    }
+}
+
+/// A satellite so far away, or so fast, that its numbers take more columns than SP3 has.
+struct Distant(State);
+
+impl crate::orbit::Propagator for Distant {
+    fn state_at(&self, _: f64) -> Result<State, crate::orbit::PropagationError> {
+        Ok(self.0)
+    }
+}
+
+/// Found by fuzzing: such a number ran into the next one, and the file was not read back.
+#[test]
+fn regress_numbers_wider_than_their_columns_are_refused() {
+    let near = ephemeris("delta:55:1/1/0@925");
+    let grid = near.grid();
+    for (position_km, velocity_km_s, fits) in [
+        (999_999.0, 1.0, true),
+        (1e7, 1.0, false),
+        (7_000.0, 11_078.0, false),
+    ] {
+        let state = State {
+            position_km: Vector3::new(0.0, 0.0, position_km),
+            velocity_km_s: Vector3::new(0.0, 0.0, velocity_km_s),
+        };
+        let far = Flown {
+            name: "FAR".to_owned(),
+            slot: None,
+            propagator: Box::new(Distant(state)),
+        };
+        let found = written(&Ephemeris::new(grid, vec![far]), Version::D, 'L');
+        match found {
+            Ok(text) => assert!(fits && read(text.as_bytes()).is_ok()),
+            Err(error) => assert!(!fits && error.to_string().contains("14 columns"), "{error}"),
+        }
     }
 }

@@ -4,6 +4,7 @@ use super::{EPOCH_STEP_NS, LINE, NAME, checksum, since_midnight_ns};
 use crate::formats::ReadError;
 use crate::formats::finding::Findings;
 use crate::formats::lines::{Line, Lines};
+use crate::formats::metadata::CatalogNumber;
 use chrono::{Datelike, NaiveDate, TimeDelta};
 use std::io::{self, BufRead};
 
@@ -197,6 +198,10 @@ fn record(
         findings.error((second.number, 3), "tle-catalogue-number", message);
         return None;
     }
+    if let Err(error) = one[2..7].parse::<CatalogNumber>() {
+        findings.error((first.number, 3), "tle-catalogue-number", error.to_string());
+        return None;
+    }
     let name = match name {
         Some(line) => Some(checked_name(&line, findings)?),
         None => None,
@@ -205,8 +210,13 @@ fn record(
         return None;
     }
     match set_of_lines(name, [one, two]) {
-        Ok(set) => {
+        Ok(mut set) => {
             let line = first.number;
+            if !is_designator(&one[9..17]) {
+                let message = format!("'{}' is no year, launch and piece", &one[9..17]);
+                findings.warning((line, 10), "tle-designator", message);
+                set.international_designator = None;
+            }
             Some(Record { set, line })
         }
         Err(error) => {
@@ -224,12 +234,29 @@ pub(super) fn set_of_lines(
     let mut set = sgp4::Elements::from_tle(name, one.as_bytes(), two.as_bytes())?;
     // Decimal days in doubles are some nanoseconds off the step that is written.
     set.datetime = snapped(set.datetime);
+    for angle in [
+        &mut set.right_ascension,
+        &mut set.argument_of_perigee,
+        &mut set.mean_anomaly,
+    ] {
+        *angle %= 360.0;
+    }
     Ok(set)
+}
+
+/// Whether columns hold the year, the launch and the piece, as `98067A  `, or are left blank.
+fn is_designator(columns: &str) -> bool {
+    let (launch, piece) = columns.split_at(5);
+    let piece = piece.trim_end();
+    let is_named = launch.bytes().all(|byte| byte.is_ascii_digit())
+        && !piece.is_empty()
+        && piece.bytes().all(|byte| byte.is_ascii_uppercase());
+    is_named || columns.trim().is_empty()
 }
 
 fn checked_name(line: &Line, findings: &mut Findings) -> Option<String> {
     let text = line.text.trim();
-    let name = text.strip_prefix("0 ").unwrap_or(text);
+    let name = text.strip_prefix("0 ").unwrap_or(text).trim_start();
     if name.len() <= NAME {
         return Some(name.to_owned());
     }
@@ -255,6 +282,10 @@ fn ranges_fit(first: &Line, second: &Line, findings: &mut Findings) -> bool {
     check(second, (34, 42), "argument of perigee", 360.0);
     check(second, (43, 51), "mean anomaly", 360.0);
     check(second, (52, 63), "mean motion", 20.0);
+    if fits && matches!(number(second, 52, 63), Ok(0.0)) {
+        findings.error((second.number, 53), "tle-range", "the mean motion is 0");
+        fits = false;
+    }
     let days = days_of_year(&first.text[18..20]);
     let day = number(first, 20, 32);
     if !matches!(day, Ok(day) if (1.0..days + 1.0).contains(&day)) {

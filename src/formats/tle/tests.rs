@@ -300,3 +300,55 @@ proptest! {
         prop_assert_eq!(written(&read(text.as_bytes()).unwrap()), text);
     }
 }
+
+/// Found by fuzzing: what a reader takes, a writer has to write, and the other way round.
+#[test]
+fn regress_what_is_read_can_be_written() {
+    let [_, first, second] = PUBLISHED.lines().take(3).collect::<Vec<_>>()[..] else {
+        panic!()
+    };
+    let read_back = |name: &str, first: &str, second: &str| {
+        let sets = read(format!("{name}{first}\n{second}\n").as_bytes()).unwrap();
+        assert_eq!(
+            read(written(&sets).as_bytes()).unwrap(),
+            sets,
+            "{name}{first}\n{second}"
+        );
+        sets[0].clone()
+    };
+    // Blanks behind the mark of a name, and a name that looks marked itself.
+    assert_eq!(
+        read_back("0   A\n", first, second).object_name.as_deref(),
+        Some("A")
+    );
+    let marked = read_back("0 0 B\n", first, second);
+    assert_eq!(marked.object_name.as_deref(), Some("0 B"));
+    // B* below the smallest power of ten, and an angle of a whole turn.
+    let small = with_columns(first, 53, " 00120-9");
+    let drag = read_back("", &small, second).drag_term;
+    assert!((drag - 1.2e-12).abs() < 1e-26, "{drag}");
+    let turned = with_columns(second, 17, "360.0000");
+    assert_eq!(read_back("", first, &turned).right_ascension, 0.0);
+    // A designator that is none is left out, with a warning; the rest cannot be meant.
+    let odd = with_columns(first, 9, "9 06 A  ");
+    assert_eq!(read_back("", &odd, second).international_designator, None);
+    assert_eq!(
+        findings(format!("{odd}\n{second}\n"))[0].rule,
+        "tle-designator"
+    );
+    for (one, two, rule) in [
+        (
+            first.to_owned(),
+            with_columns(second, 52, " 0.00000000"),
+            "tle-range",
+        ),
+        (
+            with_columns(first, 2, "2 5 4"),
+            with_columns(second, 2, "2 5 4"),
+            "tle-catalogue-number",
+        ),
+    ] {
+        let found = findings(format!("{one}\n{two}\n"));
+        assert_eq!(found[0].rule, rule, "{found:?}");
+    }
+}
