@@ -3,7 +3,7 @@
 mod foreign;
 mod hostile;
 
-use super::export::testing::in_memory;
+use super::export::testing::{in_memory, is_read};
 use super::export::{Choices, Product, Subject};
 use super::lint::Format;
 use super::manifest::Study;
@@ -40,7 +40,7 @@ fn samples() -> Vec<(Format, String)> {
         for (path, bytes) in in_memory(&subject, Product::ALL, choices).1 {
             let format = Format::of(&bytes, None);
             let known = found.iter().any(|(known, _)| *known == format);
-            if path != "manifest.json" && !known {
+            if is_read(&path) && !known {
                 found.push((format, String::from_utf8(bytes).unwrap()));
             }
         }

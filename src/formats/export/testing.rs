@@ -78,3 +78,18 @@ pub(crate) fn in_memory(
     let files = std::mem::take(&mut *contents.lock().unwrap());
     (manifest, files)
 }
+
+/// Whether there is a reader for a file of an export.
+pub(crate) fn is_read(path: &str) -> bool {
+    let unread = [
+        ".geojson",
+        ".kml",
+        ".script",
+        ".cof",
+        ".alm",
+        ".txt",
+        ".pnt",
+        "manifest.json",
+    ];
+    !unread.iter().any(|end| path.ends_with(end))
+}

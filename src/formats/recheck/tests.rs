@@ -140,6 +140,7 @@ fn swapped(fleet: &mut Fleet) {
         Fleet::Sets(sets) => sets.swap(2, 3),
         Fleet::Elements(rows) => rows.swap(2, 3),
         Fleet::Sampled(trajectories) => trajectories.swap(2, 3),
+        Fleet::Tracks(tracks) => tracks.swap(2, 3),
     }
 }
 
@@ -152,6 +153,9 @@ fn a_second_late(fleet: &mut Fleet) {
         Fleet::Elements(rows) => rows
             .iter_mut()
             .for_each(|row| row.epoch = row.epoch.plus_seconds(1.0)),
+        Fleet::Tracks(tracks) => tracks
+            .iter_mut()
+            .for_each(|track| track.epoch = track.epoch.plus_seconds(1.0)),
         Fleet::Sampled(trajectories) => {
             for (_, state) in trajectories.iter_mut().flat_map(|one| &mut one.states) {
                 state.position_km -= state.velocity_km_s;

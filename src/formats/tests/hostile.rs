@@ -162,6 +162,7 @@ fn first_number(format: Format) -> (&'static str, &'static str) {
         Format::Sp3 => ("\nPL01    ", "852"),
         Format::Stk => ("\n0 ", "6"),
         Format::ElementsCsv => ("2025-01-01T00:00:00.000,", "7"),
+        Format::Czml => ("\"cartesian\":[-", "0"),
         Format::StatesCsv => (",0,", "6"),
     }
 }
@@ -256,7 +257,7 @@ fn tabs_are_read_as_blanks() {
             Format::Tle => text.replacen("1 9", "1\t9", 1),
             Format::Oem | Format::Omm | Format::Opm => text.replace(" = ", "\t=\t"),
             Format::OemXml | Format::OmmXml => text.replace("\n<", "\n\t<"),
-            Format::OmmJson => text.replace("\n{", "\n\t{"),
+            Format::OmmJson | Format::Czml => text.replace("\n{", "\n\t{"),
             Format::Stk => text.replace(" J2000", "\t\t J2000"),
             Format::Sp3 | Format::OmmCsv | Format::ElementsCsv | Format::StatesCsv => continue,
         };
