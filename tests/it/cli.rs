@@ -392,6 +392,18 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     // The last generation was repeated: nothing is lost.
     assert!(fs::read(&checkpoint).unwrap() == good);
     assert!(fs::read(directory.path().join("run/front.json")).unwrap() == front);
+    // Bytes that are no text are damage like any other, and never take the place of the one before.
+    fs::write(&checkpoint, b"\xff\xfe\n").unwrap();
+    let resumed = ran(
+        directory.path(),
+        &[arguments.clone(), vec!["--resume"]].concat(),
+    );
+    assert!(
+        resumed.stderr.contains("it is no text"),
+        "{}",
+        resumed.stderr
+    );
+    assert!(fs::read(&checkpoint).unwrap() == good);
     for name in ["checkpoint", "checkpoint.previous"] {
         fs::write(directory.path().join("run").join(name), b"nonsense").unwrap();
     }

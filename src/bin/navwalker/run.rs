@@ -116,13 +116,11 @@ impl RunDirectory {
                 let (theirs, ours) = (found.version, &self.identity.version);
                 format!("a run by version {theirs}, and this is {ours}")
             }
-            Some(found) if found.scenario_hash != self.identity.scenario_hash => {
-                "a run of another scenario".to_owned()
+            Some(found) if found.seed != self.identity.seed => {
+                let (theirs, ours) = (found.seed, self.identity.seed);
+                format!("a run with seed {theirs}, and this is seed {ours}")
             }
-            Some(found) => format!(
-                "the run of seed {}, and this is seed {}",
-                found.seed, self.identity.seed
-            ),
+            Some(_) => "a run of another scenario".to_owned(),
             None if self.path.join(CHECKPOINT).exists() => {
                 "a run whose checkpoint is damaged, and no earlier one is whole".to_owned()
             }
@@ -166,10 +164,10 @@ impl RunDirectory {
         let mut damaged = Vec::new();
         for name in [CHECKPOINT, PREVIOUS] {
             let path = self.path.join(name);
-            let Ok(text) = fs::read_to_string(&path) else {
+            let Ok(bytes) = fs::read(&path) else {
                 continue;
             };
-            match read_checkpoint(&text) {
+            match read_checkpoint(&bytes) {
                 Ok((identity, search)) if identity == self.identity => {
                     if let Some(reason) = damaged.first() {
                         output::warning(&format!("{reason}; the one before it is used"));
@@ -234,7 +232,8 @@ impl RunDirectory {
     }
 }
 
-fn read_checkpoint(text: &str) -> Result<(Identity, Search)> {
+fn read_checkpoint(bytes: &[u8]) -> Result<(Identity, Search)> {
+    let text = str::from_utf8(bytes).context("it is no text")?;
     let (header, state) = text.split_once('\n').context("it is cut short")?;
     let header: Header = serde_json::from_str(header).context("its header cannot be read")?;
     let state = state.trim_end();
@@ -325,8 +324,10 @@ mod tests {
             sha256: hex_sha256(b"other"),
         };
         let text = format!("{}\n{state}\n", serde_json::to_string(&header).unwrap());
-        let error = read_checkpoint(&text).unwrap_err().to_string();
+        let error = read_checkpoint(text.as_bytes()).unwrap_err().to_string();
         assert_eq!(error, "its checksum does not fit");
-        assert!(read_checkpoint("").is_err());
+        assert!(read_checkpoint(b"").is_err());
+        let error = read_checkpoint(b"\xff\n{}").unwrap_err().to_string();
+        assert_eq!(error, "it is no text");
     }
 }
