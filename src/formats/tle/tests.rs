@@ -330,7 +330,7 @@ fn regress_what_is_read_can_be_written() {
     let turned = with_columns(second, 17, "360.0000");
     assert_eq!(read_back("", first, &turned).right_ascension, 0.0);
     // A designator that is none is left out, with a warning; the rest cannot be meant.
-    let odd = with_columns(first, 9, "9 06 A  ");
+    let odd = with_columns(first, 9, "98067A B");
     assert_eq!(read_back("", &odd, second).international_designator, None);
     assert_eq!(
         findings(format!("{odd}\n{second}\n"))[0].rule,
