@@ -32,7 +32,7 @@
 //!
 //! # Statistics
 //!
-//! Values are never sorted, and and beyond a number of them not even kept ([`tally`]).
+//! Values are never sorted, and beyond a number of them not even kept ([`tally`]).
 
 mod candidates;
 mod fixed;
@@ -60,7 +60,7 @@ use rayon::prelude::*;
 use refine::{Ranked, Surround};
 use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
-use tally::{Count, Counts, Find, Found, Merge, Search};
+use tally::{Count, Counts, Find, Found, Merge, Places, Search};
 use tiles::Tiles;
 
 /// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
@@ -97,7 +97,7 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    fixed + threads * (values + Counts::BYTES + Found::BYTES)
+    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES)
 }
 
 /// Samples that were taken again in f64.
@@ -114,6 +114,7 @@ pub(super) struct Kernel {
     scene: Scene,
     fixed: Fixed,
     instructions: InstructionSet,
+    places: Places,
     kept_values: usize,
 }
 
@@ -176,6 +177,7 @@ impl Kernel {
             scene,
             fixed,
             instructions,
+            places: Places::new(setup.pdop_cap),
             kept_values: keep.values,
         })
     }
@@ -208,7 +210,7 @@ impl Kernel {
     ) -> Result<(Evaluated, Retakes), EphemerisError> {
         let samples = evaluator.setup().grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
-        let mut counts = Counts::new();
+        let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
@@ -284,10 +286,13 @@ impl Kernel {
         flight: Flight<'_>,
     ) -> Result<(Evaluated, Retakes), EphemerisError> {
         let chunks = self.chunks(evaluator.setup().grid.len());
-        let (counts, parts) =
-            self.pass(evaluator, flight, &chunks, Counts::new, |tiles, counts| {
-                self.count(tiles, counts)
-            })?;
+        let (counts, parts) = self.pass(
+            evaluator,
+            flight,
+            &chunks,
+            || Counts::new(self.places),
+            |tiles, counts| self.count(tiles, counts),
+        )?;
         // The order of the chunks is kept, so that the sum does not depend on the threads.
         let tallies = parts
             .iter()

@@ -17,15 +17,40 @@ use crate::stats::{Level, Summary, quantile_rank};
 const TRAILING_BITS: u32 = 12;
 
 /// Places begin at 2^-7: n satellites give a PDOP of 3/√n or more, which is above that up to
-/// 147 000 satellites. The place behind the last holds what is unsolved.
+/// 147 000 satellites.
 const FIRST: u32 = (127 - 7) << (23 - TRAILING_BITS);
-const UNSOLVED_PLACE: u32 = (255 << (23 - TRAILING_BITS)) - FIRST;
 
-/// The place of a value in the first pass; larger values have the same or a later one.
-#[inline(always)]
-fn place(value: f32) -> u32 {
-    let leading = value.to_bits() >> TRAILING_BITS;
-    leading.max(FIRST) - FIRST
+/// The places of the first pass, by leading bits.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Places {
+    /// The place behind that of the largest PDOP: what is unsolved.
+    unsolved: u32,
+}
+
+impl Places {
+    /// Places for PDOP up to `cap`: the fewer, the less memory is gone through for each design.
+    pub(super) fn new(cap: f64) -> Self {
+        let largest = (cap as f32).min(f32::MAX);
+        Self {
+            unsolved: (largest.to_bits() >> TRAILING_BITS).max(FIRST) - FIRST + 1,
+        }
+    }
+
+    /// Memory that the counts of all places take.
+    pub(super) fn bytes(self) -> usize {
+        self.count() * size_of::<u64>()
+    }
+
+    fn count(self) -> usize {
+        self.unsolved as usize + 1
+    }
+
+    /// The place of a value; larger values have the same or a later one.
+    #[inline(always)]
+    fn of(self, value: f32) -> u32 {
+        let leading = value.to_bits() >> TRAILING_BITS;
+        (leading.max(FIRST) - FIRST).min(self.unsolved)
+    }
 }
 
 /// The value of a place with some trailing bits.
@@ -42,37 +67,36 @@ pub(super) trait Merge {
 
 /// First pass: how many values there are in each place.
 pub(super) struct Counts {
-    places: Vec<u64>,
+    places: Places,
+    counts: Vec<u64>,
     values: u64,
 }
 
 impl Counts {
-    /// Memory that it takes.
-    pub(super) const BYTES: usize = (UNSOLVED_PLACE as usize + 1) * size_of::<u64>();
-
-    pub(super) fn new() -> Self {
+    pub(super) fn new(places: Places) -> Self {
         Self {
-            places: vec![0; UNSOLVED_PLACE as usize + 1],
+            places,
+            counts: vec![0; places.count()],
             values: 0,
         }
     }
 
     /// Solved values.
     pub(super) fn solved(&self) -> u64 {
-        self.values - self.places[UNSOLVED_PLACE as usize]
+        self.values - self.counts[self.places.unsolved as usize]
     }
 
     /// Where the order statistic of a rank (from 1) lies.
     fn locate(&self, rank: u64) -> Wanted {
         let mut before = rank - 1;
-        let mut places = (0..).zip(&self.places);
-        let place = places.find_map(|(place, &count)| {
+        let mut counted = (0..).zip(&self.counts);
+        let place = counted.find_map(|(place, &count)| {
             let here = before < count;
             before -= if here { 0 } else { count };
             here.then_some(place)
         });
         Wanted {
-            place: place.unwrap_or(UNSOLVED_PLACE),
+            place: place.unwrap_or(self.places.unsolved),
             rank,
             before,
         }
@@ -81,7 +105,7 @@ impl Counts {
 
 impl Merge for Counts {
     fn merged(mut self, other: &Self) -> Self {
-        add(&mut self.places, &other.places);
+        add(&mut self.counts, &other.counts);
         self.values += other.values;
         self
     }
@@ -105,15 +129,16 @@ impl Work for Count<'_> {
     #[inline(always)]
     fn run(self) -> f64 {
         let mut sums = [0.0; LANES];
+        let numbering = self.counts.places;
         for tile in self.tiles {
             let mut places = [0; LANES];
             for l in 0..LANES {
                 let value = tile.0[l];
-                places[l] = place(value);
+                places[l] = numbering.of(value);
                 sums[l] += f64::from(if value < UNSOLVED { value } else { 0.0 });
             }
             for place in places {
-                self.counts.places[place as usize] += 1;
+                self.counts.counts[place as usize] += 1;
             }
         }
         self.counts.values += (self.tiles.len() * LANES) as u64;
@@ -137,6 +162,7 @@ const VALUE_AT_RISK: usize = 4;
 /// What the second pass looks for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Search {
+    places: Places,
     level: Level,
     solved: u64,
     wanted: [Wanted; WANTED],
@@ -177,19 +203,20 @@ impl Work for Find<'_> {
     #[inline(always)]
     fn run(self) -> f64 {
         let wanted = self.search.wanted.map(|wanted| wanted.place);
+        let places = self.search.places;
         let mut tail = [0.0; LANES];
         for tile in self.tiles {
             let mut hits = 0;
             for (tail, &value) in tail.iter_mut().zip(&tile.0) {
-                let place = place(value);
-                let beyond = (place > wanted[VALUE_AT_RISK]) & (place < UNSOLVED_PLACE);
+                let place = places.of(value);
+                let beyond = (place > wanted[VALUE_AT_RISK]) & (place < places.unsolved);
                 *tail += f64::from(if beyond { value } else { 0.0 });
                 for wanted in wanted {
                     hits |= u32::from(place == wanted);
                 }
             }
             if hits != 0 {
-                note(tile, &wanted, self.found);
+                note(tile, places, &wanted, self.found);
             }
         }
         tail.iter().sum()
@@ -197,9 +224,9 @@ impl Work for Find<'_> {
 }
 
 /// Counts the trailing bits of the values in wanted places.
-fn note(tile: &Lanes<f32>, wanted: &[u32; WANTED], found: &mut Found) {
+fn note(tile: &Lanes<f32>, places: Places, wanted: &[u32; WANTED], found: &mut Found) {
     for (counts, &wanted) in found.0.iter_mut().zip(wanted) {
-        for value in tile.0.iter().filter(|&&value| place(value) == wanted) {
+        for value in tile.0.iter().filter(|&&value| places.of(value) == wanted) {
             counts[(value.to_bits() % (1 << TRAILING_BITS)) as usize] += 1;
         }
     }
@@ -211,6 +238,7 @@ impl Search {
         let solved = counts.solved();
         let ranked = |q: f64| counts.locate(quantile_rank(q, solved as usize) as u64);
         (solved > 0).then(|| Self {
+            places: counts.places,
             level,
             solved,
             wanted: [
