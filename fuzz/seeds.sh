@@ -18,9 +18,10 @@ export_to kvn --as tle,omm,oem,opm,sp3,stk,csv,tle-states
 export_to xml --as omm,oem,stk,opm --omm-syntax xml --oem-syntax xml --frame GCRF
 export_to ndm --as oem,omm --oem-syntax xml --oem-combined --omm-syntax json --time-system TAI
 export_to v3 --as omm,oem,opm,sp3,stk --omm-syntax csv --ccsds-version 3.0 --sp3-version c --frame ITRF --time-system GPS
+export_to map --as czml --set region.step-deg=90 --set gnss.constellations='[]'
 export_to teme --as oem,opm,stk,sp3 --frame TEME --time-system TT --sp3-letter G
 
-for target in tle omm oem opm sp3 stk csv lint; do
+for target in tle omm oem opm sp3 stk csv czml lint; do
     mkdir -p "fuzz/corpus/$target"
 done
 find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while read -r file; do
@@ -35,6 +36,8 @@ find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while
         *.sp3) target=sp3 ;;
         *.e) target=stk ;;
         *.csv) target=csv ;;
+        *.czml) target=czml ;;
+        *) continue ;;
     esac
     cp "$file" "fuzz/corpus/$target/$name"
     # The linter takes its choice of a format from a byte in front: here none of them.

@@ -13,7 +13,7 @@ use navwalker::formats::fleet::{Fleet, ReadFleetError};
 use navwalker::formats::lint::{self, Format};
 use navwalker::formats::metadata::{CatalogNumber, Object};
 use navwalker::formats::omm::{self, Notation};
-use navwalker::formats::{CcsdsHeader, CcsdsVersion, ReadError, oem, opm, stk, tle};
+use navwalker::formats::{CcsdsHeader, CcsdsVersion, ReadError, czml, oem, opm, stk, tle};
 use navwalker::words::Word;
 use std::fmt::Debug;
 
@@ -331,5 +331,27 @@ pub fn lint(bytes: &[u8]) {
         (Some(first), other) => panic!("lint says {first}, the reader {other:?}"),
         (None, Err(ReadFleetError::Read(error))) => panic!("lint has no error, the reader {error}"),
         (None, _) => {}
+    }
+}
+
+/// CZML, which is read by its samples alone: at each of them a satellite is where the sample says,
+/// and beyond the first and last it is nowhere.
+pub fn czml(bytes: &[u8]) {
+    let Ok(tracks) = czml::read(bytes) else {
+        return;
+    };
+    for track in &tracks {
+        assert!(track.nodes.len() > 1);
+        assert!(track.nodes.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        for (elapsed_s, position_km) in &track.nodes {
+            let state = track.state(*elapsed_s).expect("an instant of the span");
+            let apart_km = (state.position_km - position_km).norm();
+            assert!(
+                apart_km.is_nan() || apart_km <= 1e-9 * position_km.norm(),
+                "{apart_km} km"
+            );
+        }
+        let (first, last) = (track.nodes[0].0, track.nodes[track.nodes.len() - 1].0);
+        assert!(track.state(first.next_down()).is_none() && track.state(last.next_up()).is_none());
     }
 }

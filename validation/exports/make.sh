@@ -26,7 +26,12 @@ opm --as opm
 opm-3.0 --as opm --ccsds-version 3.0 --frame ITRF --time-system TT
 sp3-d --as sp3 --gnss beidou-3
 sp3-c --as sp3 --sp3-version c --sp3-letter X
-stk --as stk
-stk-fixed --as stk --frame ITRF
+stk --as stk --set region.step-deg=20
+stk-fixed --as stk --frame ITRF --set region.step-deg=20
 csv --as csv
+czml --as czml --set region.step-deg=20
+geojson --as geojson --set region.step-deg=20
+kml --as kml --set region.step-deg=20
+gmat --as gmat
+yuma --as yuma
 LIST

@@ -1,7 +1,7 @@
 stk.v.12.0
 # Satellite: NW-P01-S01
 # Design: delta:55:3/3/1@925
-# Scenario: paper, hash b5dba92f8c9eaa8a7c48c9b8d43a2d09129bb808670e74ca799869d1342cebe6
+# Scenario: paper, hash 7a030bfc7366ff8fae67292e8cdbf13cfbd953e403662594007231f7710c13dc
 # Theory: j2
 # Design constants: mu = 398600.4418 km3/s2, Re = 6378.137 km, J2 = 1.08262668e-3; WGS-72 in SGP4 alone
 # Frame: EME2000 from TEME by the equation of the equinoxes (1994) and IAU 1976/1980, no corrections
