@@ -125,23 +125,16 @@ impl PatternBlock {
         }
     }
 
-    /// Positions of the satellites; `in_plane` takes cosine and sine of the phase to the place
-    /// along the node and a quarter of a turn ahead of it, km.
+    /// Positions of the satellites on an orbit of some shape.
     #[inline(always)]
-    fn fly(
-        &self,
-        orbit: &PatternFlight,
-        turn: &Turn,
-        in_plane: impl Fn(f64, f64) -> (f64, f64),
-        to: &mut PositionBlock,
-    ) {
+    fn fly(&self, orbit: &PatternFlight, turn: &Turn, shape: &impl Shape, to: &mut PositionBlock) {
         let (sin_i, cos_i) = (orbit.sin_i, orbit.cos_i);
         for n in 0..BLOCK {
             let (cos_o, sin_o) = (self.cos_node[n], self.sin_node[n]);
             let (cos_p, sin_p) = (self.cos_phase[n], self.sin_phase[n]);
             let cos_node = cos_o * turn.cos_node - sin_o * turn.sin_node;
             let sin_node = sin_o * turn.cos_node + cos_o * turn.sin_node;
-            let (along, ahead) = in_plane(
+            let (along, ahead) = shape.place(
                 cos_p * turn.cos_phase - sin_p * turn.sin_phase,
                 sin_p * turn.cos_phase + cos_p * turn.sin_phase,
             );
@@ -203,27 +196,73 @@ impl PatternFlight {
         }
     }
 
+    #[inline(always)]
+    fn fly_on(&self, shape: &impl Shape, turn: &Turn, positions: &mut Positions) {
+        for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
+            from.fly(self, turn, shape, to);
+        }
+    }
+
     /// Positions at a sample.
     #[inline(always)]
     pub(super) fn fly(&self, turn: &Turn, positions: &mut Positions) {
         let (a, e) = (self.semi_major_axis_km, self.eccentricity);
-        let blocks = self.blocks.iter().zip(&mut positions.blocks);
         if e > 0.0 {
-            let semi_minor_axis_km = a * (1.0 - e * e).sqrt();
-            let ellipse = |cos_mean: f64, sin_mean: f64| {
-                let (cos_e, sin_e) = anomaly::eccentric(cos_mean, sin_mean, e);
-                let (x, y) = (a * (cos_e - e), semi_minor_axis_km * sin_e);
-                let (cos_w, sin_w) = (turn.cos_perigee, turn.sin_perigee);
-                (cos_w * x - sin_w * y, sin_w * x + cos_w * y)
+            let ellipse = Ellipse {
+                semi_major_axis_km: a,
+                semi_minor_axis_km: a * (1.0 - e * e).sqrt(),
+                eccentricity: e,
+                cos_perigee: turn.cos_perigee,
+                sin_perigee: turn.sin_perigee,
             };
-            blocks.for_each(|(from, to)| from.fly(self, turn, ellipse, to));
+            self.fly_on(&ellipse, turn, positions);
         } else {
-            let circle =
-                |cos_latitude: f64, sin_latitude: f64| (a * cos_latitude, a * sin_latitude);
-            blocks.for_each(|(from, to)| from.fly(self, turn, circle, to));
+            self.fly_on(&Circle { radius_km: a }, turn, positions);
         }
         positions.nearest_km = a * (1.0 - e);
         positions.farthest_km = a * (1.0 + e);
+    }
+}
+
+/// The shape of an orbit in its plane.
+trait Shape {
+    /// The place at a phase of this cosine and sine: along the node, and a quarter of a turn ahead
+    /// of it, km.
+    fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64);
+}
+
+struct Circle {
+    radius_km: f64,
+}
+
+impl Shape for Circle {
+    #[inline(always)]
+    fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64) {
+        (self.radius_km * cos_phase, self.radius_km * sin_phase)
+    }
+}
+
+struct Ellipse {
+    semi_major_axis_km: f64,
+    semi_minor_axis_km: f64,
+    eccentricity: f64,
+    cos_perigee: f64,
+    sin_perigee: f64,
+}
+
+impl Shape for Ellipse {
+    #[inline(always)]
+    fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64) {
+        let e = self.eccentricity;
+        let (cos_e, sin_e) = anomaly::eccentric(cos_phase, sin_phase, e);
+        let (x, y) = (
+            self.semi_major_axis_km * (cos_e - e),
+            self.semi_minor_axis_km * sin_e,
+        );
+        (
+            self.cos_perigee * x - self.sin_perigee * y,
+            self.sin_perigee * x + self.cos_perigee * y,
+        )
     }
 }
 

@@ -14,18 +14,22 @@ const STEPS: usize = 3;
 /// Cosine and sine of the eccentric anomaly from those of the mean anomaly, to 1e-15.
 #[inline(always)]
 pub(super) fn eccentric(cos_mean: f64, sin_mean: f64, e: f64) -> (f64, f64) {
-    let turned = |(sin, cos): (f64, f64)| {
-        (
-            cos_mean * cos - sin_mean * sin,
-            sin_mean * cos + cos_mean * sin,
-        )
-    };
     let mut delta = e * sin_mean / (1.0 - 2.0 * e * cos_mean + e * e).sqrt();
     for _ in 0..STEPS {
-        let (cos, sin) = turned(small_sine_cosine(delta));
+        let (cos, sin) = turned((cos_mean, sin_mean), delta);
         delta -= (delta - e * sin) / (1.0 - e * cos);
     }
-    turned(small_sine_cosine(delta))
+    turned((cos_mean, sin_mean), delta)
+}
+
+/// Cosine and sine of an angle turned by a small one.
+#[inline(always)]
+fn turned((cos_mean, sin_mean): (f64, f64), delta: f64) -> (f64, f64) {
+    let (sin, cos) = small_sine_cosine(delta);
+    (
+        cos_mean * cos - sin_mean * sin,
+        sin_mean * cos + cos_mean * sin,
+    )
 }
 
 /// Sine and cosine up to [`LARGEST_ECCENTRICITY`] in size, by their Taylor series: the first terms
@@ -33,16 +37,16 @@ pub(super) fn eccentric(cos_mean: f64, sin_mean: f64, e: f64) -> (f64, f64) {
 #[inline(always)]
 fn small_sine_cosine(x: f64) -> (f64, f64) {
     let x2 = x * x;
-    let sine = 1.0 - x2 / 110.0;
-    let sine = 1.0 - x2 / 72.0 * sine;
-    let sine = 1.0 - x2 / 42.0 * sine;
-    let sine = 1.0 - x2 / 20.0 * sine;
-    let sine = 1.0 - x2 / 6.0 * sine;
-    let cosine = 1.0 - x2 / 90.0;
-    let cosine = 1.0 - x2 / 56.0 * cosine;
-    let cosine = 1.0 - x2 / 30.0 * cosine;
-    let cosine = 1.0 - x2 / 12.0 * cosine;
-    let cosine = 1.0 - x2 / 2.0 * cosine;
+    let sine = 1.0 - x2 * (1.0 / 110.0);
+    let sine = 1.0 - x2 * (1.0 / 72.0) * sine;
+    let sine = 1.0 - x2 * (1.0 / 42.0) * sine;
+    let sine = 1.0 - x2 * (1.0 / 20.0) * sine;
+    let sine = 1.0 - x2 * (1.0 / 6.0) * sine;
+    let cosine = 1.0 - x2 * (1.0 / 90.0);
+    let cosine = 1.0 - x2 * (1.0 / 56.0) * cosine;
+    let cosine = 1.0 - x2 * (1.0 / 30.0) * cosine;
+    let cosine = 1.0 - x2 * (1.0 / 12.0) * cosine;
+    let cosine = 1.0 - x2 * (1.0 / 2.0) * cosine;
     (x * sine, cosine)
 }
 
