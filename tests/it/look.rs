@@ -44,6 +44,24 @@ fn small_run() -> TempDir {
 }
 
 #[test]
+fn a_validation_comes_into_the_report_of_its_run() {
+    let directory = small_run();
+    let page = directory.path().join("run/report.html");
+    let check = "sgp4/rates/node/mean-j2";
+    assert!(!fs::read_to_string(&page).unwrap().contains(check));
+    let validate = ["validate", "--run", "run", "--against", "sgp4", "--report"];
+    stdout(&navwalker(directory.path(), &validate));
+    assert!(fs::read_to_string(&page).unwrap().contains(check));
+    let kept = directory.path().join("run/validation/report.json");
+    assert!(kept.exists());
+    // What is there is not replaced unasked.
+    let again = navwalker(directory.path(), &validate);
+    assert_eq!(again.status.code(), Some(2));
+    let forced = [&validate[..], &["--force"]].concat();
+    stdout(&navwalker(directory.path(), &forced));
+}
+
+#[test]
 fn a_report_is_written_and_repeats() {
     let directory = small_run();
     let page = directory.path().join("run/report.html");

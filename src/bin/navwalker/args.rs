@@ -105,7 +105,7 @@ pub(crate) enum Command {
     /// is damaged or missing in the directory is named, and the rest is shown.
     ///
     /// A validation is shown when it lies in DIR/validation:
-    ///   navwalker validate --run runs/paper-1 --against sgp4 --out runs/paper-1/validation
+    ///   navwalker validate --run runs/paper-1 --against sgp4 --report
     ///
     /// Example: navwalker report runs/paper-1 --compare star:86.4:180/12/1@925
     #[command(verbatim_doc_comment)]
@@ -423,8 +423,13 @@ pub(crate) struct ValidateArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
+    /// Also write the page of the run with this validation in it, as `navwalker report` does. The
+    /// reports go to `validation` in the run directory, unless --out says otherwise.
+    #[arg(long, requires = "run")]
+    pub(crate) report: bool,
+
     /// Replace a directory that holds something.
-    #[arg(long, requires = "out")]
+    #[arg(long)]
     pub(crate) force: bool,
 
     /// Form of the result on stdout.

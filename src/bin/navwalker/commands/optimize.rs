@@ -61,7 +61,7 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     })?;
     let shown = out.display().to_string();
     if args.report {
-        let page = super::report::of_run(&out)?;
+        let page = super::report::of_run(&out, None)?;
         output::hint(&format!("\nreport written to {}", page.display()));
     }
     if !ended.is_done {

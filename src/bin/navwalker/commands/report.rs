@@ -15,13 +15,14 @@ pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// Writes the page of a run that has just ended into its directory.
-pub(crate) fn of_run(directory: &Path) -> Result<PathBuf> {
+/// Writes the page of a run into its directory, with the validation of `validation` or what lies
+/// in the run.
+pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<PathBuf> {
     let args = RunArgs {
         directory: directory.to_owned(),
         compare: Vec::new(),
         front: Vec::new(),
-        validation: None,
+        validation: validation.map(Path::to_owned),
     };
     let out = directory.join("report.html");
     write(&args, &out)?;

@@ -38,7 +38,9 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let targets = targets(&args.against)?;
-    if let Some(directory) = &args.out {
+    let run = args.design.run.as_deref().filter(|_| args.report);
+    let out = args.out.clone().or(run.map(|run| run.join("validation")));
+    if let Some(directory) = &out {
         files::require_vacant(directory, args.force)?;
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
@@ -60,8 +62,12 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         }
     }
     let result = ValidateResult::new(&design, args.against.clone(), findings, &study.scenario);
-    if let Some(directory) = &args.out {
+    if let Some(directory) = &out {
         write_reports(directory, &result)?;
+    }
+    if let Some(run) = run {
+        let page = super::report::of_run(run, out.as_deref())?;
+        output::hint(&format!("report written to {}", page.display()));
     }
     output::result(&render(&result, args.format)?)?;
     Ok(if result.passed {
