@@ -152,13 +152,23 @@ impl Fleet {
                 (at, state)
             };
             trajectories.push(super::trajectory::Trajectory {
-                name: id.clone(),
+                name: file.name_of(id).unwrap_or(id).to_owned(),
                 id: id.clone(),
                 frame,
                 states: positions.into_iter().zip(velocities).map(state).collect(),
             });
         }
         Ok(Self::Sampled(trajectories))
+    }
+
+    /// Names sampled satellites by their place, from 1: for files whose ids start again in each, as in
+    /// the parts of a large constellation in SP3.
+    pub fn name_by_place(&mut self) {
+        if let Self::Sampled(trajectories) = self {
+            for (place, trajectory) in (1..).zip(trajectories) {
+                trajectory.name = format!("{place}");
+            }
+        }
     }
 
     /// The file names no satellite: it is called as its file is.

@@ -338,6 +338,18 @@ pub struct Sp3 {
     pub states: Vec<Vec<Sample>>,
 }
 
+impl Sp3 {
+    /// The name that a comment `L01 = NAME` gives to an id, as SP3-d files of this program have it for
+    /// every satellite.
+    #[must_use]
+    pub fn name_of(&self, id: &str) -> Option<&str> {
+        self.comments
+            .iter()
+            .find_map(|comment| comment.strip_prefix(id)?.strip_prefix(" = "))
+            .filter(|name| !name.is_empty())
+    }
+}
+
 /// A state of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {

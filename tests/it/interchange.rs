@@ -182,6 +182,52 @@ fn gnss_stand_in_files_of_their_own() {
     assert!(refused(&alone).contains("add sp3 to --as"));
 }
 
+/// More satellites than one file of SP3 takes: ids start again in each part.
+#[test]
+fn the_parts_of_a_large_constellation_are_read_together() {
+    let large = [
+        "--design",
+        "delta:55:104/13/1@925",
+        "--set",
+        "time.step-s=1200",
+    ];
+    for version in ["c", "d"] {
+        let directory = TempDir::new().unwrap();
+        let words = [
+            "export",
+            "--as",
+            "sp3",
+            "--sp3-version",
+            version,
+            "--check",
+            "--out",
+            "x",
+        ];
+        let exported = ran(directory.path(), &[&words[..], &large].concat());
+        assert_eq!(exported.status, 0, "{}", exported.stderr);
+        assert!(directory.path().join("x/sp3/part-02.sp3").exists());
+        let evaluate = [
+            "evaluate",
+            "--constellation",
+            "x/sp3",
+            "--set",
+            "time.step-s=1200",
+        ];
+        let evaluated = ran(directory.path(), &evaluate);
+        if version == "d" {
+            assert_eq!(evaluated.status, 0, "{}", evaluated.stderr);
+            assert!(evaluated.stdout.contains("104"), "{}", evaluated.stdout);
+        } else {
+            // SP3-c has no room for names.
+            assert!(
+                evaluated.stderr.contains("given twice"),
+                "{}",
+                evaluated.stderr
+            );
+        }
+    }
+}
+
 /// The flag is the key of the scenario, and names of frames and times are taken in any case.
 #[test]
 fn the_creation_date_and_frames_can_be_chosen() {

@@ -123,7 +123,10 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     ]);
     let mut passed = true;
     for (name, paths) in groups(args, manifest) {
-        let (format, fleet) = fleets::read(&paths)?;
+        let (format, mut fleet) = fleets::read(&paths)?;
+        if format == LintFormat::Sp3 {
+            fleet.name_by_place();
+        }
         // States of SGP4 have the theory and the digits of the element sets.
         let format = if name == Product::TleStates.word() {
             LintFormat::Tle
