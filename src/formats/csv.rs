@@ -18,7 +18,20 @@ use crate::ephemeris::Ephemeris;
 use crate::frames::{Frame, State};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
+use serde::Serialize;
 use std::io::{self, Write};
+
+/// Writes records whose fields are the columns, one a row: points or instants of a series.
+///
+/// # Errors
+/// When the table cannot be written.
+pub fn write_records(out: &mut impl Write, rows: &[impl Serialize]) -> io::Result<()> {
+    let mut writer = ::csv::Writer::from_writer(out);
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    writer.flush()
+}
 
 /// Columns of the table of elements: mean elements at the epoch, in TEME.
 const ELEMENTS: [&str; 14] = [

@@ -38,6 +38,8 @@ words! {
         Stk = "stk",
         /// Tables of mean elements and of states.
         Csv = "csv",
+        /// Tables of the metrics by ground point and by instant.
+        Metrics = "metrics",
         /// CZML: satellites, orbits and region for CesiumJS.
         Czml = "czml",
         /// GeoJSON: region with metrics, ground tracks, footprints.
@@ -170,6 +172,7 @@ pub fn export_scene(
             Product::Sp3 => source.sp3(&files)?,
             Product::Stk => source.stk_with(&files, scene)?,
             Product::Csv => source.csv(&files)?,
+            Product::Metrics => source.metrics(&files, scene.ok_or_else(lacking)?)?,
             Product::Czml => source.czml(&files, scene.ok_or_else(lacking)?)?,
             Product::Geojson => source.geojson(&files, scene.ok_or_else(lacking)?)?,
             Product::Kml => source.kml(&files, scene.ok_or_else(lacking)?)?,

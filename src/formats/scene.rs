@@ -6,7 +6,7 @@ use crate::constellation::Design;
 use crate::constellation::gnss::{GnssSatellite, System};
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::evaluate::{Evaluator, PointMetrics};
+use crate::evaluate::{Evaluator, PointMetrics, Series};
 use crate::ground::Grid;
 use crate::units::round_decimal;
 use std::sync::OnceLock;
@@ -65,10 +65,15 @@ impl<'a> Scene<'a> {
         if let Some(points) = self.points.get() {
             return Ok(points);
         }
+        let points = self.series()?.points;
+        Ok(self.points.get_or_init(|| points))
+    }
+
+    /// The metrics by ground point and by instant.
+    pub(super) fn series(&self) -> Result<Series, EphemerisError> {
         let setup = self.setup();
         let ephemeris = Ephemeris::of_design(&self.design, setup.model, setup.grid)?;
-        let points = self.evaluator.series(&ephemeris)?.points;
-        Ok(self.points.get_or_init(|| points))
+        self.evaluator.series(&ephemeris)
     }
 
     /// The satellites of each system.

@@ -2,6 +2,7 @@
 
 use super::{ConstellationResult, DesignSummary, OptimizeResult};
 use crate::evaluate::{DopStatistics, Metrics};
+use crate::formats::csv::write_records;
 use crate::optimize::Record;
 use crate::stats::Summary;
 use crate::validate::Check;
@@ -192,11 +193,9 @@ pub fn history_csv(history: &[Record], objectives: &[String]) -> Result<String, 
 /// # Errors
 /// Never for a table in memory.
 pub fn records_csv(rows: &[impl Serialize]) -> Result<String, CsvError> {
-    let mut writer = Writer::from_writer(Vec::new());
-    for row in rows {
-        writer.serialize(row)?;
-    }
-    text(writer)
+    let mut bytes = Vec::new();
+    write_records(&mut bytes, rows)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
 /// The dilutions of precision of a design, one a row: name, mean, quantiles, maximum and tail.

@@ -182,6 +182,22 @@ fn gnss_stand_in_files_of_their_own() {
     assert!(refused(&alone).contains("add sp3 to --as"));
 }
 
+/// The metrics of an export are those of an evaluation.
+#[test]
+fn metrics_are_exported_as_they_are_evaluated() {
+    let directory = TempDir::new().unwrap();
+    let words = export(&["--as", "metrics"]);
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    assert_eq!(ran(directory.path(), &words).status, 0);
+    let evaluate = [&["evaluate", "--series", "series"], &SMALL[..]].concat();
+    assert_eq!(ran(directory.path(), &evaluate).status, 0);
+    for name in ["points.csv", "epochs.csv"] {
+        let read = |parent: &str| fs::read(directory.path().join(parent).join(name)).unwrap();
+        assert_eq!(read("x/metrics"), read("series"), "{name}");
+        assert!(read("series").split(|byte| *byte == b'\n').count() > 5);
+    }
+}
+
 /// More satellites than one file of SP3 takes: ids start again in each part.
 #[test]
 fn the_parts_of_a_large_constellation_are_read_together() {

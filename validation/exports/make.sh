@@ -29,6 +29,7 @@ sp3-c --as sp3 --sp3-version c --sp3-letter X
 stk --as stk --set region.step-deg=20
 stk-fixed --as stk --frame ITRF --set region.step-deg=20
 csv --as csv
+metrics --as metrics --set region.step-deg=20
 czml --as czml --set region.step-deg=20
 geojson --as geojson --set region.step-deg=20
 kml --as kml --set region.step-deg=20

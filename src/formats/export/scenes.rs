@@ -7,7 +7,7 @@ use crate::ephemeris::EphemerisError;
 use crate::formats::manifest::Loss;
 use crate::formats::scene::{MAX_SHOWN_POINTS, Scene};
 use crate::formats::tracks::Ground;
-use crate::formats::{WriteError, czml, geojson, kml};
+use crate::formats::{WriteError, csv, czml, geojson, kml};
 use crate::frames::Frame;
 use crate::words::Word;
 use std::f64::consts::TAU;
@@ -20,6 +20,25 @@ impl Source<'_> {
 
     fn ground(&self, scene: &Scene<'_>) -> Result<Vec<Ground>, EphemerisError> {
         Ground::of(scene, &self.ephemeris, self.period_s())
+    }
+
+    pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let about = (self.objects.len(), &metadata);
+        let format = (Product::Metrics, "1");
+        let series = scene.series()?;
+        let points = files.add("metrics/points.csv", format, about, |out| {
+            csv::write_records(out, &series.points)?;
+            Ok(Loss::default())
+        })?;
+        let epochs = files.add("metrics/epochs.csv", format, about, |out| {
+            csv::write_records(out, &series.epochs)?;
+            Ok(Loss::default())
+        })?;
+        let entries = [points, epochs].into_iter();
+        Ok(entries
+            .map(|entry| entry.assuming(scene.assumptions()))
+            .collect())
     }
 
     pub(super) fn czml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {

@@ -72,7 +72,13 @@ pub(crate) fn in_memory(
     let evaluator = Evaluator::new(setup(subject)).unwrap();
     let scene = Scene::new(&evaluator, subject.design, Surface::Wgs84, Some(GRID));
     // The ephemerides of STK alone have none.
-    let shown = [Product::Czml, Product::Geojson, Product::Kml, Product::Yuma];
+    let shown = [
+        Product::Czml,
+        Product::Geojson,
+        Product::Kml,
+        Product::Yuma,
+        Product::Metrics,
+    ];
     let scene = Some(&scene).filter(|_| products.iter().any(|one| shown.contains(one)));
     let manifest = export_scene(subject, scene, (products, choices), &sink).unwrap();
     let files = std::mem::take(&mut *contents.lock().unwrap());
@@ -89,6 +95,8 @@ pub(crate) fn is_read(path: &str) -> bool {
         ".alm",
         ".txt",
         ".pnt",
+        "metrics/points.csv",
+        "metrics/epochs.csv",
         "manifest.json",
     ];
     !unread.iter().any(|end| path.ends_with(end))

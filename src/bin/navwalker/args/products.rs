@@ -16,6 +16,7 @@ Products:
   kml         for Google Earth: the same in one document
   yuma        YUMA almanacs of the nominal GNSS; a LEO design has none
   csv         tables of mean elements and of states, TEME and Earth-fixed
+  metrics     tables of the metrics by ground point and by instant
   tle-states  table of what SGP4 makes of the element sets as written
 
 What another program must be told stands in manifest.json under assumptions.

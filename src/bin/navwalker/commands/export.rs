@@ -22,12 +22,13 @@ use std::fs::{self, File};
 use std::path::PathBuf;
 
 /// The products that show or rebuild the whole scenario.
-const SCENES: [Product; 5] = [
+const SCENES: [Product; 6] = [
     Product::Czml,
     Product::Geojson,
     Product::Kml,
     Product::Stk,
     Product::Yuma,
+    Product::Metrics,
 ];
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
@@ -158,7 +159,13 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
 
 /// Whether a file holds satellites of the design that can be read.
 fn is_read_back(file: &FileEntry) -> bool {
-    let unread = [Product::Geojson, Product::Kml, Product::Gmat, Product::Yuma];
+    let unread = [
+        Product::Geojson,
+        Product::Kml,
+        Product::Gmat,
+        Product::Yuma,
+        Product::Metrics,
+    ];
     let is = |product: &Product| file.format == product.word();
     file.is_of_design() && !unread.iter().any(is) && !file.path.starts_with("stk-scenario/")
 }
