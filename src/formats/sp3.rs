@@ -65,6 +65,9 @@ pub enum Sp3Error {
     /// More epochs than seven digits tell.
     #[error("{0} epochs do not fit an SP3 file; 9999999 do")]
     Epochs(usize),
+    /// An instant outside the weeks that a file can count.
+    #[error("SP3 counts weeks from 1980-01-06, 9999 at most; {0} in GPS time is outside them")]
+    Instant(NaiveDateTime),
     /// A letter that is none.
     #[error("'{0}' is no capital letter, as an SP3 id begins with")]
     Letter(char),
@@ -140,6 +143,10 @@ pub fn write(
         .map(|number| format!("{letter}{number:02}"))
         .collect();
     let start = TimeSystem::Gps.stamp(grid.epoch());
+    let last = TimeSystem::Gps.stamp(grid.epoch().plus_seconds(grid.elapsed_s(grid.len() - 1)));
+    if let Some(outside) = [start, last].into_iter().find(|at| !has_a_week(*at)) {
+        return Err(Sp3Error::Instant(outside).into());
+    }
     write_first_lines(out, version, start, (grid.len(), grid.step_s()))?;
     write_ids(out, version, &ids)?;
     write_fixed_lines(out, letter)?;
@@ -181,6 +188,11 @@ fn write_first_lines(
         "## {week:>4} {seconds:15.8} {step_s:14.8} {day:>5} {:15.13}",
         of_day / 86_400.0
     )
+}
+
+/// Whether four digits tell the week of an instant.
+fn has_a_week(at: NaiveDateTime) -> bool {
+    (0..=9999).contains(&(at - gps_zero()).num_days().div_euclid(7))
 }
 
 /// Beginning of GPS time, 6 January 1980.

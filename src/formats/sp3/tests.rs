@@ -212,3 +212,24 @@ fn regress_numbers_wider_than_their_columns_are_refused() {
         }
     }
 }
+
+/// Found by fuzzing: a year of five digits shifted the columns, and weeks before 1980 were negative.
+#[test]
+fn regress_instants_without_a_week_are_refused() {
+    for (epoch, fits) in [
+        ("1980-01-05T00:00:00Z", false),
+        ("1980-01-07T00:00:00Z", true),
+        ("2171-08-01T00:00:00Z", true),
+        ("2171-09-10T00:00:00Z", false),
+    ] {
+        let epoch = Epoch::from_utc(epoch.parse().unwrap());
+        let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
+        let design: Design = "delta:55:1/1/0@925".parse().unwrap();
+        let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
+        let found = written(&ephemeris, Version::D, 'L');
+        assert_eq!(found.is_ok(), fits, "{epoch:?}");
+        if let Err(error) = found {
+            assert!(error.to_string().contains("1980-01-06"), "{error}");
+        }
+    }
+}
