@@ -5,34 +5,18 @@ use crate::constellation::Pattern;
 use crate::constellation::gnss::Preset;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ground::{Grid, PointWeights};
-use crate::stats::Level;
 use crate::time::Epoch;
 
 pub(super) fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-    let grid = Grid {
+    let region = Grid {
         latitude_deg,
         longitude_deg: [73.0, 136.0],
         step_deg: [5.0, 5.0],
         weights: PointWeights::Equal,
     };
-    Setup {
-        grid: TimeGrid::new(epoch, 86_400.0, 60.0).unwrap(),
-        sites: grid.sites(surface).unwrap(),
-        mask: Mask::from_degrees(7.0).unwrap(),
-        gnss_mask: Mask::from_degrees(7.0).unwrap(),
-        gnss: vec![Preset::Beidou3.into()],
-        clocks: Clocks::PerSystem,
-        skyline: None,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).unwrap(),
-            availability_pdop: 6.0,
-        },
-    }
+    let grid = TimeGrid::new(epoch, 86_400.0, 60.0).unwrap();
+    testing::setup(grid, region.sites(surface).unwrap(), 7.0)
 }
 
 /// Time-mean visible count of a circular constellation from one latitude of a sphere, by a

@@ -194,6 +194,33 @@ pub(super) fn item<'a>(line: &'a Line, findings: &mut Findings) -> Item<'a> {
     })
 }
 
+/// The frame and the elements of a covariance matrix, as they end an OPM and an OMM (tables 3-3 and
+/// 4-3).
+pub(super) const COVARIANCE: &[Keyword] = &[
+    may("COV_REF_FRAME"),
+    may("CX_X"),
+    may("CY_X"),
+    may("CY_Y"),
+    may("CZ_X"),
+    may("CZ_Y"),
+    may("CZ_Z"),
+    may("CX_DOT_X"),
+    may("CX_DOT_Y"),
+    may("CX_DOT_Z"),
+    may("CX_DOT_X_DOT"),
+    may("CY_DOT_X"),
+    may("CY_DOT_Y"),
+    may("CY_DOT_Z"),
+    may("CY_DOT_X_DOT"),
+    may("CY_DOT_Y_DOT"),
+    may("CZ_DOT_X"),
+    may("CZ_DOT_Y"),
+    may("CZ_DOT_Z"),
+    may("CZ_DOT_X_DOT"),
+    may("CZ_DOT_Y_DOT"),
+    may("CZ_DOT_Z_DOT"),
+];
+
 /// A value with its place in the file.
 #[derive(Debug, Clone)]
 struct Placed {
@@ -203,7 +230,7 @@ struct Placed {
 
 /// The values of one table of keywords, as they come in.
 pub(super) struct Block {
-    table: &'static [Keyword],
+    table: Vec<&'static Keyword>,
     values: Vec<Option<Placed>>,
     /// Which keywords have come in, with a value or without.
     seen: Vec<bool>,
@@ -214,11 +241,13 @@ pub(super) struct Block {
 }
 
 impl Block {
-    pub(super) fn new(table: &'static [Keyword]) -> Self {
+    /// A block whose keywords come in the order of the tables.
+    pub(super) fn new(tables: &[&'static [Keyword]]) -> Self {
+        let table: Vec<_> = tables.iter().copied().flatten().collect();
         Self {
-            table,
             values: table.iter().map(|_| None).collect(),
             seen: vec![false; table.len()],
+            table,
             last: None,
             ordered: true,
             comments: Vec::new(),
@@ -226,10 +255,10 @@ impl Block {
     }
 
     /// A block whose keywords may come in any order.
-    pub(super) fn unordered(table: &'static [Keyword]) -> Self {
+    pub(super) fn unordered(tables: &[&'static [Keyword]]) -> Self {
         Self {
             ordered: false,
-            ..Self::new(table)
+            ..Self::new(tables)
         }
     }
 

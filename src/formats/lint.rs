@@ -153,10 +153,9 @@ fn lint_tle(input: impl BufRead, findings: &mut Findings) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::formats::export::testing::{in_memory, is_read};
-    use crate::formats::export::{Choices, Product, Subject};
-    use crate::formats::manifest::Study;
-    use crate::orbit::Model;
+    use crate::formats::export::testing::{in_memory, is_read, subject};
+    use crate::formats::export::{Choices, Product};
+
     use crate::time::{Epoch, TimeGrid};
     use crate::words::Word;
     use std::collections::BTreeMap;
@@ -164,17 +163,10 @@ mod tests {
     /// The files of an export in every notation.
     fn exported() -> BTreeMap<String, Vec<u8>> {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-        let subject = Subject {
-            design: "star:86.4:14/7/1@780".parse().unwrap(),
-            model: Model::J2,
-            grid: TimeGrid::new(epoch, 1_200.0, 60.0).unwrap(),
-            study: Study {
-                name: "paper".to_owned(),
-                hash: "0123".to_owned(),
-            },
-            originator: "NAVWALKER".to_owned(),
-            creation: epoch,
-        };
+        let subject = subject(
+            "star:86.4:14/7/1@780".parse().unwrap(),
+            TimeGrid::new(epoch, 1_200.0, 60.0).unwrap(),
+        );
         let mut files = BTreeMap::new();
         for notation in Notation::ALL {
             let choices = Choices {

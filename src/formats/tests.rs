@@ -3,29 +3,20 @@
 mod foreign;
 mod hostile;
 
-use super::export::testing::{in_memory, is_read};
-use super::export::{Choices, Product, Subject};
+use super::export::testing::{in_memory, is_read, subject};
+use super::export::{Choices, Product};
 use super::lint::Format;
-use super::manifest::Study;
 use super::{oem, omm};
-use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use crate::words::Word;
 
 /// A small valid file of every format, by our own writers.
 fn samples() -> Vec<(Format, String)> {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-    let subject = Subject {
-        design: "lattice:55:4/2/1@925,e=0.01,w=30".parse().unwrap(),
-        model: Model::J2,
-        grid: TimeGrid::new(epoch, 360.0, 90.0).unwrap(),
-        study: Study {
-            name: "paper".to_owned(),
-            hash: "0123".to_owned(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: epoch,
-    };
+    let subject = subject(
+        "lattice:55:4/2/1@925,e=0.01,w=30".parse().unwrap(),
+        TimeGrid::new(epoch, 360.0, 90.0).unwrap(),
+    );
     let mut found: Vec<(Format, String)> = Vec::new();
     for (notation, oem) in omm::Notation::ALL
         .iter()

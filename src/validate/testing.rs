@@ -1,14 +1,9 @@
 //! Small studies for the tests of this module.
 
-use crate::constellation::gnss::System;
-use crate::dop::{Clocks, ObservationWeights};
 use crate::earth::Surface;
-use crate::evaluate::{Evaluator, MetricOptions, Setup};
+use crate::evaluate::{Evaluator, Setup, testing};
 use crate::ground::{Grid, PointWeights};
-use crate::orbit::Model;
-use crate::stats::Level;
 use crate::time::TimeGrid;
-use crate::visibility::Mask;
 
 /// Twelve points on WGS 84 with BeiDou-3, at 10°.
 pub(super) fn setup(grid: TimeGrid) -> Setup {
@@ -18,23 +13,7 @@ pub(super) fn setup(grid: TimeGrid) -> Setup {
         step_deg: [25.0, 16.0],
         weights: PointWeights::Equal,
     };
-    Setup {
-        grid,
-        sites: points.sites(Surface::Wgs84).unwrap(),
-        mask: Mask::from_degrees(10.0).unwrap(),
-        gnss_mask: Mask::from_degrees(10.0).unwrap(),
-        skyline: None,
-        gnss: vec![System::from(crate::constellation::gnss::Preset::Beidou3)],
-        clocks: Clocks::PerSystem,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).unwrap(),
-            availability_pdop: 6.0,
-        },
-    }
+    testing::setup(grid, points.sites(Surface::Wgs84).unwrap(), 10.0)
 }
 
 pub(super) fn evaluator(grid: TimeGrid) -> Evaluator {

@@ -1,7 +1,7 @@
 use super::*;
-use crate::formats::export::testing::in_memory;
-use crate::formats::export::{Choices, Product, Subject};
-use crate::formats::manifest::{Manifest, Study};
+use crate::formats::export::testing::{in_memory, subject};
+use crate::formats::export::{Choices, Product};
+use crate::formats::manifest::Manifest;
 use crate::frames::{Frame, from_teme};
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
@@ -9,17 +9,10 @@ use serde_json::Value;
 
 fn exported(design: &str) -> (Manifest, Vec<u8>) {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-    let subject = Subject {
-        design: design.parse().unwrap(),
-        model: Model::J2,
-        grid: TimeGrid::new(epoch, 7_200.0, 60.0).unwrap(),
-        study: Study {
-            name: "paper".to_owned(),
-            hash: "0123".to_owned(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: epoch,
-    };
+    let subject = subject(
+        design.parse().unwrap(),
+        TimeGrid::new(epoch, 7_200.0, 60.0).unwrap(),
+    );
     let (manifest, mut files) = in_memory(&subject, &[Product::Czml], Choices::default());
     (manifest, files.remove("scene.czml").unwrap())
 }

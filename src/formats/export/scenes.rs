@@ -24,7 +24,7 @@ impl Source<'_> {
 
     pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
         let metadata = self.flown_metadata(Frame::EarthFixed);
-        let about = (self.objects.len(), &metadata);
+        let about = (0, &metadata);
         let format = (Product::Metrics, "1");
         let series = scene.series()?;
         let points = files.add("metrics/points.csv", format, about, |out| {

@@ -1,15 +1,14 @@
 //! Exports into memory, for tests.
 
 use super::{Choices, Product, Subject, export_scene};
-use crate::constellation::gnss::Preset;
-use crate::dop::{Clocks, ObservationWeights};
+use crate::constellation::Design;
 use crate::earth::Surface;
-use crate::evaluate::{Evaluator, MetricOptions, Setup};
-use crate::formats::manifest::Manifest;
+use crate::evaluate::{Evaluator, Setup, testing};
+use crate::formats::manifest::{Manifest, Study};
 use crate::formats::scene::Scene;
 use crate::ground::{Grid, PointWeights};
-use crate::stats::Level;
-use crate::visibility::Mask;
+use crate::orbit::Model;
+use crate::time::TimeGrid;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 use std::sync::{Arc, Mutex};
@@ -22,24 +21,26 @@ pub(crate) const GRID: Grid = Grid {
     weights: PointWeights::Equal,
 };
 
+/// A subject of tests: a design of the study `paper`, flown by J2.
+pub(crate) fn subject(design: Design, grid: TimeGrid) -> Subject {
+    Subject {
+        design,
+        model: Model::J2,
+        grid,
+        study: Study {
+            name: "paper".to_owned(),
+            hash: "0123".to_owned(),
+        },
+        originator: "NAVWALKER".to_owned(),
+        creation: grid.epoch(),
+    }
+}
+
 /// A scenario for a subject: the region and BeiDou-3 at 7°.
 pub(crate) fn setup(subject: &Subject) -> Setup {
     Setup {
-        grid: subject.grid,
-        sites: GRID.sites(Surface::Wgs84).unwrap(),
-        mask: Mask::from_degrees(7.0).unwrap(),
-        gnss_mask: Mask::from_degrees(7.0).unwrap(),
-        skyline: None,
-        gnss: vec![Preset::Beidou3.into()],
-        clocks: Clocks::PerSystem,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
         model: subject.model,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).unwrap(),
-            availability_pdop: 6.0,
-        },
+        ..testing::setup(subject.grid, GRID.sites(Surface::Wgs84).unwrap(), 7.0)
     }
 }
 

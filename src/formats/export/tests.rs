@@ -7,17 +7,10 @@ use std::collections::BTreeMap;
 
 fn subject() -> Subject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-    Subject {
-        design: "delta:55:14/7/1@925".parse().unwrap(),
-        model: Model::J2,
-        grid: TimeGrid::new(epoch, 7_200.0, 60.0).unwrap(),
-        study: Study {
-            name: "paper".to_owned(),
-            hash: "0123".to_owned(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: epoch,
-    }
+    testing::subject(
+        "delta:55:14/7/1@925".parse().unwrap(),
+        TimeGrid::new(epoch, 7_200.0, 60.0).unwrap(),
+    )
 }
 
 fn exported(products: &[Product], choices: Choices) -> (Manifest, BTreeMap<String, Vec<u8>>) {

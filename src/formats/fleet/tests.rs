@@ -1,9 +1,8 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
-use crate::formats::export::testing::in_memory;
-use crate::formats::export::{Choices, Product, Subject};
-use crate::formats::manifest::Study;
+use crate::formats::export::testing::{in_memory, subject};
+use crate::formats::export::{Choices, Product};
 use crate::formats::stamp::TimeSystem;
 use crate::formats::trajectory::Trajectory;
 use crate::orbit::Model;
@@ -21,17 +20,7 @@ fn design() -> Design {
 }
 
 fn exported(products: &[Product], choices: Choices) -> BTreeMap<String, Vec<u8>> {
-    let subject = Subject {
-        design: design(),
-        model: Model::J2,
-        grid: grid(),
-        study: Study {
-            name: "paper".to_owned(),
-            hash: "0123".to_owned(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: grid().epoch(),
-    };
+    let subject = subject(design(), grid());
     let mut files = in_memory(&subject, products, choices).1;
     files.remove("manifest.json");
     files

@@ -98,7 +98,7 @@ impl Parser {
     fn new() -> Self {
         Self {
             part: Part::Header,
-            header_block: Block::new(HEADER),
+            header_block: Block::new(&[HEADER]),
             header: None,
             time_system: None,
             segment: None,
@@ -161,7 +161,7 @@ impl Parser {
             }
         }
         self.segment_line = number;
-        self.part = Part::Metadata(Block::new(METADATA));
+        self.part = Part::Metadata(Block::new(&[METADATA]));
     }
 
     fn meta_stop(&mut self, number: usize, findings: &mut Findings) {
@@ -402,7 +402,7 @@ impl Covariance {
             *self = Self::default();
         }
         self.block
-            .get_or_insert_with(|| Block::new(COVARIANCE))
+            .get_or_insert_with(|| Block::new(&[COVARIANCE]))
             .accept(pair, findings);
     }
 

@@ -166,7 +166,7 @@ struct Message {
 
 impl Message {
     fn new(version: Option<String>, place: (usize, usize), findings: &mut Findings) -> Self {
-        let mut header = Block::new(HEADER);
+        let mut header = Block::new(&[HEADER]);
         if let Some(version) = version {
             header.accept_at((VERSION, &version), place, findings);
         }
@@ -192,9 +192,9 @@ impl Message {
         match name {
             "header" => self.part = Part::Header,
             "segment" => self.segment_place = place,
-            "metadata" => self.part = Part::Metadata(Block::new(METADATA)),
+            "metadata" => self.part = Part::Metadata(Block::new(&[METADATA])),
             "data" => self.part = Part::Data,
-            "stateVector" => self.part = Part::State(Block::new(STATE)),
+            "stateVector" => self.part = Part::State(Block::new(&[STATE])),
             "covarianceMatrix" => self.part = Part::Covariance,
             _ => {}
         }

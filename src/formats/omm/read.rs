@@ -4,7 +4,7 @@ use super::{METADATA, Omm, VERSION};
 use crate::formats::csv::Table;
 use crate::formats::finding::Findings;
 use crate::formats::json::Objects;
-use crate::formats::kvn::{Block, Header, Item, Keyword, item, may, must, should};
+use crate::formats::kvn::{Block, COVARIANCE, Header, Item, Keyword, item, may, must, should};
 use crate::formats::lines::Lines;
 use crate::formats::xml::{Node, Nodes};
 use std::io::{self, BufRead};
@@ -48,28 +48,6 @@ const MESSAGE: &[Keyword] = &[
     may("MEAN_MOTION_DOT"),
     may("MEAN_MOTION_DDOT"),
     may("AGOM"),
-    may("COV_REF_FRAME"),
-    may("CX_X"),
-    may("CY_X"),
-    may("CY_Y"),
-    may("CZ_X"),
-    may("CZ_Y"),
-    may("CZ_Z"),
-    may("CX_DOT_X"),
-    may("CX_DOT_Y"),
-    may("CX_DOT_Z"),
-    may("CX_DOT_X_DOT"),
-    may("CY_DOT_X"),
-    may("CY_DOT_Y"),
-    may("CY_DOT_Z"),
-    may("CY_DOT_X_DOT"),
-    may("CY_DOT_Y_DOT"),
-    may("CZ_DOT_X"),
-    may("CZ_DOT_Y"),
-    may("CZ_DOT_Z"),
-    may("CZ_DOT_X_DOT"),
-    may("CZ_DOT_Y_DOT"),
-    may("CZ_DOT_Z_DOT"),
 ];
 
 /// What an object of JSON or a row of CSV must and may hold; other members are passed over.
@@ -111,7 +89,7 @@ pub fn parse_kvn(
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
     let mut lines = Lines::new(input);
-    let mut block = Block::new(MESSAGE);
+    let mut block = Block::new(&[MESSAGE, COVARIANCE]);
     let (mut begin, mut started) = (1, false);
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
@@ -125,7 +103,7 @@ pub fn parse_kvn(
                     message_of(&block, begin, line.number, findings)
                         .into_iter()
                         .for_each(&mut take);
-                    block = Block::new(MESSAGE);
+                    block = Block::new(&[MESSAGE, COVARIANCE]);
                 }
                 if pair.key == VERSION {
                     begin = line.number;
@@ -160,7 +138,7 @@ pub fn parse_xml(
     while let Some((place, node)) = nodes.next(findings)? {
         match (node, &mut message) {
             (Node::Open(name, version), _) if name == "omm" => {
-                let mut block = Block::new(MESSAGE);
+                let mut block = Block::new(&[MESSAGE, COVARIANCE]);
                 if let Some(version) = version {
                     block.accept_at((VERSION, &version), place, findings);
                 }
@@ -204,7 +182,7 @@ pub fn parse_json(
         let Some(members) = object.members(findings) else {
             continue;
         };
-        let mut block = Block::unordered(RECORD);
+        let mut block = Block::unordered(&[RECORD]);
         for (key, value) in &members {
             if block.knows(key) && !value.is_empty() {
                 block.accept_at((key, value), object.place_of(key), findings);
@@ -234,13 +212,16 @@ pub fn parse_csv(
     let Some(keys) = table.header(findings)? else {
         return Ok(());
     };
-    if keys.iter().all(|key| !Block::unordered(RECORD).knows(key)) {
+    if keys
+        .iter()
+        .all(|key| !Block::unordered(&[RECORD]).knows(key))
+    {
         findings.error((1, 1), "csv-header", "no column is a keyword of an OMM");
         return Ok(());
     }
     let mut row = ::csv::StringRecord::new();
     while let Some(line) = table.next(&mut row, findings)? {
-        let mut block = Block::unordered(RECORD);
+        let mut block = Block::unordered(&[RECORD]);
         for (column, (key, value)) in keys.iter().zip(&row).enumerate() {
             if block.knows(key) && !value.is_empty() {
                 block.accept_at((key, value), (line, column + 1), findings);

@@ -3,7 +3,7 @@
 use super::{Keplerian, Opm, USER_DEFINED, VERSION};
 use crate::formats::ReadError;
 use crate::formats::finding::Findings;
-use crate::formats::kvn::{Block, Header, Item, Keyword, Pair, item, may, must};
+use crate::formats::kvn::{Block, COVARIANCE, Header, Item, Keyword, Pair, item, may, must};
 use crate::formats::lines::Lines;
 use crate::frames::State;
 use crate::orbit::kepler::eccentric_anomaly;
@@ -44,28 +44,6 @@ const MESSAGE: &[Keyword] = &[
     may("SOLAR_RAD_COEFF"),
     may("DRAG_AREA"),
     may("DRAG_COEFF"),
-    may("COV_REF_FRAME"),
-    may("CX_X"),
-    may("CY_X"),
-    may("CY_Y"),
-    may("CZ_X"),
-    may("CZ_Y"),
-    may("CZ_Z"),
-    may("CX_DOT_X"),
-    may("CX_DOT_Y"),
-    may("CX_DOT_Z"),
-    may("CX_DOT_X_DOT"),
-    may("CY_DOT_X"),
-    may("CY_DOT_Y"),
-    may("CY_DOT_Z"),
-    may("CY_DOT_X_DOT"),
-    may("CY_DOT_Y_DOT"),
-    may("CZ_DOT_X"),
-    may("CZ_DOT_Y"),
-    may("CZ_DOT_Z"),
-    may("CZ_DOT_X_DOT"),
-    may("CZ_DOT_Y_DOT"),
-    may("CZ_DOT_Z_DOT"),
 ];
 
 /// A manoeuvre of table 3-3; there may be several.
@@ -100,7 +78,7 @@ pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<Opm>> {
     let mut lines = Lines::new(input);
-    let mut block = Block::new(MESSAGE);
+    let mut block = Block::new(&[MESSAGE, COVARIANCE]);
     let mut manoeuvre: Option<Block> = None;
     let mut user_defined = Vec::new();
     let mut in_header = true;
@@ -153,7 +131,7 @@ fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<Block>, findings: &mut F
         before.finish(pair.key_place, findings);
     }
     current
-        .get_or_insert_with(|| Block::new(MANOEUVRE))
+        .get_or_insert_with(|| Block::new(&[MANOEUVRE]))
         .accept(pair, findings);
 }
 

@@ -1,18 +1,13 @@
 use super::*;
-use crate::constellation::gnss::Preset;
-use crate::dop::{Clocks, ObservationWeights};
 use crate::earth::Surface;
-use crate::evaluate::{MetricOptions, Setup};
-use crate::formats::export::testing::in_memory;
-use crate::formats::export::{Choices, Product, Subject};
+use crate::evaluate::testing;
+use crate::formats::export::testing::{in_memory, subject};
+use crate::formats::export::{Choices, Product};
 use crate::formats::fleet::ReadFleetError;
-use crate::formats::manifest::Study;
 use crate::formats::oem;
 use crate::frames::Frame;
 use crate::ground::{Grid, PointWeights};
-use crate::stats::Level;
 use crate::time::TimeGrid;
-use crate::visibility::Mask;
 use chrono::TimeDelta;
 
 fn grid() -> TimeGrid {
@@ -27,23 +22,7 @@ fn evaluator() -> Evaluator {
         step_deg: [20.0, 20.0],
         weights: PointWeights::Equal,
     };
-    let setup = Setup {
-        grid: grid(),
-        sites: region.sites(Surface::Wgs84).unwrap(),
-        mask: Mask::from_degrees(7.0).unwrap(),
-        gnss_mask: Mask::from_degrees(7.0).unwrap(),
-        gnss: vec![Preset::Beidou3.into()],
-        clocks: Clocks::PerSystem,
-        skyline: None,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).unwrap(),
-            availability_pdop: 6.0,
-        },
-    };
+    let setup = testing::setup(grid(), region.sites(Surface::Wgs84).unwrap(), 7.0);
     Evaluator::new(setup).unwrap()
 }
 
@@ -57,17 +36,7 @@ fn read_back(
     choices: Choices,
     change: &dyn Fn(String) -> String,
 ) -> Result<(Format, Fleet), ReadFleetError> {
-    let subject = Subject {
-        design: design(),
-        model: Model::J2,
-        grid: grid(),
-        study: Study {
-            name: "paper".to_owned(),
-            hash: "0123".to_owned(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: grid().epoch(),
-    };
+    let subject = subject(design(), grid());
     let mut whole: Option<(Format, Fleet)> = None;
     for (path, bytes) in in_memory(&subject, &[product], choices).1 {
         if path == "manifest.json" || path == "elements.csv" {

@@ -151,7 +151,10 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
         "CVaR PDOP",
         metrics.cvar_pdop,
         4,
-        format!("mean of the worst {tail:.4} %"),
+        format!(
+            "mean of the worst {} %",
+            navwalker::units::round_decimal(tail, 4)
+        ),
     );
     row("median PDOP", metrics.p50_pdop, 4, String::new());
     row("95 % PDOP", metrics.p95_pdop, 4, String::new());

@@ -225,7 +225,7 @@ fn text(args: &ExportArgs, manifest: &Manifest) -> String {
     let mut table = Table::new(&[
         ("format", Align::Left),
         ("files", Align::Right),
-        ("satellites", Align::Right),
+        ("objects in all", Align::Right),
         ("frame", Align::Left),
         ("time", Align::Left),
         ("rounding (m)", Align::Right),
