@@ -5,10 +5,10 @@
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use navwalker::formats::export::{Choices, Product, Subject, export};
-use navwalker::formats::fleet::Fleet;
-use navwalker::formats::manifest::Study;
-use navwalker::formats::{oem, omm};
+use navwalker::exchange::export::{Choices, Product, Subject, export};
+use navwalker::exchange::import::Fleet;
+use navwalker::exchange::manifest::Study;
+use navwalker::formats::ccsds::{oem, omm};
 use navwalker::orbit::Model;
 use navwalker::time::{Epoch, TimeGrid};
 use std::io;

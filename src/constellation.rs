@@ -1,11 +1,11 @@
 //! Who flies where: LEO designs and GNSS constellations, with the identity of each slot.
 
-mod design;
 pub mod gnss;
 mod notation;
+mod shell;
 
-pub use design::{Design, DesignError, Pattern};
 pub use notation::NotationError;
+pub use shell::{Design, DesignError, Pattern};
 
 use crate::orbit::MeanElements;
 use std::fmt;

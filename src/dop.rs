@@ -10,7 +10,7 @@ mod family;
 
 pub use family::{DopFamily, ObservationWeights};
 
-use crate::words::words;
+use crate::keyword::words;
 use nalgebra::Vector3;
 use std::ops::AddAssign;
 

@@ -1,6 +1,6 @@
 //! The one set of physical constants, and the surface that ground points stand on.
 
-use crate::words::words;
+use crate::keyword::words;
 use nalgebra::Vector3;
 
 /// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).

@@ -1,5 +1,9 @@
 //! Satellites on a time grid: what the evaluator, the file formats and the validators consume.
 
+pub(crate) mod derivative;
+pub mod hermite;
+pub mod sampled;
+
 use crate::constellation::gnss::GnssSatellite;
 use crate::constellation::{Design, Slot};
 use crate::frames::State;

@@ -4,47 +4,24 @@
 //! What a file says of itself comes from [`metadata`]; what a reader objects to is a
 //! [`finding::Finding`] with the line, the column and the rule of the standard.
 
+pub mod ccsds;
 pub mod csv;
-pub mod czml;
-mod derivative;
 mod element_set;
-pub mod export;
-pub mod finding;
-pub mod fit;
-pub mod fleet;
-pub mod geojson;
 pub mod gmat;
-pub mod interpolation;
-mod json;
-pub mod kml;
-mod kvn;
-mod lines;
-pub mod lint;
-pub mod manifest;
+pub mod maps;
 pub mod metadata;
-pub mod oem;
-pub mod omm;
-pub mod opm;
-pub mod recheck;
-pub mod sampled;
-pub mod scene;
-mod shapes;
 pub mod sp3;
-mod spread;
-pub mod stamp;
 pub mod stk;
+pub mod text;
 pub mod tle;
-pub mod tracks;
 pub mod trajectory;
-mod xml;
 pub mod yuma;
 
 pub use element_set::element_set;
-pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};
-pub use spread::Spread;
 
 use crate::ephemeris::EphemerisError;
 use std::io;
+use text::finding;
 use thiserror::Error;
 
 /// Why a file is not written.
@@ -79,7 +56,7 @@ pub enum WriteError {
     #[error(
         "{points} ground points are more than a viewer loads ({} for {product}); use a coarser \
          region.step-deg, or --as geojson for a GIS",
-        scene::MAX_SHOWN_POINTS
+        maps::scene::MAX_SHOWN_POINTS
     )]
     TooManyPoints {
         /// The product.
@@ -102,6 +79,3 @@ pub enum ReadError {
     #[error(transparent)]
     Rule(#[from] finding::Finding),
 }
-
-#[cfg(test)]
-mod tests;

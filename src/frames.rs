@@ -6,8 +6,8 @@
 //! without polar motion. In low orbit it lies within 30 m of an ITRF.
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
+use crate::keyword::words;
 use crate::time::Epoch;
-use crate::words::words;
 use nalgebra::{Matrix3, Vector3};
 
 /// Position and velocity in one frame.

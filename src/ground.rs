@@ -1,9 +1,11 @@
 //! Ground points: the grid of a region, or points one by one, with their verticals and weights.
 
+pub(crate) mod shapes;
+
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
+use crate::keyword::words;
 use crate::units::wrap_360;
-use crate::words::words;
 use std::io::Read;
 use thiserror::Error;
 

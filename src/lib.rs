@@ -6,22 +6,28 @@
 //! modules and the direction of their imports; `docs/models.md` numbers the
 //! equations that the code cites.
 
+#![cfg_attr(not(test), warn(clippy::disallowed_methods, clippy::disallowed_types))]
+
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod constellation;
 pub mod dop;
 pub mod earth;
 pub mod ephemeris;
 pub mod evaluate;
+pub mod exchange;
 pub mod formats;
 pub mod frames;
 pub mod ground;
+pub mod keyword;
 pub mod optimize;
 pub mod orbit;
 pub mod report;
 pub mod scenario;
 pub mod search;
 pub mod stats;
+pub mod study;
 pub mod time;
 pub mod units;
 pub mod validate;
 pub mod visibility;
-pub mod words;

@@ -1,16 +1,19 @@
 //! Mean elements and the theories that turn them into TEME states.
 
 mod elements;
+pub mod fit;
 pub mod j2;
 pub mod kepler;
 pub mod osculating;
 pub mod sgp4;
+mod spread;
 
 pub use elements::{ElementsError, MeanElements};
+pub use spread::Spread;
 
 use crate::frames::State;
+use crate::keyword::words;
 use crate::time::Epoch;
-use crate::words::words;
 use thiserror::Error;
 
 /// A theory bound to one satellite: seconds since the epoch in, TEME state out.

@@ -10,7 +10,7 @@ mod eccentricity;
 pub mod file;
 pub mod geodesic;
 pub mod numerical;
-pub mod paper;
+mod paper;
 pub mod residuals;
 pub mod sgp4;
 
@@ -21,12 +21,12 @@ use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::frames::LocalFrame;
+use crate::keyword::{Word, words};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
-use crate::words::{Word, words};
 use distribution::Distribution;
 use residuals::BudgetLine;
 use serde::Serialize;
@@ -335,7 +335,7 @@ pub enum ValidateError {
     Tle(#[from] crate::formats::tle::TleFieldError),
     /// The study of the paper cannot be repeated.
     #[error(transparent)]
-    Paper(#[from] paper::PaperError),
+    Paper(#[from] crate::study::paper::PaperError),
     /// A file cannot be compared.
     #[error(transparent)]
     File(#[from] file::FileError),

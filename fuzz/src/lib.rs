@@ -8,13 +8,16 @@
 mod sampled;
 
 use navwalker::formats::csv::{self, ElementsRow};
-use navwalker::formats::finding::Severity;
-use navwalker::formats::fleet::{Fleet, ReadFleetError};
-use navwalker::formats::lint::{self, Format};
+use navwalker::formats::text::finding::Severity;
+use navwalker::exchange::import::{Fleet, ReadFleetError};
+use navwalker::exchange::lint::{self, Format};
 use navwalker::formats::metadata::{CatalogNumber, Object};
-use navwalker::formats::omm::{self, Notation};
-use navwalker::formats::{CcsdsHeader, CcsdsVersion, ReadError, czml, oem, opm, stk, tle};
-use navwalker::words::Word;
+use navwalker::formats::ccsds::omm::{self, Notation};
+use navwalker::formats::{CcsdsHeader, CcsdsVersion, ReadError};
+use navwalker::formats::maps::czml;
+use navwalker::formats::ccsds::{oem, opm};
+use navwalker::formats::{stk, tle};
+use navwalker::keyword::Word;
 use std::fmt::Debug;
 
 pub use sampled::sp3;

@@ -2,12 +2,12 @@
 
 use navwalker::ephemeris::{Ephemeris, Flown};
 use navwalker::formats::csv;
-use navwalker::formats::fleet::Fleet;
-use navwalker::formats::lint::Format;
+use navwalker::exchange::import::Fleet;
+use navwalker::exchange::lint::Format;
 use navwalker::formats::metadata::{Metadata, Object, Theory};
-use navwalker::formats::sampled::Sampled;
+use navwalker::ephemeris::sampled::Sampled;
 use navwalker::formats::sp3::{self as format, Version};
-use navwalker::formats::stamp::TimeSystem;
+use navwalker::formats::text::timestamp::TimeSystem;
 use navwalker::formats::trajectory::Trajectory;
 use navwalker::frames::Frame;
 use navwalker::orbit::Model;

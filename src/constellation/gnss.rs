@@ -7,11 +7,11 @@ pub use sets::{ElementSetError, ElementSets, StaleElements};
 
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S};
 use crate::frames::{EarthRotation, OrbitPlane, State};
+use crate::keyword::{Word, words};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
-use crate::words::{Word, words};
 use nalgebra::Vector3;
 
 words! {

@@ -1,7 +1,7 @@
 //! Walker's notation with pattern and altitude: `delta:55:182/13/1@925[,e=0.01,w=270]`.
 
 use super::{Design, DesignError};
-use crate::words::UnknownWord;
+use crate::keyword::UnknownWord;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -132,7 +132,7 @@ impl fmt::Display for Design {
 mod tests {
     use super::*;
     use crate::constellation::Pattern;
-    use crate::words::Word;
+    use crate::keyword::Word;
     use proptest::prelude::*;
 
     fn error(text: &str) -> String {

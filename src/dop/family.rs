@@ -6,7 +6,7 @@
 
 use super::{ClockGroup, Symmetric3};
 use crate::frames::LocalFrame;
-use crate::words::words;
+use crate::keyword::words;
 
 words! {
     /// How observations count in least squares.
@@ -94,7 +94,7 @@ mod tests {
     use super::super::Geometry;
     use super::*;
     use crate::earth::Surface;
-    use crate::words::Word;
+    use crate::keyword::Word;
     use nalgebra::{DMatrix, Vector3};
     use proptest::prelude::*;
 

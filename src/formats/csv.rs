@@ -9,12 +9,12 @@ mod table;
 pub use read::{ElementsRow, parse_elements, parse_states, read_elements, read_states};
 pub(super) use table::Table;
 
-use super::WriteError;
-use super::metadata::Object;
-use super::sampled::Sampled;
-use super::stamp::{SecondDigits, calendar};
 use crate::constellation::Satellite;
 use crate::ephemeris::Ephemeris;
+use crate::ephemeris::sampled::Sampled;
+use crate::formats::WriteError;
+use crate::formats::metadata::Object;
+use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::{Frame, State};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;

@@ -1,6 +1,6 @@
 //! From the mean elements of a design to an SGP4 element set.
 
-use super::metadata::Object;
+use crate::formats::metadata::Object;
 use crate::orbit::MeanElements;
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;

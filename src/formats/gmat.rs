@@ -44,7 +44,7 @@ pub fn calendar(epoch: Epoch) -> Option<String> {
     let utc = epoch.utc();
     let milliseconds = utc.nanosecond() / 1_000_000;
     utc.nanosecond().is_multiple_of(1_000_000).then(|| {
-        let month = super::stk::MONTHS[utc.month0() as usize];
+        let month = crate::formats::stk::MONTHS[utc.month0() as usize];
         format!(
             "{:02} {month} {} {:02}:{:02}:{:02}.{milliseconds:03}",
             utc.day(),

@@ -1,13 +1,13 @@
 //! What every exported file says of itself: who and what it describes, and under which
 //! conventions.
 
-use super::stamp::TimeSystem;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::ephemeris::Flown;
+use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
+use crate::keyword::words;
 use crate::orbit::Model;
 use crate::time::Epoch;
-use crate::words::words;
 use chrono::Datelike;
 use std::fmt;
 use std::str::FromStr;

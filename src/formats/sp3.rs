@@ -9,15 +9,15 @@ mod read;
 
 pub use read::{parse, read};
 
-use super::WriteError;
-use super::metadata::{Metadata, Object};
-use super::sampled::Sampled;
-use super::stamp::TimeSystem;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::Flown;
+use crate::ephemeris::sampled::Sampled;
+use crate::formats::WriteError;
+use crate::formats::metadata::{Metadata, Object};
+use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::State;
+use crate::keyword::words;
 use crate::time::Epoch;
-use crate::words::words;
 use chrono::{Datelike, NaiveDate, NaiveDateTime, TimeDelta, Timelike};
 use std::io::{self, Write};
 use thiserror::Error;

@@ -10,11 +10,11 @@ mod read;
 
 pub use read::{parse, read};
 
-use super::WriteError;
-use super::interpolation::Hermite;
-use super::metadata::Metadata;
-use super::sampled::Sampled;
 use crate::ephemeris::Flown;
+use crate::ephemeris::hermite::Hermite;
+use crate::ephemeris::sampled::Sampled;
+use crate::formats::WriteError;
+use crate::formats::metadata::Metadata;
 use crate::frames::{Frame, State};
 use chrono::{Datelike, NaiveDateTime, Timelike};
 use std::io::{self, Write};

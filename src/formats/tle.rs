@@ -9,8 +9,8 @@ mod read;
 
 pub use read::{Record, parse, read};
 
-use super::WriteError;
-use super::metadata::{CatalogNumber, IdentityError};
+use crate::formats::WriteError;
+use crate::formats::metadata::{CatalogNumber, IdentityError};
 use crate::time::Epoch;
 use chrono::{Datelike, NaiveDateTime, Timelike};
 use std::io::Write;

@@ -1,9 +1,9 @@
 //! A satellite's states as a file gives them, in the library's own terms.
 
-use super::stamp::TimeSystem;
+use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::{Frame, State};
+use crate::keyword::{UnknownWord, Word};
 use crate::time::Epoch;
-use crate::words::{UnknownWord, Word};
 use thiserror::Error;
 
 /// States of one satellite, in the order of time.

@@ -13,7 +13,7 @@ pub use read::{ReadAlmanacError, read};
 
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite};
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S, GPS_EARTH_RATE_RAD_S, GPS_MU_M3_S2};
-use crate::formats::stamp::TimeSystem;
+use crate::formats::text::timestamp::TimeSystem;
 use crate::time::Epoch;
 use crate::units::{wrap_pi, wrap_two_pi};
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta};

@@ -19,8 +19,8 @@ pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
 pub(in crate::report) use map::at_point;
 
+use crate::keyword::words;
 use crate::scenario::{Quantity, Word};
-use crate::words::words;
 use thiserror::Error;
 
 words! {

@@ -5,9 +5,9 @@ mod files;
 pub use files::{reproduction_csv, reproduction_files};
 
 use super::{Align, ScenarioStamp, Table, VERSION};
+use crate::keyword::Word;
 use crate::scenario::Scenario;
-use crate::validate::paper::{Expected, Line, Reproduction, Verdict};
-use crate::words::Word;
+use crate::study::paper::{Expected, Line, Reproduction, Verdict};
 use serde::Serialize;
 use std::fmt::Write;
 

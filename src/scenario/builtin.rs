@@ -1,6 +1,6 @@
 //! The scenarios that are built in.
 
-use crate::words::UnknownWord;
+use crate::keyword::UnknownWord;
 
 /// Name and text of every built-in scenario.
 const BUILTINS: [(&str, &str); 2] = [

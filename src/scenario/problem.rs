@@ -4,8 +4,8 @@ use std::fmt;
 use std::ops::Range;
 
 use super::source::{Place, Source, printable};
+use crate::keyword::UnknownWord;
 use crate::search::ConstraintError;
-use crate::words::UnknownWord;
 
 /// Characters of an unknown key repeated in a message.
 const LONGEST_KEY: usize = 60;

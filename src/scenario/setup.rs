@@ -4,7 +4,7 @@ use super::{Algorithm, Region, Scenario};
 use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
-use crate::formats::fleet::{Fleet, ReadFleetError};
+use crate::exchange::import::{Fleet, ReadFleetError};
 use crate::ground::{self, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals};

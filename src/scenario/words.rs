@@ -1,6 +1,6 @@
 //! The words of a scenario file that belong to no other module.
 
-use crate::words::words;
+use crate::keyword::words;
 
 words! {
     /// The strategy of the search.

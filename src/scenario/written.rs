@@ -11,7 +11,7 @@ use super::keys::{AnyKey, names, path, sections, table::KEYS};
 use super::problem::{Fault, Report};
 use super::rule::Node;
 use super::source::Source;
-use crate::words::nearest;
+use crate::keyword::nearest;
 
 /// The known keys that were given, the last one where several were.
 pub(super) struct Written<'a> {

@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Quantity;
-use crate::words::{UnknownWord, Word, words};
+use crate::keyword::{UnknownWord, Word, words};
 
 words! {
     /// The side of its bound on which a constrained quantity must stay.

@@ -2,7 +2,7 @@
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
-use crate::words::words;
+use crate::keyword::words;
 
 words! {
     /// A number that a design has.

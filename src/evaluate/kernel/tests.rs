@@ -48,7 +48,7 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
 }
 
 fn designs() -> impl Strategy<Value = Design> {
-    let pattern = prop::sample::select(<Pattern as crate::words::Word>::ALL.to_vec());
+    let pattern = prop::sample::select(<Pattern as crate::keyword::Word>::ALL.to_vec());
     let shape = (1..9_usize, 1..12_usize, 0..9_usize);
     // As a share of what brings the perigee to the ground.
     let ellipse = prop_oneof![

@@ -3,8 +3,8 @@
 
 use super::Table;
 use crate::formats::ReadError;
-use crate::formats::finding::Findings;
-use crate::formats::stamp;
+use crate::formats::text::finding::Findings;
+use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, State};
 use crate::orbit::MeanElements;
@@ -200,7 +200,7 @@ impl Row<'_> {
     }
 
     fn stamp(&self, index: usize, findings: &mut Findings) -> Option<Epoch> {
-        let stamp = stamp::parse(self.text(index));
+        let stamp = timestamp::parse(self.text(index));
         if stamp.is_none() {
             let text = self.text(index);
             let message = format!("'{text}' is not a time such as 2025-01-01T00:00:00.000");

@@ -1,6 +1,6 @@
 //! Rows of a table, each of bounded length.
 
-use crate::formats::finding::Findings;
+use crate::formats::text::finding::Findings;
 use std::io::{self, BufRead, Read};
 
 /// Longest row, in bytes, line feeds within quotes included; the buffer of the reader comes on top.

@@ -2,9 +2,9 @@
 
 use super::{DM_IN_KM, Sample, Sp3};
 use crate::formats::ReadError;
-use crate::formats::finding::Findings;
-use crate::formats::lines::{Line, Lines};
-use crate::formats::stamp::TimeSystem;
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::time_system_of_name;
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta};

@@ -1,8 +1,8 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
-use crate::formats::finding::{Finding, Findings};
 use crate::formats::metadata::Theory;
+use crate::formats::text::finding::{Finding, Findings};
 use crate::frames::{Frame, from_teme};
 use crate::orbit::Model;
 use crate::time::TimeGrid;

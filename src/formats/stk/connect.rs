@@ -10,7 +10,7 @@
 //! alone; what they cannot say is in [`by_hand`].
 
 use super::{FORMAT_VERSION, MONTHS};
-use crate::formats::scene::wrapped;
+use crate::formats::maps::scene::wrapped;
 use crate::ground::Site;
 use crate::orbit::MeanElements;
 use crate::time::{Epoch, TimeGrid};

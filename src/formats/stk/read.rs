@@ -1,11 +1,11 @@
 //! Reads `.e` files: keywords in any order and case, then one table.
 
 use super::{MONTHS, StkEphemeris};
+use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
-use crate::formats::derivative::velocities;
-use crate::formats::finding::Findings;
-use crate::formats::kvn::{read_number, words};
-use crate::formats::lines::{Line, Lines};
+use crate::formats::ccsds::kvn::{read_number, words};
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::{Line, Lines};
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
@@ -278,5 +278,5 @@ fn calendar_date(text: &str) -> Option<NaiveDateTime> {
     let month = MONTHS.iter().position(|name| is(name, month))? as u32 + 1;
     let date = NaiveDate::from_ymd_opt(year.parse().ok()?, month, day.parse().ok()?)?;
     // The time of day is that of CCSDS.
-    crate::formats::stamp::parse(&format!("{}T{time}", date.format("%Y-%m-%d")))
+    crate::formats::text::timestamp::parse(&format!("{}T{time}", date.format("%Y-%m-%d")))
 }

@@ -1,12 +1,12 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
-use crate::formats::finding::{Finding, Findings};
 use crate::formats::metadata::Theory;
-use crate::formats::stamp::TimeSystem;
+use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::timestamp::TimeSystem;
+use crate::keyword::Word;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
-use crate::words::Word;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 

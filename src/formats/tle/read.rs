@@ -2,9 +2,9 @@
 
 use super::{EPOCH_STEP_NS, LINE, NAME, checksum, since_midnight_ns};
 use crate::formats::ReadError;
-use crate::formats::finding::Findings;
-use crate::formats::lines::{Line, Lines};
 use crate::formats::metadata::CatalogNumber;
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::{Line, Lines};
 use chrono::{Datelike, NaiveDate, TimeDelta};
 use std::io::{self, BufRead};
 

@@ -1,10 +1,10 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
-use crate::formats::Spread;
-use crate::formats::finding::{Finding, Findings};
 use crate::formats::metadata::Object;
+use crate::formats::text::finding::{Finding, Findings};
 use crate::frames::ric_basis;
+use crate::orbit::Spread;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::orbit::{Model, Propagator};
 use crate::time::TimeGrid;

@@ -1,8 +1,8 @@
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::frames::{Frame, from_teme};
+use crate::keyword::Word;
 use crate::orbit::Propagator;
-use crate::words::Word;
 
 fn epoch() -> Epoch {
     Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap())

@@ -7,7 +7,7 @@ mod map;
 mod plane;
 
 use super::{BarChart, Chart, PlaneChart};
-use crate::words::words;
+use crate::keyword::words;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};

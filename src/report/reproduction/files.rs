@@ -2,7 +2,7 @@
 
 use super::{ReproduceResult, expected};
 use crate::report::csv::{CsvError, optional, text};
-use crate::validate::paper::{Curve, Line, Place, Reproduction};
+use crate::study::paper::{Curve, Line, Place, Reproduction};
 use ::csv::Writer;
 
 /// Name and contents of every table of the study, as CSV.

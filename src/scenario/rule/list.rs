@@ -8,12 +8,12 @@ use serde_json::{Value as Json, json};
 
 use super::number::{read_pair, write_pair};
 use super::{Node, Number, Reading, Rule, Text};
+use crate::keyword::Word;
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
 use crate::scenario::resolved::MaskPoint;
 use crate::search::{Constraint, ConstraintError, Relation};
 use crate::visibility::MaskTable;
-use crate::words::Word;
 
 /// One of the words of `T`.
 pub(in crate::scenario) struct OneOf<T>(PhantomData<fn() -> T>);

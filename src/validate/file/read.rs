@@ -1,6 +1,6 @@
 //! From the bytes of a file to what can be compared.
 
-use crate::formats::fleet::{Fleet, ReadFleetError};
+use crate::exchange::import::{Fleet, ReadFleetError};
 use crate::formats::trajectory::Trajectory;
 use std::io::BufRead;
 use thiserror::Error;
@@ -90,7 +90,9 @@ pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError
             sampled.map(Comparand::States).collect()
         }
         Fleet::Tracks(tracks) => {
-            let sampled = tracks.iter().map(crate::formats::czml::Track::sampled);
+            let sampled = tracks
+                .iter()
+                .map(crate::formats::maps::czml::Track::sampled);
             sampled.map(Comparand::States).collect()
         }
         Fleet::Elements(_) => return Err(FileError::MeanElements(file.to_owned())),

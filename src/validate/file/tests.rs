@@ -1,8 +1,8 @@
 use super::*;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::formats::export::{Choices, Product, Subject as Exported, testing::in_memory};
-use crate::formats::manifest::Study;
+use crate::exchange::export::{Choices, Product, Subject as Exported, testing::in_memory};
+use crate::exchange::manifest::Study;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::Frame;
 use crate::orbit::Model;

@@ -1,7 +1,7 @@
 //! The objects of files as TEME states on the clock of the study.
 
 use super::read::{Comparand, FileError};
-use crate::formats::interpolation::hermite_position;
+use crate::ephemeris::hermite::hermite_position;
 use crate::frames::{State, to_teme};
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};

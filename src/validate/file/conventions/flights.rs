@@ -113,7 +113,7 @@ impl Propagator for Integrated {
         let table: Vec<(f64, State)> = (start..self.states.len().min(start + 8))
             .map(|k| (k as f64 * self.step_s, self.states[k]))
             .collect();
-        let position_km = crate::formats::interpolation::hermite_position(&table, elapsed_s);
+        let position_km = crate::ephemeris::hermite::hermite_position(&table, elapsed_s);
         Ok(State {
             position_km,
             ..self.states[before]

@@ -1,0 +1,80 @@
+//! The `navwalker` program: arguments in, results out. The science is in the rest of the library.
+//!
+//! This is the one module that opens paths, reads the clock and the environment, and prints.
+
+#![allow(
+    clippy::disallowed_methods,
+    clippy::disallowed_types,
+    reason = "the program is where the outside is met"
+)]
+
+mod args;
+mod chart;
+mod commands;
+mod files;
+mod fleets;
+mod look;
+mod output;
+mod pick;
+mod progress;
+mod run;
+mod study;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// How a command ended, as its exit status.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Status {
+    /// Done.
+    Done = 0,
+    /// Done, but a gate failed, lint found something or no feasible design was found.
+    Failed = 1,
+    /// Could not run.
+    CouldNotRun = 2,
+    /// Stopped by Ctrl-C.
+    Interrupted = 130,
+}
+
+/// Runs the command line `args`, the name of the program first, and says how it ended.
+pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    output::choose_colors();
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        // clap prints help to stdout with status 0 and errors to stderr with status 2.
+        Err(error) => error.exit(),
+    };
+    let status = match run(cli) {
+        Ok(status) => status,
+        Err(error) if output::is_broken_pipe(&error) => Status::Done,
+        Err(error) => {
+            output::error(&error);
+            Status::CouldNotRun
+        }
+    };
+    ExitCode::from(status as u8)
+}
+
+fn run(cli: Cli) -> anyhow::Result<Status> {
+    output::set_quiet(cli.quiet);
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.get())
+            .build_global()?;
+    }
+    match cli.command {
+        Command::Optimize(args) => commands::optimize::run(&args),
+        Command::Evaluate(args) => commands::evaluate::run(&args),
+        Command::Reproduce(args) => commands::reproduce::run(&args),
+        Command::Export(args) => commands::export::run(&args),
+        Command::Lint(args) => commands::lint::run(&args),
+        Command::Validate(args) => commands::validate::run(&args),
+        Command::Report(args) => commands::report::run(&args),
+        Command::Plot(args) => commands::plot::run(&args),
+        Command::Scenario(args) => commands::scenario::run(&args),
+        Command::Completions { shell } => commands::help::completions(shell),
+        Command::Man { command, out } => commands::help::man(command.as_deref(), out.as_deref()),
+    }
+}

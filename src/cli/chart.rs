@@ -1,0 +1,45 @@
+//! A small chart of a front for the terminal, in characters of dots.
+
+use crate::report::OptimizeResult;
+use textplots::{Chart, Plot, Shape};
+
+/// Dots of the chart: two to a column, four to a row.
+const WIDTH: u32 = 120;
+const HEIGHT: u32 = 44;
+
+/// Fewer members are read from the table.
+const FEWEST: usize = 5;
+
+/// The front in the plane of its first two objectives, the first across; `None` where there is
+/// too little to see.
+pub(crate) fn front(result: &OptimizeResult) -> Option<String> {
+    let plane = |n: usize| -> Option<Vec<f32>> {
+        let values = result
+            .front
+            .iter()
+            .map(|m| Some(m.objectives.get(n)?.1 as f32));
+        values.collect()
+    };
+    let (across, up) = (plane(0)?, plane(1)?);
+    if across.len() < FEWEST {
+        return None;
+    }
+    let (left, right) = ends(&across)?;
+    let (bottom, top) = ends(&up)?;
+    let points: Vec<(f32, f32)> = across.into_iter().zip(up).collect();
+    let dots = Shape::Points(&points);
+    let mut chart = Chart::new_with_y_range(WIDTH, HEIGHT, left, right, bottom, top);
+    let chart = chart.lineplot(&dots);
+    chart.axis();
+    chart.figures();
+    let names = &result.front.first()?.objectives;
+    Some(format!("{} over {}\n{chart}", names[1].0, names[0].0))
+}
+
+/// The least and the greatest value with a margin; `None` when they are the same.
+fn ends(values: &[f32]) -> Option<(f32, f32)> {
+    let lo = values.iter().copied().fold(f32::INFINITY, f32::min);
+    let hi = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let margin = 0.05 * (hi - lo);
+    (hi > lo).then_some((lo - margin, hi + margin))
+}

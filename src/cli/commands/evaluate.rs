@@ -1,0 +1,209 @@
+//! `navwalker evaluate`.
+
+use crate::cli::args::{EvaluateArgs, Format};
+use crate::cli::study::Study;
+use crate::cli::{Status, files, fleets, output};
+use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
+use crate::evaluate::{DopStatistics, Evaluator, Metrics};
+use crate::report::{
+    Align, ConstellationResult, ConstellationSummary, CsvError, EvaluateResult, Table, VERSION,
+    constellation_csv, dops_csv, metrics_csv, records_csv,
+};
+use anyhow::Result;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
+    if let Some(directory) = &args.series {
+        files::require_vacant(directory, args.force)?;
+    }
+    let study = Study::load(&args.study, &[])?;
+    match &args.design {
+        Some(design) => run_design(args, &study, design)?,
+        None => run_constellation(args, &study)?,
+    }
+    if let Some(directory) = &args.series {
+        output::hint(&format!(
+            "\nepochs.csv and points.csv written to {}",
+            directory.display()
+        ));
+    }
+    if let Some(design) = &args.design {
+        output::hint(&format!(
+            "\nnext: navwalker validate {} --design {design} --against sgp4",
+            args.study.scenario
+        ));
+    }
+    Ok(Status::Done)
+}
+
+fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()> {
+    let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
+    let metrics = evaluator.design(design)?;
+    let dops = further(args, &evaluator, &ephemeris)?;
+    let result = EvaluateResult::new(design, metrics, dops, &study.scenario);
+    let csv = || metrics_csv([(&result.design, &result.metrics)]);
+    let notation = &result.design.notation;
+    let measured = (&result.metrics, result.dops.as_ref());
+    print(args, (study, notation), measured, &result, csv)
+}
+
+fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
+    let (format, fleet) = fleets::read(&args.constellation)?;
+    let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    let ephemeris = fleet.fly(setup.grid, setup.model)?;
+    let metrics = evaluator.ephemeris(&ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris)?;
+    let name = |path: &PathBuf| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
+    let result = ConstellationResult {
+        constellation: ConstellationSummary {
+            name: names.join("+"),
+            format: format.to_string(),
+            content: fleet.content().to_owned(),
+            satellites: fleet.len(),
+        },
+        metrics,
+        dops,
+        scenario: (&study.scenario).into(),
+        version: VERSION,
+    };
+    let title = format!(
+        "{} ({} satellites, {})",
+        result.constellation.name, result.constellation.satellites, result.constellation.content
+    );
+    let measured = (&result.metrics, result.dops.as_ref());
+    print(args, (study, &title), measured, &result, || {
+        constellation_csv(&result)
+    })
+}
+
+/// All dilutions and the series, as far as they were asked for.
+fn further(
+    args: &EvaluateArgs,
+    evaluator: &Evaluator,
+    ephemeris: &Ephemeris,
+) -> Result<Option<DopStatistics>> {
+    let dops = args.dops.then(|| evaluator.dops(ephemeris)).transpose()?;
+    if let Some(directory) = &args.series {
+        write_series(evaluator, ephemeris, directory)?;
+    }
+    Ok(dops)
+}
+
+fn print(
+    args: &EvaluateArgs,
+    (study, title): (&Study, &str),
+    (metrics, dops): (&Metrics, Option<&DopStatistics>),
+    result: &impl Serialize,
+    csv: impl Fn() -> Result<String, CsvError>,
+) -> Result<()> {
+    match args.format {
+        Format::Text => output::result(&text(study, title, metrics, dops)),
+        Format::Json => output::result(&serde_json::to_string_pretty(result)?),
+        Format::Csv => {
+            output::result(&csv()?)?;
+            match dops {
+                Some(dops) => output::result(&format!("\n{}", dops_csv(dops)?)),
+                None => Ok(()),
+            }
+        }
+    }
+}
+
+fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) -> Result<()> {
+    let series = evaluator.series(ephemeris)?;
+    let staged = files::StagedDirectory::new(directory)?;
+    let write = |name: &str, text: String| {
+        files::write_atomically(&staged.path().join(name), text.as_bytes())
+    };
+    write("epochs.csv", records_csv(&series.epochs)?)?;
+    write("points.csv", records_csv(&series.points)?)?;
+    staged.commit()
+}
+
+fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatistics>) -> String {
+    let scenario = &study.scenario;
+    let mut table = Table::new(&[("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    let mut row = |name: &str, value: Option<f64>, digits: usize, note: String| {
+        let value = value.map_or_else(|| "none".to_owned(), |v| format!("{v:.digits$}"));
+        table.row([name.to_owned(), value, note]);
+    };
+    let weight = scenario.objectives.cvar_weight;
+    let tail = 100.0 * (1.0 - metrics.cvar_level);
+    let threshold = scenario.objectives.availability_pdop;
+    let seen = "LEO satellites in view, mean over points and times";
+    row(
+        "mean visible",
+        Some(metrics.mean_visible),
+        4,
+        seen.to_owned(),
+    );
+    row("mean PDOP", metrics.mean_pdop, 4, String::new());
+    row(
+        "CVaR PDOP",
+        metrics.cvar_pdop,
+        4,
+        format!(
+            "mean of the worst {} %",
+            crate::units::round_decimal(tail, 4)
+        ),
+    );
+    row("median PDOP", metrics.p50_pdop, 4, String::new());
+    row("95 % PDOP", metrics.p95_pdop, 4, String::new());
+    row("99 % PDOP", metrics.p99_pdop, 4, String::new());
+    row("maximum PDOP", metrics.max_pdop, 4, String::new());
+    row(
+        "solved",
+        Some(100.0 * metrics.solved_fraction),
+        3,
+        "% of points and times".to_owned(),
+    );
+    row(
+        "available",
+        Some(100.0 * metrics.availability),
+        3,
+        format!("% with PDOP <= {threshold}"),
+    );
+    row("J_pos", metrics.j_pos, 4, format!("mean + {weight} CVaR"));
+    row(
+        "J_cost",
+        metrics.j_cost,
+        4,
+        "satellites per visible satellite".to_owned(),
+    );
+    let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
+    format!(
+        "{title} in scenario {}\n{}{dops}",
+        scenario.name,
+        table.to_text()
+    )
+}
+
+fn dops_table(dops: &DopStatistics) -> String {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("dilution", Align::Left),
+        ("mean", right),
+        ("median", right),
+        ("95 %", right),
+        ("99 %", right),
+        ("maximum", right),
+        ("CVaR", right),
+    ]);
+    for (name, summary) in dops.named() {
+        let cells = match summary {
+            Some(s) => [s.mean, s.p50, s.p95, s.p99, s.max, s.cvar].map(|x| format!("{x:.4}")),
+            None => std::array::from_fn(|_| "none".to_owned()),
+        };
+        table.row([name].into_iter().chain(cells));
+    }
+    table.to_text()
+}

@@ -1,0 +1,272 @@
+//! `navwalker export`.
+
+use crate::cli::args::ExportArgs;
+use crate::cli::progress::FileCount;
+use crate::cli::study::{Study, study_and_design};
+use crate::cli::{Status, files, fleets, output};
+use crate::constellation::Design;
+use crate::constellation::gnss::Preset;
+use crate::exchange::export::{Choices, Product, Subject, export_scene};
+use crate::exchange::lint::Format as LintFormat;
+use crate::exchange::manifest::{FileEntry, Manifest, Study as StudyStamp};
+use crate::exchange::read_back::{Difference, Original};
+use crate::formats::ccsds::oem;
+use crate::formats::maps::scene::Scene;
+use crate::formats::metadata::ElementChoice;
+use crate::frames::Frame;
+use crate::keyword::Word;
+use crate::report::{Align, Table};
+use crate::time::Epoch;
+use anyhow::{Context, Result, bail};
+use std::fs::{self, File};
+use std::path::PathBuf;
+
+/// The products that show or rebuild the whole scenario.
+const SCENES: [Product; 6] = [
+    Product::Czml,
+    Product::Geojson,
+    Product::Kml,
+    Product::Stk,
+    Product::Yuma,
+    Product::Metrics,
+];
+
+pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
+    check_choices(args)?;
+    files::require_vacant(&args.out, args.force)?;
+    let mut asked = args.study.clone();
+    if let Some(date) = &args.creation_date {
+        let key = format!("export.creation-date=\"{date}\"");
+        asked.overrides.push(key);
+    }
+    let (study, design) = study_and_design(&asked, &args.design)?;
+    let scenario = &study.scenario;
+    let subject = Subject {
+        design,
+        model: scenario.propagation.model,
+        grid: scenario.time_grid()?,
+        study: StudyStamp {
+            name: scenario.name.clone(),
+            hash: study.hash()?,
+        },
+        originator: scenario.export.originator.clone(),
+        creation: Epoch::from_utc(scenario.export.creation_date),
+    };
+    let products = products(args);
+    let choices = Choices {
+        frame: args.frame.unwrap_or(Frame::Eme2000),
+        time_system: args.time_system,
+        omm: args.omm_syntax,
+        oem: args.oem_syntax,
+        oem_combined: args.oem_combined,
+        elements: args.tle_theory,
+        ccsds_version: args.ccsds_version,
+        sp3_version: args.sp3_version,
+        sp3_letter: args.sp3_letter,
+        sp3_gnss: std::array::from_fn(|at| args.gnss.contains(&Preset::ALL[at])),
+    };
+    let staged = files::StagedDirectory::new(&args.out)?;
+    let progress = FileCount::new();
+    let sink = |path: &str| {
+        let path = staged.path().join(path);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        progress.one_more();
+        File::create(path)
+    };
+    let evaluator = products
+        .iter()
+        .any(|product| SCENES.contains(product))
+        .then(|| study.evaluator())
+        .transpose()?;
+    let scene = evaluator.as_ref().map(|evaluator| {
+        let (surface, grid) = (scenario.earth.surface, scenario.ground_grid());
+        Scene::new(evaluator, subject.design, surface, grid)
+    });
+    let manifest = export_scene(&subject, scene.as_ref(), (&products, choices), &sink)
+        .with_context(|| format!("cannot export to {}", args.out.display()))?;
+    progress.finish();
+    staged.commit()?;
+    output::result(&text(args, &manifest))?;
+    warn(args);
+    if args.check {
+        return check(args, &study, &subject.design, &manifest);
+    }
+    Ok(Status::Done)
+}
+
+/// Says what the products cost that were asked for.
+fn warn(args: &ExportArgs) {
+    if args.tle_theory == ElementChoice::Kepler {
+        output::warning(
+            "the mean motion slot holds sqrt(mu/a^3): SGP4 flies the design away from its J2 \
+             trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
+        );
+    }
+    if args.frame == Some(Frame::Teme) {
+        output::warning("TEME is no frame of CCSDS ephemerides; not every reader takes it");
+    }
+}
+
+/// Reads the products back and prints what the scenario makes of each.
+fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest) -> Result<Status> {
+    let evaluator = study.evaluator()?;
+    let original = Original::new(&evaluator, design)?;
+    let mut table = Table::new(&[
+        ("read back", Align::Left),
+        ("position (m)", Align::Right),
+        ("at most", Align::Right),
+        ("theory (m)", Align::Right),
+        ("mean visible", Align::Right),
+        ("at most", Align::Right),
+        ("mean PDOP", Align::Right),
+        ("at most", Align::Right),
+        ("", Align::Left),
+    ]);
+    let mut passed = true;
+    for (name, paths) in groups(args, manifest) {
+        let (format, mut fleet) = fleets::read(&paths)?;
+        if format == LintFormat::Sp3 {
+            fleet.name_by_place();
+        }
+        // States of SGP4 have the theory and the digits of the element sets.
+        let format = if name == Product::TleStates.word() {
+            LintFormat::Tle
+        } else {
+            format
+        };
+        let found = original
+            .check(format, args.tle_theory, &fleet)
+            .with_context(|| format!("cannot check {name}"))?;
+        passed &= found.passed();
+        let cells = |difference: Option<Difference>, scale: f64| {
+            let number = |value: f64| format!("{:.2e}", value * scale);
+            let gate = difference.and_then(|difference| difference.gate);
+            [difference.map(|difference| difference.value), gate]
+                .map(|value| value.map_or_else(|| "none".to_owned(), number))
+        };
+        let mut row = vec![name];
+        row.extend(cells(Some(found.position_km), 1000.0));
+        let theory = found.theory_km.map(|km| format!("{:.2e}", km * 1000.0));
+        row.push(theory.unwrap_or_else(|| "-".to_owned()));
+        row.extend(cells(Some(found.mean_visible), 1.0));
+        row.extend(cells(found.mean_pdop, 1.0));
+        row.push(if found.passed() { "passed" } else { "FAILED" }.to_owned());
+        table.row(row);
+    }
+    output::result(&format!("\n{}", table.to_text()))?;
+    Ok(if passed { Status::Done } else { Status::Failed })
+}
+
+/// Whether a file holds satellites of the design that can be read.
+fn is_read_back(file: &FileEntry) -> bool {
+    let unread = [
+        Product::Geojson,
+        Product::Kml,
+        Product::Gmat,
+        Product::Yuma,
+        Product::Metrics,
+    ];
+    let is = |product: &Product| file.format == product.word();
+    file.is_of_design() && !unread.iter().any(is) && !file.path.starts_with("stk-scenario/")
+}
+
+/// The files that make the constellation once: those of a product, but each table for itself.
+fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
+    let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
+    for file in manifest.files.iter().filter(|file| is_read_back(file)) {
+        let name = if file.format == Product::Csv.word() {
+            file.path.clone()
+        } else {
+            file.format.clone()
+        };
+        let path = args.out.join(&file.path);
+        match groups.iter_mut().find(|(known, _)| *known == name) {
+            Some((_, paths)) => paths.push(path),
+            None => groups.push((name, vec![path])),
+        }
+    }
+    groups
+}
+
+/// Refuses choices that no product of the export can keep.
+fn check_choices(args: &ExportArgs) -> Result<()> {
+    let asked = |product| args.products.contains(&product);
+    if args.oem_combined && args.oem_syntax != oem::Notation::Xml {
+        bail!("--oem-combined needs --oem-syntax xml: a KVN file holds one satellite");
+    }
+    if !args.gnss.is_empty() && !asked(Product::Sp3) {
+        bail!("--gnss writes SP3; add sp3 to --as");
+    }
+    let has_frame = [Product::Oem, Product::Opm, Product::Stk]
+        .into_iter()
+        .any(asked);
+    if let Some(frame) = args.frame
+        && asked(Product::Sp3)
+        && !has_frame
+        && frame != Frame::EarthFixed
+    {
+        bail!("SP3 is Earth-fixed; --frame {frame} cannot be combined with it");
+    }
+    Ok(())
+}
+
+/// Each product once, in the order in which it was asked for.
+fn products(args: &ExportArgs) -> Vec<Product> {
+    let mut products = Vec::new();
+    for product in &args.products {
+        if !products.contains(product) {
+            products.push(*product);
+        }
+    }
+    products
+}
+
+fn text(args: &ExportArgs, manifest: &Manifest) -> String {
+    let mut table = Table::new(&[
+        ("format", Align::Left),
+        ("files", Align::Right),
+        ("objects in all", Align::Right),
+        ("frame", Align::Left),
+        ("time", Align::Left),
+        ("rounding (m)", Align::Right),
+        ("interpolation (m)", Align::Right),
+        ("theory", Align::Left),
+    ]);
+    let metres = |values: &mut dyn Iterator<Item = f64>| {
+        values
+            .reduce(f64::max)
+            .map_or_else(|| "-".to_owned(), |km| format!("{:.2e}", km * 1000.0))
+    };
+    let mut formats: Vec<&str> = Vec::new();
+    for file in &manifest.files {
+        if !formats.contains(&file.format.as_str()) {
+            formats.push(&file.format);
+        }
+    }
+    for format in formats {
+        let of: Vec<_> = manifest
+            .files
+            .iter()
+            .filter(|file| file.format == format)
+            .collect();
+        table.row([
+            format.to_owned(),
+            of.len().to_string(),
+            of.iter()
+                .map(|file| file.objects)
+                .sum::<usize>()
+                .to_string(),
+            of[0].frame.clone(),
+            of[0].time_system.clone(),
+            metres(&mut of.iter().filter_map(|file| file.loss.quantisation_max_km)),
+            metres(&mut of.iter().filter_map(|file| file.loss.interpolation_max_km)),
+            of[0].theory.clone(),
+        ]);
+    }
+    format!(
+        "{} in {}\n\n{}",
+        manifest.design,
+        args.out.display(),
+        table.to_text()
+    )
+}

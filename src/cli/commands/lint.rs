@@ -1,0 +1,89 @@
+//! `navwalker lint`.
+
+use crate::cli::args::{Format, LintArgs};
+use crate::cli::{Status, output};
+use crate::exchange::lint::{Report, lint};
+use crate::formats::text::finding::Severity;
+use anyhow::{Context, Result};
+use serde::Serialize;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+/// Findings that are told of one file.
+const MOST_FINDINGS: usize = 100;
+
+/// One finding, as JSON and CSV tell it.
+#[derive(Serialize)]
+struct Row {
+    file: String,
+    format: String,
+    line: usize,
+    column: usize,
+    severity: &'static str,
+    rule: &'static str,
+    message: String,
+}
+
+pub(crate) fn run(args: &LintArgs) -> Result<Status> {
+    let mut rows = Vec::new();
+    let mut clean = String::new();
+    for path in &args.files {
+        let report = check(path, args)?;
+        if report.findings.is_empty() {
+            clean += &format!("{}: no findings as {}\n", path.display(), report.format);
+        }
+        rows.extend(rows_of(path, report));
+    }
+    match args.output {
+        Format::Text => output::result(&(text(&rows) + &clean))?,
+        Format::Json => output::result(&serde_json::to_string_pretty(&rows)?)?,
+        Format::Csv => output::result(&crate::report::records_csv(&rows)?)?,
+    }
+    Ok(if rows.is_empty() {
+        Status::Done
+    } else {
+        Status::Failed
+    })
+}
+
+fn check(path: &Path, args: &LintArgs) -> Result<Report> {
+    let read = || {
+        let input = BufReader::new(File::open(path)?);
+        let name = path.file_name().map(|name| name.to_string_lossy());
+        lint(input, args.format, name.as_deref(), MOST_FINDINGS)
+    };
+    read().with_context(|| format!("cannot read {}", path.display()))
+}
+
+fn rows_of(path: &Path, report: Report) -> impl Iterator<Item = Row> {
+    let file = path.display().to_string();
+    report.findings.into_iter().map(move |finding| Row {
+        file: file.clone(),
+        format: report.format.to_string(),
+        line: finding.line,
+        column: finding.column,
+        severity: match finding.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        },
+        rule: finding.rule,
+        message: finding.message,
+    })
+}
+
+fn text(rows: &[Row]) -> String {
+    let line = |row: &Row| {
+        let Row {
+            file,
+            line,
+            column,
+            severity,
+            rule,
+            message,
+            ..
+        } = row;
+        format!("{file}:{line}:{column}: {severity}: {message} [{rule}]\n")
+    };
+    rows.iter().map(line).collect()
+}

@@ -1,0 +1,315 @@
+//! `navwalker optimize`: the main job.
+
+mod seeds;
+
+use crate::cli::args::{Format, OptimizeArgs};
+use crate::cli::pick::Pick;
+use crate::cli::progress::Progress;
+use crate::cli::run::{Identity, RunDirectory};
+use crate::cli::study::Study;
+use crate::cli::{Status, chart, output};
+use crate::evaluate::Evaluator;
+use crate::optimize::{Search, Strategy};
+use crate::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
+use crate::scenario::{Algorithm, Word};
+use crate::search::{DesignProblem, Quantity};
+use anyhow::{Context, Result};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
+    let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
+    let study = Study::load(&args.study, seed.as_slice())?;
+    match args.seeds {
+        Some(count) => seeds::run(args, study, count),
+        None => one(args, &study),
+    }
+}
+
+/// The search with the seed of the scenario.
+fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
+    let scenario = &study.scenario;
+    let default_out = || {
+        PathBuf::from(format!(
+            "runs/{}-{}",
+            scenario.name, scenario.optimizer.seed
+        ))
+    };
+    let out = args.out.clone().unwrap_or_else(default_out);
+    let setup = study.setup()?;
+    let directory = open(args, study, &out)?;
+    let evaluator = Evaluator::new(setup)?;
+    let interrupted = interrupt_flag()?;
+    let Some(sweep) = sweep(args, study, &evaluator, &out, &interrupted)? else {
+        return Ok(Status::Interrupted);
+    };
+    let ended = search(
+        args,
+        study,
+        &evaluator,
+        &directory,
+        &interrupted,
+        sweep.as_ref(),
+    )?;
+    let result = &ended.result;
+    output::result(&match args.format {
+        Format::Text => text(result, &scenario.name),
+        Format::Json => serde_json::to_string_pretty(result)?,
+        Format::Csv => front_csv(result)?,
+    })?;
+    let shown = out.display().to_string();
+    if args.report {
+        let page = super::report::of_run(&out, None)?;
+        output::hint(&format!("\nreport written to {}", page.display()));
+    }
+    if !ended.is_done {
+        hint_resume(result, &shown);
+        return Ok(Status::Interrupted);
+    }
+    hint_what_next(result, &shown);
+    Ok(status(result))
+}
+
+/// The result of the sweep that certifies, if one is asked for; `None` when it was interrupted.
+pub(super) fn sweep(
+    args: &OptimizeArgs,
+    study: &Study,
+    evaluator: &Evaluator,
+    out: &Path,
+    interrupted: &AtomicBool,
+) -> Result<Option<Option<OptimizeResult>>> {
+    if !args.certify {
+        return Ok(Some(None));
+    }
+    let mut name = out.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    let place = out.with_file_name(name);
+    let study = study.with_algorithm(Algorithm::Exhaustive);
+    let args = OptimizeArgs {
+        resume: true,
+        ..args.clone()
+    };
+    let directory = open(&args, &study, &place)?;
+    let ended = search(&args, &study, evaluator, &directory, interrupted, None)?;
+    if !ended.is_done {
+        hint_resume(&ended.result, &place.display().to_string());
+        return Ok(None);
+    }
+    Ok(Some(Some(ended.result)))
+}
+
+/// The run directory of a study.
+pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<RunDirectory> {
+    let identity = Identity::of(&study.scenario, study.hash()?);
+    RunDirectory::open(out.to_owned(), identity, args.force)
+}
+
+/// How a search ended.
+pub(super) struct Ended {
+    pub(super) result: OptimizeResult,
+    /// Whether it had its whole budget, rather than being interrupted.
+    pub(super) is_done: bool,
+}
+
+/// Runs, or resumes, one search and writes its results.
+pub(super) fn search(
+    args: &OptimizeArgs,
+    study: &Study,
+    evaluator: &Evaluator,
+    directory: &RunDirectory,
+    interrupted: &AtomicBool,
+    sweep: Option<&OptimizeResult>,
+) -> Result<Ended> {
+    let scenario = &study.scenario;
+    let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals())?;
+    let mut search = start(args, directory, study, &problem)?;
+    let progress = Progress::new(&search);
+    while !search.is_done() && !interrupted.load(Ordering::Relaxed) {
+        search.step(&problem)?;
+        directory.save(&search)?;
+        progress.show(&search);
+    }
+    progress.finish();
+    let mut result = OptimizeResult::new(&problem, &search, scenario);
+    if let Some(sweep) = sweep {
+        result.certify(sweep, &scenario.objectives.minimize);
+    }
+    directory.finish(scenario, &search, &result)?;
+    Ok(Ended {
+        result,
+        is_done: search.is_done(),
+    })
+}
+
+/// The exit status of a search that had its whole budget.
+pub(super) fn status(result: &OptimizeResult) -> Status {
+    if result.front.is_empty() {
+        Status::Failed
+    } else {
+        Status::Done
+    }
+}
+
+pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
+    let [done, of] = result.generations;
+    output::hint(&format!(
+        "\ninterrupted after generation {done} of {of}; the results so far are in {shown}\n\
+         go on with the same command and --resume"
+    ));
+}
+
+/// The search where its checkpoint left it, or a new one.
+fn start(
+    args: &OptimizeArgs,
+    directory: &RunDirectory,
+    study: &Study,
+    problem: &DesignProblem<'_>,
+) -> Result<Search> {
+    let resumed = if args.resume {
+        directory.resume()?
+    } else {
+        None
+    };
+    if let Some(search) = resumed {
+        let progress = search.progress();
+        output::hint(&format!(
+            "resuming after generation {} of {}",
+            progress.step, progress.steps
+        ));
+        return Ok(search);
+    }
+    if args.resume && !args.certify {
+        output::hint("no checkpoint to resume from; starting anew");
+    }
+    Ok(study
+        .scenario
+        .method()
+        .start(problem, study.scenario.optimizer.seed)?)
+}
+
+/// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
+pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let seen = Arc::clone(&flag);
+    ctrlc::set_handler(move || {
+        if seen.swap(true, Ordering::Relaxed) {
+            std::process::exit(Status::Interrupted as i32);
+        }
+        output::hint("stopping after this generation; Ctrl-C again stops at once");
+    })
+    .context("cannot handle Ctrl-C")?;
+    Ok(flag)
+}
+
+pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("", Align::Left),
+        ("#", right),
+        ("design", Align::Left),
+        ("T", right),
+        ("i (deg)", right),
+        ("h (km)", right),
+        ("N visible", right),
+        ("E[PDOP]", right),
+        ("CVaR", right),
+        ("max PDOP", right),
+        ("J_pos", right),
+        ("J_cost", right),
+        ("membership", right),
+    ]);
+    for member in &result.front {
+        table.row(row(member));
+    }
+    let [done, of] = result.generations;
+    let mut text = format!(
+        "Pareto set of scenario {scenario}: {} designs, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
+        result.front.len(),
+        result.evaluations,
+        result.algorithm,
+        result.seed,
+        table.to_text()
+    );
+    if let Some(chart) = chart::front(result) {
+        text += &format!("\n{chart}");
+    }
+    if let (Some(value), Some(reference)) =
+        (result.hypervolume.value, &result.hypervolume.reference)
+    {
+        let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
+        text += &format!("\nhypervolume {value:.4} at ({})\n", at.join(", "));
+    }
+    if let Some(chosen) = result.chosen() {
+        text += &format!(
+            "* chosen by fuzzy decision: {}, the largest least membership ({:.3}) over the objectives\n",
+            chosen.design.notation, chosen.membership
+        );
+    }
+    text += &other_picks(result);
+    if let Some(certificate) = &result.certificate {
+        text += &certificate.to_text();
+    }
+    for diagnostic in &result.diagnostics {
+        text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);
+    }
+    text
+}
+
+/// What the other methods of decision pick, and why.
+fn other_picks(result: &OptimizeResult) -> String {
+    let values = |member: &FrontMember| {
+        let minimised = |(name, value): &(String, f64)| {
+            Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
+        };
+        member.objectives.iter().map(minimised).collect()
+    };
+    let points: Vec<Vec<f64>> = result.front.iter().map(values).collect();
+    let mut text = String::new();
+    for pick in Pick::METHODS
+        .into_iter()
+        .filter(|pick| *pick != Pick::Fuzzy)
+    {
+        if let Some((place, why)) = pick.place(&points) {
+            let member = &result.front[place];
+            text += &format!(
+                "  --pick {}: {} {}, {why}\n",
+                pick.word(),
+                member.index,
+                member.design.notation
+            );
+        }
+    }
+    text
+}
+
+fn row(member: &FrontMember) -> Vec<String> {
+    let metrics = &member.metrics;
+    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
+    vec![
+        if member.chosen { "*" } else { "" }.to_owned(),
+        member.index.to_string(),
+        member.design.notation.clone(),
+        member.design.satellites.to_string(),
+        format!("{:.2}", member.design.inclination_deg),
+        format!("{:.1}", member.design.altitude_km),
+        format!("{:.3}", metrics.mean_visible),
+        number(metrics.mean_pdop),
+        number(metrics.cvar_pdop),
+        number(metrics.max_pdop),
+        number(metrics.j_pos),
+        number(metrics.j_cost),
+        format!("{:.3}", member.membership),
+    ]
+}
+
+fn hint_what_next(result: &OptimizeResult, out: &str) {
+    output::hint(&format!("\nrun written to {out}"));
+    if result.front.is_empty() {
+        return;
+    }
+    output::hint(&format!(
+        "next: navwalker report {out}\n      navwalker export --run {out} --pick fuzzy --as tle,oem --out exports\n      \
+         navwalker validate --run {out} --against sgp4"
+    ));
+}

@@ -1,0 +1,98 @@
+//! `navwalker optimize --seeds N`: the same search with several seeds.
+
+use super::{Ended, hint_resume, interrupt_flag, open, search, status, sweep, text};
+use crate::cli::args::{Format, OptimizeArgs};
+use crate::cli::study::Study;
+use crate::cli::{Status, files, output};
+use crate::evaluate::Evaluator;
+use crate::report::SeedsResult;
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+
+/// Tables of all seeds.
+const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
+
+/// What the run directories of the seeds start with.
+const RUN: &str = "seed-";
+
+pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) -> Result<Status> {
+    let first = study.scenario.optimizer.seed;
+    let last = u64::try_from(count.get() - 1)
+        .ok()
+        .and_then(|more| first.checked_add(more));
+    let last =
+        last.with_context(|| format!("{count} seeds from {first} on exceed {}", u64::MAX))?;
+    let name = &study.scenario.name;
+    let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
+    let out = args.out.clone().unwrap_or_else(default_out);
+    let setup = study.setup()?;
+    if !args.force {
+        require_seeds(&out)?;
+    }
+    let evaluator = Evaluator::new(setup)?;
+    let interrupted = interrupt_flag()?;
+    let Some(sweep) = sweep(args, &study, &evaluator, &out, &interrupted)? else {
+        return Ok(Status::Interrupted);
+    };
+    let mut results = Vec::new();
+    for seed in first..=last {
+        study.scenario.optimizer.seed = seed;
+        let place = out.join(format!("{RUN}{seed}"));
+        let directory = open(args, &study, &place)?;
+        let Ended { result, is_done } = search(
+            args,
+            &study,
+            &evaluator,
+            &directory,
+            &interrupted,
+            sweep.as_ref(),
+        )?;
+        if !is_done {
+            hint_resume(&result, &place.display().to_string());
+            return Ok(Status::Interrupted);
+        }
+        results.push(result);
+    }
+    let result = SeedsResult::new(results).context("no seed was run")?;
+    let json = serde_json::to_string_pretty(&result)? + "\n";
+    let contents = [result.to_csv()?, json.clone()];
+    for (name, text) in TABLE.iter().zip(&contents) {
+        files::write_atomically(&out.join(name), text.as_bytes())?;
+    }
+    output::result(&match args.format {
+        Format::Text => format!(
+            "{}\n{}",
+            text(&result.first, &study.scenario.name),
+            result.to_text()
+        ),
+        Format::Json => json,
+        Format::Csv => result.to_csv()?,
+    })?;
+    output::hint(&format!(
+        "\nruns written to {}/{RUN}{first} to {RUN}{last}",
+        out.display()
+    ));
+    Ok(status(&result.first))
+}
+
+/// Refuses a directory that holds anything but runs of seeds and their tables.
+fn require_seeds(directory: &Path) -> Result<()> {
+    if files::is_vacant(directory)? {
+        return Ok(());
+    }
+    let entries =
+        fs::read_dir(directory).with_context(|| format!("cannot use {}", directory.display()))?;
+    for entry in entries {
+        let name = entry?.file_name().to_string_lossy().into_owned();
+        if !name.starts_with(RUN) && !TABLE.contains(&name.as_str()) {
+            bail!(
+                "{} holds {name}, which is no run of a seed; choose another --out, or replace what \
+                 is in the way with --force",
+                directory.display()
+            );
+        }
+    }
+    Ok(())
+}

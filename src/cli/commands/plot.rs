@@ -1,0 +1,115 @@
+//! `navwalker plot`.
+
+use crate::cli::args::PlotArgs;
+use crate::cli::look::Look;
+use crate::cli::{Status, files, output};
+use crate::constellation::Design;
+use crate::report::figures::draw::{Form, png, svg};
+use crate::report::figures::{self, Figure, Measure, Named, Plate};
+use crate::report::profile::Profile;
+use crate::scenario::{Region, Word};
+use anyhow::{Context, Result, bail};
+use std::io::{self, IsTerminal, Write};
+use std::path::Path;
+
+pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
+    let form = form(args)?;
+    let look = Look::at(&args.run)?;
+    let plate = plate(args, &look)?;
+    let bytes = render(&plate, form)?;
+    let Some(out) = &args.out else {
+        if form == Form::Png && io::stdout().is_terminal() {
+            bail!("a PNG is nothing for a terminal; name a file with --out");
+        }
+        io::stdout().lock().write_all(&bytes)?;
+        return Ok(Status::Done);
+    };
+    files::write_atomically(out, &bytes)?;
+    let mut written = out.display().to_string();
+    if form != Form::Csv {
+        let table = out.with_extension("csv");
+        files::write_atomically(&table, plate.csv.as_bytes())?;
+        written += &format!("\n{}", table.display());
+    }
+    output::result(&written)?;
+    Ok(Status::Done)
+}
+
+/// The form asked for, or that of the file's extension.
+fn form(args: &PlotArgs) -> Result<Form> {
+    if let Some(form) = args.form {
+        return Ok(form);
+    }
+    let extension = args.out.as_deref().and_then(Path::extension);
+    match extension {
+        None => Ok(Form::Svg),
+        Some(extension) => Form::from_word(&extension.to_string_lossy().to_lowercase())
+            .context("the name of --out does not tell the form; say it with --as"),
+    }
+}
+
+fn render(plate: &Plate, form: Form) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    match form {
+        Form::Svg => svg(&plate.chart, &mut bytes)?,
+        Form::Png => png(&plate.chart, &mut bytes)?,
+        Form::Csv => bytes.extend_from_slice(plate.csv.as_bytes()),
+    }
+    Ok(bytes)
+}
+
+fn plate(args: &PlotArgs, look: &Look) -> Result<Plate> {
+    let measure = |usual: Measure| args.measure.unwrap_or(usual);
+    Ok(match args.figure {
+        Figure::Pareto => figures::pareto(&look.run, &look.baselines(), &look.fronts)?,
+        Figure::Convergence => figures::convergence(&look.run)?,
+        Figure::Budget => figures::budget(look.run.validation.as_ref())?,
+        Figure::Map => {
+            let profiles = profiles(args, look, false)?;
+            figures::map(&profiles[0].1, measure(Measure::MeanPdop), cell_deg(look))?
+        }
+        Figure::Cdf => {
+            let profiles = profiles(args, look, true)?;
+            figures::cdf(&named(&profiles), measure(Measure::MeanVisible))?
+        }
+        Figure::Series => {
+            let profiles = profiles(args, look, true)?;
+            figures::series(&named(&profiles), measure(Measure::MaxPdop))?
+        }
+    })
+}
+
+/// The steps of the region's grid, if it is one.
+fn cell_deg(look: &Look) -> Option<[f64; 2]> {
+    match look.run.scenario.as_ref()?.region {
+        Region::Grid(grid) => Some(grid.step_deg),
+        Region::Points { .. } => None,
+    }
+}
+
+/// The picked design, and those beside it, evaluated.
+fn profiles(args: &PlotArgs, look: &Look, with_others: bool) -> Result<Vec<(String, Profile)>> {
+    let evaluator = look
+        .evaluator
+        .as_ref()
+        .context("the scenario of the run cannot be set up, which this figure needs")?;
+    let member = look.pick(args.pick)?;
+    let design: Design = member.notation.parse()?;
+    let mut wanted = vec![(design.to_string(), design)];
+    if with_others {
+        let others = look.beside.iter().filter(|(_, other)| *other != design);
+        wanted.extend(others.cloned());
+    }
+    let one = |(name, design): (String, Design)| Ok((name, Profile::new(evaluator, &design)?));
+    wanted.into_iter().map(one).collect()
+}
+
+fn named(profiles: &[(String, Profile)]) -> Vec<Named<'_>> {
+    let pairs = profiles.iter();
+    pairs
+        .map(|(name, profile)| Named {
+            name: name.clone(),
+            profile,
+        })
+        .collect()
+}

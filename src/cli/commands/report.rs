@@ -1,0 +1,45 @@
+//! `navwalker report`.
+
+use crate::cli::args::{ReportArgs, RunArgs};
+use crate::cli::look::Look;
+use crate::cli::{Status, files, output};
+use crate::report::page::{self, Page};
+use anyhow::Result;
+use std::path::{Path, PathBuf};
+
+pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
+    let usual = || args.run.directory.join("report.html");
+    let out = args.out.clone().unwrap_or_else(usual);
+    write(&args.run, &out)?;
+    output::result(&out.display().to_string())?;
+    Ok(Status::Done)
+}
+
+/// Writes the page of a run into its directory, with the validation of `validation` or what lies
+/// in the run.
+pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<PathBuf> {
+    let args = RunArgs {
+        directory: directory.to_owned(),
+        compare: Vec::new(),
+        front: Vec::new(),
+        validation: validation.map(Path::to_owned),
+    };
+    let out = directory.join("report.html");
+    write(&args, &out)?;
+    Ok(out)
+}
+
+fn write(args: &RunArgs, out: &Path) -> Result<()> {
+    let look = Look::at(args)?;
+    let mut html = Vec::new();
+    let page = Page {
+        run: &look.run,
+        scenario_toml: look.scenario_toml.as_deref(),
+        evaluator: look.evaluator.as_ref(),
+        baselines: &look.baselines(),
+        beside: &look.beside,
+        fronts: &look.fronts,
+    };
+    page::write(&page, &mut html)?;
+    files::write_atomically(out, &html)
+}

@@ -1,0 +1,180 @@
+//! `navwalker validate`.
+
+use crate::cli::args::{ReportFormat, ValidateArgs};
+use crate::cli::study::{Study, study_and_design};
+use crate::cli::{Status, files, output};
+use crate::exchange::manifest::{FILE_NAME, Manifest};
+use crate::report::{
+    ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
+};
+use crate::scenario::{Scenario, builtin};
+use crate::validate::file::{Comparand, against_file, read};
+use crate::validate::{Findings, Subject, Target};
+use anyhow::{Context, Result, bail};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// A standard, or files of another program.
+enum Against {
+    Standard(Target),
+    Files(PathBuf),
+}
+
+/// The targets that were typed; one with a dot or a slash in it is a file or a directory.
+fn targets(typed: &[String]) -> Result<Vec<Against>> {
+    let one = |name: &String| {
+        if name.contains(['.', '/', '\\']) {
+            return Ok(Against::Files(PathBuf::from(name)));
+        }
+        let target = name.parse().with_context(|| {
+            format!("--against {name}: a file or directory has a '.' or '/' in its path")
+        })?;
+        Ok(Against::Standard(target))
+    };
+    typed.iter().map(one).collect()
+}
+
+pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
+    let targets = targets(&args.against)?;
+    let run = args.design.run.as_deref().filter(|_| args.report);
+    let out = args.out.clone().or(run.map(|run| run.join("validation")));
+    if let Some(directory) = &out {
+        files::require_vacant(directory, args.force)?;
+    }
+    let (study, design) = study_and_design(&args.study, &args.design)?;
+    let evaluator = study.evaluator()?;
+    let subject = Subject::new(design, &evaluator);
+    let mut findings = Findings::default();
+    for target in &targets {
+        match target {
+            Against::Standard(target) => {
+                for each in standards_for(*target, &study)? {
+                    findings.append(each.findings(&subject)?);
+                }
+            }
+            Against::Files(path) => {
+                for (source, comparands) in comparisons(path)? {
+                    findings.append(against_file(&subject, &source, &comparands)?);
+                }
+            }
+        }
+    }
+    let result = ValidateResult::new(&design, args.against.clone(), findings, &study.scenario);
+    if let Some(directory) = &out {
+        write_reports(directory, &result)?;
+    }
+    if let Some(run) = run {
+        let page = super::report::of_run(run, out.as_deref())?;
+        output::hint(&format!("report written to {}", page.display()));
+    }
+    output::result(&render(&result, args.format)?)?;
+    Ok(if result.passed {
+        Status::Done
+    } else {
+        Status::Failed
+    })
+}
+
+/// What a target stands for; of all standards the tables of the paper only for its own study, as no
+/// other has its mask.
+fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
+    let ours = &study.scenario;
+    let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
+    let sees_the_same = ours.time == paper.time
+        && ours.earth == paper.earth
+        && ours.region == paper.region
+        && ours.visibility == paper.visibility
+        && ours.gnss == paper.gnss;
+    let applies = |each: &Target| target != Target::All || *each != Target::Paper || sees_the_same;
+    Ok(target.each().filter(applies).collect())
+}
+
+/// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
+fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
+    let read_one = |file: &Path| -> Result<Vec<Comparand>> {
+        let opened = File::open(file);
+        let opened = opened.with_context(|| format!("cannot read {}", file.display()))?;
+        Ok(read(&file.to_string_lossy(), BufReader::new(opened))?)
+    };
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    let name = name.to_string_lossy().into_owned();
+    if !path.is_dir() {
+        return Ok(vec![(name, read_one(path)?)]);
+    }
+    let manifest = path.join(FILE_NAME);
+    if !manifest.exists() {
+        let mut all = Vec::new();
+        for file in sorted_files(path)? {
+            all.extend(read_one(&file)?);
+        }
+        if all.is_empty() {
+            bail!("{} has no file to compare with", path.display());
+        }
+        return Ok(vec![(name, all)]);
+    }
+    let bytes =
+        fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
+    let manifest = Manifest::read(bytes.as_slice())
+        .with_context(|| format!("{} is no manifest of an export", manifest.display()))?;
+    let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
+    for file in manifest.files {
+        if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
+            let found = read_one(&path.join(&file.path))?;
+            by_format.entry(file.format).or_default().extend(found);
+        }
+    }
+    if by_format.is_empty() {
+        bail!(
+            "{} has no file in a format that is compared: {}",
+            path.display(),
+            COMPARED.join(", ")
+        );
+    }
+    Ok(by_format.into_iter().collect())
+}
+
+/// Formats of an export that are read back.
+const COMPARED: [&str; 8] = [
+    "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
+];
+
+fn sorted_files(directory: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let entries =
+        fs::read_dir(directory).with_context(|| format!("cannot read {}", directory.display()))?;
+    for entry in entries {
+        let path = entry?.path();
+        if path.is_file() {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn write_reports(directory: &Path, result: &ValidateResult) -> Result<()> {
+    let staged = files::StagedDirectory::new(directory)?;
+    for (name, format) in [
+        ("report.txt", ReportFormat::Text),
+        ("report.json", ReportFormat::Json),
+        ("report.csv", ReportFormat::Csv),
+        ("report.md", ReportFormat::Markdown),
+        ("report.junit.xml", ReportFormat::Junit),
+    ] {
+        let text = render(result, format)?;
+        files::write_atomically(&staged.path().join(name), text.as_bytes())?;
+    }
+    staged.commit()
+}
+
+fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {
+    Ok(match format {
+        ReportFormat::Text => validation_text(result),
+        ReportFormat::Json => serde_json::to_string_pretty(result)? + "\n",
+        ReportFormat::Csv => checks_csv(&result.findings.checks)?,
+        ReportFormat::Markdown => validation_markdown(result),
+        ReportFormat::Junit => checks_junit(&result.findings.checks),
+    })
+}

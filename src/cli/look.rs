@@ -1,0 +1,169 @@
+//! A run directory as `report` and `plot` look at it: what is there, and what can be computed anew.
+
+use crate::cli::args::RunArgs;
+use crate::cli::output;
+use crate::cli::pick::Pick;
+use crate::cli::study::Study;
+use crate::constellation::Design;
+use crate::evaluate::Evaluator;
+use crate::report::figures::{Baseline, NamedFront};
+use crate::report::run::{RunFiles, StoredMember, StoredRun, stored_front};
+use crate::scenario::{Quantity, Word};
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// A run, and the designs and fronts that are shown beside it.
+pub(crate) struct Look {
+    pub(crate) run: StoredRun,
+    /// Text of the scenario, for the provenance.
+    pub(crate) scenario_toml: Option<String>,
+    /// `None` when the scenario cannot be set up any more.
+    pub(crate) evaluator: Option<Evaluator>,
+    /// The reference design and those of `--compare`, by their names.
+    pub(crate) beside: Vec<(String, Design)>,
+    pub(crate) fronts: Vec<NamedFront>,
+}
+
+impl Look {
+    /// Reads what there is; fails only where there is no run at all.
+    pub(crate) fn at(args: &RunArgs) -> Result<Self> {
+        let files = read(args)?;
+        let mut run = StoredRun::read(&files);
+        let evaluator = match evaluator(&args.directory, &run) {
+            Ok(evaluator) => evaluator,
+            Err(error) => {
+                run.gaps.push(format!("no maps and series: {error:#}"));
+                None
+            }
+        };
+        for gap in &run.gaps {
+            output::warning(gap);
+        }
+        let beside = beside(args, &run);
+        let fronts = fronts(args)?;
+        let scenario_toml = files.scenario.ok();
+        Ok(Self {
+            run,
+            scenario_toml: scenario_toml.map(|text| String::from_utf8_lossy(&text).into_owned()),
+            evaluator,
+            beside,
+            fronts,
+        })
+    }
+
+    /// The designs beside the front with their objectives.
+    pub(crate) fn baselines(&self) -> Vec<Baseline> {
+        let (Some(evaluator), Some(scenario)) = (&self.evaluator, &self.run.scenario) else {
+            return Vec::new();
+        };
+        let goals = scenario.goals();
+        let evaluated =
+            |(name, design): &(String, Design)| Baseline::evaluate(name, design, evaluator, &goals);
+        self.beside.iter().filter_map(evaluated).collect()
+    }
+
+    /// The member that is picked.
+    pub(crate) fn pick(&self, pick: Pick) -> Result<&StoredMember> {
+        let members = &self.run.front.members;
+        let points: Vec<Vec<f64>> = members.iter().map(minimised).collect();
+        let found = pick.place(&points).map(|(place, _)| &members[place]);
+        found.with_context(|| format!("the front has {} members and not that one", members.len()))
+    }
+}
+
+fn minimised(member: &StoredMember) -> Vec<f64> {
+    let value = |(name, value): &(String, f64)| {
+        Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
+    };
+    member.objectives.iter().map(value).collect()
+}
+
+fn read(args: &RunArgs) -> Result<RunFiles> {
+    let directory = &args.directory;
+    let read = |name: &str| fs::read(directory.join(name)).map_err(reason);
+    let files = RunFiles {
+        scenario: read("scenario.toml"),
+        front: read("front.json"),
+        history: read("history.json"),
+        validation: validation(args)?,
+    };
+    if files.scenario.is_err() && files.front.is_err() && files.history.is_err() {
+        bail!(
+            "{} is no run directory: it has no scenario, front or history",
+            directory.display()
+        );
+    }
+    Ok(files)
+}
+
+/// Why a file is not there, without its path, which is no part of a result.
+fn reason(error: io::Error) -> String {
+    match error.kind() {
+        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// The validation that is asked for, or the one in the run directory if there is one.
+fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
+    let within = |path: &Path| path.join("report.json");
+    match &args.validation {
+        Some(path) => {
+            let file = if path.is_dir() {
+                within(path)
+            } else {
+                path.clone()
+            };
+            let bytes =
+                fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            Ok(Some(bytes))
+        }
+        None => Ok(fs::read(within(&args.directory.join("validation"))).ok()),
+    }
+}
+
+/// The evaluator of the run's scenario, where it has one.
+fn evaluator(directory: &Path, run: &StoredRun) -> Result<Option<Evaluator>> {
+    if run.scenario.is_none() {
+        return Ok(None);
+    }
+    Ok(Some(Study::of_run(directory, &[])?.evaluator()?))
+}
+
+fn beside(args: &RunArgs, run: &StoredRun) -> Vec<(String, Design)> {
+    let reference = run
+        .scenario
+        .as_ref()
+        .and_then(|s| s.reference_design().ok());
+    let reference = reference.map(|design| ("reference design".to_owned(), design));
+    let compared = args
+        .compare
+        .iter()
+        .map(|design| (design.to_string(), *design));
+    reference.into_iter().chain(compared).collect()
+}
+
+/// The fronts that are asked for, and that of the sweep that certified the run if there is one.
+fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
+    let mut name = args.directory.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    let sweep = args.directory.with_file_name(name);
+    let found = sweep.join("front.json").exists().then_some(&sweep);
+    let wanted = found.into_iter().chain(&args.front);
+    wanted.map(|path| front(path)).collect()
+}
+
+fn front(directory: &Path) -> Result<NamedFront> {
+    let path = directory.join("front.json");
+    let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let front = stored_front(&bytes)
+        .map_err(anyhow::Error::msg)
+        .with_context(|| format!("{} is no front of a run", path.display()))?;
+    let algorithm = front.algorithm.as_deref().unwrap_or("another run");
+    Ok(NamedFront {
+        name: format!("front of {algorithm}"),
+        front,
+    })
+}

@@ -1,0 +1,120 @@
+//! Which design of a run to take, and why.
+
+use crate::optimize::{best, fuzzy, knee, topsis};
+
+/// A method that picks, or the member itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pick {
+    /// The fuzzy decision: the largest least membership.
+    Fuzzy,
+    /// The largest normalised sum of memberships.
+    Sum,
+    /// TOPSIS with equal weights.
+    Topsis,
+    /// The member that bulges furthest towards the ideal point.
+    Knee,
+    /// A member by its index, from 1.
+    Index(usize),
+}
+
+impl std::str::FromStr for Pick {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        match text {
+            "fuzzy" => Ok(Self::Fuzzy),
+            "sum" => Ok(Self::Sum),
+            "topsis" => Ok(Self::Topsis),
+            "knee" => Ok(Self::Knee),
+            _ => match text.parse() {
+                Ok(index) if index > 0 => Ok(Self::Index(index)),
+                _ => Err(
+                    "expected fuzzy, sum, topsis, knee, or the index of a front member from 1"
+                        .to_owned(),
+                ),
+            },
+        }
+    }
+}
+
+impl Pick {
+    /// The methods, for tables of what each picks.
+    pub(crate) const METHODS: [Self; 4] = [Self::Fuzzy, Self::Sum, Self::Topsis, Self::Knee];
+
+    /// The word that is typed.
+    pub(crate) fn word(self) -> String {
+        match self {
+            Self::Fuzzy => "fuzzy".to_owned(),
+            Self::Sum => "sum".to_owned(),
+            Self::Topsis => "topsis".to_owned(),
+            Self::Knee => "knee".to_owned(),
+            Self::Index(index) => index.to_string(),
+        }
+    }
+
+    /// What the score of a pick means.
+    fn reason(self) -> &'static str {
+        match self {
+            Self::Fuzzy => "the fuzzy decision: the largest least membership over the objectives",
+            Self::Sum => "the largest share of the memberships, summed over the objectives",
+            Self::Topsis => {
+                "TOPSIS, equal weights: far from the worst and near the best of every objective"
+            }
+            Self::Knee => "the knee: furthest from the line between the ends of the front",
+            Self::Index(_) => "the member that was asked for",
+        }
+    }
+
+    /// The place of the pick, from 0, among members whose objectives are all minimised, and why it is
+    /// that; `None` when there is no such member.
+    pub(crate) fn place(self, members: &[Vec<f64>]) -> Option<(usize, String)> {
+        let scores = match self {
+            Self::Index(index) => {
+                let place = index - 1;
+                return (place < members.len()).then(|| (place, self.reason().to_owned()));
+            }
+            Self::Fuzzy => fuzzy(members).map(|memberships| memberships.minimum),
+            Self::Sum => fuzzy(members).map(|memberships| memberships.share),
+            Self::Topsis => topsis(members, &vec![1.0; members.first().map_or(0, Vec::len)]),
+            Self::Knee => knee(members),
+        };
+        let scores = scores.ok()?;
+        let place = best(&scores)?;
+        Some((place, format!("{} ({:.3})", self.reason(), scores[place])))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By hand on a convex front; TOPSIS divides by the norms, which the other methods do not.
+    #[test]
+    fn each_method_has_its_own_pick() {
+        let front = [
+            vec![1.0, 100.0],
+            vec![1.2, 60.0],
+            vec![2.0, 42.0],
+            vec![4.0, 40.0],
+        ];
+        let place = |pick: Pick| pick.place(&front).map(|(place, _)| place);
+        // Memberships: (1, 0), (0.933, 0.667), (0.667, 0.967), (0, 1); the sums of the middle ones
+        // are 1.6 and 1.633.
+        assert_eq!(place(Pick::Fuzzy), Some(1));
+        assert_eq!(place(Pick::Sum), Some(2));
+        assert_eq!(place(Pick::Knee), Some(2));
+        // Norms 4.737 and 130.2: closeness 0.807 of the second and 0.744 of the third.
+        assert_eq!(place(Pick::Topsis), Some(1));
+        assert_eq!(place(Pick::Index(4)), Some(3));
+        assert_eq!(place(Pick::Index(5)), None);
+        assert_eq!(Pick::Knee.place(&[]), None);
+    }
+
+    #[test]
+    fn words_are_read_back() {
+        for pick in Pick::METHODS.into_iter().chain([Pick::Index(7)]) {
+            assert_eq!(pick.word().parse(), Ok(pick));
+        }
+        assert!("0".parse::<Pick>().is_err() && "best".parse::<Pick>().is_err());
+    }
+}

@@ -1,0 +1,158 @@
+//! From what was typed to a scenario and what it needs.
+
+use crate::cli::args::{DesignArgs, StudyArgs};
+use crate::cli::{files, output, run};
+use crate::constellation::Design;
+use crate::constellation::gnss::System;
+use crate::evaluate::{Evaluator, Setup};
+use crate::scenario::{Algorithm, Scenario, builtin};
+use anyhow::{Context, Result, bail};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A scenario and where its files lie.
+#[derive(Clone)]
+pub(crate) struct Study {
+    pub(crate) scenario: Scenario,
+    /// Directory to which paths in the scenario are relative.
+    directory: PathBuf,
+}
+
+impl Study {
+    /// The scenario that was asked for, with its overrides.
+    pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
+        let overrides: Vec<&String> = args.overrides.iter().chain(further).collect();
+        let (bytes, directory) = read_scenario(&args.scenario)?;
+        let scenario = Scenario::parse(&args.scenario, &bytes, &overrides)?;
+        Ok(Self {
+            scenario,
+            directory,
+        })
+    }
+
+    /// The scenario that a run was made with.
+    pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
+        let path = directory.join("scenario.toml");
+        let bytes = files::read_whole(&path)
+            .with_context(|| format!("{} is no run directory", directory.display()))
+            .with_context(|| format!("cannot read {}", path.display()))?;
+        let scenario = Scenario::parse(&path.to_string_lossy(), &bytes, overrides)?;
+        Ok(Self {
+            scenario,
+            directory: directory.to_owned(),
+        })
+    }
+
+    /// The same study by another algorithm.
+    pub(crate) fn with_algorithm(&self, algorithm: Algorithm) -> Self {
+        let mut other = self.clone();
+        other.scenario.optimizer.algorithm = algorithm;
+        other
+    }
+
+    /// SHA-256 of what is computed, the contents of the scenario's files included.
+    pub(crate) fn hash(&self) -> Result<String> {
+        let read = |file: &str| {
+            let path = self.directory.join(file);
+            files::read_whole(&path).with_context(|| format!("cannot read {}", path.display()))
+        };
+        let contents: Vec<Vec<u8>> = self
+            .scenario
+            .files()
+            .into_iter()
+            .map(read)
+            .collect::<Result<_>>()?;
+        Ok(self
+            .scenario
+            .hash_with_files(&contents.iter().map(Vec::as_slice).collect::<Vec<_>>()))
+    }
+
+    /// What an evaluation depends on; refuses what would not fit into memory.
+    pub(crate) fn setup(&self) -> Result<Setup> {
+        let read = |file: &str| files::read_whole(&self.directory.join(file));
+        let setup = self.scenario.setup(&read)?;
+        check_memory(&setup)?;
+        for system in &setup.gnss {
+            if let System::Sets(sets) = system
+                && let Some(stale) = sets.stale(setup.grid)
+            {
+                output::warning(&stale.to_string());
+            }
+        }
+        Ok(setup)
+    }
+
+    /// The evaluator of the scenario.
+    pub(crate) fn evaluator(&self) -> Result<Evaluator> {
+        Ok(Evaluator::new(self.setup()?)?)
+    }
+}
+
+fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
+    let is_path = name.contains(['/', '\\']) || Path::new(name).extension().is_some();
+    if !is_path {
+        let text = builtin(name).map_err(|unknown| {
+            anyhow::anyhow!(
+                "no built-in scenario: {unknown}; a file needs its extension, as in study.toml"
+            )
+        })?;
+        return Ok((text.as_bytes().to_vec(), PathBuf::new()));
+    }
+    let path = Path::new(name);
+    let bytes =
+        files::read_whole(path).with_context(|| format!("cannot read the scenario {name}"))?;
+    let directory = path.parent().map_or_else(PathBuf::new, Path::to_owned);
+    Ok((bytes, directory))
+}
+
+/// Says before starting that a scenario needs more memory than there is.
+fn check_memory(setup: &Setup) -> Result<()> {
+    let needed = setup.memory_bytes(rayon::current_num_threads());
+    let Some(available) = available_memory() else {
+        return Ok(());
+    };
+    if needed > available {
+        let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+        bail!(
+            "{} points x {} samples need {:.1} GiB of memory, {:.1} GiB are available; \
+             use a coarser region.step-deg or time.step-s, or fewer --threads",
+            setup.sites.len(),
+            setup.grid.len(),
+            gib(needed),
+            gib(available)
+        );
+    }
+    Ok(())
+}
+
+/// Memory that the system can give, bytes; `None` where it does not say (other than Linux).
+fn available_memory() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}
+
+/// The study and the design that a command works on.
+pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result<(Study, Design)> {
+    if let Some(directory) = &design.run {
+        if study.scenario != "paper" {
+            bail!(
+                "a run has its own scenario; leave out '{}' or --run",
+                study.scenario
+            );
+        }
+        let loaded = Study::of_run(directory, &study.overrides)?;
+        let (picked, why) = run::pick(directory, design.pick)?;
+        output::hint(&format!("{picked} of {}: {why}", directory.display()));
+        return Ok((loaded, picked));
+    }
+    let loaded = Study::load(study, &[])?;
+    let design = match design.design {
+        Some(design) => design,
+        None => loaded.scenario.reference_design()?,
+    };
+    Ok((loaded, design))
+}

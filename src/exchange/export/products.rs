@@ -1,0 +1,303 @@
+//! The files of each product.
+
+use super::source::{Source, failed};
+use super::{Files, Product, Sink};
+use crate::constellation::Satellite;
+use crate::constellation::gnss::Preset;
+use crate::ephemeris::hermite::Hermite;
+use crate::ephemeris::sampled::Sampled;
+use crate::ephemeris::{Ephemeris, Flown};
+use crate::exchange::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
+use crate::formats::ccsds::omm::Notation;
+use crate::formats::ccsds::opm::Opm;
+use crate::formats::ccsds::{oem, omm};
+use crate::formats::metadata::{Metadata, Object, Theory};
+use crate::formats::sp3::Sp3Error;
+use crate::formats::text::timestamp::TimeSystem;
+use crate::formats::{WriteError, csv};
+use crate::formats::{sp3, stk, tle};
+use crate::frames::{Frame, from_teme};
+use crate::keyword::Word;
+use crate::orbit::Model;
+use crate::orbit::sgp4::Sgp4Orbit;
+use rayon::prelude::*;
+
+/// The files of a product, or why one is not written.
+pub(super) type Written = Result<Vec<FileEntry>, WriteError>;
+
+impl Source<'_> {
+    fn sgp4_metadata(&self) -> Metadata {
+        self.metadata(Frame::Teme, Theory::Sgp4Elements(self.choices.elements))
+    }
+
+    pub(super) fn flown_metadata(&self, frame: Frame) -> Metadata {
+        self.metadata(frame, Theory::Flown(self.subject.model))
+    }
+
+    /// Version of a CCSDS message and its notation: `2.0 KVN`.
+    fn ccsds_version(&self, notation: &str) -> String {
+        let version = self.choices.ccsds_version;
+        format!("{version} {}", notation.to_uppercase())
+    }
+
+    /// One file for each satellite, by several threads at once.
+    fn each(
+        &self,
+        write: impl Fn(&Flown, &Object) -> Result<FileEntry, WriteError> + Sync,
+    ) -> Written {
+        let satellites = self.ephemeris.satellites().par_iter();
+        satellites
+            .zip(&self.objects)
+            .map(|(satellite, object)| write(satellite, object))
+            .collect()
+    }
+
+    pub(super) fn tle(&self, files: &Files<'_, impl Sink>) -> Written {
+        let metadata = self.sgp4_metadata();
+        let about = (self.objects.len(), &metadata);
+        let sets = self.tle_sets()?;
+        let entry = files.add("constellation.tle", (Product::Tle, "3LE"), about, |out| {
+            sets.iter().try_for_each(|set| tle::write(out, set))?;
+            self.loss_of_sets(&sets, true)
+        })?;
+        Ok(vec![entry])
+    }
+
+    pub(super) fn omm(&self, files: &Files<'_, impl Sink>) -> Written {
+        let notation = self.choices.omm;
+        let metadata = self.sgp4_metadata();
+        let header = omm::header(self.choices.ccsds_version, &metadata);
+        let version = self.ccsds_version(notation.word());
+        let format = (Product::Omm, version.as_str());
+        let sets = self.element_sets(self.subject.grid.epoch())?;
+        let loss = self.loss_of_sets(&sets, false)?;
+        if notation == Notation::Kvn {
+            let one = |(set, object): (&sgp4::Elements, &Object)| {
+                let path = format!("omm/{}.omm", object.name);
+                files.add(&path, format, (1, &metadata), |out| {
+                    omm::write_kvn(out, &header, set)?;
+                    Ok(loss.clone())
+                })
+            };
+            return sets.par_iter().zip(&self.objects).map(one).collect();
+        }
+        let path = format!("omm.{notation}");
+        let entry = files.add(&path, format, (sets.len(), &metadata), |out| {
+            match notation {
+                Notation::Xml | Notation::Kvn => omm::write_xml(out, &header, &sets)?,
+                Notation::Json => omm::write_json(out, &sets)?,
+                Notation::Csv => omm::write_csv(out, &sets)?,
+            }
+            Ok(loss.clone())
+        })?;
+        Ok(vec![entry])
+    }
+
+    pub(super) fn tle_states(&self, files: &Files<'_, impl Sink>) -> Written {
+        let metadata = self.sgp4_metadata();
+        let about = (self.objects.len(), &metadata);
+        let format = (Product::TleStates, "1");
+        let grid = self.subject.grid;
+        let entry = files.add("tle-states.csv", format, about, |out| {
+            let mut satellites = Vec::new();
+            for (set, flown) in self.tle_sets()?.iter().zip(self.ephemeris.satellites()) {
+                let orbit = Sgp4Orbit::from_element_set(&tle::as_written(set)?, grid.epoch())
+                    .map_err(|source| failed(flown, source))?;
+                satellites.push(Flown {
+                    name: flown.name.clone(),
+                    slot: flown.slot,
+                    propagator: Box::new(orbit),
+                });
+            }
+            csv::write_states(out, &Ephemeris::new(grid, satellites))?;
+            Ok(Loss::default())
+        })?;
+        Ok(vec![entry])
+    }
+
+    /// The satellites of a design fly alike, so that the first tells of all.
+    fn hermite(&self, sampled: &Sampled<'_>) -> Result<Option<Hermite>, WriteError> {
+        Ok(match self.ephemeris.satellites() {
+            [first, ..] => Hermite::measured(sampled, first)?,
+            [] => None,
+        })
+    }
+
+    pub(super) fn oem(&self, files: &Files<'_, impl Sink>) -> Written {
+        let choices = self.choices;
+        let mut metadata = self.flown_metadata(choices.frame);
+        metadata.time_system = choices.time_system;
+        let sampled = Sampled::new(&self.ephemeris, choices.frame);
+        let hermite = self.hermite(&sampled)?;
+        let loss = Loss {
+            interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
+            note: (choices.frame == Frame::Teme).then(|| oem::TEME_NOTE.to_owned()),
+            ..Loss::default()
+        };
+        let version = self.ccsds_version(choices.oem.word());
+        let format = (Product::Oem, version.as_str());
+        let writer = oem::Writer {
+            version: choices.ccsds_version,
+            metadata: &metadata,
+            sampled: &sampled,
+            hermite,
+        };
+        if choices.oem == oem::Notation::Xml && choices.oem_combined {
+            let about = (self.objects.len(), &metadata);
+            let entry = files.add("oem.xml", format, about, |out| {
+                let satellites = self.ephemeris.satellites().iter();
+                writer.combined_xml(out, satellites.zip(&self.objects))?;
+                Ok(loss)
+            })?;
+            return Ok(vec![entry]);
+        }
+        self.each(|satellite, object| {
+            let extension = match choices.oem {
+                oem::Notation::Kvn => "oem",
+                oem::Notation::Xml => "xml",
+            };
+            let path = format!("oem/{}.{extension}", satellite.name);
+            files.add(&path, format, (1, &metadata), |out| {
+                match choices.oem {
+                    oem::Notation::Kvn => writer.kvn(out, satellite, object)?,
+                    oem::Notation::Xml => writer.xml(out, satellite, object)?,
+                }
+                Ok(loss.clone())
+            })
+        })
+    }
+
+    pub(super) fn opm(&self, files: &Files<'_, impl Sink>) -> Written {
+        let choices = self.choices;
+        let mut metadata = self.flown_metadata(choices.frame);
+        metadata.time_system = choices.time_system;
+        let version = self.ccsds_version("kvn");
+        let epoch = self.subject.grid.epoch();
+        let satellites = self.ephemeris.satellites();
+        let one = |((flown, satellite), object): ((&Flown, &Satellite), &Object)| {
+            let path = format!("opm/{}.opm", object.name);
+            let format = (Product::Opm, version.as_str());
+            files.add(&path, format, (1, &metadata), |out| {
+                let teme = self.ephemeris.state(flown, 0.0)?;
+                let state = from_teme(teme, choices.frame, epoch, 0.0);
+                let (elements, at) = (&satellite.elements, (epoch, state));
+                Opm::new(choices.ccsds_version, &metadata, object, elements, at).write(out)?;
+                Ok(Loss::default())
+            })
+        };
+        satellites
+            .par_iter()
+            .zip(&self.satellites)
+            .zip(&self.objects)
+            .map(one)
+            .collect()
+    }
+
+    pub(super) fn stk(&self, files: &Files<'_, impl Sink>) -> Written {
+        let frame = self.choices.frame;
+        let metadata = self.flown_metadata(frame);
+        let sampled = Sampled::new(&self.ephemeris, frame);
+        let hermite = self.hermite(&sampled)?;
+        let loss = Loss {
+            interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
+            ..Loss::default()
+        };
+        self.each(|satellite, _| {
+            let path = format!("stk/{}.e", satellite.name);
+            let format = (Product::Stk, stk::FORMAT_VERSION);
+            files.add(&path, format, (1, &metadata), |out| {
+                let states = (&sampled, satellite);
+                stk::write(out, &satellite.name, &metadata, states, hermite)?;
+                Ok(loss.clone())
+            })
+        })
+    }
+
+    pub(super) fn sp3(&self, files: &Files<'_, impl Sink>) -> Written {
+        let (version, letter) = (self.choices.sp3_version, self.choices.sp3_letter);
+        let mut metadata = self.flown_metadata(Frame::EarthFixed);
+        metadata.time_system = TimeSystem::Gps;
+        let sampled = Sampled::new(&self.ephemeris, Frame::EarthFixed);
+        let satellites: Vec<_> = self
+            .ephemeris
+            .satellites()
+            .iter()
+            .zip(&self.objects)
+            .collect();
+        let note = |part: &[(&Flown, &Object)]| {
+            let ((_, first), (_, last)) = part.first().zip(part.last())?;
+            let count = part.len();
+            Some(format!(
+                "{letter}01 = {} to {letter}{count:02} = {}",
+                first.name, last.name
+            ))
+        };
+        let one = |(index, part): (usize, &[(&Flown, &Object)])| {
+            let path = format!("sp3/part-{:02}.sp3", index + 1);
+            let about = (part.len(), &metadata);
+            files.add(&path, (Product::Sp3, version.word()), about, |out| {
+                sp3::write(out, version, letter, &metadata, &sampled, part)?;
+                Ok(Loss {
+                    note: note(part),
+                    ..Loss::default()
+                })
+            })
+        };
+        let parts = satellites.par_chunks(version.most_satellites());
+        let mut entries: Vec<FileEntry> = parts.enumerate().map(one).collect::<Result<_, _>>()?;
+        for (preset, _) in Preset::ALL
+            .iter()
+            .zip(self.choices.sp3_gnss)
+            .filter(|(_, chosen)| *chosen)
+        {
+            entries.push(self.sp3_of_gnss(files, *preset)?);
+        }
+        Ok(entries)
+    }
+
+    /// A nominal constellation under the letter of its system, in a file of its own, as readers
+    /// that take several files join them.
+    fn sp3_of_gnss(
+        &self,
+        files: &Files<'_, impl Sink>,
+        preset: Preset,
+    ) -> Result<FileEntry, WriteError> {
+        let (version, letter) = (self.choices.sp3_version, sp3::letter_of(preset));
+        if letter == self.choices.sp3_letter {
+            return Err(Sp3Error::LetterOfGnss { letter, preset }.into());
+        }
+        let grid = self.subject.grid;
+        let ephemeris = Ephemeris::of_gnss(preset.satellites(grid.epoch()), grid);
+        let objects = Object::all(ephemeris.satellites(), grid.epoch())?;
+        let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
+        let sampled = Sampled::new(&ephemeris, Frame::EarthFixed);
+        let mut metadata = self.metadata(Frame::EarthFixed, Theory::Flown(Model::J2));
+        metadata.time_system = TimeSystem::Gps;
+        let note = format!("nominal {preset}: slots, not the satellites in orbit");
+        metadata.subject.insert(0, note.clone());
+        let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
+        let about = (satellites.len(), &metadata);
+        files.add(&path, (Product::Sp3, version.word()), about, |out| {
+            sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
+            Ok(Loss {
+                note: Some(note),
+                ..Loss::default()
+            })
+        })
+    }
+
+    pub(super) fn csv(&self, files: &Files<'_, impl Sink>) -> Written {
+        let metadata = self.flown_metadata(Frame::Teme);
+        let about = (self.objects.len(), &metadata);
+        let elements = files.add("elements.csv", (Product::Csv, "1"), about, |out| {
+            let rows = self.satellites.iter().zip(&self.objects);
+            csv::write_elements(out, rows, self.subject.grid.epoch())?;
+            Ok(Loss::default())
+        })?;
+        let states = files.add("states.csv", (Product::Csv, "1"), about, |out| {
+            csv::write_states(out, &self.ephemeris)?;
+            Ok(Loss::default())
+        })?;
+        Ok(vec![elements, states])
+    }
+}

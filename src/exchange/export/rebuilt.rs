@@ -1,0 +1,290 @@
+//! The products from which another program rebuilds the study: STK, GMAT, almanacs.
+
+use super::products::Written;
+use super::source::Source;
+use super::{Files, Product, Sink};
+use crate::constellation::Satellite;
+use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
+use crate::ephemeris::sampled::Sampled;
+use crate::ephemeris::{Ephemeris, Flown};
+use crate::exchange::manifest::{FileEntry, Loss};
+use crate::formats::maps::scene::Scene;
+use crate::formats::stk::connect::{Scenario, Setting, by_hand};
+use crate::formats::yuma::{self, Almanac, Applicability, NoAlmanac, radius_shift_km};
+use crate::formats::{WriteError, gmat, stk};
+use crate::frames::Frame;
+use crate::keyword::Word;
+use crate::orbit::Model;
+use std::io::Write;
+
+/// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
+struct InStk {
+    name: String,
+    setting: Setting,
+    flown: Option<Flown>,
+}
+
+impl Source<'_> {
+    /// The ephemerides, and with a scenario the commands that build it.
+    pub(super) fn stk_with(
+        &self,
+        files: &Files<'_, impl Sink>,
+        scene: Option<&Scene<'_>>,
+    ) -> Written {
+        let mut entries = self.stk(files)?;
+        if let Some(scene) = scene {
+            entries.extend(self.stk_scenario(files, scene)?);
+        }
+        Ok(entries)
+    }
+
+    fn stk_scenario(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        let setup = scene.setup();
+        let mut gnss = Vec::new();
+        for (system, satellites) in scene.systems() {
+            gnss.extend(satellites.into_iter().map(|one| in_stk(system, one)));
+        }
+        let mut entries = self.gnss_files(files, &gnss)?;
+        let of_design = self.satellites.iter().zip(&self.objects);
+        let mut satellites: Vec<(String, Setting)> = of_design
+            .map(|(satellite, object)| (object.name.clone(), self.setting(satellite, &object.name)))
+            .collect();
+        satellites.extend(
+            gnss.iter()
+                .map(|one| (one.name.clone(), one.setting.clone())),
+        );
+        let scenario = Scenario {
+            grid: self.subject.grid,
+            satellites: &satellites,
+            sites: &setup.sites,
+            step_deg: scene.grid().map(|grid| grid.step_deg),
+            mask_deg: setup.mask.degrees(),
+        };
+        let metadata = self.flown_metadata(Frame::Teme);
+        let format = (Product::Stk, stk::FORMAT_VERSION);
+        let noted = |note: &str| Loss {
+            note: Some(note.to_owned()),
+            ..Loss::default()
+        };
+        let about = (satellites.len(), &metadata);
+        let commands = files.add("stk-scenario/connect.txt", format, about, |out| {
+            scenario.write(out)?;
+            Ok(noted("STK Connect commands; not tried in STK"))
+        })?;
+        let one_mask = setup.mask == setup.gnss_mask && setup.skyline.is_none();
+        let with_files = satellites
+            .iter()
+            .any(|(_, setting)| matches!(setting, Setting::File(_)));
+        let mut told = scene.assumptions();
+        told.extend(by_hand(one_mask, with_files));
+        entries.push(commands.assuming(told));
+        entries.push(
+            files.add("stk-scenario/points.pnt", format, (0, &metadata), |out| {
+                scenario.write_points(out)?;
+                Ok(noted("STK point file"))
+            })?,
+        );
+        Ok(entries)
+    }
+
+    /// A satellite of the design: elements where STK has the theory, or else its ephemeris.
+    fn setting(&self, satellite: &Satellite, name: &str) -> Setting {
+        match self.subject.model {
+            Model::J2 => Setting::J2(satellite.elements),
+            Model::TwoBody => Setting::TwoBody(satellite.elements),
+            Model::J2Osculating | Model::Sgp4 => Setting::File(format!("../stk/{name}.e")),
+        }
+    }
+
+    /// The ephemerides of the GNSS satellites for which STK has no theory.
+    fn gnss_files(&self, files: &Files<'_, impl Sink>, gnss: &[InStk]) -> Written {
+        let mut entries = Vec::new();
+        let mut metadata = self.flown_metadata(self.choices.frame);
+        metadata
+            .subject
+            .push("GNSS satellite of the scenario".to_owned());
+        let empty = Ephemeris::new(self.subject.grid, Vec::new());
+        let sampled = Sampled::new(&empty, self.choices.frame);
+        for one in gnss {
+            if let Some(flown) = &one.flown {
+                let path = format!("stk-scenario/gnss/{}.e", one.name);
+                let format = (Product::Stk, stk::FORMAT_VERSION);
+                entries.push(files.add(&path, format, (1, &metadata), |out| {
+                    let hermite = crate::ephemeris::hermite::Hermite::measured(&sampled, flown)?;
+                    stk::write(out, &one.name, &metadata, (&sampled, flown), hermite)?;
+                    Ok(Loss {
+                        interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
+                        ..Loss::default()
+                    })
+                })?);
+            }
+        }
+        Ok(entries)
+    }
+
+    pub(super) fn gmat(&self, files: &Files<'_, impl Sink>) -> Written {
+        let cannot = |what: String, instead| WriteError::CannotSay {
+            product: Product::Gmat.word(),
+            what,
+            instead,
+        };
+        let (model, grid) = (self.subject.model, self.subject.grid);
+        if model == Model::Sgp4 {
+            let what = "propagation.model = \"sgp4\": the script integrates J2".to_owned();
+            return Err(cannot(what, "use --as oem or stk, which hold the states"));
+        }
+        let Some(start) = gmat::calendar(grid.epoch()) else {
+            let what = format!("the epoch {}: it has milliseconds alone", grid.epoch());
+            return Err(cannot(what, "use an epoch of whole milliseconds"));
+        };
+        let metadata = self.flown_metadata(Frame::Eme2000);
+        let about = (self.objects.len(), &metadata);
+        let format = (Product::Gmat, gmat::FORMAT_VERSION);
+        let named: Vec<(String, Satellite)> = self
+            .satellites
+            .iter()
+            .zip(&self.objects)
+            .map(|(satellite, object)| (gmat::script_name(&object.name), *satellite))
+            .collect();
+        let script = files.add("gmat/navwalker.script", format, about, |out| {
+            gmat::write_script(out, &metadata.comments(), &named, (model, grid, &start))?;
+            Ok(Loss::default())
+        })?;
+        let field = files.add(
+            &format!("gmat/{}", gmat::FIELD_NAME),
+            format,
+            (0, &metadata),
+            |out| {
+                gmat::write_field(out)?;
+                Ok(Loss::default())
+            },
+        )?;
+        Ok(vec![script.assuming(gmat_assumptions(model)), field])
+    }
+
+    pub(super) fn yuma(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        let cannot = |what: String, instead| WriteError::CannotSay {
+            product: Product::Yuma.word(),
+            what,
+            instead,
+        };
+        let systems = scene.systems();
+        if systems.is_empty() {
+            let what = "a study without GNSS: gnss.constellations is empty, and a LEO design has no almanac".to_owned();
+            return Err(cannot(what, "use --as sp3 or tle for the design"));
+        }
+        let epoch = self.subject.grid.epoch();
+        let at = Applicability::next_to(epoch);
+        let mut entries: Vec<FileEntry> = Vec::new();
+        for (system, satellites) in systems {
+            let almanacs = almanacs(&satellites, epoch, at).map_err(|(name, why)| {
+                let what = format!("{name} of {}, which {}", system.name(), reason(why));
+                cannot(what, "take its operator's almanac, or use --as tle")
+            })?;
+            entries.push(self.almanac_file(files, system, (&satellites, &almanacs))?);
+        }
+        Ok(entries)
+    }
+
+    fn almanac_file(
+        &self,
+        files: &Files<'_, impl Sink>,
+        system: &System,
+        (satellites, almanacs): (&[GnssSatellite], &[Almanac]),
+    ) -> Result<FileEntry, WriteError> {
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let path = format!("yuma/{}.alm", system.name());
+        let about = (almanacs.len(), &metadata);
+        let entry = files.add(&path, (Product::Yuma, yuma::FORMAT_VERSION), about, |out| {
+            for almanac in almanacs {
+                almanac.write(out)?;
+                writeln!(out)?;
+            }
+            let shifts = satellites.iter().zip(almanacs);
+            let shift = |(one, almanac): (&GnssSatellite, &Almanac)| {
+                radius_shift_km(almanac, &one.orbit).abs()
+            };
+            Ok(Loss {
+                theory_max_km: shifts.map(shift).reduce(f64::max),
+                ..Loss::default()
+            })
+        })?;
+        let names: Vec<String> = (1..)
+            .zip(satellites)
+            .map(|(prn, one)| format!("PRN-{prn:02} = {}", one.name))
+            .collect();
+        Ok(entry.assuming(vec![
+            "nominal satellites, no almanac of real ones; the LEO design is not in it".to_owned(),
+            "A gives the rate of the argument of latitude under J2: the radius is off by theory_max_km"
+                .to_owned(),
+            "week modulo 1024, time of applicability in GPS time".to_owned(),
+            names.join(", "),
+        ]))
+    }
+}
+
+fn gmat_assumptions(model: Model) -> Vec<String> {
+    let start = match model {
+        Model::TwoBody => "states are those of the elements around a point mass",
+        _ => {
+            "states are osculating: the mean elements with first-order short-period terms; GMAT's \
+             trajectory keeps those terms (some kilometres from secular J2) and drifts along the \
+             track by the second order of J2, 1 to 3 km a day"
+        }
+    };
+    vec![
+        start.to_owned(),
+        "mu, R and J2 are in navwalker-j2.cof, which must lie beside the script".to_owned(),
+        "GMAT turns the field with its own precession, nutation and Earth-orientation data"
+            .to_owned(),
+        "the design alone: GMAT has no region, mask or PDOP, and the GNSS is left out".to_owned(),
+    ]
+}
+
+fn reason(why: NoAlmanac) -> &'static str {
+    match why {
+        NoAlmanac::Sgp4 => "flies by SGP4",
+        NoAlmanac::Eccentric => "is on an ellipse, whose perigee moves",
+    }
+}
+
+fn almanacs(
+    satellites: &[GnssSatellite],
+    epoch: crate::time::Epoch,
+    at: Applicability,
+) -> Result<Vec<Almanac>, (String, NoAlmanac)> {
+    let numbered = (1..).zip(satellites);
+    numbered
+        .map(|(prn, one)| Almanac::of(one, prn, epoch, at).map_err(|why| (one.name.clone(), why)))
+        .collect()
+}
+
+fn in_stk(system: &System, satellite: GnssSatellite) -> InStk {
+    let plain = |c: char| {
+        if c.is_ascii_alphanumeric() || c == '-' {
+            c
+        } else {
+            '_'
+        }
+    };
+    let name: String = format!("{}-{}", system.name(), satellite.name)
+        .chars()
+        .map(plain)
+        .collect();
+    if let GnssOrbit::Secular(orbit) = &satellite.orbit {
+        return InStk {
+            setting: Setting::J2(orbit.elements_at(0.0)),
+            flown: None,
+            name,
+        };
+    }
+    InStk {
+        setting: Setting::File(format!("gnss/{name}.e")),
+        flown: Some(Flown {
+            name: name.clone(),
+            slot: None,
+            propagator: Box::new(satellite.orbit),
+        }),
+        name,
+    }
+}

@@ -1,0 +1,126 @@
+//! The products that show or rebuild a whole scenario.
+
+use super::products::Written;
+use super::source::Source;
+use super::{Files, Product, Sink};
+use crate::ephemeris::EphemerisError;
+use crate::exchange::manifest::Loss;
+use crate::formats::maps::scene::{MAX_SHOWN_POINTS, Scene};
+use crate::formats::maps::tracks::Ground;
+use crate::formats::maps::{czml, geojson, kml};
+use crate::formats::{WriteError, csv};
+use crate::frames::Frame;
+use crate::keyword::Word;
+use std::f64::consts::TAU;
+
+impl Source<'_> {
+    fn period_s(&self) -> f64 {
+        let first = self.satellites.first();
+        first.map_or(0.0, |one| TAU / one.elements.kepler_mean_motion_rad_s())
+    }
+
+    fn ground(&self, scene: &Scene<'_>) -> Result<Vec<Ground>, EphemerisError> {
+        Ground::of(scene, &self.ephemeris, self.period_s())
+    }
+
+    pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let about = (0, &metadata);
+        let format = (Product::Metrics, "1");
+        let series = scene.series()?;
+        let points = files.add("metrics/points.csv", format, about, |out| {
+            csv::write_records(out, &series.points)?;
+            Ok(Loss::default())
+        })?;
+        let epochs = files.add("metrics/epochs.csv", format, about, |out| {
+            csv::write_records(out, &series.epochs)?;
+            Ok(Loss::default())
+        })?;
+        let entries = [points, epochs].into_iter();
+        Ok(entries
+            .map(|entry| entry.assuming(scene.assumptions()))
+            .collect())
+    }
+
+    pub(super) fn czml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        check_points(Product::Czml, scene)?;
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let about = (self.objects.len(), &metadata);
+        let format = (Product::Czml, czml::FORMAT_VERSION);
+        let entry = files.add("scene.czml", format, about, |out| {
+            let design = &self.subject.design;
+            let error_km = czml::write(out, scene, design, &self.ephemeris)?;
+            Ok(Loss {
+                interpolation_max_km: Some(error_km),
+                note: Some(
+                    "positions to a decimetre; GNSS satellites are in the file besides those of \
+                     the design"
+                        .to_owned(),
+                ),
+                ..Loss::default()
+            })
+        })?;
+        Ok(vec![entry.assuming(scene.assumptions())])
+    }
+
+    pub(super) fn geojson(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let format = (Product::Geojson, geojson::FORMAT_VERSION);
+        let noted = |note: &str| Loss {
+            note: Some(note.to_owned()),
+            ..Loss::default()
+        };
+        let region = files.add("geojson/region.geojson", format, (0, &metadata), |out| {
+            geojson::write_region(out, scene)?;
+            Ok(noted(
+                "metrics over the whole span; PDOP over the solved samples",
+            ))
+        })?;
+        let ground = self.ground(scene)?;
+        let about = (ground.len(), &metadata);
+        let tracks = files.add("geojson/ground-tracks.geojson", format, about, |out| {
+            geojson::write_tracks(out, &ground)?;
+            Ok(noted("one revolution from the epoch"))
+        })?;
+        let footprints = files.add("geojson/footprints.geojson", format, about, |out| {
+            geojson::write_footprints(out, &ground)?;
+            Ok(noted(
+                "where each satellite is above visibility.mask-deg at the epoch",
+            ))
+        })?;
+        let entries = [region, tracks, footprints].into_iter();
+        Ok(entries
+            .map(|entry| entry.assuming(scene.assumptions()))
+            .collect())
+    }
+
+    pub(super) fn kml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+        check_points(Product::Kml, scene)?;
+        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let ground = self.ground(scene)?;
+        let about = (ground.len(), &metadata);
+        let format = (Product::Kml, kml::FORMAT_VERSION);
+        let entry = files.add("scene.kml", format, about, |out| {
+            kml::write(out, scene, &self.subject.design, &ground)?;
+            Ok(Loss {
+                note: Some(
+                    "ground tracks are one revolution from the epoch, footprints those of the epoch"
+                        .to_owned(),
+                ),
+                ..Loss::default()
+            })
+        })?;
+        Ok(vec![entry.assuming(scene.assumptions())])
+    }
+}
+
+fn check_points(product: Product, scene: &Scene<'_>) -> Result<(), WriteError> {
+    let points = scene.setup().sites.len();
+    if points <= MAX_SHOWN_POINTS {
+        return Ok(());
+    }
+    Err(WriteError::TooManyPoints {
+        product: product.word(),
+        points,
+    })
+}

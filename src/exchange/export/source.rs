@@ -1,0 +1,152 @@
+//! What the products of an export are made from.
+
+use super::{Choices, Subject};
+use crate::constellation::Satellite;
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::exchange::manifest::{Conventions, FileEntry, Loss, Manifest};
+use crate::formats::metadata::{ElementChoice, Metadata, Object, Theory};
+use crate::formats::text::timestamp::TimeSystem;
+use crate::formats::{WriteError, element_set, tle};
+use crate::frames::Frame;
+use crate::orbit::Spread;
+use crate::orbit::fit::{Fit, fit};
+use crate::orbit::j2::SecularOrbit;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
+use crate::orbit::{PropagationError, Propagator};
+use crate::time::{Epoch, TimeGrid};
+
+/// What an export is made from.
+pub(super) struct Source<'a> {
+    pub(super) subject: &'a Subject,
+    pub(super) choices: Choices,
+    pub(super) satellites: Vec<Satellite>,
+    pub(super) objects: Vec<Object>,
+    pub(super) ephemeris: Ephemeris,
+}
+
+impl<'a> Source<'a> {
+    pub(super) fn new(subject: &'a Subject, choices: Choices) -> Result<Self, WriteError> {
+        let ephemeris = Ephemeris::of_design(&subject.design, subject.model, subject.grid)?;
+        Ok(Self {
+            subject,
+            choices,
+            satellites: subject.design.satellites(),
+            objects: Object::all(ephemeris.satellites(), subject.grid.epoch())?,
+            ephemeris,
+        })
+    }
+
+    pub(super) fn metadata(&self, frame: Frame, theory: Theory) -> Metadata {
+        let study = &self.subject.study;
+        Metadata {
+            originator: self.subject.originator.clone(),
+            creation: self.subject.creation,
+            frame,
+            time_system: TimeSystem::Utc,
+            theory,
+            subject: vec![
+                format!("Design: {}", self.subject.design),
+                format!("Scenario: {}, hash {}", study.name, study.hash),
+            ],
+        }
+    }
+
+    /// The unrounded element sets at an epoch, with the satellites that they are of.
+    pub(super) fn element_sets(&self, epoch: Epoch) -> Result<Vec<sgp4::Elements>, WriteError> {
+        let since_s = epoch.seconds_since(self.subject.grid.epoch());
+        let slot = match self.choices.elements {
+            ElementChoice::Kepler => MeanMotionSlot::Kepler,
+            ElementChoice::Kozai | ElementChoice::Fit => MeanMotionSlot::Kozai,
+        };
+        let set = |(satellite, object): (&Satellite, &Object)| {
+            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
+            element_set(&elements, object, epoch, slot)
+        };
+        let sets = self.satellites.iter().zip(&self.objects).map(set);
+        if self.choices.elements != ElementChoice::Fit {
+            return Ok(sets.collect());
+        }
+        let fitted = |(set, flown): (sgp4::Elements, &Flown)| Ok(self.fit(&set, flown)?.set);
+        sets.zip(self.ephemeris.satellites()).map(fitted).collect()
+    }
+
+    /// A set fitted to at most 200 samples of the trajectory.
+    fn fit(&self, start: &sgp4::Elements, flown: &Flown) -> Result<Fit, EphemerisError> {
+        let grid = self.subject.grid;
+        let stride = grid.len().div_ceil(200);
+        let mut positions = Vec::new();
+        for k in (0..grid.len()).step_by(stride) {
+            let elapsed_s = grid.elapsed_s(k);
+            let state = self.ephemeris.state(flown, elapsed_s)?;
+            positions.push((elapsed_s, state.position_km));
+        }
+        fit(start, &positions, grid.epoch()).map_err(|source| failed(flown, source))
+    }
+
+    /// The sets as a TLE rounds them, and before: at the epoch next to that of the study.
+    pub(super) fn tle_sets(&self) -> Result<Vec<sgp4::Elements>, WriteError> {
+        self.element_sets(tle::rounded_epoch(self.subject.grid.epoch()))
+    }
+
+    /// What the sets cost, looked at about once an hour, by the satellite that loses most: their
+    /// digits in a TLE, and SGP4 against the model that is flown.
+    pub(super) fn loss_of_sets(
+        &self,
+        sets: &[sgp4::Elements],
+        tle: bool,
+    ) -> Result<Loss, WriteError> {
+        let grid = self.subject.grid;
+        let span_s = grid.elapsed_s(grid.len() - 1) + 1.0;
+        let hourly = TimeGrid::new(grid.epoch(), span_s, 3_577.0).unwrap_or(grid);
+        let (mut digits, mut theory) = (Spread::default(), Spread::default());
+        for (set, flown) in sets.iter().zip(self.ephemeris.satellites()) {
+            let of_set = |set: &sgp4::Elements| {
+                Sgp4Orbit::from_element_set(set, grid.epoch()).map_err(|e| failed(flown, e))
+            };
+            let exact = of_set(set)?;
+            theory.widen(&self.apart(flown, (&exact, flown.propagator.as_ref()), hourly)?);
+            if tle {
+                let rounded = of_set(&tle::as_written(set)?)?;
+                digits.widen(&self.apart(flown, (&exact, &rounded), hourly)?);
+            }
+        }
+        Ok(Loss {
+            quantisation_max_km: tle.then_some(digits.max_km),
+            quantisation_rms_km: tle.then_some(digits.rms_km),
+            theory_max_km: Some(theory.max_km),
+            theory_rms_km: Some(theory.rms_km),
+            ..Loss::default()
+        })
+    }
+
+    fn apart(
+        &self,
+        flown: &Flown,
+        (one, other): (&dyn Propagator, &dyn Propagator),
+        grid: TimeGrid,
+    ) -> Result<Spread, EphemerisError> {
+        Spread::between(one, other, grid).map_err(|source| failed(flown, source))
+    }
+
+    pub(super) fn manifest(&self, files: Vec<FileEntry>) -> Manifest {
+        let Subject { grid, study, .. } = self.subject;
+        Manifest {
+            program: env!("CARGO_PKG_NAME").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            scenario: study.clone(),
+            design: self.subject.design.to_string(),
+            epoch: grid.epoch().to_string(),
+            step_s: grid.step_s(),
+            samples: grid.len(),
+            conventions: Conventions::default(),
+            files,
+        }
+    }
+}
+
+pub(super) fn failed(satellite: &Flown, source: PropagationError) -> EphemerisError {
+    EphemerisError {
+        name: satellite.name.clone(),
+        source,
+    }
+}

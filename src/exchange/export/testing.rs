@@ -1,0 +1,104 @@
+//! Exports into memory, for tests.
+
+use super::{Choices, Product, Subject, export_scene};
+use crate::constellation::Design;
+use crate::earth::Surface;
+use crate::evaluate::{Evaluator, Setup, testing};
+use crate::exchange::manifest::{Manifest, Study};
+use crate::formats::maps::scene::Scene;
+use crate::ground::{Grid, PointWeights};
+use crate::orbit::Model;
+use crate::time::TimeGrid;
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+use std::sync::{Arc, Mutex};
+
+/// A small region across the antimeridian.
+pub(crate) const GRID: Grid = Grid {
+    latitude_deg: [-10.0, 50.0],
+    longitude_deg: [170.0, 190.0],
+    step_deg: [30.0, 10.0],
+    weights: PointWeights::Equal,
+};
+
+/// A subject of tests: a design of the study `paper`, flown by J2.
+pub(crate) fn subject(design: Design, grid: TimeGrid) -> Subject {
+    Subject {
+        design,
+        model: Model::J2,
+        grid,
+        study: Study {
+            name: "paper".to_owned(),
+            hash: "0123".to_owned(),
+        },
+        originator: "NAVWALKER".to_owned(),
+        creation: grid.epoch(),
+    }
+}
+
+/// A scenario for a subject: the region and BeiDou-3 at 7°.
+pub(crate) fn setup(subject: &Subject) -> Setup {
+    Setup {
+        model: subject.model,
+        ..testing::setup(subject.grid, GRID.sites(Surface::Wgs84).unwrap(), 7.0)
+    }
+}
+
+type Contents = Arc<Mutex<BTreeMap<String, Vec<u8>>>>;
+
+/// A file that is kept in memory.
+struct Kept(Contents, String);
+
+impl Write for Kept {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let mut files = self.0.lock().unwrap();
+        let file = files.entry(self.1.clone()).or_default();
+        file.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// The manifest and the files of an export by their paths.
+pub(crate) fn in_memory(
+    subject: &Subject,
+    products: &[Product],
+    choices: Choices,
+) -> (Manifest, BTreeMap<String, Vec<u8>>) {
+    let contents = Contents::default();
+    let sink = |path: &str| Ok(Kept(Arc::clone(&contents), path.to_owned()));
+    let evaluator = Evaluator::new(setup(subject)).unwrap();
+    let scene = Scene::new(&evaluator, subject.design, Surface::Wgs84, Some(GRID));
+    // The ephemerides of STK alone have none.
+    let shown = [
+        Product::Czml,
+        Product::Geojson,
+        Product::Kml,
+        Product::Yuma,
+        Product::Metrics,
+    ];
+    let scene = Some(&scene).filter(|_| products.iter().any(|one| shown.contains(one)));
+    let manifest = export_scene(subject, scene, (products, choices), &sink).unwrap();
+    let files = std::mem::take(&mut *contents.lock().unwrap());
+    (manifest, files)
+}
+
+/// Whether there is a reader for a file of an export.
+pub(crate) fn is_read(path: &str) -> bool {
+    let unread = [
+        ".geojson",
+        ".kml",
+        ".script",
+        ".cof",
+        ".alm",
+        ".txt",
+        ".pnt",
+        "metrics/points.csv",
+        "metrics/epochs.csv",
+        "manifest.json",
+    ];
+    !unread.iter().any(|end| path.ends_with(end))
+}

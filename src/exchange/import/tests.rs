@@ -1,0 +1,195 @@
+use super::*;
+use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
+use crate::exchange::export::testing::{in_memory, subject};
+use crate::exchange::export::{Choices, Product};
+use crate::formats::text::timestamp::TimeSystem;
+use crate::formats::trajectory::Trajectory;
+use crate::keyword::Word;
+use crate::orbit::Model;
+use crate::time::{Epoch, TimeGrid};
+use std::collections::BTreeMap;
+
+fn grid() -> TimeGrid {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    TimeGrid::new(epoch, 3_600.0, 60.0).unwrap()
+}
+
+fn design() -> Design {
+    "delta:55:6/3/1@925".parse().unwrap()
+}
+
+fn exported(products: &[Product], choices: Choices) -> BTreeMap<String, Vec<u8>> {
+    let subject = subject(design(), grid());
+    let mut files = in_memory(&subject, products, choices).1;
+    files.remove("manifest.json");
+    files
+}
+
+fn fleet(files: &BTreeMap<String, Vec<u8>>) -> Fleet {
+    let read = |(path, bytes): (&String, &Vec<u8>)| {
+        Fleet::read(bytes.as_slice(), None, path.rsplit('/').next())
+            .unwrap()
+            .1
+    };
+    let mut fleets = files.iter().map(read);
+    let mut first = fleets.next().unwrap();
+    fleets.for_each(|next| first.append(next).unwrap());
+    first
+}
+
+/// Largest distance from the design, km.
+fn apart_km(flown: &Ephemeris) -> f64 {
+    let truth = Ephemeris::of_design(&design(), Model::J2, grid()).unwrap();
+    assert_eq!(flown.satellites().len(), 6);
+    let mut worst = 0.0_f64;
+    for (a, b) in flown.satellites().iter().zip(truth.satellites()) {
+        for t in grid().iter() {
+            let (a, b) = (flown.state(a, t).unwrap(), truth.state(b, t).unwrap());
+            worst = worst.max((a.position_km - b.position_km).norm());
+            assert!((a.velocity_km_s - b.velocity_km_s).norm() < 0.02);
+        }
+    }
+    worst
+}
+
+/// Every product flies again: states to their digits, SGP4 to the J3 terms and the shift of the
+/// radius that mean J2 lacks (under 20 km at 55° in an hour).
+#[test]
+fn every_product_flies_where_the_design_does() {
+    for frame in Frame::ALL {
+        for time_system in [TimeSystem::Utc, TimeSystem::Gps] {
+            let choices = Choices {
+                frame: *frame,
+                time_system,
+                ..Choices::default()
+            };
+            for product in [Product::Oem, Product::Opm, Product::Stk] {
+                let flown = fleet(&exported(&[product], choices))
+                    .fly(grid(), Model::J2)
+                    .unwrap();
+                // Nine decimals, and rotations forth and back in doubles.
+                assert!(apart_km(&flown) < 1e-8, "{frame} {product}");
+            }
+        }
+    }
+    for oem_combined in [false, true] {
+        let choices = Choices {
+            oem: oem::Notation::Xml,
+            oem_combined,
+            ..Choices::default()
+        };
+        let flown = fleet(&exported(&[Product::Oem], choices))
+            .fly(grid(), Model::J2)
+            .unwrap();
+        assert!(apart_km(&flown) < 1e-8);
+    }
+    let sp3 = fleet(&exported(&[Product::Sp3], Choices::default()));
+    // Six decimals of a kilometre in three components.
+    assert!(apart_km(&sp3.fly(grid(), Model::J2).unwrap()) < 1e-6);
+    let czml = fleet(&exported(&[Product::Czml], Choices::default()));
+    // The metre between samples, and decimetres.
+    assert!(apart_km(&czml.fly(grid(), Model::J2).unwrap()) < 2.2e-3);
+    let mut tables = exported(&[Product::Csv], Choices::default());
+    let states = tables.remove("states.csv").unwrap();
+    assert!(apart_km(&fleet(&tables).fly(grid(), Model::J2).unwrap()) < 1e-8);
+    let (_, states) = Fleet::read(states.as_slice(), None, None).unwrap();
+    assert!(apart_km(&states.fly(grid(), Model::J2).unwrap()) < 1e-8);
+    for notation in Notation::ALL {
+        let choices = Choices {
+            omm: *notation,
+            ..Choices::default()
+        };
+        let sets = fleet(&exported(&[Product::Omm], choices))
+            .fly(grid(), Model::J2)
+            .unwrap();
+        assert!(apart_km(&sets) < 20.0, "{notation}");
+    }
+    let sets = fleet(&exported(&[Product::Tle], Choices::default()));
+    assert!(apart_km(&sets.fly(grid(), Model::J2).unwrap()) < 20.0);
+}
+
+#[test]
+fn a_grid_that_the_samples_do_not_cover_is_refused() {
+    let fleet = fleet(&exported(&[Product::Oem], Choices::default()));
+    let epoch = grid().epoch();
+    for (duration_s, step_s, missing) in [
+        (7_200.0, 60.0, "2025-01-01T01:00:00"),
+        (3_600.0, 30.0, "2025-01-01T00:00:30"),
+    ] {
+        let longer = TimeGrid::new(epoch, duration_s, step_s).unwrap();
+        let error = fleet.fly(longer, Model::J2).err().unwrap();
+        assert!(error.to_string().contains(missing), "{error}");
+        assert!(
+            error.to_string().contains("NW-P01-S01 has no state"),
+            "{error}"
+        );
+    }
+    let earlier = TimeGrid::new(epoch.plus_seconds(-60.0), 600.0, 60.0).unwrap();
+    assert!(fleet.fly(earlier, Model::J2).is_err());
+    // Every other sample, from the tenth on.
+    let inside = TimeGrid::new(epoch.plus_seconds(600.0), 1_200.0, 120.0).unwrap();
+    let flown = fleet.fly(inside, Model::J2).unwrap();
+    let between = flown.satellites()[0].propagator.state_at(60.0);
+    assert!(between.is_err());
+}
+
+#[test]
+fn what_makes_no_constellation_is_refused() {
+    let mut oem = fleet(&exported(&[Product::Oem], Choices::default()));
+    let tle = fleet(&exported(&[Product::Tle], Choices::default()));
+    let mixed = oem.append(tle.clone()).unwrap_err();
+    assert!(mixed.to_string().contains("sampled states"), "{mixed}");
+    oem.append(oem.clone()).unwrap();
+    let twice = oem.fly(grid(), Model::J2).err().unwrap();
+    assert_eq!(twice.to_string(), "satellite NW-P01-S01 is given twice");
+    assert_eq!(
+        Fleet::Sampled(Vec::new()).fly(grid(), Model::J2).err(),
+        Some(FleetError::Empty)
+    );
+    let hollow = Trajectory {
+        name: "A".to_owned(),
+        id: "A".to_owned(),
+        frame: Frame::Teme,
+        states: Vec::new(),
+    };
+    assert!(Fleet::Sampled(vec![hollow]).fly(grid(), Model::J2).is_err());
+    let files = exported(&[Product::Opm], Choices::default());
+    let text = String::from_utf8(files["opm/NW-P01-S01.opm"].clone()).unwrap();
+    let foreign: String = text
+        .lines()
+        .filter(|line| !line.starts_with("USER_DEFINED"))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let error = Fleet::read(foreign.as_bytes(), None, None).unwrap_err();
+    assert!(error.to_string().contains("no mean elements"), "{error}");
+}
+
+/// The derivative of a polynomial of degree 8 is met by nine nodes; SP3 without velocities.
+#[test]
+fn velocities_follow_from_positions() {
+    let epoch = grid().epoch();
+    let at = |t: f64| Vector3::new((t / 900.0).powi(8), 3.0 * t, -t * t / 1e4);
+    let positions: Vec<_> = (0..9)
+        .map(|k| f64::from(k) * 300.0)
+        .map(|t| (epoch.plus_seconds(t), at(t)))
+        .collect();
+    for (k, velocity) in velocities(&positions).unwrap().iter().enumerate() {
+        let t = k as f64 * 300.0;
+        let exact = Vector3::new(8.0 / 900.0 * (t / 900.0).powi(7), 3.0, -2.0 * t / 1e4);
+        // Rounding of differences of numbers up to 7200 over 300 s.
+        assert!((velocity - exact).norm() < 1e-10, "{k}: {velocity}");
+    }
+    assert_eq!(velocities(&positions[..1]), None);
+    let twice = [positions[0], positions[0]];
+    assert_eq!(velocities(&twice), None);
+    let files = exported(&[Product::Sp3], Choices::default());
+    let text = String::from_utf8(files["sp3/part-01.sp3"].clone()).unwrap();
+    let positions_only: String = text
+        .lines()
+        .filter(|line| !line.starts_with('V'))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (_, fleet) = Fleet::read(positions_only.as_bytes(), None, None).unwrap();
+    assert!(apart_km(&fleet.fly(grid(), Model::J2).unwrap()) < 1e-6);
+}

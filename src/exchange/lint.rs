@@ -1,0 +1,267 @@
+//! Checks a file against its format: what a reader refuses, and what it lets pass although the
+//! standard forbids it.
+
+use crate::formats::ccsds::omm::Notation;
+use crate::formats::ccsds::{oem, omm, opm};
+use crate::formats::csv;
+use crate::formats::maps::czml;
+use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::{sp3, stk, tle};
+use crate::keyword::words;
+use std::collections::HashSet;
+use std::io::{self, BufRead};
+
+words! {
+    /// A format that can be checked.
+    Format {
+        /// Two-line element sets.
+        Tle = "tle",
+        /// CCSDS Orbit Ephemeris Message, keyword = value.
+        Oem = "oem",
+        /// The same in XML.
+        OemXml = "oem-xml",
+        /// CCSDS Orbit Mean-Elements Message, keyword = value.
+        Omm = "omm",
+        /// The same in XML.
+        OmmXml = "omm-xml",
+        /// The same as JSON.
+        OmmJson = "omm-json",
+        /// The same as a table.
+        OmmCsv = "omm-csv",
+        /// CCSDS Orbit Parameter Message, keyword = value.
+        Opm = "opm",
+        /// SP3-a to SP3-d.
+        Sp3 = "sp3",
+        /// CZML, the satellites of a document.
+        Czml = "czml",
+        /// STK ephemeris.
+        Stk = "stk",
+        /// Table of mean elements.
+        ElementsCsv = "elements-csv",
+        /// Table of states.
+        StatesCsv = "states-csv",
+    }
+}
+
+/// Bytes that are looked at to tell the format.
+const PROBE: usize = 1024;
+
+impl Format {
+    /// The format that the beginning of a file shows, or else its name.
+    #[must_use]
+    pub fn of(beginning: &[u8], file_name: Option<&str>) -> Self {
+        let beginning = &beginning[..beginning.len().min(PROBE)];
+        let text = String::from_utf8_lossy(beginning);
+        let text = text.trim_start_matches('\u{feff}').trim_start();
+        let first_line = text.lines().next().unwrap_or_default();
+        let by_content = match text.as_bytes() {
+            [b'<', ..] if text.contains("<oem") => Some(Self::OemXml),
+            [b'<', ..] => Some(Self::OmmXml),
+            [b'[', ..] if text.contains("\"document\"") => Some(Self::Czml),
+            [b'[' | b'{', ..] => Some(Self::OmmJson),
+            [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Sp3),
+            _ if text.starts_with("CCSDS_OEM_VERS") => Some(Self::Oem),
+            _ if text.starts_with("CCSDS_OMM_VERS") => Some(Self::Omm),
+            _ if text.starts_with("CCSDS_OPM_VERS") => Some(Self::Opm),
+            _ if text.to_ascii_lowercase().starts_with("stk.v.") => Some(Self::Stk),
+            _ if first_line.contains(',') && first_line.contains("MEAN_MOTION") => {
+                Some(Self::OmmCsv)
+            }
+            _ if first_line.contains("semi_major_axis_km") => Some(Self::ElementsCsv),
+            _ if first_line.contains("_x_km") => Some(Self::StatesCsv),
+            _ => None,
+        };
+        by_content
+            .or_else(|| Self::of_name(file_name?))
+            .unwrap_or(Self::Tle)
+    }
+
+    fn of_name(file_name: &str) -> Option<Self> {
+        let (_, extension) = file_name.rsplit_once('.')?;
+        match extension.to_ascii_lowercase().as_str() {
+            "oem" => Some(Self::Oem),
+            "opm" => Some(Self::Opm),
+            "omm" | "kvn" => Some(Self::Omm),
+            "xml" => Some(Self::OmmXml),
+            "json" => Some(Self::OmmJson),
+            "csv" => Some(Self::OmmCsv),
+            "sp3" => Some(Self::Sp3),
+            "czml" => Some(Self::Czml),
+            "e" => Some(Self::Stk),
+            _ => None,
+        }
+    }
+}
+
+/// What a check of a file says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Report {
+    /// The format that it was checked against.
+    pub format: Format,
+    /// What it breaks, in the order of the file as far as it goes.
+    pub findings: Vec<Finding>,
+}
+
+/// Checks a file against `format`, or against the one that its beginning and its name show; looks
+/// for up to `limit` findings.
+///
+/// # Errors
+/// A failure of the input.
+pub fn lint(
+    mut input: impl BufRead,
+    format: Option<Format>,
+    file_name: Option<&str>,
+    limit: usize,
+) -> io::Result<Report> {
+    let format = match format {
+        Some(format) => format,
+        None => Format::of(input.fill_buf()?, file_name),
+    };
+    let mut findings = Findings::of_linter(limit);
+    match format {
+        Format::Tle => lint_tle(input, &mut findings)?,
+        Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
+        Format::OemXml => oem::parse_xml(input, &mut findings, |_| ())?,
+        Format::Omm => omm::parse(input, Notation::Kvn, &mut findings, |_| ())?,
+        Format::OmmXml => omm::parse(input, Notation::Xml, &mut findings, |_| ())?,
+        Format::OmmJson => omm::parse(input, Notation::Json, &mut findings, |_| ())?,
+        Format::OmmCsv => omm::parse(input, Notation::Csv, &mut findings, |_| ())?,
+        Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
+        Format::Czml => czml::parse(input, &mut findings, |_| ())?,
+        Format::Stk => stk::parse(input, &mut findings).map(drop)?,
+        Format::Opm => opm::parse(input, &mut findings).map(drop)?,
+        Format::ElementsCsv => csv::parse_elements(input, &mut findings, |_| ())?,
+        Format::StatesCsv => csv::parse_states(input, &mut findings).map(drop)?,
+    }
+    let findings = findings.into_vec();
+    Ok(Report { format, findings })
+}
+
+/// Element sets, none of which may stand twice.
+fn lint_tle(input: impl BufRead, findings: &mut Findings) -> io::Result<()> {
+    let mut known = HashSet::new();
+    let mut repeated = Vec::new();
+    tle::parse(input, findings, |record| {
+        if !known.insert((record.set.norad_id, record.set.datetime)) {
+            repeated.push((record.line, record.set.norad_id));
+        }
+    })?;
+    for (line, number) in repeated {
+        let message = format!("satellite {number} has this epoch in a set before");
+        findings.warning((line, 3), "tle-repeated", message);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exchange::export::testing::{in_memory, is_read, subject};
+    use crate::exchange::export::{Choices, Product};
+
+    use crate::keyword::Word;
+    use crate::time::{Epoch, TimeGrid};
+    use std::collections::BTreeMap;
+
+    /// The files of an export in every notation.
+    fn exported() -> BTreeMap<String, Vec<u8>> {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let subject = subject(
+            "star:86.4:14/7/1@780".parse().unwrap(),
+            TimeGrid::new(epoch, 1_200.0, 60.0).unwrap(),
+        );
+        let mut files = BTreeMap::new();
+        for notation in Notation::ALL {
+            let choices = Choices {
+                omm: *notation,
+                ..Choices::default()
+            };
+            files.extend(in_memory(&subject, Product::ALL, choices).1);
+        }
+        for oem_combined in [false, true] {
+            let choices = Choices {
+                oem: oem::Notation::Xml,
+                oem_combined,
+                ..Choices::default()
+            };
+            files.extend(in_memory(&subject, &[Product::Oem], choices).1);
+        }
+        files
+    }
+
+    /// Every file that the exporter writes is recognised by its content and has no finding.
+    #[test]
+    fn our_own_files_have_no_finding() {
+        let mut formats = HashSet::new();
+        for (path, bytes) in exported() {
+            if !is_read(&path) {
+                continue;
+            }
+            let report = lint(bytes.as_slice(), None, None, 20).unwrap();
+            assert_eq!(report.findings, [], "{path}");
+            formats.insert(report.format);
+        }
+        assert_eq!(formats.len(), Format::ALL.len());
+    }
+
+    /// Bytes of one format given to the reader of another, cut short, or of no format at all.
+    #[test]
+    fn what_is_no_file_of_its_format_is_reported_by_all() {
+        let files = exported();
+        for format in Format::ALL {
+            for bytes in [
+                &b""[..],
+                b"\0\x01\x02",
+                b"hello\nworld\n",
+                &files["manifest.json"],
+            ] {
+                let report = lint(bytes, Some(*format), None, 5).unwrap();
+                assert!(!report.findings.is_empty(), "{format}");
+                assert!(report.findings.len() <= 5);
+            }
+        }
+        for (path, bytes) in &files {
+            let whole = [".csv", ".tle"];
+            if whole.iter().any(|end| path.ends_with(end)) || !is_read(path) {
+                continue;
+            }
+            let cut = &bytes[..bytes.len() * 2 / 3];
+            let report = lint(cut, None, None, 5).unwrap();
+            assert!(!report.findings.is_empty(), "{path}");
+        }
+    }
+
+    #[test]
+    fn repeated_sets_are_reported() {
+        let mut bytes = exported()["constellation.tle"].clone();
+        bytes.extend_from_within(..);
+        let report = lint(bytes.as_slice(), None, None, 100).unwrap();
+        assert_eq!(report.format, Format::Tle);
+        assert_eq!(report.findings.len(), 14);
+        assert_eq!(
+            (report.findings[0].line, report.findings[0].rule),
+            (44, "tle-repeated")
+        );
+    }
+
+    /// A line without end costs no memory and no time to speak of: 64 MiB here.
+    #[test]
+    fn endless_lines_are_passed_over() {
+        for format in Format::ALL {
+            let endless = io::BufReader::new(io::Read::take(io::repeat(b'x'), 1 << 26));
+            let report = lint(endless, Some(*format), None, 5).unwrap();
+            assert!(!report.findings.is_empty(), "{format}");
+        }
+    }
+
+    #[test]
+    fn names_help_where_content_does_not() {
+        assert_eq!(Format::of(b"", Some("a.b.SP3")), Format::Sp3);
+        assert_eq!(Format::of(b"x", Some("a.e")), Format::Stk);
+        assert_eq!(Format::of(b"x", None), Format::Tle);
+        assert_eq!(
+            Format::of(b"\xef\xbb\xbfstk.v.4.3", Some("a.csv")),
+            Format::Stk
+        );
+    }
+}

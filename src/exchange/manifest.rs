@@ -1,0 +1,248 @@
+//! `manifest.json`: which files an export wrote, under which conventions, and what each costs.
+
+use crate::earth::{FLATTENING, J2, MU_KM3_S2, RADIUS_KM};
+use crate::formats::WriteError;
+use crate::formats::metadata::{Metadata, frame_comment};
+use crate::frames::Frame;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::io::{self, Write};
+
+/// Name of the manifest among the files of an export.
+pub const FILE_NAME: &str = "manifest.json";
+
+/// Where the files of GNSS beside the design are.
+pub(crate) const GNSS_DIRECTORY: &str = "gnss/";
+
+/// What an export consists of.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// The program that wrote the files.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// The study.
+    pub scenario: Study,
+    /// The design, in Walker's notation.
+    pub design: String,
+    /// First instant, UTC.
+    pub epoch: String,
+    /// Spacing of the samples, s.
+    pub step_s: f64,
+    /// Number of samples.
+    pub samples: usize,
+    /// What every number depends on.
+    pub conventions: Conventions,
+    /// The files, in the order in which they were written.
+    pub files: Vec<FileEntry>,
+}
+
+/// The study that an export belongs to.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Study {
+    /// Name of the scenario.
+    pub name: String,
+    /// Hash of the resolved scenario.
+    pub hash: String,
+}
+
+/// The pinned conventions.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Conventions {
+    /// Gravitational parameter, km³/s².
+    pub mu_km3_s2: f64,
+    /// Equatorial radius, km; altitudes are over it.
+    pub radius_km: f64,
+    /// Second zonal harmonic.
+    pub j2: f64,
+    /// Flattening of the ellipsoid.
+    pub flattening: f64,
+    /// What the rotations between the frames are.
+    pub frames: Vec<String>,
+    /// UT1 and polar motion.
+    pub earth_rotation: String,
+}
+
+impl Default for Conventions {
+    fn default() -> Self {
+        let frames = [Frame::Teme, Frame::EarthFixed, Frame::Eme2000, Frame::Gcrf];
+        Self {
+            mu_km3_s2: MU_KM3_S2,
+            radius_km: RADIUS_KM,
+            j2: J2,
+            flattening: FLATTENING,
+            frames: frames.map(|frame| frame_comment(frame).to_owned()).into(),
+            earth_rotation: "GMST (IAU 1982), UT1 = UTC, no polar motion".to_owned(),
+        }
+    }
+}
+
+/// A file of an export.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FileEntry {
+    /// Where it lies, relative to the manifest, with `/`.
+    pub path: String,
+    /// The name that the format has on the command line.
+    pub format: String,
+    /// Version of the format's standard.
+    pub version: String,
+    /// Number of satellites in it.
+    pub objects: usize,
+    /// Frame of its numbers.
+    pub frame: String,
+    /// Time system of its stamps.
+    pub time_system: String,
+    /// What its numbers were computed with.
+    pub theory: String,
+    /// What the format costs against the model.
+    pub loss: Loss,
+    /// What the program that reads it must be told to get the same numbers.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub assumptions: Vec<String>,
+    /// SHA-256 of its bytes, in lower-case hexadecimal digits.
+    pub sha256: String,
+}
+
+/// What a format costs against the model that the study flies; what is not measured is null.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Loss {
+    /// By rounding to the digits of the file, largest distance, km.
+    pub quantisation_max_km: Option<f64>,
+    /// The same, root mean square of the worst satellite, km.
+    pub quantisation_rms_km: Option<f64>,
+    /// SGP4 of the element sets against the model that is flown, largest distance, km.
+    pub theory_max_km: Option<f64>,
+    /// The same, root mean square of the worst satellite, km.
+    pub theory_rms_km: Option<f64>,
+    /// By interpolation halfway between samples, largest distance, km.
+    pub interpolation_max_km: Option<f64>,
+    /// What else a reader should know, in a sentence.
+    pub note: Option<String>,
+}
+
+impl FileEntry {
+    /// Whether the file is of the design, and not of a GNSS beside it.
+    #[must_use]
+    pub fn is_of_design(&self) -> bool {
+        !self.path.starts_with(GNSS_DIRECTORY)
+    }
+
+    /// The entry of a file that `metadata` describes.
+    #[must_use]
+    pub fn new(
+        path: &str,
+        (format, version): (&str, &str),
+        objects: usize,
+        metadata: &Metadata,
+        loss: Loss,
+        sha256: String,
+    ) -> Self {
+        Self {
+            path: path.to_owned(),
+            format: format.to_owned(),
+            version: version.to_owned(),
+            objects,
+            frame: metadata.frame.to_string(),
+            time_system: metadata.time_system.to_string(),
+            theory: metadata.theory.to_string(),
+            loss,
+            assumptions: Vec::new(),
+            sha256,
+        }
+    }
+
+    /// The same entry with what a reader must be told.
+    #[must_use]
+    pub fn assuming(self, assumptions: Vec<String>) -> Self {
+        Self {
+            assumptions,
+            ..self
+        }
+    }
+}
+
+impl Manifest {
+    /// Writes the manifest as JSON, with a line end behind it.
+    ///
+    /// # Errors
+    /// When the output does not take the bytes.
+    pub fn write(&self, out: &mut impl Write) -> Result<(), WriteError> {
+        serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
+        writeln!(out)?;
+        Ok(())
+    }
+
+    /// Reads a manifest.
+    ///
+    /// # Errors
+    /// When the text is no manifest; the error names line and column.
+    pub fn read(input: impl io::Read) -> Result<Self, serde_json::Error> {
+        serde_json::from_reader(input)
+    }
+}
+
+/// Passes bytes on and keeps their SHA-256.
+pub struct HashingWriter<W> {
+    inner: W,
+    hash: Sha256,
+}
+
+impl<W: Write> HashingWriter<W> {
+    /// Passes bytes on to `inner`.
+    pub fn new(inner: W) -> Self {
+        Self {
+            inner,
+            hash: Sha256::new(),
+        }
+    }
+
+    /// Flushes, and gives the hash of all bytes in lower-case hexadecimal digits.
+    ///
+    /// # Errors
+    /// When the destination cannot be flushed.
+    pub fn finish(mut self) -> io::Result<String> {
+        self.inner.flush()?;
+        let digest = self.hash.finalize();
+        Ok(digest.iter().map(|byte| format!("{byte:02x}")).collect())
+    }
+}
+
+impl<W: Write> Write for HashingWriter<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let taken = self.inner.write(bytes)?;
+        self.hash.update(&bytes[..taken]);
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.inner.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// FIPS 180-4 example: the digest of "abc"; a destination that takes two bytes at a time
+    /// makes no difference.
+    #[test]
+    fn validate_sha256_of_what_was_taken() {
+        struct Slow(Vec<u8>);
+        impl Write for Slow {
+            fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+                let taken = bytes.len().min(2);
+                self.0.extend_from_slice(&bytes[..taken]);
+                Ok(taken)
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let mut out = HashingWriter::new(Slow(Vec::new()));
+        out.write_all(b"abc").unwrap();
+        assert_eq!(
+            out.finish().unwrap(),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+    }
+}

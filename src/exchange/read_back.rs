@@ -1,0 +1,289 @@
+//! Products of an export, read back and evaluated again: what the scenario makes of each file.
+//!
+//! A file is held against what its theory makes of the design: states and mean elements against
+//! the flown design, element sets against SGP4 of the unrounded sets. So the digits of a format
+//! alone explain a difference, and gates follow from them; what SGP4 and the model of the study
+//! are apart is told beside. A satellite that is d km from its place moves the circle that sees it
+//! by as much; at 400 km the circle's radius is 1600 km and its area changes by less than d/500 km
+//! of itself, which bounds the mean number in view, and the geometry changes by d over the
+//! distance, 400 km or more.
+
+use crate::constellation::{Design, Satellite};
+use crate::earth::RADIUS_KM;
+use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::evaluate::{Evaluator, Metrics};
+use crate::exchange::import::{Fleet, FleetError};
+use crate::exchange::lint::Format;
+use crate::formats::metadata::{ElementChoice, IdentityError, Object};
+use crate::formats::{element_set, tle};
+use crate::orbit::Model;
+use crate::orbit::j2::SecularOrbit;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
+use crate::time::Epoch;
+use crate::units::SECONDS_PER_DAY;
+use std::f64::consts::TAU;
+use thiserror::Error;
+
+/// Nine decimals of a kilometre, stamps to a nanosecond, and rotations forth and back, km.
+const STATES_KM: f64 = 1e-8;
+
+/// Six decimals of a kilometre in three components, and epochs to 1e-8 s, km.
+const SP3_KM: f64 = 1e-6;
+
+/// The metre between samples for which their spacing is chosen on one satellite, twice for the others,
+/// and a decimetre of digits, km.
+const CZML_KM: f64 = 2.0 * crate::formats::maps::czml::TARGET_KM + 2e-4;
+
+/// SGP4 against a theory of J2 alone, km: the frozen eccentricity of J3 (8.1 km up and down, 16.2
+/// along the track at most), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
+/// 10.6 km at most); M-30 to M-33.
+const SGP4_KM: f64 = 30.0;
+
+/// Second-order secular terms along the track, km/day: 14 J2² (Re/a)⁴ n a at most (M-34).
+const SGP4_KM_PER_DAY: f64 = 8.0;
+
+/// Kilometres off that change the mean in view, or a PDOP, by less than the whole of itself.
+const SCALE_KM: f64 = 500.0;
+
+/// Satellites that may cross the mask at a sample by rounding alone.
+const FLIPS: f64 = 5.0;
+
+/// Why a product cannot be checked.
+#[derive(Debug, Error)]
+pub enum RecheckError {
+    /// The satellites of the file do not fly the study.
+    #[error(transparent)]
+    Fleet(#[from] FleetError),
+    /// A satellite has no state.
+    #[error(transparent)]
+    Ephemeris(#[from] EphemerisError),
+    /// There is no name for a satellite.
+    #[error(transparent)]
+    Identity(#[from] IdentityError),
+    /// Other satellites than the design has.
+    #[error("{found} satellites were read back; the design has {expected}")]
+    Satellites {
+        /// In the file.
+        found: usize,
+        /// In the design.
+        expected: usize,
+    },
+}
+
+/// A difference and the bound on its size; without a bound it is only reported.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// File less design.
+    pub value: f64,
+    /// Bound on its size.
+    pub gate: Option<f64>,
+}
+
+impl Difference {
+    /// Whether the bound is kept.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.gate.is_none_or(|gate| self.value.abs() <= gate)
+    }
+}
+
+/// What a product says of the design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recheck {
+    /// Largest distance of a satellite from where the theory of the file has it, km.
+    pub position_km: Difference,
+    /// Largest distance between the theory of the file and the flown design, km; none where they
+    /// are the same.
+    pub theory_km: Option<f64>,
+    /// Mean number of visible satellites.
+    pub mean_visible: Difference,
+    /// Mean PDOP; none where one side has no solved sample.
+    pub mean_pdop: Option<Difference>,
+}
+
+impl Recheck {
+    /// Whether every bound is kept, and both sides have a PDOP or none has.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.position_km.passed()
+            && self.mean_visible.passed()
+            && self.mean_pdop.is_none_or(|pdop| pdop.passed())
+    }
+}
+
+/// The design that products are checked against.
+pub struct Original<'a> {
+    evaluator: &'a Evaluator,
+    design: Design,
+    flown: Seen,
+    semi_major_axis_km: f64,
+    eccentricity: f64,
+}
+
+/// Satellites and what the scenario makes of them.
+struct Seen {
+    ephemeris: Ephemeris,
+    metrics: Metrics,
+}
+
+impl<'a> Original<'a> {
+    /// Evaluates the design.
+    ///
+    /// # Errors
+    /// When a satellite cannot be flown.
+    pub fn new(evaluator: &'a Evaluator, design: &Design) -> Result<Self, EphemerisError> {
+        let setup = evaluator.setup();
+        Ok(Self {
+            evaluator,
+            design: *design,
+            flown: Seen {
+                ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
+                metrics: evaluator.design(design)?,
+            },
+            semi_major_axis_km: RADIUS_KM + design.altitude_km(),
+            eccentricity: design.eccentricity(),
+        })
+    }
+
+    /// The design flown by SGP4 from its unrounded element sets at `epoch`.
+    fn by_sgp4(&self, epoch: Epoch) -> Result<Seen, RecheckError> {
+        let grid = self.evaluator.setup().grid;
+        let since_s = epoch.seconds_since(grid.epoch());
+        let satellites = self.flown.ephemeris.satellites();
+        let objects = Object::all(satellites, grid.epoch())?;
+        let fly = |((satellite, object), flown): ((&Satellite, &Object), &Flown)| {
+            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
+            let set = element_set(&elements, object, epoch, MeanMotionSlot::Kozai);
+            let orbit = Sgp4Orbit::from_element_set(&set, grid.epoch());
+            Ok(Flown {
+                name: flown.name.clone(),
+                slot: flown.slot,
+                propagator: Box::new(orbit.map_err(|source| EphemerisError {
+                    name: flown.name.clone(),
+                    source,
+                })?),
+            })
+        };
+        let of_design = self.design.satellites();
+        let flown = of_design.iter().zip(&objects).zip(satellites).map(fly);
+        let ephemeris = Ephemeris::new(grid, flown.collect::<Result<_, EphemerisError>>()?);
+        let metrics = self.evaluator.ephemeris(&ephemeris)?;
+        Ok(Seen { ephemeris, metrics })
+    }
+
+    /// Flies what was read back and compares it; satellites stand in the order of the design.
+    /// `format` is the one whose digits and theory the file has, `sets` how its element sets are
+    /// made, if it has any.
+    ///
+    /// # Errors
+    /// When the satellites do not fly the study, or are not those of the design.
+    pub fn check(
+        &self,
+        format: Format,
+        sets: ElementChoice,
+        fleet: &Fleet,
+    ) -> Result<Recheck, RecheckError> {
+        let setup = self.evaluator.setup();
+        let (found, expected) = (fleet.len(), self.flown.ephemeris.satellites().len());
+        if found != expected {
+            return Err(RecheckError::Satellites { found, expected });
+        }
+        let epoch = match format {
+            // A fitted set follows the flown design, not the one that it started from.
+            _ if sets == ElementChoice::Fit => None,
+            Format::Tle => Some(tle::rounded_epoch(setup.grid.epoch())),
+            Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
+                Some(setup.grid.epoch())
+            }
+            _ => None,
+        };
+        let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
+        let reference = by_sgp4.as_ref().unwrap_or(&self.flown);
+        let read_back = fleet.fly(setup.grid, setup.model)?;
+        let metrics = self.evaluator.ephemeris(&read_back)?;
+        let gate_km = self.position_gate_km(format, sets);
+        let relative = gate_km.map(|km| km / SCALE_KM);
+        let flips = FLIPS / setup.sample_count() as f64;
+        let of = |value: f64| relative.map(|relative| value * relative + flips);
+        let pdop = reference.metrics.mean_pdop.zip(metrics.mean_pdop);
+        let visible = reference.metrics.mean_visible;
+        let theory = by_sgp4.as_ref().map(|seen| &seen.ephemeris);
+        Ok(Recheck {
+            position_km: Difference {
+                value: apart_km(&read_back, &reference.ephemeris)?,
+                gate: gate_km,
+            },
+            theory_km: theory
+                .map(|theory| apart_km(theory, &self.flown.ephemeris))
+                .transpose()?,
+            mean_visible: Difference {
+                value: metrics.mean_visible - visible,
+                gate: of(visible),
+            },
+            // A satellite more or less at a sample changes its PDOP by less than the whole.
+            mean_pdop: pdop.map(|(expected, found)| Difference {
+                value: found - expected,
+                gate: of(expected),
+            }),
+        })
+    }
+
+    /// How far the satellites of a file may be from where its theory has them, km; none for sets
+    /// fitted to a theory that SGP4 does not approximate.
+    fn position_gate_km(&self, format: Format, sets: ElementChoice) -> Option<f64> {
+        let setup = self.evaluator.setup();
+        let a = self.semi_major_axis_km;
+        let span_s = setup.grid.elapsed_s(setup.grid.len() - 1);
+        let days = span_s / SECONDS_PER_DAY;
+        // A low orbit turns by 16 revolutions a day at most.
+        let turned_rad = 16.0 * TAU * days;
+        let theory = match (sets, setup.model) {
+            (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
+            (ElementChoice::Fit, Model::Sgp4) => Some(0.0),
+            (ElementChoice::Fit, Model::J2 | Model::J2Osculating) => {
+                Some((1.0 + 8.0 * self.eccentricity) * (SGP4_KM + SGP4_KM_PER_DAY * days))
+            }
+            (ElementChoice::Fit, Model::TwoBody) => None,
+        };
+        match format {
+            // Four angles to 1e-4°, e to 1e-7 (twice that along the track), the mean motion to
+            // 1e-8 rev/day; an inclination off by half a digit turns each of three angles, which
+            // J2 moves by 10° a day at most, by three times as much as itself at most.
+            Format::Tle => {
+                let half_digit = 0.5e-4_f64.to_radians();
+                let rates = 3.0 * 3.0 * 10_f64.to_radians() * half_digit;
+                let grown = (TAU * 0.5e-8 + rates) * days;
+                theory.map(|km| km + STATES_KM + a * (4.0 * half_digit + 1e-7 + grown))
+            }
+            // Twelve decimals of a degree, fifteen of e, thirteen of the mean motion.
+            Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
+                theory.map(|km| km + 1e-8 * (1.0 + days))
+            }
+            Format::Sp3 => Some(SP3_KM),
+            Format::Czml => Some(CZML_KM),
+            // Nine decimals of a kilometre of a: 3/2 da n t along the track.
+            Format::Opm => Some(STATES_KM + 1.5 * 0.5e-9 * turned_rad),
+            Format::Oem
+            | Format::OemXml
+            | Format::Stk
+            | Format::ElementsCsv
+            | Format::StatesCsv => Some(STATES_KM),
+        }
+    }
+}
+
+/// Largest distance of satellites that stand in the same order, at the samples of the second.
+fn apart_km(one: &Ephemeris, other: &Ephemeris) -> Result<f64, EphemerisError> {
+    let mut worst_km = 0.0_f64;
+    for (first, second) in one.satellites().iter().zip(other.satellites()) {
+        for elapsed_s in other.grid().iter() {
+            let first = one.state(first, elapsed_s)?.position_km;
+            let second = other.state(second, elapsed_s)?.position_km;
+            worst_km = worst_km.max((first - second).norm());
+        }
+    }
+    Ok(worst_km)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,240 @@
+use super::*;
+use crate::earth::Surface;
+use crate::evaluate::testing;
+use crate::exchange::export::testing::{in_memory, subject};
+use crate::exchange::export::{Choices, Product};
+use crate::exchange::import::ReadFleetError;
+use crate::formats::ccsds::oem;
+use crate::frames::Frame;
+use crate::ground::{Grid, PointWeights};
+use crate::time::TimeGrid;
+use chrono::TimeDelta;
+
+fn grid() -> TimeGrid {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    TimeGrid::new(epoch, 86_400.0, 1_200.0).unwrap()
+}
+
+fn evaluator() -> Evaluator {
+    let region = Grid {
+        latitude_deg: [0.0, 60.0],
+        longitude_deg: [80.0, 140.0],
+        step_deg: [20.0, 20.0],
+        weights: PointWeights::Equal,
+    };
+    let setup = testing::setup(grid(), region.sites(Surface::Wgs84).unwrap(), 7.0);
+    Evaluator::new(setup).unwrap()
+}
+
+fn design() -> Design {
+    "delta:40:12/4/1@925".parse().unwrap()
+}
+
+/// The satellites of a product as a user would read them back, after a change to the files.
+fn read_back(
+    product: Product,
+    choices: Choices,
+    change: &dyn Fn(String) -> String,
+) -> Result<(Format, Fleet), ReadFleetError> {
+    let subject = subject(design(), grid());
+    let mut whole: Option<(Format, Fleet)> = None;
+    for (path, bytes) in in_memory(&subject, &[product], choices).1 {
+        if path == "manifest.json" || path == "elements.csv" {
+            continue;
+        }
+        let text = change(String::from_utf8(bytes).unwrap());
+        let (format, fleet) = Fleet::read(text.as_bytes(), None, Some(&path))?;
+        match &mut whole {
+            None => whole = Some((format, fleet)),
+            Some((_, whole)) => whole.append(fleet)?,
+        }
+    }
+    let (format, fleet) = whole.unwrap();
+    Ok(match product {
+        Product::TleStates => (Format::Tle, fleet),
+        _ => (format, fleet),
+    })
+}
+
+const CHECKED: [Product; 8] = [
+    Product::Tle,
+    Product::TleStates,
+    Product::Omm,
+    Product::Oem,
+    Product::Opm,
+    Product::Sp3,
+    Product::Stk,
+    Product::Csv,
+];
+
+fn as_it_is(text: String) -> String {
+    text
+}
+
+/// What is exported passes, and its gate in metres is what the digits of its format explain.
+#[test]
+fn exports_pass_gates_of_their_digits() {
+    let evaluator = evaluator();
+    let original = Original::new(&evaluator, &design()).unwrap();
+    for product in CHECKED {
+        let (format, fleet) = read_back(product, Choices::default(), &as_it_is).unwrap();
+        let found = original
+            .check(format, ElementChoice::Kozai, &fleet)
+            .unwrap();
+        assert!(found.passed(), "{product:?}: {found:?}");
+        let gate_m = found.position_km.gate.unwrap() * 1e3;
+        let most_m = match product {
+            Product::Tle | Product::TleStates => 50.0,
+            Product::Sp3 => 1.1e-3,
+            _ => 1e-4,
+        };
+        assert!(gate_m < most_m, "{product:?}: {gate_m} m");
+        // A gate is no looser than some hundred times what is found.
+        assert!(
+            found.position_km.value > 1e-3 * found.position_km.gate.unwrap(),
+            "{product:?}: {found:?}"
+        );
+        let sgp4 = matches!(product, Product::Tle | Product::TleStates | Product::Omm);
+        assert_eq!(
+            found.theory_km.is_some_and(|km| km > 1.0),
+            sgp4,
+            "{product:?}"
+        );
+    }
+}
+
+/// Two satellites that change places.
+fn swapped(fleet: &mut Fleet) {
+    match fleet {
+        Fleet::Sets(sets) => sets.swap(2, 3),
+        Fleet::Elements(rows) => rows.swap(2, 3),
+        Fleet::Sampled(trajectories) => trajectories.swap(2, 3),
+        Fleet::Tracks(tracks) => tracks.swap(2, 3),
+    }
+}
+
+/// Everything a second late: what stands at an instant is the state of a second before.
+fn a_second_late(fleet: &mut Fleet) {
+    match fleet {
+        Fleet::Sets(sets) => sets
+            .iter_mut()
+            .for_each(|set| set.datetime += TimeDelta::seconds(1)),
+        Fleet::Elements(rows) => rows
+            .iter_mut()
+            .for_each(|row| row.epoch = row.epoch.plus_seconds(1.0)),
+        Fleet::Tracks(tracks) => tracks
+            .iter_mut()
+            .for_each(|track| track.epoch = track.epoch.plus_seconds(1.0)),
+        Fleet::Sampled(trajectories) => {
+            for (_, state) in trajectories.iter_mut().flat_map(|one| &mut one.states) {
+                state.position_km -= state.velocity_km_s;
+            }
+        }
+    }
+}
+
+/// States in TEME that call themselves EME2000.
+fn in_another_frame(fleet: &mut Fleet) {
+    if let Fleet::Sampled(trajectories) = fleet {
+        trajectories
+            .iter_mut()
+            .for_each(|one| one.frame = Frame::Eme2000);
+    }
+}
+
+type Mistake = fn(&mut Fleet);
+
+#[test]
+fn planted_mistakes_fail() {
+    let evaluator = evaluator();
+    let original = Original::new(&evaluator, &design()).unwrap();
+    let teme = Choices {
+        frame: Frame::Teme,
+        ..Choices::default()
+    };
+    let mistakes: [(&str, Mistake); 3] = [
+        ("swapped", swapped),
+        ("late", a_second_late),
+        ("frame", in_another_frame),
+    ];
+    for product in CHECKED {
+        for (name, mistake) in mistakes {
+            let (format, mut fleet) = read_back(product, teme, &as_it_is).unwrap();
+            // Sets and mean elements are in TEME by their definition.
+            if name == "frame" && !matches!(fleet, Fleet::Sampled(_)) {
+                continue;
+            }
+            mistake(&mut fleet);
+            let found = original.check(format, ElementChoice::Kozai, &fleet);
+            let found = found.unwrap();
+            assert!(!found.position_km.passed(), "{product:?} {name}: {found:?}");
+        }
+    }
+    let kepler = Choices {
+        elements: ElementChoice::Kepler,
+        ..Choices::default()
+    };
+    let (format, fleet) = read_back(Product::Omm, kepler, &as_it_is).unwrap();
+    let found = original
+        .check(format, ElementChoice::Kepler, &fleet)
+        .unwrap();
+    assert!(found.position_km.value > 100.0 && !found.passed());
+    let (format, mut fleet) = read_back(Product::Oem, teme, &as_it_is).unwrap();
+    if let Fleet::Sampled(trajectories) = &mut fleet {
+        trajectories.pop();
+    }
+    let error = original
+        .check(format, ElementChoice::Kozai, &fleet)
+        .unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "11 satellites were read back; the design has 12"
+    );
+}
+
+/// The same in the text of a file, as another program would have written it.
+#[test]
+fn a_frame_that_is_misnamed_in_the_file_fails() {
+    let evaluator = evaluator();
+    let original = Original::new(&evaluator, &design()).unwrap();
+    for (notation, from, to) in [
+        (
+            oem::Notation::Kvn,
+            "REF_FRAME = TEME",
+            "REF_FRAME = EME2000",
+        ),
+        (
+            oem::Notation::Xml,
+            "<REF_FRAME>TEME<",
+            "<REF_FRAME>EME2000<",
+        ),
+    ] {
+        let choices = Choices {
+            frame: Frame::Teme,
+            oem: notation,
+            ..Choices::default()
+        };
+        let change = |text: String| text.replace(from, to);
+        let (format, fleet) = read_back(Product::Oem, choices, &change).unwrap();
+        let found = original
+            .check(format, ElementChoice::Kozai, &fleet)
+            .unwrap();
+        // A third of a degree of precession since 2000 at 7303 km: 41 km.
+        let apart_km = found.position_km.value;
+        assert!((30.0..60.0).contains(&apart_km), "{apart_km}");
+        assert!(!found.passed());
+    }
+}
+
+#[test]
+fn fitted_sets_are_held_against_the_flown_design() {
+    let evaluator = evaluator();
+    let original = Original::new(&evaluator, &design()).unwrap();
+    let fit = Choices {
+        elements: ElementChoice::Fit,
+        ..Choices::default()
+    };
+    let (format, fleet) = read_back(Product::Omm, fit, &as_it_is).unwrap();
+    let found = original.check(format, ElementChoice::Fit, &fleet).unwrap();
+    assert!(found.passed() && found.theory_km.is_none(), "{found:?}");
+}

@@ -1,0 +1,9 @@
+//! The messages of the CCSDS Navigation Data Messages family, in KVN, XML, JSON and CSV.
+
+pub(crate) mod kvn;
+pub mod oem;
+pub mod omm;
+pub mod opm;
+pub(crate) mod xml;
+
+pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};

@@ -1,0 +1,436 @@
+//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the
+//! keyword tables that say what belongs where.
+
+use crate::formats::metadata::Metadata;
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::Line;
+use crate::formats::text::timestamp::{self, SecondDigits, calendar};
+use crate::keyword::{Word, words};
+use chrono::NaiveDateTime;
+use std::io::{self, Write};
+
+/// Longest line (7.3.2).
+const LINE: usize = 254;
+
+/// Most digits of a number (7.5.6, 7.5.7).
+const DIGITS: usize = 16;
+
+words! {
+    /// A version of the Orbit Data Messages.
+    Version {
+        /// CCSDS 502.0-B-2: what most readers know.
+        V2 = "2.0",
+        /// CCSDS 502.0-B-3.
+        V3 = "3.0",
+    }
+}
+
+/// The header of a message (tables 3-1, 4-1 and 5-2, which are alike).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// Version of the message.
+    pub version: Version,
+    /// Comments behind the version.
+    pub comments: Vec<String>,
+    /// Classification (version 3).
+    pub classification: Option<String>,
+    /// When the message was made, UTC.
+    pub creation_date: NaiveDateTime,
+    /// Who made it.
+    pub originator: String,
+    /// Identifier of the message (version 3).
+    pub message_id: Option<String>,
+}
+
+impl Header {
+    /// The header of a file that `metadata` describes.
+    ///
+    /// Version 3 too goes without `MESSAGE_ID`, which is optional and which some readers refuse.
+    pub(crate) fn new(version: Version, metadata: &Metadata) -> Self {
+        Self {
+            version,
+            comments: metadata.comments(),
+            classification: None,
+            creation_date: metadata.creation.utc().naive_utc(),
+            originator: metadata.originator.clone(),
+            message_id: None,
+        }
+    }
+
+    /// Writes the header, whose first keyword is `version_key`.
+    pub(crate) fn write(&self, out: &mut impl Write, version_key: &str) -> io::Result<()> {
+        writeln!(out, "{version_key} = {}", self.version)?;
+        write_comments(out, &self.comments)?;
+        for (key, value) in self.pairs() {
+            writeln!(out, "{key} = {value}")?;
+        }
+        Ok(())
+    }
+
+    /// The keywords behind the comments.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let digits = SecondDigits::of_stamp(self.creation_date);
+        [
+            ("CLASSIFICATION", self.classification.clone()),
+            ("CREATION_DATE", Some(calendar(self.creation_date, digits))),
+            ("ORIGINATOR", Some(self.originator.clone())),
+            ("MESSAGE_ID", self.message_id.clone()),
+        ]
+        .into_iter()
+        .filter_map(|(key, value)| Some((key, value?)))
+    }
+
+    /// The header from its keywords; `block` holds the version under `version_key`.
+    pub(crate) fn read(block: &Block, version_key: &str, findings: &mut Findings) -> Option<Self> {
+        let text = block.text(version_key)?;
+        // Version 1.0 differs from 2.0 in nothing that is read here.
+        let known = if text == "1.0" { "2.0" } else { &text };
+        let Ok(version) = Version::from_word(known) else {
+            let message = format!("version '{text}' is not 1.0, 2.0 or 3.0");
+            findings.error(block.place(version_key), "ccsds-version", message);
+            return None;
+        };
+        Some(Self {
+            version,
+            comments: block.comments.clone(),
+            classification: block.text("CLASSIFICATION"),
+            creation_date: block.stamp("CREATION_DATE", findings)?,
+            originator: block.text("ORIGINATOR")?,
+            message_id: block.text("MESSAGE_ID"),
+        })
+    }
+}
+
+/// Writes comment lines.
+pub(crate) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::Result<()> {
+    comments
+        .iter()
+        .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
+}
+
+/// Whether a keyword must be there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Need {
+    Mandatory,
+    /// Mandatory in the standard, but so often missing that a reader goes on.
+    Expected,
+    Optional,
+}
+
+/// A keyword of a table, and whether it must be there.
+pub(crate) struct Keyword {
+    name: &'static str,
+    need: Need,
+}
+
+/// A keyword that must be there.
+pub(crate) const fn must(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        need: Need::Mandatory,
+    }
+}
+
+/// A keyword that must be there by the standard, without which a reader goes on.
+pub(crate) const fn should(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        need: Need::Expected,
+    }
+}
+
+/// A keyword that may be there.
+pub(crate) const fn may(name: &'static str) -> Keyword {
+    Keyword {
+        name,
+        need: Need::Optional,
+    }
+}
+
+/// A keyword and its value, as a line gives them.
+pub(crate) struct Pair<'a> {
+    pub(crate) key: &'a str,
+    pub(crate) value: &'a str,
+    pub(crate) key_place: (usize, usize),
+    pub(crate) value_place: (usize, usize),
+}
+
+/// What a line of a message is.
+pub(crate) enum Item<'a> {
+    Blank,
+    Comment(&'a str),
+    Pair(Pair<'a>),
+    /// Anything without an equals sign: a `_START`, a `_STOP`, a line of numbers.
+    Other(&'a str),
+}
+
+/// Takes a line apart.
+pub(crate) fn item<'a>(line: &'a Line, findings: &mut Findings) -> Item<'a> {
+    if line.text.len() > LINE {
+        let message = format!(
+            "the line has {} characters; {LINE} are allowed",
+            line.text.len()
+        );
+        findings.warning((line.number, LINE + 1), "ccsds-line-length", message);
+    }
+    let text = line.text.trim();
+    if text.is_empty() {
+        return Item::Blank;
+    }
+    if let Some(comment) = text.strip_prefix("COMMENT")
+        && (comment.is_empty() || comment.starts_with(' '))
+    {
+        return Item::Comment(comment.strip_prefix(' ').unwrap_or(comment));
+    }
+    let Some((key, value)) = line.text.split_once('=') else {
+        return Item::Other(text);
+    };
+    let column = |part: &str| part.len() - part.trim_start().len() + 1;
+    Item::Pair(Pair {
+        key: key.trim(),
+        value: value.trim(),
+        key_place: (line.number, column(key)),
+        value_place: (line.number, key.len() + 1 + column(value)),
+    })
+}
+
+/// The frame and the elements of a covariance matrix, as they end an OPM and an OMM (tables 3-3 and
+/// 4-3).
+pub(crate) const COVARIANCE: &[Keyword] = &[
+    may("COV_REF_FRAME"),
+    may("CX_X"),
+    may("CY_X"),
+    may("CY_Y"),
+    may("CZ_X"),
+    may("CZ_Y"),
+    may("CZ_Z"),
+    may("CX_DOT_X"),
+    may("CX_DOT_Y"),
+    may("CX_DOT_Z"),
+    may("CX_DOT_X_DOT"),
+    may("CY_DOT_X"),
+    may("CY_DOT_Y"),
+    may("CY_DOT_Z"),
+    may("CY_DOT_X_DOT"),
+    may("CY_DOT_Y_DOT"),
+    may("CZ_DOT_X"),
+    may("CZ_DOT_Y"),
+    may("CZ_DOT_Z"),
+    may("CZ_DOT_X_DOT"),
+    may("CZ_DOT_Y_DOT"),
+    may("CZ_DOT_Z_DOT"),
+];
+
+/// A value with its place in the file.
+#[derive(Debug, Clone)]
+struct Placed {
+    text: String,
+    place: (usize, usize),
+}
+
+/// The values of one table of keywords, as they come in.
+pub(crate) struct Block {
+    table: Vec<&'static Keyword>,
+    values: Vec<Option<Placed>>,
+    /// Which keywords have come in, with a value or without.
+    seen: Vec<bool>,
+    last: Option<usize>,
+    ordered: bool,
+    /// Comments among the keywords.
+    pub(crate) comments: Vec<String>,
+}
+
+impl Block {
+    /// A block whose keywords come in the order of the tables.
+    pub(crate) fn new(tables: &[&'static [Keyword]]) -> Self {
+        let table: Vec<_> = tables.iter().copied().flatten().collect();
+        Self {
+            values: table.iter().map(|_| None).collect(),
+            seen: vec![false; table.len()],
+            table,
+            last: None,
+            ordered: true,
+            comments: Vec::new(),
+        }
+    }
+
+    /// A block whose keywords may come in any order.
+    pub(crate) fn unordered(tables: &[&'static [Keyword]]) -> Self {
+        Self {
+            ordered: false,
+            ..Self::new(tables)
+        }
+    }
+
+    fn index(&self, key: &str) -> Option<usize> {
+        self.table.iter().position(|keyword| keyword.name == key)
+    }
+
+    /// Whether a keyword belongs to the table.
+    pub(crate) fn knows(&self, key: &str) -> bool {
+        self.index(key).is_some()
+    }
+
+    /// Whether no keyword has come in yet.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.last.is_none()
+    }
+
+    /// Takes a keyword of the table.
+    pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+        let Some(index) = self.index(pair.key) else {
+            let message = format!("keyword {} does not belong here", pair.key);
+            findings.error(pair.key_place, "ccsds-keyword", message);
+            return;
+        };
+        if std::mem::replace(&mut self.seen[index], true) {
+            let message = format!("{} is given twice", pair.key);
+            findings.error(pair.key_place, "ccsds-repeated", message);
+            return;
+        }
+        if let Some(last) = self.last.filter(|last| self.ordered && *last > index) {
+            let message = format!("{} stands after {}", pair.key, self.table[last].name);
+            findings.warning(pair.key_place, "ccsds-order", message);
+        }
+        self.last = self.last.max(Some(index));
+        if pair.value.is_empty() {
+            let message = format!("{} has no value", pair.key);
+            match self.table[index].need {
+                Need::Mandatory => findings.error(pair.value_place, "ccsds-empty", message),
+                _ => findings.warning(pair.value_place, "ccsds-empty", message),
+            }
+            return;
+        }
+        self.values[index] = Some(Placed {
+            text: pair.value.to_owned(),
+            place: pair.value_place,
+        });
+    }
+
+    /// Takes a keyword of the table whose key and value stand at one place, as in XML.
+    pub(crate) fn accept_at(
+        &mut self,
+        (key, value): (&str, &str),
+        place: (usize, usize),
+        findings: &mut Findings,
+    ) {
+        let pair = Pair {
+            key,
+            value,
+            key_place: place,
+            value_place: place,
+        };
+        self.accept(&pair, findings);
+    }
+
+    /// Reports the mandatory keywords that have not come in.
+    pub(crate) fn finish(&self, place: (usize, usize), findings: &mut Findings) {
+        for (keyword, seen) in self.table.iter().zip(&self.seen) {
+            let message = || format!("{} is mandatory and missing", keyword.name);
+            match keyword.need {
+                Need::Mandatory if !seen => findings.error(place, "ccsds-missing", message()),
+                Need::Expected if !seen => findings.warning(place, "ccsds-missing", message()),
+                _ => {}
+            }
+        }
+    }
+
+    fn placed(&self, key: &str) -> Option<&Placed> {
+        self.values[self.index(key)?].as_ref()
+    }
+
+    /// Where the value of a keyword stands.
+    pub(crate) fn place(&self, key: &str) -> (usize, usize) {
+        self.placed(key).map_or((1, 1), |value| value.place)
+    }
+
+    /// A text value.
+    pub(crate) fn text(&self, key: &str) -> Option<String> {
+        self.placed(key).map(|value| value.text.clone())
+    }
+
+    /// A time; a finding if it is none.
+    pub(crate) fn stamp(&self, key: &str, findings: &mut Findings) -> Option<NaiveDateTime> {
+        let value = self.placed(key)?;
+        read_stamp(&value.text, value.place, findings)
+    }
+
+    /// A number, behind which its unit in brackets may stand; a finding if it is none.
+    pub(crate) fn number(&self, key: &str, findings: &mut Findings) -> Option<f64> {
+        let value = self.placed(key)?;
+        let text = match value.text.split_once('[') {
+            Some((number, unit)) if unit.ends_with(']') => number.trim_end(),
+            _ => &value.text,
+        };
+        read_number(text, value.place, findings)
+    }
+
+    /// A count; a finding if it is none.
+    pub(crate) fn count(&self, key: &str, findings: &mut Findings) -> Option<u64> {
+        let value = self.placed(key)?;
+        let parsed = value.text.parse().ok();
+        if parsed.is_none() {
+            let message = format!("'{}' is not a count", value.text);
+            findings.error(value.place, "ccsds-number", message);
+        }
+        parsed
+    }
+}
+
+/// Reads a time of 7.5.10; a finding if it is none.
+pub(crate) fn read_stamp(
+    text: &str,
+    place: (usize, usize),
+    findings: &mut Findings,
+) -> Option<NaiveDateTime> {
+    let stamp = timestamp::parse(text);
+    if stamp.is_none() {
+        let message = format!("'{text}' is not a time such as 2025-01-01T00:00:00.000");
+        findings.error(place, "ccsds-time", message);
+    }
+    stamp
+}
+
+/// Reads a number of 7.5.4 to 7.5.7; a finding if it is none.
+pub(crate) fn read_number(
+    text: &str,
+    place: (usize, usize),
+    findings: &mut Findings,
+) -> Option<f64> {
+    let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+    let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
+    // Rust would also take "inf" and "nan".
+    let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
+    let all_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+    let Some(value) = value.filter(|_| all_digits(whole) && all_digits(decimals)) else {
+        let message = format!("'{text}' is not a number");
+        findings.error(place, "ccsds-number", message);
+        return None;
+    };
+    if whole.is_empty() || decimals.is_empty() {
+        let message = format!("'{text}' needs a digit on both sides of its point (7.5.6)");
+        findings.warning(place, "ccsds-point", message);
+    }
+    let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();
+    if digits > DIGITS {
+        let message = format!("the number has {digits} digits; {DIGITS} are allowed");
+        findings.warning(place, "ccsds-digits", message);
+    }
+    Some(value)
+}
+
+/// The words of a line with their columns, from 1.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        at += text[at..].len() - text[at..].trim_start().len();
+        let word = text[at..]
+            .split(' ')
+            .next()
+            .filter(|word| !word.is_empty())?;
+        let column = at + 1;
+        at += word.len();
+        Some((column, word))
+    })
+}

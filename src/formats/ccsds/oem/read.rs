@@ -1,0 +1,439 @@
+//! Reads messages strictly, line by line.
+
+use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
+use crate::formats::ReadError;
+use crate::formats::ccsds::kvn::{
+    Block, Header, Item, Keyword, Pair, item, may, must, read_number, read_stamp, words,
+};
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::{Line, Lines};
+use crate::frames::State;
+use chrono::NaiveDateTime;
+use nalgebra::Vector3;
+use std::io::{self, BufRead};
+
+/// Table 5-2.
+pub(super) const HEADER: &[Keyword] = &[
+    must(VERSION),
+    may("CLASSIFICATION"),
+    must("CREATION_DATE"),
+    must("ORIGINATOR"),
+    may("MESSAGE_ID"),
+];
+
+/// Table 5-3.
+pub(super) const METADATA: &[Keyword] = &[
+    must("OBJECT_NAME"),
+    must("OBJECT_ID"),
+    must("CENTER_NAME"),
+    must("REF_FRAME"),
+    may("REF_FRAME_EPOCH"),
+    must("TIME_SYSTEM"),
+    must("START_TIME"),
+    may("USEABLE_START_TIME"),
+    may("USEABLE_STOP_TIME"),
+    must("STOP_TIME"),
+    may("INTERPOLATION"),
+    may("INTERPOLATION_DEGREE"),
+];
+
+/// Table 5-4, between its markers.
+const COVARIANCE: &[Keyword] = &[must("EPOCH"), may("COV_REF_FRAME")];
+
+/// Reads a message; the first broken rule ends it.
+///
+/// # Errors
+/// The first finding, or a failure of the input.
+pub fn read(input: impl BufRead) -> Result<Oem, ReadError> {
+    let mut findings = Findings::of_reader();
+    let mut segments = Vec::new();
+    let header = parse(input, &mut findings, |segment| segments.push(segment))?;
+    let message = header.map(|header| Oem { header, segments });
+    let read = findings.unless_error(message)?;
+    // Without a finding there is a header.
+    read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
+}
+
+/// Passes every segment that keeps the rules to `take`, until the list of findings is full.
+/// The header, if it keeps them too.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(
+    input: impl BufRead,
+    findings: &mut Findings,
+    mut take: impl FnMut(Segment),
+) -> io::Result<Option<Header>> {
+    let mut lines = Lines::new(input);
+    let mut parser = Parser::new();
+    while let Some(line) = lines.next(findings)? {
+        parser.line(&line, findings, &mut take);
+    }
+    Ok(parser.end(lines.number().max(1), findings, &mut take))
+}
+
+/// The part of the message that the next line belongs to.
+enum Part {
+    Header,
+    Metadata(Block),
+    Ephemeris,
+    Covariance(Covariance),
+    /// After a covariance only a new segment may follow.
+    BetweenSegments,
+}
+
+struct Parser {
+    part: Part,
+    header_block: Block,
+    header: Option<Header>,
+    /// Time system of the first segment, which all share (5.2.4.5).
+    time_system: Option<String>,
+    segment: Option<Segment>,
+    /// Line of the last `META_START`.
+    segment_line: usize,
+    segments: usize,
+}
+
+impl Parser {
+    fn new() -> Self {
+        Self {
+            part: Part::Header,
+            header_block: Block::new(&[HEADER]),
+            header: None,
+            time_system: None,
+            segment: None,
+            segment_line: 0,
+            segments: 0,
+        }
+    }
+
+    fn line(&mut self, line: &Line, findings: &mut Findings, take: &mut impl FnMut(Segment)) {
+        match item(line, findings) {
+            Item::Blank => {}
+            Item::Comment(text) => self.comment(line.number, text, findings),
+            Item::Pair(pair) => self.pair(&pair, findings),
+            Item::Other("META_START") => self.meta_start(line.number, findings, take),
+            Item::Other("META_STOP") => self.meta_stop(line.number, findings),
+            Item::Other("COVARIANCE_START") => self.covariance_start(line.number, findings),
+            Item::Other("COVARIANCE_STOP") => self.covariance_stop(line.number, findings),
+            Item::Other(_) => self.data(line, findings),
+        }
+    }
+
+    fn comment(&mut self, number: usize, text: &str, findings: &mut Findings) {
+        let kept = match (&mut self.part, &mut self.segment) {
+            (Part::Header, _) if !self.header_block.is_empty() => &mut self.header_block.comments,
+            (Part::Metadata(block), _) if block.is_empty() => &mut block.comments,
+            (Part::Ephemeris, Some(segment)) if segment.states.is_empty() => &mut segment.comments,
+            (Part::Covariance(covariance), _) if covariance.is_untouched() => return,
+            _ => {
+                let message = "a comment may stand only at the beginning of a section (7.8.9)";
+                findings.warning((number, 1), "oem-comment", message);
+                return;
+            }
+        };
+        kept.push(text.to_owned());
+    }
+
+    fn pair(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+        match &mut self.part {
+            Part::Header => self.header_block.accept(pair, findings),
+            Part::Metadata(block) => block.accept(pair, findings),
+            Part::Covariance(covariance) => covariance.pair(pair, findings),
+            Part::Ephemeris | Part::BetweenSegments => {
+                let message = format!("keyword {} does not belong here", pair.key);
+                findings.error(pair.key_place, "ccsds-keyword", message);
+            }
+        }
+    }
+
+    fn meta_start(
+        &mut self,
+        number: usize,
+        findings: &mut Findings,
+        take: &mut impl FnMut(Segment),
+    ) {
+        match &self.part {
+            Part::Header => self.header = header(&self.header_block, number, findings),
+            Part::Ephemeris | Part::BetweenSegments => self.end_segment(findings, take),
+            Part::Metadata(_) | Part::Covariance(_) => {
+                misplaced_marker("META_START", number, findings);
+            }
+        }
+        self.segment_line = number;
+        self.part = Part::Metadata(Block::new(&[METADATA]));
+    }
+
+    fn meta_stop(&mut self, number: usize, findings: &mut Findings) {
+        let Part::Metadata(block) = &self.part else {
+            misplaced_marker("META_STOP", number, findings);
+            return;
+        };
+        let metadata = metadata(block, number, findings);
+        if let Some(metadata) = &metadata {
+            check_time_system(&mut self.time_system, metadata, block, findings);
+        }
+        self.segments += 1;
+        self.segment = metadata.map(|metadata| Segment {
+            metadata,
+            comments: Vec::new(),
+            states: Vec::new(),
+        });
+        self.part = Part::Ephemeris;
+    }
+
+    fn covariance_start(&mut self, number: usize, findings: &mut Findings) {
+        if !matches!(self.part, Part::Ephemeris) {
+            misplaced_marker("COVARIANCE_START", number, findings);
+        }
+        self.part = Part::Covariance(Covariance::default());
+    }
+
+    fn covariance_stop(&mut self, number: usize, findings: &mut Findings) {
+        match &self.part {
+            Part::Covariance(covariance) => covariance.end(number, findings),
+            _ => misplaced_marker("COVARIANCE_STOP", number, findings),
+        }
+        self.part = Part::BetweenSegments;
+    }
+
+    fn data(&mut self, line: &Line, findings: &mut Findings) {
+        match &mut self.part {
+            Part::Ephemeris => {
+                let state = state_line(line, findings);
+                if let (Some(segment), Some(state)) = (&mut self.segment, state)
+                    && in_order(segment, &state, line.number, findings)
+                {
+                    segment.states.push(state);
+                }
+            }
+            Part::Covariance(covariance) => covariance.row(line, findings),
+            Part::Header | Part::Metadata(_) | Part::BetweenSegments => {
+                let message = "neither a keyword = value pair nor a marker of this section";
+                findings.error((line.number, 1), "oem-line", message);
+            }
+        }
+    }
+
+    fn end_segment(&mut self, findings: &mut Findings, take: &mut impl FnMut(Segment)) {
+        if let Some(segment) = self.segment.take() {
+            check_segment(&segment, (self.segment_line, 1), findings);
+            take(segment);
+        }
+    }
+
+    fn end(
+        mut self,
+        number: usize,
+        findings: &mut Findings,
+        take: &mut impl FnMut(Segment),
+    ) -> Option<Header> {
+        match &self.part {
+            Part::Ephemeris | Part::BetweenSegments => self.end_segment(findings, take),
+            Part::Header => {
+                self.header = header(&self.header_block, number, findings);
+                findings.error((number, 1), "oem-truncated", "the message has no segment");
+            }
+            Part::Metadata(_) => {
+                findings.error((number, 1), "oem-truncated", "META_STOP is missing");
+            }
+            Part::Covariance(_) => {
+                findings.error((number, 1), "oem-truncated", "COVARIANCE_STOP is missing");
+            }
+        }
+        self.header
+    }
+}
+
+/// All segments share the time system of the first (5.2.4.5).
+pub(super) fn check_time_system(
+    first: &mut Option<String>,
+    metadata: &SegmentMetadata,
+    block: &Block,
+    findings: &mut Findings,
+) {
+    let first = first.get_or_insert_with(|| metadata.time_system.clone());
+    if *first != metadata.time_system {
+        let message = format!("TIME_SYSTEM was {first} before; it must not change");
+        findings.error(block.place("TIME_SYSTEM"), "oem-time-system", message);
+    }
+}
+
+/// What must hold for a segment as a whole.
+pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: &mut Findings) {
+    let lines = segment.states.len();
+    let needed = match &segment.metadata.interpolation {
+        Some((method, degree)) if method.eq_ignore_ascii_case("HERMITE") => degree / 2 + 1,
+        Some((_, degree)) => degree.saturating_add(1),
+        None => 1,
+    };
+    if lines == 0 {
+        findings.error(place, "oem-empty", "the segment has no ephemeris line");
+    } else if lines < needed {
+        let message = format!("{lines} lines do not carry the interpolation; it needs {needed}");
+        findings.warning(place, "oem-interpolation", message);
+    }
+    if segment
+        .states
+        .last()
+        .is_some_and(|last| last.epoch < segment.metadata.stop_time)
+    {
+        let message = "the last line is before STOP_TIME: is the file cut short?";
+        findings.warning(place, "oem-span", message);
+    }
+}
+
+fn misplaced_marker(marker: &str, number: usize, findings: &mut Findings) {
+    let message = format!("{marker} does not belong here");
+    findings.error((number, 1), "oem-marker", message);
+}
+
+pub(super) fn header(block: &Block, number: usize, findings: &mut Findings) -> Option<Header> {
+    block.finish((number, 1), findings);
+    Header::read(block, VERSION, findings)
+}
+
+pub(super) fn metadata(
+    block: &Block,
+    number: usize,
+    findings: &mut Findings,
+) -> Option<SegmentMetadata> {
+    block.finish((number, 1), findings);
+    let interpolation = match block.text("INTERPOLATION") {
+        Some(method) => {
+            let degree = block.count("INTERPOLATION_DEGREE", findings);
+            if block.text("INTERPOLATION_DEGREE").is_none() {
+                let message = "INTERPOLATION_DEGREE must be given with INTERPOLATION";
+                findings.error(block.place("INTERPOLATION"), "ccsds-missing", message);
+            }
+            degree.map(|degree| (method, degree as usize))
+        }
+        None => None,
+    };
+    let start_time = block.stamp("START_TIME", findings);
+    let stop_time = block.stamp("STOP_TIME", findings);
+    if stop_time < start_time {
+        let message = "STOP_TIME is before START_TIME";
+        findings.error(block.place("STOP_TIME"), "oem-span", message);
+    }
+    Some(SegmentMetadata {
+        comments: block.comments.clone(),
+        object_name: block.text("OBJECT_NAME")?,
+        object_id: block.text("OBJECT_ID")?,
+        center_name: block.text("CENTER_NAME")?,
+        ref_frame: block.text("REF_FRAME")?,
+        ref_frame_epoch: block.stamp("REF_FRAME_EPOCH", findings),
+        time_system: block.text("TIME_SYSTEM")?,
+        start_time: start_time?,
+        useable_start_time: block.stamp("USEABLE_START_TIME", findings),
+        useable_stop_time: block.stamp("USEABLE_STOP_TIME", findings),
+        stop_time: stop_time?,
+        interpolation,
+    })
+}
+
+/// Reads the seven or ten fields of an ephemeris line.
+fn state_line(line: &Line, findings: &mut Findings) -> Option<StateLine> {
+    let fields: Vec<_> = words(&line.text).take(11).collect();
+    let [(column, epoch), numbers @ ..] = fields.as_slice() else {
+        return None;
+    };
+    if !matches!(numbers.len(), 6 | 9) {
+        let message = format!(
+            "the line has {} fields; an ephemeris line has 7, or 10 with accelerations",
+            fields.len()
+        );
+        findings.error((line.number, *column), "oem-fields", message);
+        return None;
+    }
+    let epoch = read_stamp(epoch, (line.number, *column), findings);
+    let mut values = [0.0; 9];
+    for (value, (column, text)) in values.iter_mut().zip(numbers) {
+        *value = read_number(text, (line.number, *column), findings)?;
+    }
+    let vector = |from: usize| Vector3::new(values[from], values[from + 1], values[from + 2]);
+    Some(StateLine {
+        epoch: epoch?,
+        state: State {
+            position_km: vector(0),
+            velocity_km_s: vector(3),
+        },
+        acceleration_km_s2: (numbers.len() == 9).then(|| vector(6)),
+    })
+}
+
+/// Whether a line comes after the one before it and inside the span of its segment.
+pub(super) fn in_order(
+    segment: &Segment,
+    line: &StateLine,
+    number: usize,
+    findings: &mut Findings,
+) -> bool {
+    let previous: Option<NaiveDateTime> = segment.states.last().map(|last| last.epoch);
+    if previous.is_some_and(|previous| line.epoch <= previous) {
+        let message = "the time is not after that of the line before";
+        findings.error((number, 1), "oem-time-order", message);
+        return false;
+    }
+    let metadata = &segment.metadata;
+    if line.epoch < metadata.start_time || line.epoch > metadata.stop_time {
+        let message = "the time is outside START_TIME to STOP_TIME";
+        findings.error((number, 1), "oem-span", message);
+        return false;
+    }
+    true
+}
+
+/// A covariance section: for each matrix its keywords and six rows.
+#[derive(Default)]
+struct Covariance {
+    block: Option<Block>,
+    rows: usize,
+}
+
+impl Covariance {
+    fn is_untouched(&self) -> bool {
+        self.block.is_none()
+    }
+
+    fn pair(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+        // After its six rows, the next matrix begins.
+        if self.rows == 6 {
+            *self = Self::default();
+        }
+        self.block
+            .get_or_insert_with(|| Block::new(&[COVARIANCE]))
+            .accept(pair, findings);
+    }
+
+    fn row(&mut self, line: &Line, findings: &mut Findings) {
+        self.rows += 1;
+        let fields: Vec<_> = words(&line.text).take(8).collect();
+        if self.rows > 6 || fields.len() != self.rows || self.block.is_none() {
+            let message = "not the next row of a lower triangular 6x6 matrix behind its EPOCH";
+            findings.error((line.number, 1), "oem-covariance", message);
+            return;
+        }
+        for (column, text) in fields {
+            read_number(text, (line.number, column), findings);
+        }
+    }
+
+    fn end(&self, number: usize, findings: &mut Findings) {
+        if self.rows != 6 {
+            let message = "the covariance ends before its sixth row";
+            findings.error((number, 1), "oem-covariance", message);
+        }
+        match &self.block {
+            Some(block) => {
+                block.finish((number, 1), findings);
+                block.stamp("EPOCH", findings);
+            }
+            None => findings.error(
+                (number, 1),
+                "ccsds-missing",
+                "EPOCH is mandatory and missing",
+            ),
+        }
+    }
+}

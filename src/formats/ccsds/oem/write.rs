@@ -1,0 +1,112 @@
+//! Writes the messages of satellites on a grid, state by state, so that none is held in memory.
+
+use super::{StateLine, VERSION, segment_metadata, write_metadata, write_state};
+use crate::ephemeris::Flown;
+use crate::ephemeris::hermite::Hermite;
+use crate::ephemeris::sampled::Sampled;
+use crate::formats::WriteError;
+use crate::formats::ccsds::kvn::{Header, Version};
+use crate::formats::ccsds::xml;
+use crate::formats::metadata::{Metadata, Object};
+use crate::formats::text::timestamp::SecondDigits;
+use std::io::Write;
+
+/// What the messages of an export share.
+pub struct Writer<'a> {
+    /// Version of the messages.
+    pub version: Version,
+    /// What they say of themselves.
+    pub metadata: &'a Metadata,
+    /// The satellites in the frame of the messages.
+    pub sampled: &'a Sampled<'a>,
+    /// What was measured for these states; without it no interpolation is named.
+    pub hermite: Option<Hermite>,
+}
+
+impl Writer<'_> {
+    fn digits(&self) -> SecondDigits {
+        SecondDigits::of_grid(&self.sampled.grid())
+    }
+
+    fn lines(
+        &self,
+        satellite: &Flown,
+        mut write: impl FnMut(&StateLine) -> std::io::Result<()>,
+    ) -> Result<(), WriteError> {
+        for sample in self.sampled.states(satellite) {
+            let (at, state) = sample?;
+            write(&StateLine {
+                epoch: self.metadata.time_system.stamp(at),
+                state,
+                acceleration_km_s2: None,
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Writes the message of one satellite in keyword = value notation.
+    ///
+    /// # Errors
+    /// When the satellite has no state, or the output does not take the bytes.
+    pub fn kvn(
+        &self,
+        out: &mut impl Write,
+        satellite: &Flown,
+        object: &Object,
+    ) -> Result<(), WriteError> {
+        let digits = self.digits();
+        Header::new(self.version, self.metadata).write(out, VERSION)?;
+        let segment = segment_metadata(self.metadata, object, self.sampled.grid(), self.hermite);
+        write_metadata(out, &segment, digits)?;
+        self.lines(satellite, |line| write_state(out, line, digits))
+    }
+
+    /// Writes the message of one satellite as an XML file.
+    ///
+    /// # Errors
+    /// When the satellite has no state, or the output does not take the bytes.
+    pub fn xml(
+        &self,
+        out: &mut impl Write,
+        satellite: &Flown,
+        object: &Object,
+    ) -> Result<(), WriteError> {
+        xml::begin_file(out, ("oem", VERSION), self.version)?;
+        self.xml_content(out, satellite, object)
+    }
+
+    /// Writes the messages of several satellites as one combined instantiation in XML.
+    ///
+    /// # Errors
+    /// When a satellite has no state, or the output does not take the bytes.
+    pub fn combined_xml<'s>(
+        &self,
+        out: &mut impl Write,
+        satellites: impl Iterator<Item = (&'s Flown, &'s Object)>,
+    ) -> Result<(), WriteError> {
+        xml::begin_ndm(out, self.version)?;
+        for (satellite, object) in satellites {
+            writeln!(out, "<oem id=\"{VERSION}\" version=\"{}\">", self.version)?;
+            self.xml_content(out, satellite, object)?;
+        }
+        xml::end_ndm(out)?;
+        Ok(())
+    }
+
+    fn xml_content(
+        &self,
+        out: &mut impl Write,
+        satellite: &Flown,
+        object: &Object,
+    ) -> Result<(), WriteError> {
+        let digits = self.digits();
+        xml::write_header(out, &Header::new(self.version, self.metadata))?;
+        writeln!(out, "<body>")?;
+        let segment = segment_metadata(self.metadata, object, self.sampled.grid(), self.hermite);
+        super::xml::begin_segment(out, (&segment, &[]), digits)?;
+        self.lines(satellite, |line| super::xml::write_state(out, line, digits))?;
+        super::xml::end_segment(out)?;
+        writeln!(out, "</body>\n</oem>")?;
+        Ok(())
+    }
+}

@@ -1,0 +1,289 @@
+//! Messages in XML (CCSDS 502.0-B-3, section 8; 505.0-B-2), written and read.
+
+use super::read::{HEADER, METADATA, check_segment, check_time_system, header, in_order, metadata};
+use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
+use crate::formats::ReadError;
+use crate::formats::ccsds::kvn::{Block, Keyword, may, must};
+use crate::formats::ccsds::xml::{
+    Node, Nodes, begin_file, write_comments, write_header, write_leaves,
+};
+use crate::formats::text::finding::Findings;
+use crate::formats::text::timestamp::{SecondDigits, calendar};
+use crate::frames::State;
+use nalgebra::Vector3;
+use std::io::{self, BufRead, Write};
+
+/// Elements of a `stateVector`.
+const STATE: &[Keyword] = &[
+    must("EPOCH"),
+    must("X"),
+    must("Y"),
+    must("Z"),
+    must("X_DOT"),
+    must("Y_DOT"),
+    must("Z_DOT"),
+    may("X_DDOT"),
+    may("Y_DDOT"),
+    may("Z_DDOT"),
+];
+
+impl Oem {
+    /// Writes the message as an XML file.
+    ///
+    /// # Errors
+    /// When the output does not take the bytes.
+    pub fn write_xml(&self, out: &mut impl Write) -> io::Result<()> {
+        begin_file(out, ("oem", VERSION), self.header.version)?;
+        write_header(out, &self.header)?;
+        writeln!(out, "<body>")?;
+        for segment in &self.segments {
+            let digits = segment.digits();
+            begin_segment(out, (&segment.metadata, &segment.comments), digits)?;
+            for line in &segment.states {
+                write_state(out, line, digits)?;
+            }
+            end_segment(out)?;
+        }
+        writeln!(out, "</body>\n</oem>")
+    }
+}
+
+/// Writes what stands before the states of a segment.
+pub(super) fn begin_segment(
+    out: &mut impl Write,
+    (metadata, comments): (&SegmentMetadata, &[String]),
+    digits: SecondDigits,
+) -> io::Result<()> {
+    writeln!(out, "<segment>\n<metadata>")?;
+    write_comments(out, &metadata.comments)?;
+    for (key, value) in metadata.pairs(digits) {
+        write_leaves(out, [(key, value.as_str())])?;
+    }
+    writeln!(out, "</metadata>\n<data>")?;
+    write_comments(out, comments)
+}
+
+/// Ends a segment.
+pub(super) fn end_segment(out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "</data>\n</segment>")
+}
+
+/// Writes a state with the digits of the other notation.
+pub(super) fn write_state(
+    out: &mut impl Write,
+    line: &StateLine,
+    digits: SecondDigits,
+) -> io::Result<()> {
+    let (r, v) = (line.state.position_km, line.state.velocity_km_s);
+    writeln!(
+        out,
+        "<stateVector><EPOCH>{}</EPOCH>",
+        calendar(line.epoch, digits)
+    )?;
+    writeln!(
+        out,
+        "<X>{:.9}</X>\n<Y>{:.9}</Y>\n<Z>{:.9}</Z>",
+        r.x, r.y, r.z
+    )?;
+    writeln!(out, "<X_DOT>{:.12}</X_DOT>", v.x)?;
+    writeln!(out, "<Y_DOT>{:.12}</Y_DOT>", v.y)?;
+    writeln!(out, "<Z_DOT>{:.12}</Z_DOT>", v.z)?;
+    if let Some(a) = line.acceleration_km_s2 {
+        writeln!(out, "<X_DDOT>{:.12}</X_DDOT>", a.x)?;
+        writeln!(out, "<Y_DDOT>{:.12}</Y_DDOT>", a.y)?;
+        writeln!(out, "<Z_DDOT>{:.12}</Z_DDOT>", a.z)?;
+    }
+    writeln!(out, "</stateVector>")
+}
+
+/// Reads the messages of an XML file; the first broken rule ends it.
+///
+/// # Errors
+/// The first finding, or a failure of the input.
+pub fn read_xml(input: impl BufRead) -> Result<Vec<Oem>, ReadError> {
+    let mut findings = Findings::of_reader();
+    let mut messages = Vec::new();
+    parse_xml(input, &mut findings, |message| messages.push(message))?;
+    findings.unless_error(messages)
+}
+
+/// Passes every message that keeps the rules to `take`: the one of the file, or those of a
+/// combined instantiation, whose messages of other kinds are passed over.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_xml(
+    input: impl BufRead,
+    findings: &mut Findings,
+    mut take: impl FnMut(Oem),
+) -> io::Result<()> {
+    let mut nodes = Nodes::new(input);
+    let mut message: Option<Message> = None;
+    let mut any = false;
+    while let Some((place, node)) = nodes.next(findings)? {
+        match (node, &mut message) {
+            (Node::Open(name, version), _) if name == "oem" => {
+                any = true;
+                message = Some(Message::new(version, place, findings));
+            }
+            (Node::Close(name), Some(_)) if name == "oem" => {
+                let ended = message
+                    .take()
+                    .and_then(|message| message.end(place, findings));
+                ended.into_iter().for_each(&mut take);
+            }
+            (node, Some(message)) => message.node(node, place, findings),
+            _ => {}
+        }
+        if findings.is_full() {
+            return Ok(());
+        }
+    }
+    if !any {
+        findings.error(nodes.place(), "oem-empty", "there is no message");
+    }
+    Ok(())
+}
+
+/// The innermost part of a message that the next leaf belongs to.
+enum Part {
+    Header,
+    Body,
+    Metadata(Block),
+    Data,
+    State(Block),
+    /// A covariance, which is not kept.
+    Covariance,
+}
+
+/// A message as it comes in.
+struct Message {
+    part: Part,
+    header: Block,
+    time_system: Option<String>,
+    segment_place: (usize, usize),
+    segment: Option<Segment>,
+    segments: Vec<Segment>,
+}
+
+impl Message {
+    fn new(version: Option<String>, place: (usize, usize), findings: &mut Findings) -> Self {
+        let mut header = Block::new(&[HEADER]);
+        if let Some(version) = version {
+            header.accept_at((VERSION, &version), place, findings);
+        }
+        Self {
+            part: Part::Body,
+            header,
+            time_system: None,
+            segment_place: place,
+            segment: None,
+            segments: Vec::new(),
+        }
+    }
+
+    fn node(&mut self, node: Node, place: (usize, usize), findings: &mut Findings) {
+        match node {
+            Node::Open(name, _) => self.open(&name, place),
+            Node::Leaf(name, text) => self.leaf(&name, text, place, findings),
+            Node::Close(name) => self.close(&name, place, findings),
+        }
+    }
+
+    fn open(&mut self, name: &str, place: (usize, usize)) {
+        match name {
+            "header" => self.part = Part::Header,
+            "segment" => self.segment_place = place,
+            "metadata" => self.part = Part::Metadata(Block::new(&[METADATA])),
+            "data" => self.part = Part::Data,
+            "stateVector" => self.part = Part::State(Block::new(&[STATE])),
+            "covarianceMatrix" => self.part = Part::Covariance,
+            _ => {}
+        }
+    }
+
+    fn leaf(&mut self, name: &str, text: String, place: (usize, usize), findings: &mut Findings) {
+        let is_comment = name == "COMMENT";
+        match (&mut self.part, &mut self.segment) {
+            (Part::Header, _) if is_comment => self.header.comments.push(text),
+            (Part::Header, _) => self.header.accept_at((name, text.trim()), place, findings),
+            (Part::Metadata(block), _) if is_comment => block.comments.push(text),
+            (Part::Metadata(block) | Part::State(block), _) => {
+                block.accept_at((name, text.trim()), place, findings);
+            }
+            (Part::Data, Some(segment)) if is_comment => segment.comments.push(text),
+            (Part::Covariance, _) => {}
+            (Part::Data, None) if is_comment => {}
+            (Part::Body | Part::Data, _) => {
+                let message = format!("element {name} does not belong here");
+                findings.error(place, "ccsds-keyword", message);
+            }
+        }
+    }
+
+    fn close(&mut self, name: &str, place: (usize, usize), findings: &mut Findings) {
+        match (name, &self.part) {
+            ("metadata", Part::Metadata(block)) => {
+                let metadata = metadata(block, place.0, findings);
+                if let Some(metadata) = &metadata {
+                    check_time_system(&mut self.time_system, metadata, block, findings);
+                }
+                self.segment = metadata.map(|metadata| Segment {
+                    metadata,
+                    comments: Vec::new(),
+                    states: Vec::new(),
+                });
+                self.part = Part::Body;
+            }
+            ("stateVector", Part::State(block)) => {
+                let line = state(block, place, findings);
+                if let (Some(segment), Some(line)) = (&mut self.segment, line)
+                    && in_order(segment, &line, place.0, findings)
+                {
+                    segment.states.push(line);
+                }
+                self.part = Part::Data;
+            }
+            ("covarianceMatrix", _) => self.part = Part::Data,
+            ("segment", _) => {
+                if let Some(segment) = self.segment.take() {
+                    check_segment(&segment, self.segment_place, findings);
+                    self.segments.push(segment);
+                }
+                self.part = Part::Body;
+            }
+            _ => self.part = Part::Body,
+        }
+    }
+
+    fn end(self, place: (usize, usize), findings: &mut Findings) -> Option<Oem> {
+        let header = header(&self.header, place.0, findings);
+        if self.segments.is_empty() {
+            findings.error(place, "oem-empty", "the message has no segment");
+        }
+        Some(Oem {
+            header: header?,
+            segments: self.segments,
+        })
+    }
+}
+
+fn state(block: &Block, place: (usize, usize), findings: &mut Findings) -> Option<StateLine> {
+    block.finish(place, findings);
+    let epoch = block.stamp("EPOCH", findings);
+    let mut vector = |keys: [&str; 3]| {
+        let [x, y, z] = keys.map(|key| block.number(key, findings));
+        Some(Vector3::new(x?, y?, z?))
+    };
+    let position = vector(["X", "Y", "Z"]);
+    let velocity = vector(["X_DOT", "Y_DOT", "Z_DOT"]);
+    let acceleration = vector(["X_DDOT", "Y_DDOT", "Z_DDOT"]);
+    Some(StateLine {
+        epoch: epoch?,
+        state: State {
+            position_km: position?,
+            velocity_km_s: velocity?,
+        },
+        acceleration_km_s2: acceleration,
+    })
+}

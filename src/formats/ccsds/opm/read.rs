@@ -1,0 +1,211 @@
+//! Reads messages strictly, line by line.
+
+use super::{Keplerian, Opm, USER_DEFINED, VERSION};
+use crate::formats::ReadError;
+use crate::formats::ccsds::kvn::{Block, COVARIANCE, Header, Item, Keyword, Pair, item, may, must};
+use crate::formats::text::finding::Findings;
+use crate::formats::text::lines::Lines;
+use crate::frames::State;
+use crate::orbit::kepler::eccentric_anomaly;
+use crate::units::wrap_360;
+use nalgebra::Vector3;
+use std::io::{self, BufRead};
+
+/// Tables 3-1 to 3-3 in their order, without manoeuvres and what users define.
+const MESSAGE: &[Keyword] = &[
+    must(VERSION),
+    may("CLASSIFICATION"),
+    must("CREATION_DATE"),
+    must("ORIGINATOR"),
+    may("MESSAGE_ID"),
+    must("OBJECT_NAME"),
+    must("OBJECT_ID"),
+    must("CENTER_NAME"),
+    must("REF_FRAME"),
+    may("REF_FRAME_EPOCH"),
+    must("TIME_SYSTEM"),
+    must("EPOCH"),
+    must("X"),
+    must("Y"),
+    must("Z"),
+    must("X_DOT"),
+    must("Y_DOT"),
+    must("Z_DOT"),
+    may("SEMI_MAJOR_AXIS"),
+    may("ECCENTRICITY"),
+    may("INCLINATION"),
+    may("RA_OF_ASC_NODE"),
+    may("ARG_OF_PERICENTER"),
+    may("TRUE_ANOMALY"),
+    may("MEAN_ANOMALY"),
+    may("GM"),
+    may("MASS"),
+    may("SOLAR_RAD_AREA"),
+    may("SOLAR_RAD_COEFF"),
+    may("DRAG_AREA"),
+    may("DRAG_COEFF"),
+];
+
+/// A manoeuvre of table 3-3; there may be several.
+const MANOEUVRE: &[Keyword] = &[
+    must("MAN_EPOCH_IGNITION"),
+    must("MAN_DURATION"),
+    must("MAN_DELTA_MASS"),
+    must("MAN_REF_FRAME"),
+    must("MAN_DV_1"),
+    must("MAN_DV_2"),
+    must("MAN_DV_3"),
+];
+
+/// Parameters of users that are kept.
+const MOST_USER_DEFINED: usize = 1000;
+
+/// Reads a message; the first broken rule ends it.
+///
+/// # Errors
+/// The first finding, or a failure of the input.
+pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
+    let mut findings = Findings::of_reader();
+    let message = parse(input, &mut findings)?;
+    let read = findings.unless_error(message)?;
+    // Without a finding there is a message.
+    read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
+}
+
+/// The message of a file, if it keeps the rules; what it breaks goes to the list of findings.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<Opm>> {
+    let mut lines = Lines::new(input);
+    let mut block = Block::new(&[MESSAGE, COVARIANCE]);
+    let mut manoeuvre: Option<Block> = None;
+    let mut user_defined = Vec::new();
+    let mut in_header = true;
+    while let Some(line) = lines.next(findings)? {
+        match item(&line, findings) {
+            Item::Blank => {}
+            Item::Comment(text) if in_header => block.comments.push(text.to_owned()),
+            Item::Comment(_) => {}
+            Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {
+                take_user_defined(&pair, &mut user_defined, findings);
+            }
+            Item::Pair(pair) if pair.key.starts_with("MAN_") => {
+                take_manoeuvre(&pair, &mut manoeuvre, findings);
+            }
+            Item::Pair(pair) => {
+                in_header &= matches!(pair.key, VERSION | "CLASSIFICATION");
+                block.accept(&pair, findings);
+            }
+            Item::Other(_) => {
+                findings.error((line.number, 1), "opm-line", "not a keyword = value pair");
+            }
+        }
+    }
+    let end = (lines.number().max(1), 1);
+    if let Some(manoeuvre) = manoeuvre {
+        manoeuvre.finish(end, findings);
+    }
+    Ok(message(&block, user_defined, end, findings))
+}
+
+fn take_user_defined(pair: &Pair<'_>, kept: &mut Vec<(String, String)>, findings: &mut Findings) {
+    if kept.len() == MOST_USER_DEFINED {
+        let message = format!("more than {MOST_USER_DEFINED} user-defined parameters");
+        findings.error(pair.key_place, "opm-user-defined", message);
+        return;
+    }
+    if kept.iter().any(|(key, _)| key == pair.key) {
+        let message = format!("{} is given twice", pair.key);
+        findings.error(pair.key_place, "ccsds-repeated", message);
+        return;
+    }
+    kept.push((pair.key.to_owned(), pair.value.to_owned()));
+}
+
+/// The first keyword of a manoeuvre ends the one before it.
+fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<Block>, findings: &mut Findings) {
+    if pair.key == "MAN_EPOCH_IGNITION"
+        && let Some(before) = current.take()
+    {
+        before.finish(pair.key_place, findings);
+    }
+    current
+        .get_or_insert_with(|| Block::new(&[MANOEUVRE]))
+        .accept(pair, findings);
+}
+
+fn message(
+    block: &Block,
+    user_defined: Vec<(String, String)>,
+    end: (usize, usize),
+    findings: &mut Findings,
+) -> Option<Opm> {
+    block.finish(end, findings);
+    let header = Header::read(block, VERSION, findings);
+    let epoch = block.stamp("EPOCH", findings);
+    let mut vector = |keys: [&str; 3]| {
+        let [x, y, z] = keys.map(|key| block.number(key, findings));
+        Some(Vector3::new(x?, y?, z?))
+    };
+    let position = vector(["X", "Y", "Z"]);
+    let velocity = vector(["X_DOT", "Y_DOT", "Z_DOT"]);
+    let keplerian = keplerian(block, findings);
+    Some(Opm {
+        header: header?,
+        object_name: block.text("OBJECT_NAME")?,
+        object_id: block.text("OBJECT_ID")?,
+        center_name: block.text("CENTER_NAME")?,
+        ref_frame: block.text("REF_FRAME")?,
+        time_system: block.text("TIME_SYSTEM")?,
+        epoch: epoch?,
+        state: State {
+            position_km: position?,
+            velocity_km_s: velocity?,
+        },
+        keplerian,
+        user_defined,
+    })
+}
+
+/// Elements are given all or not at all, with one of the anomalies (3.2.4.4).
+fn keplerian(block: &Block, findings: &mut Findings) -> Option<Keplerian> {
+    let given = |key: &&str| block.text(key).is_some();
+    let keys = [
+        "SEMI_MAJOR_AXIS",
+        "ECCENTRICITY",
+        "INCLINATION",
+        "RA_OF_ASC_NODE",
+        "ARG_OF_PERICENTER",
+        "GM",
+    ];
+    let anomalies = ["TRUE_ANOMALY", "MEAN_ANOMALY"];
+    let first = keys.iter().chain(&anomalies).find(|key| given(key))?;
+    let missing = keys.iter().find(|key| !given(key));
+    if missing.is_some() || anomalies.iter().filter(|key| given(key)).count() != 1 {
+        let message = "the osculating elements need all six, one anomaly of the two, and GM";
+        findings.error(block.place(first), "opm-elements", message);
+        return None;
+    }
+    let [a, e, i, raan, perigee, gm] = keys.map(|key| block.number(key, findings));
+    let [true_anomaly, mean_anomaly] = anomalies.map(|key| block.number(key, findings));
+    let eccentricity = e?;
+    if !(0.0..1.0).contains(&eccentricity) {
+        // Open orbits have elements too, which nothing here computes with.
+        return None;
+    }
+    let of_mean = |mean_deg: f64| {
+        let half = 0.5 * eccentric_anomaly(mean_deg.to_radians(), eccentricity);
+        let stretch = ((1.0 + eccentricity) / (1.0 - eccentricity)).sqrt();
+        wrap_360((2.0 * (stretch * half.sin()).atan2(half.cos())).to_degrees())
+    };
+    Some(Keplerian {
+        semi_major_axis_km: a?,
+        eccentricity,
+        inclination_deg: i?,
+        raan_deg: raan?,
+        arg_perigee_deg: perigee?,
+        true_anomaly_deg: true_anomaly.or(mean_anomaly.map(of_mean))?,
+        gm_km3_s2: gm?,
+    })
+}

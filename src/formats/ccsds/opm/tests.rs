@@ -1,0 +1,195 @@
+use super::*;
+use crate::formats::metadata::Theory;
+use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::timestamp::TimeSystem;
+use crate::frames::from_teme;
+use crate::orbit::Model;
+use nalgebra::Vector3;
+use proptest::prelude::*;
+
+/// An ellipse of Vallado, *Fundamentals of Astrodynamics and Applications*, example 2-5, with a
+/// manoeuvre.
+const VALLADO: &str = "\
+CCSDS_OPM_VERS = 2.0
+COMMENT example
+CREATION_DATE = 2025-01-01T00:00:00
+ORIGINATOR = NOBODY
+OBJECT_NAME = A
+OBJECT_ID = 2025-001A
+CENTER_NAME = EARTH
+REF_FRAME = EME2000
+TIME_SYSTEM = UTC
+EPOCH = 2025-01-01T00:00:00.000
+X = 6524.834 [km]
+Y = 6862.875
+Z = 6448.296
+X_DOT = 4.901327 [km/s]
+Y_DOT = 5.533756
+Z_DOT = -1.976341
+SEMI_MAJOR_AXIS = 36127.343
+ECCENTRICITY = 0.832853
+INCLINATION = 87.870
+RA_OF_ASC_NODE = 227.898
+ARG_OF_PERICENTER = 53.38
+TRUE_ANOMALY = 92.335
+GM = 398600.4418
+MAN_EPOCH_IGNITION = 2025-01-01T01:00:00
+MAN_DURATION = 0.0
+MAN_DELTA_MASS = -1.0
+MAN_REF_FRAME = RTN
+MAN_DV_1 = 0.0
+MAN_DV_2 = 0.001
+MAN_DV_3 = 0.0
+USER_DEFINED_NOTE = kept
+";
+
+fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
+    let mut findings = Findings::of_linter(50);
+    parse(text.as_ref(), &mut findings).unwrap();
+    findings.into_vec()
+}
+
+#[test]
+fn validate_a_published_state_and_its_elements() {
+    assert_eq!(findings(VALLADO), []);
+    let message = read(VALLADO.as_bytes()).unwrap();
+    let published = message.keplerian.unwrap();
+    let found = Keplerian::of_state(&message.state, published.gm_km3_s2).unwrap();
+    // The printed state has seven digits and the printed elements at least five: half a unit of
+    // the last, with the sensitivity of a at e = 0.83 (a changes by 2a²v/mu per km/s: 5e-7 km/s
+    // make 0.02 km).
+    assert!((found.semi_major_axis_km - published.semi_major_axis_km).abs() < 0.1);
+    assert!((found.eccentricity - published.eccentricity).abs() < 1e-6);
+    for (ours, theirs) in [
+        (found.inclination_deg, published.inclination_deg),
+        (found.raan_deg, published.raan_deg),
+        (found.arg_perigee_deg, published.arg_perigee_deg),
+        (found.true_anomaly_deg, published.true_anomaly_deg),
+    ] {
+        assert!((ours - theirs).abs() < 6e-3, "{ours} {theirs}");
+    }
+    // tan(E/2) = sqrt((1-e)/(1+e)) tan(92.335°/2) gives E = 34.9234°, and M = E - e sin E.
+    let mean = VALLADO.replace("TRUE_ANOMALY = 92.335", "MEAN_ANOMALY = 7.6043");
+    let of_mean = read(mean.as_bytes()).unwrap().keplerian.unwrap();
+    assert!(
+        (of_mean.true_anomaly_deg - 92.335).abs() < 6e-3,
+        "{}",
+        of_mean.true_anomaly_deg
+    );
+    assert_eq!(
+        message.user_defined,
+        [("USER_DEFINED_NOTE".to_owned(), "kept".to_owned())]
+    );
+    assert_eq!(message.mean_elements(), None);
+}
+
+fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let design: crate::constellation::Design = design.parse().unwrap();
+    let elements = design.satellites()[4].elements;
+    let teme = Model::J2
+        .propagator(&elements, epoch)
+        .unwrap()
+        .state_at(0.0)
+        .unwrap();
+    let metadata = Metadata {
+        originator: "NAVWALKER".to_owned(),
+        creation: epoch,
+        frame,
+        time_system: TimeSystem::Tai,
+        theory: Theory::Flown(Model::J2),
+        subject: vec!["Design".to_owned()],
+    };
+    let object = Object::numbered("NW-P02-S02", 4, epoch).unwrap();
+    let state = from_teme(teme, frame, epoch, 0.0);
+    (
+        elements,
+        Opm::new(Version::V2, &metadata, &object, &elements, (epoch, state)),
+    )
+}
+
+#[test]
+fn what_is_written_reads_back_and_writes_the_same() {
+    for frame in [Frame::Teme, Frame::Eme2000, Frame::Gcrf, Frame::EarthFixed] {
+        for design in [
+            "delta:55:6/2/1@925",
+            "star:90:6/2/1@780",
+            "lattice:63.4:6/3/1@950,e=0.1,w=270",
+        ] {
+            let (elements, message) = written(frame, design);
+            let mut text = Vec::new();
+            message.write(&mut text).unwrap();
+            assert_eq!(findings(&text), [], "{frame} {design}");
+            let read = read(text.as_slice()).unwrap();
+            assert_eq!(read.keplerian.is_some(), frame != Frame::EarthFixed);
+            let mut again = Vec::new();
+            read.write(&mut again).unwrap();
+            assert_eq!(again, text);
+            // Half a digit of a position.
+            assert!((read.state.position_km - message.state.position_km).norm() < 1e-9);
+            let mean = read.mean_elements().unwrap();
+            // Twelve decimals of a degree, nine of a kilometre.
+            assert!((mean.mean_anomaly_rad - elements.mean_anomaly_rad).abs() < 1e-14);
+            assert!((mean.semi_major_axis_km - elements.semi_major_axis_km).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn circular_and_equatorial_states_have_angles() {
+    let speed = (MU_KM3_S2 / 7000.0_f64).sqrt();
+    let state = State {
+        position_km: Vector3::new(0.0, 7000.0, 0.0),
+        velocity_km_s: Vector3::new(-speed, 0.0, 0.0),
+    };
+    let elements = Keplerian::of_state(&state, MU_KM3_S2).unwrap();
+    assert_eq!((elements.raan_deg, elements.arg_perigee_deg), (0.0, 0.0));
+    assert!((elements.true_anomaly_deg - 90.0).abs() < 1e-12);
+    let open = State {
+        velocity_km_s: 2.0 * state.velocity_km_s,
+        ..state
+    };
+    assert_eq!(Keplerian::of_state(&open, MU_KM3_S2), None);
+}
+
+#[test]
+fn broken_rules_are_named_with_their_place() {
+    for (from, to, (line, column, rule)) in [
+        ("X = 6524.834 [km]\n", "", (30, 1, "ccsds-missing")),
+        ("Y = 6862.875", "Y = 6862.875 km", (12, 5, "ccsds-number")),
+        ("GM = 398600.4418\n", "", (17, 19, "opm-elements")),
+        ("TRUE_ANOMALY = 92.335\n", "", (17, 19, "opm-elements")),
+        ("MAN_DV_2 = 0.001\n", "", (30, 1, "ccsds-missing")),
+        ("MAN_DV_2 =", "MAN_DV_3 =", (30, 1, "ccsds-repeated")),
+        ("= 2.0", "= 5.0", (1, 18, "ccsds-version")),
+        (
+            "EPOCH = 2025-01-01T00",
+            "EPOCH = 2025-01-01 00",
+            (10, 9, "ccsds-time"),
+        ),
+        ("OBJECT_NAME = A", "hello", (5, 1, "opm-line")),
+    ] {
+        let text = VALLADO.replacen(from, to, 1);
+        let found = findings(&text);
+        assert!(
+            found
+                .iter()
+                .any(|f| (f.line, f.column, f.rule) == (line, column, rule)),
+            "{to}: {found:#?}"
+        );
+        assert!(read(text.as_bytes()).is_err(), "{to}");
+    }
+    for text in ["", "hello", "CCSDS_OPM_VERS = 2.0\n", "\0"] {
+        assert!(read(text.as_bytes()).is_err(), "{text:?}");
+    }
+}
+
+proptest! {
+    #[test]
+    fn damaged_files_never_panic(at in 0..VALLADO.len(), byte in any::<u8>(), cut in 0_usize..40) {
+        let mut bytes = VALLADO.as_bytes().to_vec();
+        bytes[at] = byte;
+        bytes.drain(at..(at + cut).min(VALLADO.len()));
+        let _ = findings(&bytes);
+    }
+}

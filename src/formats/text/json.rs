@@ -1,0 +1,174 @@
+//! The objects of a JSON array, one at a time, each with its place in the file.
+
+use crate::formats::text::finding::Findings;
+use std::io::{self, BufRead};
+
+/// Longest object that is kept, in bytes.
+const MAX_OBJECT: usize = 1 << 20;
+
+/// An object of the array.
+pub(crate) struct Object {
+    /// Its text, from `{` to `}`.
+    text: String,
+    /// Where it begins.
+    start: (usize, usize),
+}
+
+impl Object {
+    /// Place of a byte of the object in the file.
+    fn place(&self, at: usize) -> (usize, usize) {
+        let before = &self.text[..at];
+        let lines = before.matches('\n').count();
+        match before.rfind('\n') {
+            Some(end) => (self.start.0 + lines, at - end),
+            None => (self.start.0, self.start.1 + at),
+        }
+    }
+
+    /// Where a key of the object stands.
+    pub(crate) fn place_of(&self, key: &str) -> (usize, usize) {
+        self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
+    }
+
+    /// The object as a value; a finding if it is no JSON.
+    pub(crate) fn value(&self, findings: &mut Findings) -> Option<serde_json::Value> {
+        self.parsed(findings)
+    }
+
+    /// The members of the object as texts; a finding if it is no object of plain values.
+    pub(crate) fn members(&self, findings: &mut Findings) -> Option<Vec<(String, String)>> {
+        let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
+        let text = |(key, value): (String, serde_json::Value)| match value {
+            serde_json::Value::String(text) => Some((key, text)),
+            serde_json::Value::Number(number) => Some((key, number.to_string())),
+            // Null stands for a value that is not given.
+            _ => None,
+        };
+        Some(members.into_iter().filter_map(text).collect())
+    }
+
+    fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut Findings) -> Option<T> {
+        let error = match serde_json::from_str(&self.text) {
+            Ok(parsed) => return Some(parsed),
+            Err(error) => error,
+        };
+        let lines = self.start.0 + error.line().saturating_sub(1);
+        let column = match error.line() {
+            0 | 1 => self.start.1 + error.column().saturating_sub(1),
+            _ => error.column().max(1),
+        };
+        let text = error.to_string();
+        // The place that serde_json adds is one inside the object.
+        let message = text.split(" at line ").next().unwrap_or_default();
+        findings.error((lines, column), "json-syntax", message);
+        None
+    }
+}
+
+/// Takes the objects out of an array, or a single object.
+pub(crate) struct Objects<R> {
+    input: R,
+    place: (usize, usize),
+    state: State,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum State {
+    Start,
+    Inside,
+    BetweenObjects,
+    End,
+}
+
+impl<R: BufRead> Objects<R> {
+    pub(crate) fn new(input: R) -> Self {
+        Self {
+            input,
+            place: (1, 0),
+            state: State::Start,
+        }
+    }
+
+    /// The next byte; its place is that of `self` afterwards.
+    fn byte(&mut self) -> io::Result<Option<u8>> {
+        let available = self.input.fill_buf()?;
+        let Some(byte) = available.first().copied() else {
+            return Ok(None);
+        };
+        self.input.consume(1);
+        self.place.1 += 1;
+        Ok(Some(byte))
+    }
+
+    fn line_ended(&mut self, byte: u8) {
+        if byte == b'\n' {
+            self.place = (self.place.0 + 1, 0);
+        }
+    }
+
+    /// The next object; none at the end, or after a finding.
+    pub(crate) fn next(&mut self, findings: &mut Findings) -> io::Result<Option<Object>> {
+        while self.state != State::End {
+            let Some(byte) = self.byte()? else {
+                let message = "the array is not closed, or there is none";
+                findings.error((self.place.0, self.place.1 + 1), "json-truncated", message);
+                self.state = State::End;
+                return Ok(None);
+            };
+            match (self.state, byte) {
+                (_, b' ' | b'\t' | b'\r' | b'\n') => {}
+                // A byte order mark in front.
+                (State::Start, 0xEF | 0xBB | 0xBF) if self.place.1 <= 3 => {}
+                (State::Start, b'[') => self.state = State::Inside,
+                (State::Inside | State::BetweenObjects, b']') => self.state = State::End,
+                (State::BetweenObjects, b',') => self.state = State::Inside,
+                (State::Start | State::Inside, b'{') => {
+                    self.state = match self.state {
+                        State::Start => State::End,
+                        _ => State::BetweenObjects,
+                    };
+                    return self.object(findings);
+                }
+                _ => {
+                    let message = "neither an array of objects nor an object";
+                    findings.error(self.place, "json-syntax", message);
+                    self.state = State::End;
+                }
+            }
+            self.line_ended(byte);
+        }
+        Ok(None)
+    }
+
+    /// The rest of an object whose brace has been taken.
+    fn object(&mut self, findings: &mut Findings) -> io::Result<Option<Object>> {
+        let start = self.place;
+        let mut bytes = vec![b'{'];
+        let (mut depth, mut in_string, mut escaped) = (1_usize, false, false);
+        while depth > 0 {
+            let byte = self.byte()?.filter(|_| bytes.len() < MAX_OBJECT);
+            let Some(byte) = byte else {
+                let message = format!("the object is not closed within {MAX_OBJECT} bytes");
+                findings.error(start, "json-truncated", message);
+                self.state = State::End;
+                return Ok(None);
+            };
+            bytes.push(byte);
+            self.line_ended(byte);
+            match byte {
+                _ if escaped => escaped = false,
+                b'\\' if in_string => escaped = true,
+                b'"' => in_string = !in_string,
+                b'{' if !in_string => depth += 1,
+                b'}' if !in_string => depth -= 1,
+                _ => {}
+            }
+        }
+        let Ok(text) = String::from_utf8(bytes) else {
+            findings.error(start, "character", "the object is not UTF-8");
+            self.state = State::End;
+            return Ok(None);
+        };
+        Ok(Some(Object { text, start }))
+    }
+}

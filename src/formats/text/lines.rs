@@ -1,0 +1,202 @@
+//! Lines of a text file, with a bound on their length and an eye on their encoding.
+
+use crate::formats::text::finding::Findings;
+use std::io::{self, BufRead};
+
+/// Longest line that is kept, in bytes; the longest that a supported format allows is 254.
+const MAX_LINE: usize = 4096;
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A line without its end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Line {
+    /// Number, from 1.
+    pub(crate) number: usize,
+    /// Text: printable ASCII.
+    pub(crate) text: String,
+}
+
+/// Reads lines that end in LF, CR or CR LF.
+pub(crate) struct Lines<R> {
+    input: R,
+    number: usize,
+    after_carriage_return: bool,
+    /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
+    takes_tabs: bool,
+}
+
+/// How the bytes of a line were taken.
+enum Taken {
+    Nothing,
+    Line,
+    TooLong,
+}
+
+impl<R: BufRead> Lines<R> {
+    pub(crate) fn new(input: R) -> Self {
+        Self {
+            input,
+            number: 0,
+            after_carriage_return: false,
+            takes_tabs: false,
+        }
+    }
+
+    /// Lines of a format that separates its words by tabs too.
+    pub(crate) fn with_tabs(input: R) -> Self {
+        Self {
+            takes_tabs: true,
+            ..Self::new(input)
+        }
+    }
+
+    /// Number of the last line that was read.
+    pub(crate) fn number(&self) -> usize {
+        self.number
+    }
+
+    /// The next line whose bytes are text; findings tell of the lines that are passed over.
+    pub(crate) fn next(&mut self, findings: &mut Findings) -> io::Result<Option<Line>> {
+        while !findings.is_full() {
+            let mut bytes = Vec::new();
+            let taken = self.take_bytes(&mut bytes)?;
+            if matches!(taken, Taken::Nothing) {
+                return Ok(None);
+            }
+            self.number += 1;
+            if matches!(taken, Taken::TooLong) {
+                let message = format!("the line is longer than {MAX_LINE} bytes");
+                findings.error((self.number, MAX_LINE + 1), "line-length", message);
+                continue;
+            }
+            if self.number == 1 && bytes.starts_with(BYTE_ORDER_MARK) {
+                bytes.drain(..BYTE_ORDER_MARK.len());
+            }
+            self.replace_tabs(&mut bytes, findings);
+            match bytes.iter().position(|byte| !is_text(*byte)) {
+                None => return Ok(Some(self.line(&bytes))),
+                Some(at) => {
+                    let message = format!("byte 0x{:02X} is no printable ASCII", bytes[at]);
+                    findings.error((self.number, at + 1), "character", message);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    fn line(&self, bytes: &[u8]) -> Line {
+        Line {
+            number: self.number,
+            text: bytes.iter().map(|byte| char::from(*byte)).collect(),
+        }
+    }
+
+    fn replace_tabs(&self, bytes: &mut [u8], findings: &mut Findings) {
+        for (at, byte) in bytes.iter_mut().enumerate() {
+            if *byte == b'\t' {
+                *byte = b' ';
+                if !self.takes_tabs {
+                    let message = "a tab stands where a blank belongs";
+                    findings.warning((self.number, at + 1), "tab", message);
+                }
+            }
+        }
+    }
+
+    /// Takes the bytes up to the end of the line out of the input, and keeps the first of them.
+    fn take_bytes(&mut self, kept: &mut Vec<u8>) -> io::Result<Taken> {
+        let mut any = false;
+        let mut too_long = false;
+        loop {
+            let available = match self.input.fill_buf() {
+                Ok(available) => available,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(error) => return Err(error),
+            };
+            if available.is_empty() {
+                return Ok(Self::taken(any, too_long));
+            }
+            if std::mem::take(&mut self.after_carriage_return) && available[0] == b'\n' {
+                self.input.consume(1);
+                continue;
+            }
+            any = true;
+            let end = available.iter().position(|b| matches!(b, b'\n' | b'\r'));
+            let length = end.unwrap_or(available.len());
+            let room = MAX_LINE - kept.len();
+            too_long |= length > room;
+            kept.extend_from_slice(&available[..length.min(room)]);
+            self.after_carriage_return = end.is_some_and(|at| available[at] == b'\r');
+            self.input.consume(end.map_or(length, |at| at + 1));
+            if end.is_some() {
+                return Ok(Self::taken(any, too_long));
+            }
+        }
+    }
+
+    fn taken(any: bool, too_long: bool) -> Taken {
+        match (any, too_long) {
+            (false, _) => Taken::Nothing,
+            (true, false) => Taken::Line,
+            (true, true) => Taken::TooLong,
+        }
+    }
+}
+
+fn is_text(byte: u8) -> bool {
+    (b' '..=b'~').contains(&byte)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::text::finding::Severity;
+
+    fn lines(
+        bytes: &[u8],
+    ) -> (
+        Vec<(usize, String)>,
+        Vec<crate::formats::text::finding::Finding>,
+    ) {
+        let mut findings = Findings::of_linter(10);
+        let mut reader = Lines::new(bytes);
+        let mut found = Vec::new();
+        while let Some(line) = reader.next(&mut findings).unwrap() {
+            found.push((line.number, line.text));
+        }
+        (found, findings.into_vec())
+    }
+
+    #[test]
+    fn every_line_end_counts_once() {
+        let (found, findings) = lines(b"\xef\xbb\xbfa\r\nb\rc\n\nd");
+        let expected = [(1, "a"), (2, "b"), (3, "c"), (4, ""), (5, "d")];
+        assert_eq!(
+            found,
+            expected.map(|(number, text)| (number, text.to_owned()))
+        );
+        assert!(findings.is_empty());
+        assert!(lines(b"").0.is_empty());
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_are_reported() {
+        let (found, findings) = lines(b"ok\na\tb\n\xff\xfe\na\0\nlast");
+        let texts: Vec<_> = found.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["ok", "a b", "last"]);
+        let places: Vec<_> = findings.iter().map(|f| (f.line, f.column)).collect();
+        assert_eq!(places, [(2, 2), (3, 1), (4, 2)]);
+        assert_eq!(findings[0].rule, "tab");
+        assert_eq!(findings[0].severity, Severity::Warning);
+    }
+
+    #[test]
+    fn a_long_line_is_passed_over_without_being_kept() {
+        let mut bytes = vec![b'x'; 3 * MAX_LINE];
+        bytes.extend_from_slice(b"\nnext\n");
+        let (found, findings) = lines(&bytes);
+        assert_eq!(found, [(2, "next".to_owned())]);
+        assert_eq!(findings[0].rule, "line-length");
+    }
+}

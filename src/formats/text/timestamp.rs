@@ -1,0 +1,231 @@
+//! Calendar instants as files write them, and the time systems that they are counted in.
+
+use crate::keyword::words;
+use crate::time::{Epoch, TimeGrid};
+use chrono::{NaiveDate, NaiveDateTime, TimeDelta, Timelike};
+
+/// TAI - GPS time, s (IS-GPS-200: GPS time was UTC in January 1980, when TAI - UTC was 19 s).
+const TAI_MINUS_GPS_S: f64 = 19.0;
+
+/// TT - TAI, s.
+const TT_MINUS_TAI_S: f64 = 32.184;
+
+words! {
+    /// A time system of an exchanged file.
+    TimeSystem {
+        /// Coordinated Universal Time.
+        Utc = "UTC",
+        /// GPS time.
+        Gps = "GPS",
+        /// International Atomic Time.
+        Tai = "TAI",
+        /// Terrestrial Time.
+        Tt = "TT",
+    }
+}
+
+impl TimeSystem {
+    /// The instant that a stamp of this system means.
+    ///
+    /// A stamp inside a leap second, which only UTC has, is the second after it.
+    #[must_use]
+    pub fn epoch(self, stamp: NaiveDateTime) -> Epoch {
+        let written = Epoch::from_utc(stamp.and_utc());
+        let Some(ahead_of_tai_s) = self.ahead_of_tai_s() else {
+            return written;
+        };
+        // Leap seconds by UTC, which the first pass estimates with those of the stamp itself.
+        let once = written.plus_seconds(-ahead_of_tai_s - written.leap_seconds());
+        written.plus_seconds(-ahead_of_tai_s - once.leap_seconds())
+    }
+
+    /// How this system writes an instant.
+    #[must_use]
+    pub fn stamp(self, epoch: Epoch) -> NaiveDateTime {
+        let ahead_of_utc_s = self
+            .ahead_of_tai_s()
+            .map_or(0.0, |ahead| ahead + epoch.leap_seconds());
+        epoch.plus_seconds(ahead_of_utc_s).utc().naive_utc()
+    }
+
+    /// This system less TAI in seconds; none for UTC.
+    fn ahead_of_tai_s(self) -> Option<f64> {
+        match self {
+            Self::Utc => None,
+            Self::Gps => Some(-TAI_MINUS_GPS_S),
+            Self::Tai => Some(0.0),
+            Self::Tt => Some(TT_MINUS_TAI_S),
+        }
+    }
+}
+
+/// How many decimals of a second are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct SecondDigits(usize);
+
+impl SecondDigits {
+    /// Fewest decimals that are written: milliseconds.
+    pub const FEWEST: Self = Self(3);
+
+    /// The decimals that write every sample of a grid without rounding, up to nanoseconds.
+    #[must_use]
+    pub fn of_grid(grid: &TimeGrid) -> Self {
+        let start = Self::of_nanoseconds(grid.epoch().utc().nanosecond());
+        if grid.len() == 1 {
+            return start;
+        }
+        let step_ns = (grid.step_s().fract() * 1e9).round() as u32;
+        start.max(Self::of_nanoseconds(step_ns))
+    }
+
+    /// The decimals that write a stamp without rounding.
+    #[must_use]
+    pub fn of_stamp(stamp: NaiveDateTime) -> Self {
+        Self::of_nanoseconds(stamp.nanosecond())
+    }
+
+    fn of_nanoseconds(nanoseconds: u32) -> Self {
+        let mut digits = 9;
+        let mut rest = nanoseconds;
+        while digits > Self::FEWEST.0 && rest.is_multiple_of(10) {
+            rest /= 10;
+            digits -= 1;
+        }
+        Self(digits)
+    }
+}
+
+/// A stamp in CCSDS ASCII time code A: `2025-01-01T00:00:00.000`.
+#[must_use]
+pub fn calendar(stamp: NaiveDateTime, digits: SecondDigits) -> String {
+    // chrono keeps a leap second as a nanosecond count past 1e9.
+    let leap = stamp.nanosecond() / 1_000_000_000;
+    let fraction = format!("{:09}", stamp.nanosecond() % 1_000_000_000);
+    format!(
+        "{}:{:02}.{}",
+        stamp.format("%Y-%m-%dT%H:%M"),
+        stamp.second() + leap,
+        &fraction[..digits.0]
+    )
+}
+
+/// Reads CCSDS ASCII time code A or B (CCSDS 502.0-B-3, 7.5.10): calendar day or day of year,
+/// any number of decimals, an optional `Z`. Decimals past nanoseconds are rounded.
+#[must_use]
+pub fn parse(text: &str) -> Option<NaiveDateTime> {
+    let text = text.strip_suffix('Z').unwrap_or(text);
+    let (date, time) = text.split_once('T')?;
+    let fields: Vec<&str> = date.split('-').collect();
+    let date = match fields[..] {
+        [year, day] => NaiveDate::from_yo_opt(digits(year, 4)? as i32, digits(day, 3)?)?,
+        [year, month, day] => {
+            NaiveDate::from_ymd_opt(digits(year, 4)? as i32, digits(month, 2)?, digits(day, 2)?)?
+        }
+        _ => return None,
+    };
+    let fields: Vec<&str> = time.split(':').collect();
+    let [hour, minute, second] = fields[..] else {
+        return None;
+    };
+    let (second, nanoseconds) = match second.split_once('.') {
+        Some((second, fraction)) => (digits(second, 2)?, nanoseconds(fraction)?),
+        None => (digits(second, 2)?, 0),
+    };
+    let (hour, minute) = (digits(hour, 2)?, digits(minute, 2)?);
+    let start = match second {
+        60 => date.and_hms_nano_opt(hour, minute, 59, 1_000_000_000)?,
+        _ => date.and_hms_opt(hour, minute, second)?,
+    };
+    start.checked_add_signed(TimeDelta::nanoseconds(nanoseconds))
+}
+
+/// A number of exactly `count` decimal digits.
+fn digits(text: &str, count: usize) -> Option<u32> {
+    let all_digits = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());
+    all_digits.then(|| text.parse().ok())?
+}
+
+/// The decimals of a second in nanoseconds, rounded.
+fn nanoseconds(fraction: &str) -> Option<i64> {
+    if fraction.is_empty() || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
+        return None;
+    }
+    let (kept, rest) = fraction.split_at(fraction.len().min(9));
+    let scale = 10_i64.pow(9 - kept.len() as u32);
+    let round_up = rest.bytes().next().is_some_and(|digit| digit >= b'5');
+    Some(kept.parse::<i64>().ok()? * scale + i64::from(round_up))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn epoch(text: &str) -> Epoch {
+        Epoch::from_utc(text.parse().unwrap())
+    }
+
+    #[test]
+    fn both_time_codes_are_read() {
+        let day = parse("1996-12-18T14:28:15.1172").unwrap();
+        assert_eq!(parse("1996-353T14:28:15.1172Z"), Some(day));
+        assert_eq!(day.nanosecond(), 117_200_000);
+        assert_eq!(
+            calendar(day, SecondDigits::FEWEST),
+            "1996-12-18T14:28:15.117"
+        );
+        assert_eq!(
+            calendar(day, SecondDigits::of_stamp(day)),
+            "1996-12-18T14:28:15.1172"
+        );
+        let leap = parse("2016-12-31T23:59:60.5").unwrap();
+        assert_eq!(
+            calendar(leap, SecondDigits::FEWEST),
+            "2016-12-31T23:59:60.500"
+        );
+        for wrong in [
+            "2025-13-01T00:00:00",
+            "2025-01-01 00:00:00",
+            "2025-1-1T00:00:00",
+            "2025-01-01T00:00",
+            "2025-01-01T00:00:61",
+            "2025-366T00:00:00",
+            "2025-01-01T00:00:00.",
+            "+025-01-01T00:00:00",
+            "",
+        ] {
+            assert_eq!(parse(wrong), None, "{wrong}");
+        }
+    }
+
+    /// GPS time has been 18 s ahead of UTC since 2017, TAI 37 s, TT 69.184 s (IERS Bulletin C).
+    #[test]
+    fn validate_offsets_of_time_systems() {
+        let utc = epoch("2025-01-01T00:00:00Z");
+        for (system, seconds) in [
+            (TimeSystem::Utc, 0.0),
+            (TimeSystem::Gps, 18.0),
+            (TimeSystem::Tai, 37.0),
+            (TimeSystem::Tt, 69.184),
+        ] {
+            let stamp = system.stamp(utc);
+            let ahead = Epoch::from_utc(stamp.and_utc()).seconds_since(utc);
+            assert!((ahead - seconds).abs() < 1e-9, "{system}");
+            assert_eq!(system.epoch(stamp), utc);
+        }
+        // The first second after a leap second.
+        let new_year = epoch("2017-01-01T00:00:00Z");
+        assert_eq!(
+            TimeSystem::Tai.epoch(TimeSystem::Tai.stamp(new_year)),
+            new_year
+        );
+    }
+
+    #[test]
+    fn digits_follow_the_step() {
+        let grid = |step_s| TimeGrid::new(epoch("2025-01-01T00:00:00Z"), 100.0, step_s).unwrap();
+        assert_eq!(SecondDigits::of_grid(&grid(60.0)), SecondDigits(3));
+        assert_eq!(SecondDigits::of_grid(&grid(0.1)), SecondDigits(3));
+        assert_eq!(SecondDigits::of_grid(&grid(0.0625)), SecondDigits(4));
+        assert_eq!(SecondDigits::of_grid(&grid(1.0 / 3.0)), SecondDigits(9));
+    }
+}

@@ -1,0 +1,3 @@
+//! Published studies, repeated: their tables beside ours, each statement judged by a rule.
+
+pub mod paper;

@@ -1,0 +1,308 @@
+//! The study of the paper: its tables, figures and percentages, ours beside its own.
+//!
+//! C. Zhang, J. Zhao, Z. Liu et al., "LEO-NA Walker Constellation Design with Bi-objective
+//! Optimisation Approaches". What the paper does not state (mask, surface, clocks, slots, epoch) is
+//! taken from the setup, and every line is also judged with one assumption changed at a time.
+
+mod assumptions;
+mod figures;
+mod fit;
+mod judge;
+mod lines;
+mod searches;
+mod table;
+
+pub use figures::{Curve, Figures, Place};
+pub use fit::{MaskFit, RowMask};
+pub use judge::{Expected, Line, Verdict};
+pub use lines::{PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
+pub use searches::{FoundMember, FoundSet};
+pub use table::{PERCENTAGES, Percentage, Printable, Row, Scheme, TABLE1, table2};
+
+use crate::constellation::{Design, DesignError, NotationError};
+use crate::ephemeris::EphemerisError;
+use crate::evaluate::{Evaluator, Metrics, Setup};
+use crate::ground::GroundError;
+use crate::keyword::UnknownWord;
+use crate::optimize::{DecisionError, Nsga2Config, OptimizeError};
+use crate::search::DesignSpace;
+use crate::time::TimeError;
+use crate::visibility::MaskError;
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+/// Why the study cannot be repeated.
+#[derive(Debug, Error)]
+pub enum PaperError {
+    /// The data that are built in cannot be read.
+    #[error("the paper's Table II: {0}")]
+    Table(#[from] csv::Error),
+    /// A scheme of Table II has no name.
+    #[error("the paper's Table II: {0}")]
+    Scheme(#[from] UnknownWord),
+    /// A design of Table II is none.
+    #[error("the paper's Table II: {0}")]
+    Notation(#[from] NotationError),
+    /// A row that a statement names is not there.
+    #[error("the paper's Table II has no row {0}")]
+    NoRow(String),
+    /// A fitted design cannot exist.
+    #[error(transparent)]
+    Design(#[from] DesignError),
+    /// A satellite cannot be propagated.
+    #[error(transparent)]
+    Ephemeris(#[from] EphemerisError),
+    /// A search cannot run.
+    #[error(transparent)]
+    Optimize(#[from] OptimizeError),
+    /// A set of designs cannot be judged.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
+    /// A mask out of range.
+    #[error(transparent)]
+    Mask(#[from] MaskError),
+    /// A point off the Earth.
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// A span without samples.
+    #[error(transparent)]
+    Time(#[from] TimeError),
+}
+
+/// What the study is repeated with.
+#[derive(Debug, Clone)]
+pub struct PaperStudy {
+    /// Everything that an evaluation depends on.
+    pub setup: Setup,
+    /// The designs among which the paper searches.
+    pub designs: DesignSpace,
+    /// Settings of its search; the swarm gets the same budget.
+    pub nsga2: Nsga2Config,
+    /// Seed of all searches.
+    pub seed: u64,
+}
+
+/// One design under one set of assumptions.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Value {
+    /// N̄.
+    pub mean_visible: f64,
+    /// Mean PDOP.
+    pub mean_pdop: Option<f64>,
+    /// Equation (8).
+    pub j_pos: Option<f64>,
+    /// Equation (9).
+    pub j_cost: Option<f64>,
+}
+
+impl From<Metrics> for Value {
+    fn from(metrics: Metrics) -> Self {
+        Self {
+            mean_visible: metrics.mean_visible,
+            mean_pdop: metrics.mean_pdop,
+            j_pos: metrics.j_pos,
+            j_cost: metrics.j_cost,
+        }
+    }
+}
+
+/// All rows of Table II under one set of assumptions, in its order.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// What is assumed, in words.
+    pub assumption: String,
+    /// Row by row.
+    pub values: Vec<Value>,
+}
+
+/// A row of Table II, the paper's and ours.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RowResult {
+    /// Its name.
+    pub name: String,
+    /// The design as printed.
+    pub design: String,
+    /// Satellites T.
+    pub satellites: usize,
+    /// N̄ of the paper.
+    pub paper_mean_visible: f64,
+    /// E(PDOP) of the paper.
+    pub paper_mean_pdop: f64,
+    /// Ours as printed.
+    pub as_printed: Value,
+    /// Where the printed inclination does not give the paper's N̄: the nearest that does, degrees, if
+    /// there is one.
+    pub fitting_inclination_deg: Option<f64>,
+    /// Ours at that inclination, or as printed where there is none.
+    pub at_fitting: Value,
+}
+
+/// What the paper's second objective does with the number of satellites.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CostOfSize {
+    /// Satellites of the smallest and largest design of the search space.
+    pub satellites: [usize; 2],
+    /// `J_cost` of both at the reference inclination and altitude.
+    pub j_cost: [Option<f64>; 2],
+}
+
+/// The study repeated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Reproduction {
+    /// Mask of the scenario, degrees.
+    pub mask_deg: f64,
+    /// The mask that Table II implies.
+    pub mask_fit: MaskFit,
+    /// Table II.
+    pub rows: Vec<RowResult>,
+    /// Table II as printed under the scenario and then with one assumption changed each.
+    pub sensitivity: Vec<Measured>,
+    /// The searches of the paper and of its baselines.
+    pub searches: Vec<FoundSet>,
+    /// The data of Figures 2 to 4; goes to files of its own.
+    #[serde(skip)]
+    pub figures: Figures,
+    /// Cost against size.
+    pub cost_of_size: CostOfSize,
+    /// Every statement of the paper that has a number or a direction, judged.
+    pub lines: Vec<Line>,
+}
+
+/// Repeats the study.
+///
+/// # Errors
+/// When a design cannot be flown or a search cannot run under the given setup.
+pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
+    let setup = &study.setup;
+    let rows = table2()?;
+    let mask_fit = fit::fit_mask(setup, &rows)?;
+    let evaluator = Evaluator::new(setup.clone())?;
+    let fitted = fitted_rows(setup, &rows)?;
+    let printed = measure(&evaluator, "as in the scenario", designs(&rows))?;
+    let moved: Vec<Design> = (rows.iter().zip(&fitted))
+        .map(|(row, fit)| fit.map_or(Ok(row.design), |i| fit::inclined(&row.design, i)))
+        .collect::<Result<_, _>>()?;
+    let at_fitting = measure(&evaluator, "the inclination that fits N̄", moved.clone())?;
+
+    let mut sensitivity = vec![printed.clone()];
+    for alternative in assumptions::alternatives(setup)? {
+        let evaluator = Evaluator::new(alternative.setup)?;
+        sensitivity.push(measure(&evaluator, &alternative.name, designs(&rows))?);
+    }
+    let searches = searches::all(&evaluator, study)?;
+    let figures = figures::figures(&evaluator, &rows, &printed, &searches)?;
+    let alternative_figures = figures::compared(&evaluator, &rows, &moved)?;
+    let lines = lines::lines(&lines::Evidence {
+        setup,
+        rows: &rows,
+        mask_fit: &mask_fit,
+        printed: &printed,
+        fitted: &fitted,
+        at_fitting: &at_fitting,
+        alternatives: &sensitivity[1..],
+        searches: &searches,
+        curves: [&figures.constellations, &alternative_figures],
+    })?;
+    Ok(Reproduction {
+        mask_deg: setup.mask.degrees(),
+        mask_fit,
+        rows: row_results(&rows, &printed, &fitted, &at_fitting),
+        sensitivity,
+        cost_of_size: cost_of_size(&evaluator, study)?,
+        searches,
+        figures,
+        lines,
+    })
+}
+
+fn designs(rows: &[Row]) -> Vec<Design> {
+    rows.iter().map(|row| row.design).collect()
+}
+
+/// Table II measured under `setup`, each row at its printed inclination, or where the table's
+/// file names one that fits, at that.
+///
+/// # Errors
+/// When a design cannot be propagated under the given setup.
+pub fn fitted_table(setup: &Setup) -> Result<Vec<(Row, Value)>, PaperError> {
+    let rows = table2()?;
+    let design = |row: &Row| match row.fitting_inclination_deg {
+        Some(inclination_deg) => fit::inclined(&row.design, inclination_deg),
+        None => Ok(row.design),
+    };
+    let designs: Vec<Design> = rows.iter().map(design).collect::<Result<_, _>>()?;
+    let measured = measure(&Evaluator::new(setup.clone())?, "", designs)?;
+    Ok(rows.into_iter().zip(measured.values).collect())
+}
+
+fn measure(
+    evaluator: &Evaluator,
+    assumption: &str,
+    designs: Vec<Design>,
+) -> Result<Measured, PaperError> {
+    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.design(design)?.into());
+    Ok(Measured {
+        assumption: assumption.to_owned(),
+        values: designs.par_iter().map(value).collect::<Result<_, _>>()?,
+    })
+}
+
+/// The inclination that fits each row, where the printed one does not give its N̄.
+fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperError> {
+    let sky = Evaluator::new(fit::sky(setup))?;
+    let fit = |row: &Row| {
+        let printed = sky.design(&row.design)?.mean_visible;
+        if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
+            return Ok(None);
+        }
+        fit::fitting_inclination(&sky, row)
+    };
+    rows.par_iter().map(fit).collect()
+}
+
+fn row_results(
+    rows: &[Row],
+    printed: &Measured,
+    fitted: &[Option<f64>],
+    at_fitting: &Measured,
+) -> Vec<RowResult> {
+    let ours = printed.values.iter().zip(&at_fitting.values);
+    let row = |((row, fit), (as_printed, at_fitting)): ((&Row, &Option<f64>), (&Value, &Value))| {
+        RowResult {
+            name: row.name(),
+            design: row.design.to_string(),
+            satellites: row.design.satellite_count(),
+            paper_mean_visible: row.mean_visible,
+            paper_mean_pdop: row.mean_pdop,
+            as_printed: *as_printed,
+            fitting_inclination_deg: *fit,
+            at_fitting: *at_fitting,
+        }
+    };
+    rows.iter().zip(fitted).zip(ours).map(row).collect()
+}
+
+fn cost_of_size(evaluator: &Evaluator, study: &PaperStudy) -> Result<CostOfSize, PaperError> {
+    let space = &study.designs;
+    let reference = table2()?
+        .into_iter()
+        .find(|row| row.name() == lines::REFERENCE)
+        .ok_or_else(|| PaperError::NoRow(lines::REFERENCE.to_owned()))?
+        .design;
+    let mut satellites = [0; 2];
+    let mut j_cost = [None; 2];
+    for end in [0, 1] {
+        let planes = space.planes[end] as usize;
+        satellites[end] = planes * space.satellites_per_plane[end] as usize;
+        let phasing = reference.phasing().min(planes - 1);
+        let size = (satellites[end], planes, phasing);
+        let (i, h) = (reference.inclination_deg(), reference.altitude_km());
+        let design = Design::new(reference.pattern(), size, i, h)?;
+        j_cost[end] = evaluator.design(&design)?.j_cost;
+    }
+    Ok(CostOfSize { satellites, j_cost })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,151 @@
+//! The rule by which a statement of the paper is met.
+
+use crate::keyword::{Word, words};
+use serde::{Serialize, Serializer};
+
+words! {
+    /// What came of a statement.
+    Verdict {
+        /// It holds under the assumptions of the scenario.
+        Met = "met",
+        /// It holds with one assumption changed.
+        MetOtherwise = "met under another assumption",
+        /// It holds under none that was tried.
+        NotMet = "not met",
+    }
+}
+
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.word())
+    }
+}
+
+/// What the paper says of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Expected {
+    /// A number, and by how much another may differ from it and still be the same.
+    Value {
+        /// The number.
+        value: f64,
+        /// The largest difference.
+        tolerance: f64,
+    },
+    /// At least so much.
+    AtLeast(f64),
+    /// More than so much.
+    MoreThan(f64),
+}
+
+impl Expected {
+    /// Whether `found` is what the paper says; what is not a number never is.
+    pub(super) fn holds(self, found: f64) -> bool {
+        match self {
+            Self::Value { value, tolerance } => (found - value).abs() <= tolerance,
+            Self::AtLeast(bound) => found >= bound,
+            Self::MoreThan(bound) => found > bound,
+        }
+    }
+}
+
+/// One statement of the paper, judged.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Line {
+    /// Where the paper says it.
+    pub place: String,
+    /// What is stated.
+    pub statement: String,
+    /// Unit of the numbers.
+    pub unit: String,
+    /// What the paper says.
+    pub expected: Expected,
+    /// What comes out under the assumptions of the scenario.
+    pub ours: Option<f64>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The one assumption under which it holds, where it does not hold as it is.
+    pub assumption: Option<String>,
+    /// What comes out under that assumption.
+    pub ours_there: Option<f64>,
+}
+
+/// A number under a named assumption.
+pub(super) struct Otherwise<'a> {
+    pub(super) assumption: &'a str,
+    pub(super) found: Option<f64>,
+}
+
+/// Judges a statement: met if it holds as the scenario stands; else met under another assumption if
+/// it holds under any of `others`, of which the one with the smallest difference is named (the
+/// first of equals); else not met.
+pub(super) fn judge(
+    [place, statement, unit]: [&str; 3],
+    expected: Expected,
+    ours: Option<f64>,
+    others: &[Otherwise<'_>],
+) -> Line {
+    let right = |found: Option<f64>| found.is_some_and(|found| expected.holds(found));
+    let away = |other: &&Otherwise<'_>| match (expected, other.found) {
+        (Expected::Value { value, .. }, Some(found)) => (found - value).abs(),
+        // Beyond a bound all are right alike.
+        _ => 0.0,
+    };
+    let holds = others.iter().filter(|other| right(other.found));
+    let nearest = holds.min_by(|a, b| away(a).total_cmp(&away(b)));
+    let (verdict, there) = match (right(ours), nearest) {
+        (true, _) => (Verdict::Met, None),
+        (false, Some(other)) => (Verdict::MetOtherwise, Some(other)),
+        (false, None) => (Verdict::NotMet, None),
+    };
+    Line {
+        place: place.to_owned(),
+        statement: statement.to_owned(),
+        unit: unit.to_owned(),
+        expected,
+        ours,
+        verdict,
+        assumption: there.map(|other| other.assumption.to_owned()),
+        ours_there: there.and_then(|other| other.found),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ABOUT_TWO: Expected = Expected::Value {
+        value: 2.0,
+        tolerance: 0.1,
+    };
+
+    fn judged(expected: Expected, ours: Option<f64>, others: &[Option<f64>]) -> Line {
+        let names = ["a", "b", "c"];
+        let others: Vec<_> = (names.iter().zip(others))
+            .map(|(assumption, &found)| Otherwise { assumption, found })
+            .collect();
+        judge(["", "", ""], expected, ours, &others)
+    }
+
+    #[test]
+    fn verdicts_follow_the_numbers() {
+        assert_eq!(judged(ABOUT_TWO, Some(2.05), &[]).verdict, Verdict::Met);
+        let line = judged(ABOUT_TWO, Some(2.2), &[None, Some(2.09), Some(2.01)]);
+        assert_eq!(line.verdict, Verdict::MetOtherwise);
+        assert_eq!(
+            (line.assumption.as_deref(), line.ours_there),
+            (Some("c"), Some(2.01))
+        );
+        let line = judged(ABOUT_TWO, None, &[Some(2.2), Some(f64::NAN)]);
+        assert_eq!((line.verdict, line.assumption), (Verdict::NotMet, None));
+    }
+
+    #[test]
+    fn bounds_include_or_exclude_themselves() {
+        let verdict = |expected, ours| judged(expected, Some(ours), &[]).verdict;
+        assert_eq!(verdict(Expected::AtLeast(0.0), 0.0), Verdict::Met);
+        assert_eq!(verdict(Expected::MoreThan(0.0), 0.0), Verdict::NotMet);
+        assert_eq!(verdict(Expected::MoreThan(0.0), 1e-9), Verdict::Met);
+        assert_eq!(verdict(Expected::AtLeast(95.0), 94.0), Verdict::NotMet);
+    }
+}
