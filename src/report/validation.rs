@@ -234,9 +234,9 @@ fn verdict(result: &ValidateResult) -> String {
         .filter(|check| !check.passed)
         .count();
     if failed == 0 {
-        format!("passed: all {gated} gates are kept")
+        format!("passed: all {gated} gates")
     } else {
-        format!("FAILED: {failed} of {gated} gates are not kept")
+        format!("FAILED: {failed} of {gated} gates")
     }
 }
 
@@ -255,7 +255,7 @@ fn sweep_table(sweep: &[SweepCell]) -> Table {
         ("osculating: R", right),
         ("I", right),
         ("C (km rms)", right),
-        ("Kepler slot (km/day)", right),
+        ("Keplerian mean motion (km/day)", right),
         ("of gate", right),
     ]);
     for cell in sweep {

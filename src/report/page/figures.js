@@ -73,8 +73,8 @@
       y: pickOf(values), yaxis: axis, customdata: order, text: order.map((n) => plain(front.notation[n])),
       hovertemplate: "%{text}<br>%{y}<extra></extra>", line: { color, width: 1, dash: "dot" },
       marker: { color, size: 7 } });
-    const traces = [trace("least membership", front.membership, "y", colours.accent, "lines+markers"),
-      trace("normalised sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
+    const traces = [trace("worst-case membership", front.membership, "y", colours.accent, "lines+markers"),
+      trace("normalized sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
     traces.push({ type: "scatter", mode: "markers", name: "selected", x: [x[state.place]],
       y: [front.membership[state.place]], hoverinfo: "skip",
       marker: { size: 18, symbol: "circle-open", color: colours.ink, line: { width: 2.5, color: colours.ink } } });
@@ -192,7 +192,7 @@
       upright(cvar, " CVaR " + digits(cvar, 4), "dash", colours.second, ["left", "top"]);
     }
     return { data: traces, layout: layout(colours, { shapes, annotations, xaxis: { title: { text: "PDOP" } },
-      yaxis: { title: { text: "share with a larger PDOP" }, type: "log", dtick: 1 } }) };
+      yaxis: { title: { text: "share with a higher PDOP" }, type: "log", dtick: 1 } }) };
   }
 
   function convergence(colours) {
@@ -261,7 +261,7 @@
     if (data.region) {
       for (const measure of Object.keys(LABELS)) figure("map-" + measure, { build: map(measure) });
       figure("cdf-visible", { build: cdfVisible });
-      figure("series-max-pdop", { build: overTime("max-pdop", "largest PDOP of the points") });
+      figure("series-max-pdop", { build: overTime("max-pdop", "maximum PDOP over the points") });
       figure("series-mean-pdop", { build: overTime("mean-pdop", "E<sub>g</sub>(PDOP)") });
       figure("tail", { build: tail });
     }

@@ -5,7 +5,8 @@ use crate::earth;
 use crate::report::figures::quantity_label;
 use crate::report::run::{StoredMember, StoredRun};
 use crate::report::validation::digits;
-use crate::scenario::{Quantity, Region, Scenario, Word};
+use crate::scenario::{Algorithm, Quantity, Region, Scenario, Word};
+use crate::units::round_decimal;
 
 /// The beginning of the page.
 pub(super) struct Summary {
@@ -48,8 +49,19 @@ pub(super) struct CheckRow {
 /// The title of the page.
 pub(super) fn title(run: &StoredRun) -> String {
     match &run.scenario {
-        Some(scenario) => format!("Constellation study {}", scenario.name),
+        Some(scenario) => format!("Constellation study: {}", scenario.name),
         None => "Constellation study".to_owned(),
+    }
+}
+
+/// The name of an algorithm as the literature writes it.
+fn algorithm_title(word: &str) -> &str {
+    match Algorithm::from_word(word) {
+        Ok(Algorithm::Nsga2) => "NSGA-II",
+        Ok(Algorithm::Mopso) => "MOPSO",
+        Ok(Algorithm::Random) => "Random search",
+        Ok(Algorithm::Exhaustive) => "The exhaustive search",
+        Err(_) => word,
     }
 }
 
@@ -69,8 +81,8 @@ impl Summary {
         let (cut, all) = (places_with_cuts.len(), run.front.members.len());
         if page.evaluator.is_some() && cut < all {
             gaps.push(format!(
-                "this page has the maps and series of {cut} of the {all} front members; navwalker \
-                 plot --pick N draws those of any other"
+                "this page holds the maps and series of {cut} of the {all} designs on the front; \
+                 use navwalker plot --pick N for the others"
             ));
         }
         Self {
@@ -89,8 +101,11 @@ fn setting(scenario: &Scenario) -> String {
             let [west, east] = grid.longitude_deg;
             let [dlat, dlon] = grid.step_deg;
             format!(
-                "the region from {south}\u{b0} to {north}\u{b0} N and {west}\u{b0} to {east}\u{b0} E, \
-                 every {dlat}\u{b0} by {dlon}\u{b0}"
+                "{} to {} and {} to {}, every {dlat}\u{b0} by {dlon}\u{b0}",
+                latitude_label(south),
+                latitude_label(north),
+                longitude_label(west),
+                longitude_label(east)
             )
         }
         Region::Points { file } => format!("the points of {file}"),
@@ -112,12 +127,36 @@ fn setting(scenario: &Scenario) -> String {
     };
     format!(
         "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
-         {}; satellites count above {}\u{b0} of elevation.",
+         {}; elevation mask {}\u{b0}.",
         scenario.time.step_s,
         scenario.time.duration_h,
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
         scenario.visibility.mask_deg
     )
+}
+
+fn latitude_label(degrees: f64) -> String {
+    hemisphere(degrees, 'N', 'S')
+}
+
+fn longitude_label(degrees: f64) -> String {
+    let wrapped = crate::units::wrap_360(degrees);
+    let east = if wrapped > 180.0 {
+        wrapped - 360.0
+    } else {
+        wrapped
+    };
+    hemisphere(east, 'E', 'W')
+}
+
+/// `53° N`, `10° W`, and `0°` without a hemisphere.
+fn hemisphere(degrees: f64, positive: char, negative: char) -> String {
+    let size = round_decimal(degrees.abs(), 6);
+    if size == 0.0 {
+        return "0\u{b0}".to_owned();
+    }
+    let letter = if degrees > 0.0 { positive } else { negative };
+    format!("{size}\u{b0} {letter}")
 }
 
 /// What the search did.
@@ -126,9 +165,12 @@ fn found(run: &StoredRun) -> String {
     let members = match front.members.len() {
         0 => "no design that meets the constraints".to_owned(),
         1 => "one design".to_owned(),
-        n => format!("{n} designs, none of which is better than another in every objective"),
+        n => format!("{n} designs, none of which dominates another"),
     };
-    let algorithm = front.algorithm.as_deref().unwrap_or("The search");
+    let algorithm = front
+        .algorithm
+        .as_deref()
+        .map_or("The search", algorithm_title);
     let effort = front
         .evaluations
         .map(|n| format!(" evaluated {n} designs and"));
@@ -160,9 +202,8 @@ fn choice(run: &StoredRun) -> Option<String> {
         .collect();
     let metrics = &member.metrics;
     Some(format!(
-        "The fuzzy decision picks {} ({}): among the front its least membership over the objectives, {}, \
-         is the largest, so it gives up least of any one goal. It shows {} LEO satellites on average, mean \
-         PDOP {}, CVaR {}, at most {}.",
+        "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}. \
+         On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
         member.notation,
         objectives.join(", "),
         number(member.membership),
@@ -247,12 +288,9 @@ pub(super) fn validated(run: &StoredRun) -> Option<String> {
         (n + 1, f + usize::from(!check.passed))
     });
     Some(match failed {
-        0 => format!(
-            "{}: all {gated} gates are kept.",
-            validation.design.notation
-        ),
+        0 => format!("{}: all {gated} gates passed.", validation.design.notation),
         _ => format!(
-            "{}: {failed} of {gated} gates are not kept.",
+            "{}: {failed} of {gated} gates failed.",
             validation.design.notation
         ),
     })
@@ -299,7 +337,7 @@ pub(super) fn conventions(run: &StoredRun) -> Vec<(&'static str, String)> {
         ),
         (
             "PDOP",
-            "unit-weight least squares; a sample without a solution is no number and enters no statistic"
+            "unit-weight least squares; samples without a solution are excluded"
                 .to_owned(),
         ),
         (
