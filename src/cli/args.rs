@@ -1,4 +1,4 @@
-//! What can be typed.
+//! The arguments of the program.
 
 mod look;
 mod products;
@@ -36,15 +36,15 @@ use std::path::PathBuf;
     max_term_width = 100
 )]
 pub(crate) struct Cli {
-    /// Use this many threads instead of all cores; results do not depend on it.
+    /// Use this many threads instead of all cores; results do not depend on the number.
     #[arg(long, global = true, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
 
-    /// Print results and errors only, no progress and no hints.
+    /// Print only results and errors: no progress, no hints.
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
 
-    /// Print without colours, as the variable NO_COLOR does.
+    /// Print without colours, like the environment variable NO_COLOR.
     #[arg(long, global = true)]
     pub(crate) no_color: bool,
 
@@ -58,7 +58,7 @@ pub(crate) enum Command {
     ///
     /// Runs the algorithm of the scenario, prints the non-dominated designs of its last population
     /// and writes a run directory with the front, the history and a checkpoint of each generation.
-    /// Ctrl-C keeps the results so far; `--resume` goes on from the checkpoint.
+    /// Ctrl-C keeps the results so far; `--resume` continues from the checkpoint.
     ///
     /// Example: navwalker optimize --seed 7 --set optimizer.generations=60
     #[command(verbatim_doc_comment)]
@@ -77,7 +77,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
-    /// Repeat the study that this program implements: its tables and figures, ours beside theirs.
+    /// Reproduce the paper that this program implements: its tables and figures, ours beside theirs.
     ///
     /// Every statement of the paper is judged by a computed rule: met, met under another assumption
     /// (one changed at a time), or not met. DIR gets the report and the data of each figure.
@@ -86,7 +86,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
-    /// Write a design into files that other tools read, with a manifest of what each says and loses.
+    /// Export a design to the files other tools read, with a manifest of what each file holds and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
     #[command(verbatim_doc_comment, after_help = PRODUCTS)]
@@ -100,18 +100,18 @@ pub(crate) enum Command {
 
     /// Write one self-contained HTML page about a run.
     ///
-    /// The page shows the trade-off, and of each design that is clicked the maps, the tail, the
-    /// series and a globe; it needs no network. It goes to report.html in the run directory. What
-    /// is damaged or missing in the directory is named, and the rest is shown.
+    /// The page shows the trade-off and, for the selected design, maps, distributions, time series
+    /// and a globe; it needs no network. It is written to report.html in the run directory. Damaged
+    /// or missing files are named; the rest is shown.
     ///
-    /// A validation is shown when it lies in DIR/validation:
+    /// A validation is included if it is in DIR/validation:
     ///   navwalker validate --run runs/paper-1 --against sgp4 --report
     ///
     /// Example: navwalker report runs/paper-1 --compare star:86.4:180/12/1@925
     #[command(verbatim_doc_comment)]
     Report(ReportArgs),
 
-    /// Draw a figure of a run for a paper or a review, with the table behind it.
+    /// Draw a figure of a run for a paper or a review, with the data behind it.
     ///
     /// pareto       the front in the plane of the first two objectives
     /// map          --measure mean-visible, mean-pdop, p95-pdop, max-pdop, availability
@@ -120,8 +120,8 @@ pub(crate) enum Command {
     /// convergence  the hypervolume over the evaluations
     /// budget       the error budget of a validation
     ///
-    /// With --out the table goes beside the figure, as the same name with .csv; without it the
-    /// figure goes to stdout. The same run gives the same bytes.
+    /// With --out, the data is written next to the figure with the extension .csv; without it, the
+    /// figure goes to stdout. The same run always gives the same bytes.
     ///
     /// Example: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
     #[command(verbatim_doc_comment)]
@@ -133,7 +133,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Scenario(ScenarioArgs),
 
-    /// Print the completions of a shell.
+    /// Print shell completions.
     ///
     /// Example: navwalker completions bash > ~/.local/share/bash-completion/completions/navwalker
     #[command(verbatim_doc_comment)]
@@ -148,7 +148,7 @@ pub(crate) enum Command {
     /// Example: navwalker man optimize | man -l -
     #[command(verbatim_doc_comment)]
     Man {
-        /// The command whose page is printed [default: that of the program].
+        /// The command to describe [default: the program as a whole].
         #[arg(value_name = "COMMAND", conflicts_with = "out")]
         command: Option<String>,
 
@@ -158,7 +158,7 @@ pub(crate) enum Command {
     },
 }
 
-/// Which study a command works on.
+/// The study to work on.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario.
@@ -170,7 +170,7 @@ pub(crate) struct StudyArgs {
     pub(crate) overrides: Vec<String>,
 }
 
-/// The form of a result on stdout.
+/// Output format on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
     /// Tables to read.
@@ -186,7 +186,7 @@ pub(crate) struct OptimizeArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
-    /// Where the run goes [default: runs/<scenario>-<seed>].
+    /// Run directory to write [default: runs/<scenario>-<seed>].
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
@@ -194,25 +194,25 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Run this many seeds, from the one of the scenario upwards, and report their spread.
+    /// Run this many consecutive seeds, starting with the scenario's, and report their spread.
     ///
-    /// Each seed is a run of its own in DIR/seed-N; DIR gets the table of all as seeds.csv and
-    /// seeds.json. What is printed is the front of the first seed and the table.
+    /// Each seed has its own run in DIR/seed-N; the summary is in DIR/seeds.csv and DIR/seeds.json.
+    /// The front of the first seed and the summary are printed.
     #[arg(long, value_name = "N")]
     pub(crate) seeds: Option<NonZeroUsize>,
 
-    /// Also sweep the whole search space on the scenario's steps and hold the front against the
-    /// exact one: both hypervolumes, the distance of each member, and what was missed.
+    /// Also sweep the whole search space on the scenario's steps and compare the front with that of
+    /// the grid sweep: both hypervolumes, the distance of each member, and what was missed.
     ///
-    /// The sweep is a run of its own in DIR-sweep, which is resumed when it is there.
+    /// The sweep is a separate run in DIR-sweep, resumed if it exists.
     #[arg(long)]
     pub(crate) certify: bool,
 
-    /// Go on from the checkpoint of the run directory.
+    /// Resume from the checkpoint in the run directory.
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Replace a directory that holds something else.
+    /// Replace a directory with other contents.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -220,7 +220,7 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, conflicts_with = "seeds")]
     pub(crate) report: bool,
 
-    /// Form of the result on stdout.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
 }
@@ -238,29 +238,29 @@ pub(crate) struct EvaluateArgs {
     )]
     pub(crate) design: Option<Design>,
 
-    /// Evaluate the satellites of a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, or a
-    /// table of elements or states; a directory stands for its files; may be repeated.
+    /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, or a
+    /// table of elements or states; a directory means all its files; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub(crate) constellation: Vec<PathBuf>,
 
-    /// Add GDOP, HDOP, VDOP and the TDOP of each system: mean and tail.
+    /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,
 
-    /// Write metrics per instant and per point into this directory: epochs.csv and points.csv.
+    /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory.
     #[arg(long, value_name = "DIR")]
     pub(crate) series: Option<PathBuf>,
 
-    /// Replace a series directory that holds something.
+    /// Replace a series directory that is not empty.
     #[arg(long, requires = "series")]
     pub(crate) force: bool,
 
-    /// Form of the result on stdout.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
 }
 
-/// The form of a study on stdout.
+/// Output format of a study on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum StudyFormat {
     /// Tables to read.
@@ -278,7 +278,7 @@ pub(crate) struct ReproduceArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
-    /// Where the report and the data of the figures go.
+    /// Directory for the report and the data of the figures.
     #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
     pub(crate) out: PathBuf,
 
@@ -286,16 +286,16 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Replace a directory that holds something else.
+    /// Replace a directory with other contents.
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Form of the result on stdout.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: StudyFormat,
 }
 
-/// One design: given, or picked from a run.
+/// One design: given directly, or picked from a run.
 #[derive(Debug, Args)]
 #[group(required = false, multiple = true)]
 pub(crate) struct DesignArgs {
@@ -307,7 +307,7 @@ pub(crate) struct DesignArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) run: Option<PathBuf>,
 
-    /// Which design of the run: fuzzy, sum, topsis, knee, or the index of a front member.
+    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
     pub(crate) pick: Pick,
 }
@@ -320,7 +320,7 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) design: DesignArgs,
 
-    /// Products, separated by commas; they are listed below.
+    /// Products to write, separated by commas; listed below.
     #[arg(
         long = "as",
         value_name = "PRODUCTS",
@@ -329,11 +329,11 @@ pub(crate) struct ExportArgs {
     )]
     pub(crate) products: Vec<Product>,
 
-    /// Where the files go; an empty or new directory.
+    /// Output directory, empty or new.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
 
-    /// Replace a directory that holds something.
+    /// Replace a directory that is not empty.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -345,20 +345,20 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "SYSTEM", default_value = "UTC", value_parser = time_system_of_name)]
     pub(crate) time_system: TimeSystem,
 
-    /// Notation of the OMM: kvn, xml, json or csv.
+    /// Syntax of OMM files: kvn, xml, json or csv.
     #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
     pub(crate) omm_syntax: omm::Notation,
 
-    /// Notation of the OEM: kvn or xml.
+    /// Syntax of OEM files: kvn or xml.
     #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
     pub(crate) oem_syntax: oem::Notation,
 
-    /// Write the OEM of all satellites into one XML file; needs `--oem-syntax xml`.
+    /// Combine the OEMs of all satellites in one XML file; needs `--oem-syntax xml`.
     #[arg(long)]
     pub(crate) oem_combined: bool,
 
-    /// How element sets are made: kozai (the J2 mean elements), fit (least squares of SGP4 to the
-    /// trajectory), or kepler (the common mistake, for comparisons).
+    /// How element sets are derived: kozai (from the J2 mean elements), fit (SGP4 fitted to the
+    /// trajectory by least squares), or kepler (Keplerian mean motion, a common mistake, for comparison).
     #[arg(long, value_name = "THEORY", default_value = "kozai")]
     pub(crate) tle_theory: ElementChoice,
 
@@ -370,27 +370,27 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "VERSION", default_value = "d")]
     pub(crate) sp3_version: Sp3Version,
 
-    /// Read every product back, evaluate the scenario from it, and print how far it is from the
-    /// design; status 1 if it is farther than its digits and theory explain.
+    /// Read every product back, evaluate the scenario from it, and print the difference from the
+    /// design; exit status 1 if it exceeds what the file's digits and theory explain.
     #[arg(long)]
     pub(crate) check: bool,
 
-    /// When the CCSDS messages say that they were made, as in 2025-01-01T00:00:00Z; the same as
-    /// `--set export.creation-date=...`, whose default is the epoch of the study.
+    /// Creation date of CCSDS messages, such as 2025-01-01T00:00:00Z; the same as
+    /// `--set export.creation-date=...` [default: the epoch of the study].
     #[arg(long, value_name = "UTC")]
     pub(crate) creation_date: Option<String>,
 
-    /// Also write SP3 of these nominal constellations, each into a file of its own under gnss/:
+    /// Also write SP3 files of these nominal constellations, one file each, under gnss/:
     /// beidou-3 (ids C01 ...), gps (G01 ...), galileo (E01 ...), glonass (R01 ...).
     #[arg(long, value_name = "SYSTEMS", value_delimiter = ',')]
     pub(crate) gnss: Vec<Preset>,
 
-    /// Letter of the satellite ids of SP3.
+    /// Letter of satellite identifiers in SP3.
     #[arg(long, value_name = "LETTER", default_value = "L")]
     pub(crate) sp3_letter: char,
 }
 
-/// The form of a validation on stdout.
+/// Output format of a validation on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ReportFormat {
     /// Tables to read.
@@ -414,40 +414,40 @@ pub(crate) struct ValidateArgs {
     pub(crate) design: DesignArgs,
 
     /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
-    /// all, or files and directories of another program (OEM, OMM, TLE, SP3, STK .e; anything with a
-    /// `.` or `/` in its path).
+    /// all, or files and directories written by another program (OEM, OMM, TLE, SP3, STK .e; any
+    /// target with a `.` or `/` in it is a path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
 
-    /// Also write the report in every form into this directory.
+    /// Also write the report in every format to this directory.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Also write the page of the run with this validation in it, as `navwalker report` does. The
-    /// reports go to `validation` in the run directory, unless --out says otherwise.
+    /// Also write the page of the run, including this validation, as `navwalker report` does. The
+    /// reports go to `validation` in the run directory unless --out names another.
     #[arg(long, requires = "run")]
     pub(crate) report: bool,
 
-    /// Replace a directory that holds something.
+    /// Replace a directory that is not empty.
     #[arg(long)]
     pub(crate) force: bool,
 
-    /// Form of the result on stdout.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: ReportFormat,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct LintArgs {
-    /// The files.
+    /// Files to check.
     #[arg(value_name = "FILE", required = true)]
     pub(crate) files: Vec<PathBuf>,
 
-    /// Check against this format instead of the one that the file shows.
+    /// Check against this format instead of the detected one.
     #[arg(long = "as", value_name = "FORMAT")]
     pub(crate) format: Option<crate::exchange::lint::Format>,
 
-    /// Form of the result on stdout.
+    /// Output format.
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: Format,
 }

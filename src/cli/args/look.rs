@@ -1,4 +1,4 @@
-//! What can be typed to look at a run.
+//! Arguments of the commands that show a run.
 
 use crate::cli::pick::Pick;
 use crate::constellation::Design;
@@ -7,18 +7,18 @@ use crate::report::figures::{Figure, Measure};
 use clap::Args;
 use std::path::PathBuf;
 
-/// A run, and what is shown beside it.
+/// A run, and what to compare it with.
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
     /// A run directory.
     #[arg(value_name = "DIR")]
     pub(crate) directory: PathBuf,
 
-    /// Show this design beside the front, besides the scenario's reference design; may be repeated.
+    /// Compare the front with this design, in addition to the reference design; may be repeated.
     #[arg(long, value_name = "NOTATION")]
     pub(crate) compare: Vec<Design>,
 
-    /// Show the front of this run too, besides the sweep of --certify; may be repeated.
+    /// Also show the front of this run, in addition to the sweep of --certify; may be repeated.
     #[arg(long, value_name = "DIR")]
     pub(crate) front: Vec<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(crate) struct ReportArgs {
     #[command(flatten)]
     pub(crate) run: RunArgs,
 
-    /// Where the page goes [default: DIR/report.html].
+    /// Page to write [default: DIR/report.html].
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -42,23 +42,23 @@ pub(crate) struct PlotArgs {
     #[command(flatten)]
     pub(crate) run: RunArgs,
 
-    /// What is drawn: pareto, map, cdf, series, convergence or budget.
+    /// Figure to draw: pareto, map, cdf, series, convergence or budget.
     #[arg(long)]
     pub(crate) figure: Figure,
 
-    /// What a map, a distribution or a series shows.
+    /// Quantity of a map, a distribution or a series.
     #[arg(long)]
     pub(crate) measure: Option<Measure>,
 
-    /// Which design of the run a map, a distribution or a series shows: fuzzy, knee, or an index.
+    /// Design of a map, a distribution or a series: fuzzy, sum, topsis, knee, or its index.
     #[arg(long, value_name = "PICK", default_value = "fuzzy")]
     pub(crate) pick: Pick,
 
-    /// Form: svg, png, or csv for the table alone [default: by the name of --out, or svg].
+    /// File format: svg, png, or csv for the data alone [default: by the extension of --out, or svg].
     #[arg(long = "as", value_name = "FORM")]
     pub(crate) form: Option<Form>,
 
-    /// Where the figure goes; the table goes beside it.
+    /// Figure to write; its data goes next to it.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -13,7 +13,7 @@ pub(crate) struct ScenarioArgs {
 pub(crate) enum ScenarioAction {
     /// List the built-in scenarios.
     List {
-        /// Form of the result on stdout.
+        /// Output format.
         #[arg(long, value_enum, default_value = "text")]
         format: Format,
     },
