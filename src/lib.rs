@@ -29,5 +29,6 @@ pub mod stats;
 pub mod study;
 pub mod time;
 pub mod units;
+#[cfg(feature = "validate")]
 pub mod validate;
 pub mod visibility;
