@@ -84,10 +84,11 @@ fn propagation(bencher: Bencher) {
 fn visibility(bencher: Bencher) {
     let setup = paper();
     let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let rotation = EarthRotation::from_gmst(setup.grid.epoch().gmst_rad(0.0));
     let positions: Vec<_> = ephemeris
         .satellites()
         .iter()
-        .map(|s| ephemeris.state(s, 0.0).expect(SOUND).position_km)
+        .map(|s| rotation.to_earth_fixed(ephemeris.state(s, 0.0).expect(SOUND).position_km))
         .collect();
     bencher.bench_local(|| {
         for site in &setup.sites {

@@ -6,7 +6,7 @@ pub mod sampled;
 
 use crate::constellation::gnss::GnssSatellite;
 use crate::constellation::{Design, Slot};
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::TimeGrid;
 use thiserror::Error;
@@ -107,7 +107,7 @@ impl Ephemeris {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State, EphemerisError> {
+    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State<Teme>, EphemerisError> {
         satellite
             .propagator
             .state_at(elapsed_s)
@@ -121,7 +121,7 @@ impl Ephemeris {
     pub fn states<'a>(
         &'a self,
         satellite: &'a Flown,
-    ) -> impl ExactSizeIterator<Item = Result<(f64, State), EphemerisError>> + use<'a> {
+    ) -> impl ExactSizeIterator<Item = Result<(f64, State<Teme>), EphemerisError>> + use<'a> {
         self.grid
             .iter()
             .map(|elapsed_s| Ok((elapsed_s, self.state(satellite, elapsed_s)?)))
@@ -159,6 +159,6 @@ mod tests {
         assert_eq!(states.len(), 10);
         assert_eq!(states[9].0, 540.0);
         // First satellite: on the x axis of TEME at the epoch.
-        assert!((states[0].1.position_km.x - 7303.137).abs() < 1e-9);
+        assert!((states[0].1.position_km.km().x - 7303.137).abs() < 1e-9);
     }
 }

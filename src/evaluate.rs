@@ -20,7 +20,7 @@ use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthRotation, LocalFrame};
+use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::ground::Site;
 use crate::orbit::Model;
 use crate::time::TimeGrid;
@@ -91,13 +91,13 @@ impl Setup {
             && self.observation_weights == ObservationWeights::Unit
     }
 
-    /// The unit vector to a satellite (Earth-fixed, km) that clears the mask and the skyline.
+    /// The unit vector to a satellite (Earth-fixed axes) that clears the mask and the skyline.
     #[must_use]
     pub fn line_of_sight(
         &self,
         mask: Mask,
         site: &LocalFrame,
-        target_km: Vector3<f64>,
+        target_km: Position<EarthFixed>,
     ) -> Option<Vector3<f64>> {
         let clears = |unit: &Vector3<f64>| {
             self.skyline

@@ -1,4 +1,8 @@
-//! Reference frames and the rotations between them; no other module writes a rotation.
+//! Reference frames and the rotations between them.
+//!
+//! A [`Position`] and a [`State`] carry their frame in their type, and only this module turns one
+//! frame into another. The kernel of the evaluator works on plain numbers: it writes the rotation
+//! of a whole pattern out in its lanes, and is tested against the one here.
 //!
 //! Elements and propagation live in TEME, the true equator and mean equinox of date of
 //! SGP4 (Vallado et al., AIAA 2006-6753, appendix C). What is called Earth-fixed here is
@@ -9,15 +13,11 @@ use crate::earth::{GMST_RATE_RAD_S, Surface};
 use crate::keyword::words;
 use crate::time::Epoch;
 use nalgebra::{Matrix3, Vector3};
+use std::marker::PhantomData;
 
-/// Position and velocity in one frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
-    /// Position, km.
-    pub position_km: Vector3<f64>,
-    /// Velocity, km/s.
-    pub velocity_km_s: Vector3<f64>,
-}
+mod state;
+
+pub use state::{EarthFixed, Eme2000, Gcrf, Position, ReferenceFrame, State, Teme};
 
 words! {
     /// The frames in which trajectories are written.
@@ -54,33 +54,25 @@ impl EarthRotation {
         Self { sin, cos }
     }
 
-    /// A TEME position in Earth-fixed coordinates, km.
+    /// A TEME position in Earth-fixed coordinates.
     #[must_use]
-    pub fn to_earth_fixed(self, teme_km: Vector3<f64>) -> Vector3<f64> {
-        Vector3::new(
-            self.cos * teme_km.x + self.sin * teme_km.y,
-            self.cos * teme_km.y - self.sin * teme_km.x,
-            teme_km.z,
-        )
+    pub fn to_earth_fixed(self, teme: Position<Teme>) -> Position<EarthFixed> {
+        Position::new(self.direction_to_earth_fixed(teme.km()))
     }
 
-    /// An Earth-fixed position in TEME coordinates, km.
+    /// An Earth-fixed position in TEME coordinates.
     #[must_use]
-    pub fn to_teme(self, fixed_km: Vector3<f64>) -> Vector3<f64> {
-        Vector3::new(
-            self.cos * fixed_km.x - self.sin * fixed_km.y,
-            self.cos * fixed_km.y + self.sin * fixed_km.x,
-            fixed_km.z,
-        )
+    pub fn to_teme(self, fixed: Position<EarthFixed>) -> Position<Teme> {
+        Position::new(self.direction_to_teme(fixed.km()))
     }
 
     /// A TEME state in Earth-fixed coordinates; the velocity is relative to the rotating Earth.
     #[must_use]
-    pub fn state_to_earth_fixed(self, teme: State) -> State {
+    pub fn state_to_earth_fixed(self, teme: State<Teme>) -> State<EarthFixed> {
         let position_km = self.to_earth_fixed(teme.position_km);
-        let turned = self.to_earth_fixed(teme.velocity_km_s);
+        let turned = self.direction_to_earth_fixed(teme.velocity_km_s);
         // v' = R v - ω × r'
-        let velocity_km_s = turned - earth_rate().cross(&position_km);
+        let velocity_km_s = turned - earth_rate().cross(&position_km.km());
         State {
             position_km,
             velocity_km_s,
@@ -89,12 +81,30 @@ impl EarthRotation {
 
     /// An Earth-fixed state in TEME coordinates.
     #[must_use]
-    pub fn state_to_teme(self, fixed: State) -> State {
-        let inertial = fixed.velocity_km_s + earth_rate().cross(&fixed.position_km);
+    pub fn state_to_teme(self, fixed: State<EarthFixed>) -> State<Teme> {
+        let inertial = fixed.velocity_km_s + earth_rate().cross(&fixed.position_km.km());
         State {
             position_km: self.to_teme(fixed.position_km),
-            velocity_km_s: self.to_teme(inertial),
+            velocity_km_s: self.direction_to_teme(inertial),
         }
+    }
+
+    /// A vector of TEME axes in Earth-fixed axes.
+    pub(crate) fn direction_to_earth_fixed(self, teme: Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(
+            self.cos * teme.x + self.sin * teme.y,
+            self.cos * teme.y - self.sin * teme.x,
+            teme.z,
+        )
+    }
+
+    /// A vector of Earth-fixed axes in TEME axes.
+    pub(crate) fn direction_to_teme(self, fixed: Vector3<f64>) -> Vector3<f64> {
+        Vector3::new(
+            self.cos * fixed.x - self.sin * fixed.y,
+            self.cos * fixed.y + self.sin * fixed.x,
+            fixed.z,
+        )
     }
 }
 
@@ -124,9 +134,15 @@ fn from_rows(rows: [[f64; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| rows[row][column])
 }
 
-/// The way from TEME to a frame at one instant, for many states.
+/// The way from TEME to the frame `F` at one instant, for many states.
 #[derive(Debug, Clone, Copy)]
-pub enum FromTeme {
+pub struct FromTeme<F> {
+    way: Way,
+    frame: PhantomData<F>,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Way {
     /// TEME itself.
     Stay,
     /// To the rotating Earth.
@@ -135,59 +151,99 @@ pub enum FromTeme {
     Turn(Matrix3<f64>),
 }
 
-impl FromTeme {
+impl<F: ReferenceFrame> FromTeme<F> {
     /// The way to `frame`, at an instant `elapsed_s` after `epoch`.
     #[must_use]
-    pub fn to(frame: Frame, epoch: Epoch, elapsed_s: f64) -> Self {
+    pub fn to(frame: F, epoch: Epoch, elapsed_s: f64) -> Self {
         let to_eme2000 = || teme_to_eme2000(epoch.plus_seconds(elapsed_s));
-        match frame {
-            Frame::Teme => Self::Stay,
+        let way = match frame.name() {
+            Frame::Teme => Way::Stay,
             Frame::EarthFixed => {
-                Self::EarthFixed(EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
+                Way::EarthFixed(EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             }
-            Frame::Eme2000 => Self::Turn(to_eme2000()),
-            Frame::Gcrf => Self::Turn(eme2000_to_gcrf() * to_eme2000()),
+            Frame::Eme2000 => Way::Turn(to_eme2000()),
+            Frame::Gcrf => Way::Turn(eme2000_to_gcrf() * to_eme2000()),
+        };
+        Self {
+            way,
+            frame: PhantomData,
         }
     }
 
     /// A TEME state in the frame.
     #[must_use]
-    pub fn apply(&self, teme: State) -> State {
-        match self {
-            Self::Stay => teme,
-            Self::EarthFixed(rotation) => rotation.state_to_earth_fixed(teme),
-            Self::Turn(matrix) => turned(teme, *matrix),
+    pub fn apply(&self, teme: State<Teme>) -> State<F> {
+        match self.way {
+            Way::Stay => relabelled(teme),
+            Way::EarthFixed(rotation) => relabelled(rotation.state_to_earth_fixed(teme)),
+            Way::Turn(matrix) => turned(teme, matrix),
         }
     }
 
     /// A state of the frame in TEME: the way back of [`FromTeme::apply`].
     #[must_use]
-    pub fn undo(&self, state: State) -> State {
-        match self {
-            Self::Stay => state,
-            Self::EarthFixed(rotation) => rotation.state_to_teme(state),
-            Self::Turn(matrix) => turned(state, matrix.transpose()),
+    pub fn undo(&self, state: State<F>) -> State<Teme> {
+        match self.way {
+            Way::Stay => relabelled(state),
+            Way::EarthFixed(rotation) => rotation.state_to_teme(relabelled(state)),
+            Way::Turn(matrix) => turned(state, matrix.transpose()),
         }
     }
 }
 
 /// The TEME state in `frame`, at an instant `elapsed_s` after `epoch`.
 #[must_use]
-pub fn from_teme(teme: State, frame: Frame, epoch: Epoch, elapsed_s: f64) -> State {
+pub fn from_teme<F: ReferenceFrame>(
+    teme: State<Teme>,
+    frame: F,
+    epoch: Epoch,
+    elapsed_s: f64,
+) -> State<F> {
     FromTeme::to(frame, epoch, elapsed_s).apply(teme)
 }
 
 /// A state of `frame` in TEME, at an instant `elapsed_s` after `epoch`; undoes [`from_teme`].
 #[must_use]
-pub fn to_teme(state: State, frame: Frame, epoch: Epoch, elapsed_s: f64) -> State {
+pub fn to_teme<F: ReferenceFrame>(
+    state: State<F>,
+    frame: F,
+    epoch: Epoch,
+    elapsed_s: f64,
+) -> State<Teme> {
     FromTeme::to(frame, epoch, elapsed_s).undo(state)
 }
 
+/// The same numbers under the name that the type of a conversion has for their frame.
+fn relabelled<F, G>(state: State<F>) -> State<G> {
+    State::new(state.position_km.km(), state.velocity_km_s)
+}
+
 /// Both parts of a state under a rotation whose own rate is negligible (precession, 7e-12 rad/s).
-fn turned(state: State, matrix: Matrix3<f64>) -> State {
-    State {
-        position_km: matrix * state.position_km,
-        velocity_km_s: matrix * state.velocity_km_s,
+fn turned<F, G>(state: State<F>, matrix: Matrix3<f64>) -> State<G> {
+    State::new(
+        matrix * state.position_km.km(),
+        matrix * state.velocity_km_s,
+    )
+}
+
+/// The rotation within an orbit plane from perifocal axes (x towards the perigee) to node axes
+/// (x towards the ascending node).
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PerifocalAxes {
+    sin: f64,
+    cos: f64,
+}
+
+impl PerifocalAxes {
+    /// The perifocal axes of an argument of perigee, radians.
+    pub(crate) fn new(arg_perigee_rad: f64) -> Self {
+        let (sin, cos) = arg_perigee_rad.sin_cos();
+        Self { sin, cos }
+    }
+
+    /// The components of a perifocal vector in node axes.
+    pub(crate) fn to_node_axes(self, x: f64, y: f64) -> (f64, f64) {
+        (self.cos * x - self.sin * y, self.sin * x + self.cos * y)
     }
 }
 
@@ -223,10 +279,10 @@ impl OrbitPlane {
 ///
 /// `None` when position and velocity are parallel.
 #[must_use]
-pub fn ric_basis(state: &State) -> Option<Matrix3<f64>> {
-    let radial = state.position_km.try_normalize(0.0)?;
-    let cross = state
-        .position_km
+pub fn ric_basis<F>(state: &State<F>) -> Option<Matrix3<f64>> {
+    let position_km = state.position_km.km();
+    let radial = position_km.try_normalize(0.0)?;
+    let cross = position_km
         .cross(&state.velocity_km_s)
         .try_normalize(1e-12)?;
     let along = cross.cross(&radial);
@@ -240,8 +296,8 @@ pub fn ric_basis(state: &State) -> Option<Matrix3<f64>> {
 /// East, north and up at a ground point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalFrame {
-    /// Earth-fixed position of the point, km.
-    pub origin_km: Vector3<f64>,
+    /// Position of the point.
+    pub origin_km: Position<EarthFixed>,
     /// Unit vector eastwards, Earth-fixed.
     pub east: Vector3<f64>,
     /// Unit vector northwards, Earth-fixed.
@@ -258,16 +314,16 @@ impl LocalFrame {
         let (sin_lon, cos_lon) = longitude_rad.sin_cos();
         let east = Vector3::new(-sin_lon, cos_lon, 0.0);
         Self {
-            origin_km: surface.position_km(latitude_rad, longitude_rad),
+            origin_km: Position::new(surface.position_km(latitude_rad, longitude_rad)),
             east,
             north: up.cross(&east),
             up,
         }
     }
 
-    /// Elevation and azimuth (from north through east, [0, 2π)) of an Earth-fixed position, radians.
+    /// Elevation and azimuth (from north through east, [0, 2π)) of a position, radians.
     #[must_use]
-    pub fn look_angles(&self, target_km: Vector3<f64>) -> (f64, f64) {
+    pub fn look_angles(&self, target_km: Position<EarthFixed>) -> (f64, f64) {
         let line = target_km - self.origin_km;
         let (e, n, u) = (
             line.dot(&self.east),

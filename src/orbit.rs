@@ -11,7 +11,7 @@ mod spread;
 pub use elements::{ElementsError, MeanElements};
 pub use spread::Spread;
 
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::keyword::words;
 use crate::time::Epoch;
 use thiserror::Error;
@@ -22,7 +22,7 @@ pub trait Propagator: Send + Sync {
     ///
     /// # Errors
     /// When the theory has no state for that instant.
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError>;
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError>;
 }
 
 /// Why a theory gives no state.

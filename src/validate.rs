@@ -20,7 +20,7 @@ use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
 use crate::evaluate::{Evaluator, Setup};
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::keyword::{Word, words};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::MeanMotionSlot;
@@ -166,8 +166,8 @@ pub struct Parts {
     pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
     /// The clock states that are solved for, by those that are meant.
     pub clocks: fn(Clocks) -> Clocks,
-    /// Elevation and azimuth of an Earth-fixed position, radians.
-    pub look_angles: fn(&LocalFrame, nalgebra::Vector3<f64>) -> (f64, f64),
+    /// Elevation and azimuth of a position, radians.
+    pub look_angles: fn(&LocalFrame, Position<EarthFixed>) -> (f64, f64),
 }
 
 impl Default for Parts {

@@ -4,7 +4,7 @@ mod table;
 
 pub use table::{MaskTable, MaskTableError};
 
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use nalgebra::Vector3;
 use thiserror::Error;
 
@@ -48,13 +48,17 @@ impl Mask {
         self.sin2
     }
 
-    /// The unit vector from the site to the satellite (Earth-fixed, km) when the satellite is
+    /// The unit vector from the site to the satellite (Earth-fixed axes) when the satellite is
     /// visible: its elevation over the local horizon is at least the mask (M-16).
     ///
     /// sin(elevation) = u·d / |d| is compared by squares, so that no root is taken for what is
     /// not seen; u·d >= 0 keeps the sign, as masks are not negative.
     #[must_use]
-    pub fn line_of_sight(self, site: &LocalFrame, target_km: Vector3<f64>) -> Option<Vector3<f64>> {
+    pub fn line_of_sight(
+        self,
+        site: &LocalFrame,
+        target_km: Position<EarthFixed>,
+    ) -> Option<Vector3<f64>> {
         let line = target_km - site.origin_km;
         let height = site.up.dot(&line);
         if height < 0.0 {
@@ -90,7 +94,10 @@ mod tests {
                     assert!(found.is_none_or(|v| (v - line).norm() < 1e-12));
                 }
             }
-            assert!(mask.line_of_sight(&site, -site.origin_km).is_none());
+            assert!(
+                mask.line_of_sight(&site, Position::new(-site.origin_km.km()))
+                    .is_none()
+            );
         }
     }
 

@@ -9,7 +9,7 @@ use navwalker::ephemeris::sampled::Sampled;
 use navwalker::formats::sp3::{self as format, Version};
 use navwalker::formats::text::timestamp::TimeSystem;
 use navwalker::formats::trajectory::Trajectory;
-use navwalker::frames::Frame;
+use navwalker::frames::{EarthFixed, Frame};
 use navwalker::orbit::Model;
 use navwalker::time::TimeGrid;
 
@@ -92,7 +92,7 @@ pub fn sp3(bytes: &[u8]) {
         theory: Theory::Flown(Model::J2),
         subject: Vec::new(),
     };
-    let sampled = Sampled::new(&ephemeris, Frame::EarthFixed);
+    let sampled = Sampled::new(&ephemeris, EarthFixed);
     let pairs: Vec<(&Flown, &Object)> = ephemeris.satellites().iter().zip(&objects).collect();
     let mut out = Vec::new();
     // What its columns do not hold is refused with a reason.

@@ -6,7 +6,7 @@ mod sets;
 pub use sets::{ElementSetError, ElementSets, StaleElements};
 
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S};
-use crate::frames::{EarthRotation, OrbitPlane, State};
+use crate::frames::{EarthRotation, OrbitPlane, State, Teme};
 use crate::keyword::{Word, words};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
@@ -130,19 +130,19 @@ pub struct GeosynchronousOrbit {
 }
 
 impl GeosynchronousOrbit {
-    fn state(&self, elapsed_s: f64) -> State {
+    fn state(&self, elapsed_s: f64) -> State<Teme> {
         let (sin, cos) = (self.argument_of_latitude_rad + GMST_RATE_RAD_S * elapsed_s).sin_cos();
         let plane = OrbitPlane::new(self.raan_rad, self.inclination_rad);
         let speed_km_s = GEOSYNCHRONOUS_RADIUS_KM * GMST_RATE_RAD_S;
-        State {
-            position_km: plane.vector(cos, sin) * GEOSYNCHRONOUS_RADIUS_KM,
-            velocity_km_s: plane.vector(-sin, cos) * speed_km_s,
-        }
+        State::new(
+            plane.vector(cos, sin) * GEOSYNCHRONOUS_RADIUS_KM,
+            plane.vector(-sin, cos) * speed_km_s,
+        )
     }
 }
 
 impl Propagator for GnssOrbit {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         Ok(match self {
             Self::Secular(orbit) => orbit.state(elapsed_s),
             Self::Geosynchronous(orbit) => orbit.state(elapsed_s),
@@ -152,10 +152,8 @@ impl Propagator for GnssOrbit {
                 epoch,
             } => {
                 let (sin, cos) = longitude_rad.sin_cos();
-                let fixed = State {
-                    position_km: Vector3::new(cos, sin, 0.0) * GEOSYNCHRONOUS_RADIUS_KM,
-                    velocity_km_s: Vector3::zeros(),
-                };
+                let position_km = Vector3::new(cos, sin, 0.0) * GEOSYNCHRONOUS_RADIUS_KM;
+                let fixed = State::new(position_km, Vector3::zeros());
                 EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)).state_to_teme(fixed)
             }
         })

@@ -1,5 +1,6 @@
 //! Velocities for files that have positions alone.
 
+use crate::frames::Position;
 use crate::time::Epoch;
 use nalgebra::Vector3;
 
@@ -8,7 +9,7 @@ const NEIGHBOURS: usize = 9;
 
 /// Velocities of positions at distinct instants, km/s: at each the derivative of the polynomial
 /// through the nine nearest. None for fewer than two.
-pub(crate) fn velocities(positions: &[(Epoch, Vector3<f64>)]) -> Option<Vec<Vector3<f64>>> {
+pub(crate) fn velocities<F>(positions: &[(Epoch, Position<F>)]) -> Option<Vec<Vector3<f64>>> {
     if positions.len() < 2 {
         return None;
     }
@@ -24,7 +25,7 @@ pub(crate) fn velocities(positions: &[(Epoch, Vector3<f64>)]) -> Option<Vec<Vect
 }
 
 /// Derivative at node `j` of the Lagrange polynomial: the sum of f_i l_i'(t_j).
-fn derivative_at(window: &[(Epoch, Vector3<f64>)], j: usize) -> Vector3<f64> {
+fn derivative_at<F>(window: &[(Epoch, Position<F>)], j: usize) -> Vector3<f64> {
     let t: Vec<f64> = window
         .iter()
         .map(|(at, _)| at.seconds_since(window[j].0))
@@ -40,7 +41,7 @@ fn derivative_at(window: &[(Epoch, Vector3<f64>)], j: usize) -> Vector3<f64> {
                 .product::<f64>()
                 / (t[i] - t[j])
         };
-        sum += position * weight;
+        sum += position.km() * weight;
     }
     sum
 }

@@ -5,7 +5,7 @@
 
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{EphemerisError, Flown};
-use crate::frames::State;
+use crate::frames::{Position, ReferenceFrame, State};
 use nalgebra::Vector3;
 
 /// Error that the chosen degree keeps to where it can, km: the centimetre to which files are
@@ -33,8 +33,8 @@ impl Hermite {
     ///
     /// # Errors
     /// When the satellite cannot be propagated.
-    pub fn measured(
-        sampled: &Sampled<'_>,
+    pub fn measured<F: ReferenceFrame>(
+        sampled: &Sampled<'_, F>,
         satellite: &Flown,
     ) -> Result<Option<Self>, EphemerisError> {
         let samples = sampled.grid().len();
@@ -59,8 +59,8 @@ impl Hermite {
 }
 
 /// Largest distance between the interpolated and the true position, halfway between samples.
-fn max_error_km(
-    sampled: &Sampled<'_>,
+fn max_error_km<F: ReferenceFrame>(
+    sampled: &Sampled<'_, F>,
     satellite: &Flown,
     nodes: usize,
 ) -> Result<f64, EphemerisError> {
@@ -89,16 +89,16 @@ fn max_error_km(
     Ok(max_km)
 }
 
-/// Position at `at_s` of the polynomial through positions and velocities, km.
+/// Position at `at_s` of the polynomial through positions and velocities.
 ///
 /// Newton's form with every node taken twice; Stoer and Bulirsch, *Introduction to Numerical
 /// Analysis* (3rd ed.), section 2.1.5. The instants must differ.
 #[must_use]
-pub fn hermite_position(table: &[(f64, State)], at_s: f64) -> Vector3<f64> {
+pub fn hermite_position<F>(table: &[(f64, State<F>)], at_s: f64) -> Position<F> {
     let instants: Vec<f64> = table.iter().flat_map(|(t, _)| [*t, *t]).collect();
     let mut column: Vec<Vector3<f64>> = table
         .iter()
-        .flat_map(|(_, state)| [state.position_km, state.position_km])
+        .flat_map(|(_, state)| [state.position_km.km(); 2])
         .collect();
     let mut coefficients: Vec<Vector3<f64>> = column.iter().take(1).copied().collect();
     for order in 1..instants.len() {
@@ -113,11 +113,12 @@ pub fn hermite_position(table: &[(f64, State)], at_s: f64) -> Vector3<f64> {
         coefficients.push(column[0]);
     }
     let nested = |sum: Vector3<f64>, (t, c): (&f64, &Vector3<f64>)| sum * (at_s - t) + c;
-    instants
+    let km = instants
         .iter()
         .zip(&coefficients)
         .rev()
-        .fold(Vector3::zeros(), nested)
+        .fold(Vector3::zeros(), nested);
+    Position::new(km)
 }
 
 #[cfg(test)]
@@ -125,16 +126,18 @@ mod tests {
     use super::*;
     use crate::constellation::Design;
     use crate::ephemeris::Ephemeris;
-    use crate::frames::Frame;
+    use crate::frames::{Frame, Teme};
     use crate::orbit::Model;
     use crate::time::{Epoch, TimeGrid};
 
     /// A polynomial of degree 7 is met exactly by four nodes.
     #[test]
     fn validate_a_polynomial_is_its_own_interpolation() {
-        let at = |t: f64| State {
-            position_km: Vector3::new(t.powi(7) - 3.0 * t, 2.0 * t * t, 5.0),
-            velocity_km_s: Vector3::new(7.0 * t.powi(6) - 3.0, 4.0 * t, 0.0),
+        let at = |t: f64| {
+            State::<Teme>::new(
+                Vector3::new(t.powi(7) - 3.0 * t, 2.0 * t * t, 5.0),
+                Vector3::new(7.0 * t.powi(6) - 3.0, 4.0 * t, 0.0),
+            )
         };
         let table: Vec<_> = [-1.0, -0.25, 0.5, 1.5].map(|t| (t, at(t))).into();
         for t in [-0.8, 0.0, 0.3, 1.2] {

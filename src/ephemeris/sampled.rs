@@ -1,24 +1,24 @@
 //! The states of an ephemeris in the frame of a file.
 
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
-use crate::frames::{Frame, FromTeme, State};
+use crate::frames::{FromTeme, ReferenceFrame, State, Teme};
 use crate::time::{Epoch, TimeGrid};
 
 /// Most rotations that are kept, which all satellites share; beyond, they are computed again.
 const KEPT: usize = 100_000;
 
-/// An ephemeris seen in one frame.
-pub struct Sampled<'a> {
+/// An ephemeris seen in the frame `F`.
+pub struct Sampled<'a, F> {
     ephemeris: &'a Ephemeris,
-    frame: Frame,
+    frame: F,
     /// The rotation of every sample; none for a grid that is too long.
-    rotations: Vec<FromTeme>,
+    rotations: Vec<FromTeme<F>>,
 }
 
-impl<'a> Sampled<'a> {
+impl<'a, F: ReferenceFrame> Sampled<'a, F> {
     /// `ephemeris` in `frame`.
     #[must_use]
-    pub fn new(ephemeris: &'a Ephemeris, frame: Frame) -> Self {
+    pub fn new(ephemeris: &'a Ephemeris, frame: F) -> Self {
         let grid = ephemeris.grid();
         let rotation = |elapsed_s| FromTeme::to(frame, grid.epoch(), elapsed_s);
         let rotations = if grid.len() <= KEPT {
@@ -47,7 +47,7 @@ impl<'a> Sampled<'a> {
 
     /// The frame.
     #[must_use]
-    pub fn frame(&self) -> Frame {
+    pub fn frame(&self) -> F {
         self.frame
     }
 
@@ -55,14 +55,14 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State, EphemerisError> {
+    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State<F>, EphemerisError> {
         let teme = self.ephemeris.state(satellite, elapsed_s)?;
         Ok(FromTeme::to(self.frame, self.grid().epoch(), elapsed_s).apply(teme))
     }
 
     /// The TEME state of sample `k` in the frame.
     #[must_use]
-    pub fn rotated(&self, k: usize, teme: State) -> State {
+    pub fn rotated(&self, k: usize, teme: State<Teme>) -> State<F> {
         let rotation = self.rotations.get(k).copied().unwrap_or_else(|| {
             FromTeme::to(self.frame, self.grid().epoch(), self.grid().elapsed_s(k))
         });
@@ -73,7 +73,7 @@ impl<'a> Sampled<'a> {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State, EphemerisError> {
+    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State<F>, EphemerisError> {
         let teme = self.ephemeris.state(satellite, self.grid().elapsed_s(k))?;
         Ok(self.rotated(k, teme))
     }
@@ -82,7 +82,7 @@ impl<'a> Sampled<'a> {
     pub fn states(
         &self,
         satellite: &Flown,
-    ) -> impl ExactSizeIterator<Item = Result<(Epoch, State), EphemerisError>> {
+    ) -> impl ExactSizeIterator<Item = Result<(Epoch, State<F>), EphemerisError>> {
         let grid = self.grid();
         (0..grid.len()).map(move |k| {
             let at = grid.epoch().plus_seconds(grid.elapsed_s(k));

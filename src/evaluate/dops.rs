@@ -3,10 +3,9 @@
 use super::{Evaluator, Setup, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
 use crate::visibility::Mask;
-use nalgebra::Vector3;
 use serde::Serialize;
 
 /// Statistics of the dilutions of precision over the solved samples, by the weights of their
@@ -64,7 +63,7 @@ struct View<'a> {
     ephemeris: &'a Ephemeris,
     mask: Mask,
     clock: usize,
-    positions: Vec<Vector3<f64>>,
+    positions: Vec<Position<EarthFixed>>,
 }
 
 /// The samples of each quantity.

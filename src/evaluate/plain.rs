@@ -5,8 +5,8 @@ use super::metrics::Evaluated;
 use super::{Evaluator, Setup};
 use crate::dop::ClockGroup;
 use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::{EarthFixed, Position};
 use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
-use nalgebra::Vector3;
 
 /// One point at one time.
 pub(super) struct Sample {
@@ -92,12 +92,12 @@ pub(super) fn visit(
     Ok(())
 }
 
-/// Fills `positions` with the Earth-fixed positions of the satellites at instant `time`, km.
+/// Fills `positions` with the Earth-fixed positions of the satellites at instant `time`.
 pub(super) fn earth_fixed(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
     time: usize,
-    positions: &mut Vec<Vector3<f64>>,
+    positions: &mut Vec<Position<EarthFixed>>,
 ) -> Result<(), EphemerisError> {
     positions.clear();
     let elapsed_s = evaluator.setup().grid.elapsed_s(time);

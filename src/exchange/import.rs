@@ -16,10 +16,9 @@ use crate::formats::maps::czml;
 use crate::formats::trajectory::{TrajectoryError, frame_of_name, time_system_of_name};
 use crate::formats::{ReadError, csv};
 use crate::formats::{sp3, stk, tle};
-use crate::frames::{Frame, State};
+use crate::frames::{Frame, Position, State};
 use crate::keyword::UnknownWord;
 use crate::time::Epoch;
-use nalgebra::Vector3;
 use std::io::BufRead;
 use thiserror::Error;
 
@@ -141,7 +140,7 @@ impl Fleet {
         let mut trajectories = Vec::new();
         let given = file.ids.iter().zip(&file.states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
-            let positions: Vec<(Epoch, Vector3<f64>)> =
+            let positions: Vec<(Epoch, Position<Frame>)> =
                 samples.iter().map(|s| (s.at, s.position_km)).collect();
             let given: Option<Vec<_>> = samples.iter().map(|s| s.velocity_km_s).collect();
             let velocities = given
@@ -182,7 +181,8 @@ impl Fleet {
             .rsplit_once('.')
             .map_or(file_name, |(stem, _)| stem);
         let epoch = Epoch::from_utc(file.scenario_epoch.and_utc());
-        let at = |(elapsed_s, state): &(f64, State)| (epoch.plus_seconds(*elapsed_s), *state);
+        let at =
+            |(elapsed_s, state): &(f64, State<Frame>)| (epoch.plus_seconds(*elapsed_s), *state);
         Self::Sampled(vec![crate::formats::trajectory::Trajectory {
             name: name.to_owned(),
             id: name.to_owned(),
@@ -242,7 +242,7 @@ impl Fleet {
 
 /// Puts the states of a later segment behind those of an earlier one, in the order of time;
 /// segments may share an instant or overlap, and then the earlier one's states stand.
-fn join(before: &mut Vec<(Epoch, State)>, next: Vec<(Epoch, State)>) {
+fn join(before: &mut Vec<(Epoch, State<Frame>)>, next: Vec<(Epoch, State<Frame>)>) {
     before.extend(next);
     if !before.is_sorted_by(|(one, _), (other, _)| one < other) {
         // The sort is stable.

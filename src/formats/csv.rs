@@ -15,7 +15,7 @@ use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::Object;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
-use crate::frames::{Frame, State};
+use crate::frames::{EarthFixed, State};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
 use serde::Serialize;
@@ -119,7 +119,7 @@ pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), W
     table.write_record(STATES).map_err(io_error)?;
     let grid = ephemeris.grid();
     let digits = SecondDigits::of_grid(&grid);
-    let fixed = Sampled::new(ephemeris, Frame::EarthFixed);
+    let fixed = Sampled::new(ephemeris, EarthFixed);
     for satellite in ephemeris.satellites() {
         for (k, sample) in ephemeris.states(satellite).enumerate() {
             let (elapsed_s, teme) = sample?;
@@ -139,8 +139,8 @@ pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), W
 }
 
 /// Position to 1e-9 km and velocity to 1e-12 km/s.
-fn fields(state: &State) -> impl Iterator<Item = String> {
-    let (r, v) = (state.position_km, state.velocity_km_s);
+fn fields<F>(state: &State<F>) -> impl Iterator<Item = String> {
+    let (r, v) = (state.position_km.km(), state.velocity_km_s);
     let position = [r.x, r.y, r.z].map(|x| format!("{x:.9}"));
     let velocity = [v.x, v.y, v.z].map(|x| format!("{x:.12}"));
     position.into_iter().chain(velocity)

@@ -11,7 +11,7 @@
 
 use crate::constellation::Satellite;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
-use crate::frames::{Frame, State, from_teme};
+use crate::frames::{Eme2000, State, from_teme};
 use crate::orbit::Model;
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::osculating::OsculatingOrbit;
@@ -84,16 +84,16 @@ fn exponent(value: f64, digits: usize) -> String {
     format!("{mantissa}e{sign}{:02}", power.abs())
 }
 
-/// The starting state of a satellite, EME2000: osculating under J2.
+/// The starting state of a satellite: osculating under J2.
 #[must_use]
-pub fn start(satellite: &Satellite, model: Model, epoch: Epoch) -> State {
+pub fn start(satellite: &Satellite, model: Model, epoch: Epoch) -> State<Eme2000> {
     let teme = match model {
         Model::TwoBody => SecularOrbit::two_body(&satellite.elements).state(0.0),
         Model::J2 | Model::J2Osculating | Model::Sgp4 => {
             OsculatingOrbit::new(&satellite.elements).state(0.0)
         }
     };
-    from_teme(teme, Frame::Eme2000, epoch, 0.0)
+    from_teme(teme, Eme2000, epoch, 0.0)
 }
 
 /// Writes the script; `start_text` is the epoch as [`calendar`] gives it.
@@ -140,13 +140,18 @@ pub fn write_script(
     Ok(())
 }
 
-fn spacecraft(out: &mut impl Write, name: &str, start: &str, state: &State) -> io::Result<()> {
+fn spacecraft(
+    out: &mut impl Write,
+    name: &str,
+    start: &str,
+    state: &State<Eme2000>,
+) -> io::Result<()> {
     writeln!(out, "\nCreate Spacecraft {name}")?;
     writeln!(out, "{name}.DateFormat = UTCGregorian")?;
     writeln!(out, "{name}.Epoch = '{start}'")?;
     writeln!(out, "{name}.CoordinateSystem = EarthMJ2000Eq")?;
     writeln!(out, "{name}.DisplayStateType = Cartesian")?;
-    let (r, v) = (state.position_km, state.velocity_km_s);
+    let (r, v) = (state.position_km.km(), state.velocity_km_s);
     let values = [
         ("X", r.x),
         ("Y", r.y),

@@ -15,7 +15,7 @@ use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::frames::State;
+use crate::frames::{EarthFixed, Frame, Position, State};
 use crate::keyword::words;
 use crate::time::Epoch;
 use chrono::{Datelike, NaiveDate, NaiveDateTime, TimeDelta, Timelike};
@@ -125,7 +125,7 @@ pub fn write(
     version: Version,
     letter: char,
     metadata: &Metadata,
-    sampled: &Sampled<'_>,
+    sampled: &Sampled<'_, EarthFixed>,
     satellites: &[(&Flown, &Object)],
 ) -> Result<(), WriteError> {
     let grid = sampled.grid();
@@ -307,10 +307,10 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 fn write_state(
     out: &mut impl Write,
     (letter, number): (char, usize),
-    state: &State,
+    state: &State<EarthFixed>,
 ) -> Result<(), WriteError> {
     let velocity_dm_s = state.velocity_km_s * DM_IN_KM;
-    for (kind, vector) in [('P', state.position_km), ('V', velocity_dm_s)] {
+    for (kind, vector) in [('P', state.position_km.km()), ('V', velocity_dm_s)] {
         write!(out, "{kind}{letter}{number:02}")?;
         for value in &vector {
             let field = format!("{value:14.6}");
@@ -367,9 +367,9 @@ impl Sp3 {
 pub struct Sample {
     /// Instant.
     pub at: Epoch,
-    /// Earth-fixed position, km.
-    pub position_km: nalgebra::Vector3<f64>,
-    /// Earth-fixed velocity, km/s.
+    /// Position in the frame of the file.
+    pub position_km: Position<Frame>,
+    /// Velocity in the frame of the file, km/s.
     pub velocity_km_s: Option<nalgebra::Vector3<f64>>,
 }
 

@@ -39,7 +39,7 @@ pub struct StkEphemeris {
     /// Frame of the states.
     pub frame: Frame,
     /// Seconds since the scenario epoch, and the states.
-    pub states: Vec<(f64, State)>,
+    pub states: Vec<(f64, State<Frame>)>,
 }
 
 impl StkEphemeris {
@@ -70,7 +70,7 @@ pub fn write(
     out: &mut impl Write,
     name: &str,
     metadata: &Metadata,
-    (sampled, satellite): (&Sampled<'_>, &Flown),
+    (sampled, satellite): (&Sampled<'_, Frame>, &Flown),
     hermite: Option<Hermite>,
 ) -> Result<(), WriteError> {
     let grid = sampled.grid();
@@ -144,8 +144,8 @@ fn calendar_date(stamp: NaiveDateTime) -> String {
 }
 
 /// Seconds in full digits; positions to 1e-9 km and velocities to 1e-12 km/s.
-fn write_state(out: &mut impl Write, elapsed_s: f64, state: &State) -> io::Result<()> {
-    let (r, v) = (state.position_km, state.velocity_km_s);
+fn write_state(out: &mut impl Write, elapsed_s: f64, state: &State<Frame>) -> io::Result<()> {
+    let (r, v) = (state.position_km.km(), state.velocity_km_s);
     // The nanosecond to which stamps are kept everywhere else.
     let seconds = (elapsed_s * 1e9).round() / 1e9;
     writeln!(

@@ -16,7 +16,7 @@ pub struct Trajectory {
     /// Frame of the states.
     pub frame: Frame,
     /// The states and their instants.
-    pub states: Vec<(Epoch, State)>,
+    pub states: Vec<(Epoch, State<Frame>)>,
 }
 
 /// Why the states of a file cannot be compared with ours.

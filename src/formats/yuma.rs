@@ -14,10 +14,10 @@ pub use read::{ReadAlmanacError, read};
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite};
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S, GPS_EARTH_RATE_RAD_S, GPS_MU_M3_S2};
 use crate::formats::text::timestamp::TimeSystem;
+use crate::frames::{EarthFixed, Position};
 use crate::time::Epoch;
 use crate::units::{wrap_pi, wrap_two_pi};
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta};
-use nalgebra::Vector3;
 use std::io::{self, Write};
 
 /// The definition that the files follow.
@@ -148,10 +148,10 @@ impl Almanac {
         })
     }
 
-    /// Earth-fixed position a time after the time of applicability, km, by the algorithm of IS-GPS-200 for
+    /// Position a time after the time of applicability, by the algorithm of IS-GPS-200 for
     /// a circle.
     #[must_use]
-    pub fn position_km(&self, since_toa_s: f64) -> Vector3<f64> {
+    pub fn position_km(&self, since_toa_s: f64) -> Position<EarthFixed> {
         let a_m = self.sqrt_a * self.sqrt_a;
         let n = (GPS_MU_M3_S2 / a_m.powi(3)).sqrt();
         let u = self.arg_perigee_rad + self.mean_anomaly_rad + n * since_toa_s;
@@ -159,7 +159,7 @@ impl Almanac {
             + (self.raan_rate_rad_s - GPS_EARTH_RATE_RAD_S) * since_toa_s
             - GPS_EARTH_RATE_RAD_S * self.toa_s;
         let plane = crate::frames::OrbitPlane::new(wrap_two_pi(node), self.inclination_rad);
-        plane.vector(u.cos(), u.sin()) * (a_m / 1000.0)
+        Position::new(plane.vector(u.cos(), u.sin()) * (a_m / 1000.0))
     }
 
     /// Writes the satellite's block.

@@ -6,7 +6,7 @@
 //! antimeridian (3.1.9).
 
 use crate::earth::Surface;
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::ground::Grid;
 use crate::units::round_decimal;
 use nalgebra::Vector3;
@@ -21,10 +21,14 @@ const CORNERS: usize = 72;
 /// Decimals of a degree that maps are written with: a decimetre.
 const DECIMALS: usize = 6;
 
-/// The circle of ground points that see a satellite (Earth-fixed, km) at the mask, counterclockwise,
+/// The circle of ground points that see a satellite at the mask, counterclockwise,
 /// not closed (M-46).
-pub(crate) fn footprint(surface: Surface, satellite_km: Vector3<f64>, mask_rad: f64) -> Vec<Place> {
-    let centre = satellite_km.normalize();
+pub(crate) fn footprint(
+    surface: Surface,
+    satellite_km: Position<EarthFixed>,
+    mask_rad: f64,
+) -> Vec<Place> {
+    let centre = satellite_km.km().normalize();
     // A horizontal direction: away from the axis that is farthest from the centre.
     let axis = if centre.z.abs() < 0.9 {
         Vector3::z()
@@ -37,22 +41,29 @@ pub(crate) fn footprint(surface: Surface, satellite_km: Vector3<f64>, mask_rad: 
         .map(|k| {
             let (sin, cos) = (TAU * k as f64 / CORNERS as f64).sin_cos();
             let towards = east * cos + north * sin;
-            edge(surface, satellite_km, (centre, towards), mask_rad)
+            edge(surface, satellite_km, Arc { centre, towards }, mask_rad)
         })
         .collect()
 }
 
+/// A great circle through two perpendicular unit vectors.
+#[derive(Clone, Copy)]
+struct Arc {
+    centre: Vector3<f64>,
+    towards: Vector3<f64>,
+}
+
+impl Arc {
+    /// The unit vector at an angle from the centre.
+    fn direction(self, angle_rad: f64) -> Vector3<f64> {
+        let (sin, cos) = angle_rad.sin_cos();
+        self.centre * cos + self.towards * sin
+    }
+}
+
 /// Where the elevation of the satellite comes down to the mask, from below it into a direction.
-fn edge(
-    surface: Surface,
-    satellite_km: Vector3<f64>,
-    (centre, towards): (Vector3<f64>, Vector3<f64>),
-    mask_rad: f64,
-) -> Place {
-    let at = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        surface.below_rad(foot(surface, centre * cos + towards * sin))
-    };
+fn edge(surface: Surface, satellite_km: Position<EarthFixed>, arc: Arc, mask_rad: f64) -> Place {
+    let at = |angle: f64| surface.below_rad(foot(surface, arc.direction(angle)));
     let (mut seen, mut hidden) = (0.0, FRAC_PI_2);
     // 2⁻⁴⁰ of a quarter of the Earth is 10 micrometres.
     for _ in 0..40 {
@@ -76,9 +87,9 @@ fn foot(surface: Surface, direction: Vector3<f64>) -> Vector3<f64> {
     surface.position_km(latitude, direction.y.atan2(direction.x))
 }
 
-/// The place below an Earth-fixed position, degrees.
-pub(crate) fn place_below(surface: Surface, position_km: Vector3<f64>) -> Place {
-    degrees(surface.below_rad(position_km))
+/// The place below a position, degrees.
+pub(crate) fn place_below(surface: Surface, position_km: Position<EarthFixed>) -> Place {
+    degrees(surface.below_rad(position_km.km()))
 }
 
 fn degrees((latitude_rad, longitude_rad): (f64, f64)) -> Place {

@@ -4,6 +4,7 @@
 //! over the span spreads what is left. It works in e cos ω, e sin ω and ω + M, which stay regular
 //! for circular orbits, by Gauss-Newton steps with Levenberg-Marquardt damping.
 
+use crate::frames::{Position, Teme};
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
@@ -43,7 +44,7 @@ type Unknowns = Vector6<f64>;
 /// When SGP4 refuses the set that the fit starts from.
 pub fn fit(
     start: &sgp4::Elements,
-    positions: &[(f64, Vector3<f64>)],
+    positions: &[(f64, Position<Teme>)],
     origin: Epoch,
 ) -> Result<Fit, PropagationError> {
     let problem = Problem {
@@ -99,7 +100,7 @@ fn unknowns_of(set: &sgp4::Elements) -> Unknowns {
 
 struct Problem<'a> {
     template: &'a sgp4::Elements,
-    positions: &'a [(f64, Vector3<f64>)],
+    positions: &'a [(f64, Position<Teme>)],
     origin: Epoch,
 }
 
@@ -120,8 +121,8 @@ impl Problem<'_> {
     /// Trajectory less SGP4 at every instant.
     fn residuals(&self, unknowns: &Unknowns) -> Result<Vec<Vector3<f64>>, PropagationError> {
         let orbit = Sgp4Orbit::from_element_set(&self.set(unknowns), self.origin)?;
-        let apart = |(elapsed_s, position_km): &(f64, Vector3<f64>)| {
-            Ok(position_km - orbit.state_at(*elapsed_s)?.position_km)
+        let apart = |(elapsed_s, position_km): &(f64, Position<Teme>)| {
+            Ok(*position_km - orbit.state_at(*elapsed_s)?.position_km)
         };
         self.positions.iter().map(apart).collect()
     }
@@ -164,7 +165,7 @@ mod tests {
     use crate::orbit::Model;
     use crate::orbit::sgp4::MeanMotionSlot;
 
-    fn case(design: &str, model: Model) -> (sgp4::Elements, Vec<(f64, Vector3<f64>)>, Epoch) {
+    fn case(design: &str, model: Model) -> (sgp4::Elements, Vec<(f64, Position<Teme>)>, Epoch) {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let design: Design = design.parse().unwrap();
         let satellite = design.satellites()[1];

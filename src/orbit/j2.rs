@@ -7,7 +7,7 @@
 use super::kepler::eccentric_anomaly;
 use super::{MeanElements, PropagationError, Propagator};
 use crate::earth::{J2, RADIUS_KM};
-use crate::frames::{OrbitPlane, State};
+use crate::frames::{OrbitPlane, PerifocalAxes, State, Teme};
 use crate::units::wrap_two_pi;
 
 /// Constant rates of the angles, rad/s.
@@ -106,13 +106,13 @@ impl SecularOrbit {
 
     /// The TEME state `elapsed_s` seconds after the epoch; defined for every instant.
     #[must_use]
-    pub fn state(&self, elapsed_s: f64) -> State {
+    pub fn state(&self, elapsed_s: f64) -> State<Teme> {
         two_body_state(&self.elements_at(elapsed_s), &self.rates)
     }
 }
 
 impl Propagator for SecularOrbit {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         Ok(self.state(elapsed_s))
     }
 }
@@ -120,7 +120,7 @@ impl Propagator for SecularOrbit {
 /// Position of the elements on their ellipse, and its time derivative under the secular rates
 /// (M-8, M-9). The rates of the node and the perigee turn the ellipse, so that the velocity
 /// is the derivative of the position and not Kepler's, which is up to 10 m/s off.
-fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State {
+fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State<Teme> {
     let e = elements.eccentricity;
     let eta = (1.0 - e * e).sqrt();
     let anomaly = eccentric_anomaly(elements.mean_anomaly_rad, e);
@@ -131,21 +131,19 @@ fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State {
     let anomaly_rate = rates.mean_anomaly_rad_s / (1.0 - e * cos_e);
     let (vx, vy) = (-a * sin_e * anomaly_rate, a * eta * cos_e * anomaly_rate);
     // Turned by the argument of perigee into node axes
-    let (sin_w, cos_w) = elements.arg_perigee_rad.sin_cos();
-    let (node_x, node_y) = (cos_w * x - sin_w * y, sin_w * x + cos_w * y);
+    let perifocal = PerifocalAxes::new(elements.arg_perigee_rad);
+    let (node_x, node_y) = perifocal.to_node_axes(x, y);
+    let (turned_vx, turned_vy) = perifocal.to_node_axes(vx, vy);
     let (node_vx, node_vy) = (
-        cos_w * vx - sin_w * vy - rates.arg_perigee_rad_s * node_y,
-        sin_w * vx + cos_w * vy + rates.arg_perigee_rad_s * node_x,
+        turned_vx - rates.arg_perigee_rad_s * node_y,
+        turned_vy + rates.arg_perigee_rad_s * node_x,
     );
     let plane = OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
     let position_km = plane.vector(node_x, node_y);
     let mut velocity_km_s = plane.vector(node_vx, node_vy);
     velocity_km_s.x -= rates.raan_rad_s * position_km.y;
     velocity_km_s.y += rates.raan_rad_s * position_km.x;
-    State {
-        position_km,
-        velocity_km_s,
-    }
+    State::new(position_km, velocity_km_s)
 }
 
 #[cfg(test)]
@@ -203,7 +201,7 @@ mod tests {
                 state.velocity_km_s.norm_squared() / 2.0 - MU_KM3_S2 / state.position_km.norm();
             let expected = -MU_KM3_S2 / (2.0 * orbit.semi_major_axis_km);
             assert!((energy / expected - 1.0).abs() < 1e-12);
-            let momentum = state.position_km.cross(&state.velocity_km_s);
+            let momentum = state.position_km.km().cross(&state.velocity_km_s);
             let size = (MU_KM3_S2 * orbit.semi_major_axis_km * (1.0 - 0.01)).sqrt();
             assert!((momentum.norm() / size - 1.0).abs() < 1e-12);
             assert!((momentum.z / momentum.norm() - orbit.inclination_rad.cos()).abs() < 1e-12);

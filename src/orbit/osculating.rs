@@ -21,7 +21,7 @@ use super::j2::{SecularOrbit, SecularRates};
 use super::kepler::eccentric_anomaly;
 use super::{MeanElements, PropagationError, Propagator};
 use crate::earth::{J2, J3, RADIUS_KM};
-use crate::frames::{OrbitPlane, State};
+use crate::frames::{OrbitPlane, State, Teme};
 use nalgebra::Vector3;
 
 /// A satellite whose mean elements advance under secular J2 and whose states osculate.
@@ -45,7 +45,7 @@ impl OsculatingOrbit {
     ///
     /// The velocity is the time derivative of the position.
     #[must_use]
-    pub fn state(&self, elapsed_s: f64) -> State {
+    pub fn state(&self, elapsed_s: f64) -> State<Teme> {
         let mean = self.secular.elements_at(elapsed_s);
         let rates = self.secular.rates();
         let place = Place::new(&mean, &rates, self.terms.eta);
@@ -55,7 +55,7 @@ impl OsculatingOrbit {
 }
 
 impl Propagator for OsculatingOrbit {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         Ok(self.state(elapsed_s))
     }
 }
@@ -141,7 +141,7 @@ struct Polar {
 }
 
 impl Polar {
-    fn state(&self) -> State {
+    fn state(&self) -> State<Teme> {
         let plane = OrbitPlane::new(self.node_rad.value, self.inclination_rad.value);
         let (sin, cos) = self.argument_rad.value.sin_cos();
         let radial = plane.vector(cos, sin);
@@ -152,10 +152,8 @@ impl Polar {
         let turning = along * self.argument_rad.rate
             + Vector3::z().cross(&radial) * self.node_rad.rate
             + normal * (sin * self.inclination_rad.rate);
-        State {
-            position_km,
-            velocity_km_s: radial * self.radius_km.rate + turning * self.radius_km.value,
-        }
+        let velocity_km_s = radial * self.radius_km.rate + turning * self.radius_km.value;
+        State::new(position_km, velocity_km_s)
     }
 }
 

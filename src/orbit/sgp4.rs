@@ -3,7 +3,7 @@
 use super::j2::SecularRates;
 use super::{MeanElements, PropagationError, Propagator};
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::time::Epoch;
 use crate::units::{MINUTES_PER_DAY, wrap_two_pi};
 use nalgebra::Vector3;
@@ -249,7 +249,7 @@ fn refused(error: impl std::fmt::Display) -> PropagationError {
 }
 
 impl Propagator for Sgp4Orbit {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let minutes = ::sgp4::MinutesSinceEpoch((elapsed_s - self.epoch_offset_s) / 60.0);
         let prediction = match self.mode {
             Sgp4Mode::Afspc => self.constants.propagate_afspc_compatibility_mode(minutes),
@@ -269,10 +269,8 @@ impl Propagator for Sgp4Orbit {
                 least_km: self.least_km,
             });
         }
-        Ok(State {
-            position_km,
-            velocity_km_s: Vector3::from(prediction.velocity),
-        })
+        let velocity_km_s = Vector3::from(prediction.velocity);
+        Ok(State::new(position_km, velocity_km_s))
     }
 }
 
@@ -329,7 +327,7 @@ mod tests {
             let state = orbit.state_at(minutes * 60.0).unwrap();
             // The list prints 1e-8 km and 1e-9 km/s; the epoch in doubles adds a little.
             assert!(
-                (state.position_km - Vector3::from(position)).norm() < 2e-8,
+                (state.position_km.km() - Vector3::from(position)).norm() < 2e-8,
                 "{minutes}"
             );
             assert!(

@@ -4,10 +4,9 @@ use super::distribution::{Distribution, Residual};
 use super::{Check, Findings};
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::evaluate::{Evaluator, Metrics};
-use crate::frames::EarthRotation;
+use crate::frames::{EarthFixed, EarthRotation, Position};
 use crate::ground::Site;
 use crate::units::wrap_pi;
-use nalgebra::Vector3;
 use rayon::prelude::*;
 
 /// Sites at which passes are timed; more would tell the same.
@@ -212,7 +211,7 @@ struct Flight<'a> {
     seen: &'a Seen<'a>,
     ephemeris: &'a Ephemeris,
     satellite: &'a Flown,
-    sampled_km: Vec<Vector3<f64>>,
+    sampled_km: Vec<Position<EarthFixed>>,
 }
 
 impl<'a> Flight<'a> {
@@ -235,7 +234,7 @@ impl<'a> Flight<'a> {
         Ok(flight)
     }
 
-    fn position_km(&self, elapsed_s: f64) -> Result<Vector3<f64>, EphemerisError> {
+    fn position_km(&self, elapsed_s: f64) -> Result<Position<EarthFixed>, EphemerisError> {
         let state = self.ephemeris.state(self.satellite, elapsed_s)?;
         Ok(self
             .seen
@@ -244,7 +243,7 @@ impl<'a> Flight<'a> {
     }
 
     /// Sine of the elevation less that of the mask.
-    fn height(&self, site: &Site, target_km: Vector3<f64>) -> f64 {
+    fn height(&self, site: &Site, target_km: Position<EarthFixed>) -> f64 {
         let line = target_km - site.local.origin_km;
         let mask_rad = self.seen.evaluator.setup().mask.degrees().to_radians();
         site.local.up.dot(&line) / line.norm() - mask_rad.sin()

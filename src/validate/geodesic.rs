@@ -12,6 +12,7 @@ mod surfaces;
 use super::distribution::{Distribution, Residual};
 use super::{Check, Findings, Subject, ValidateError};
 use crate::earth::{FLATTENING, RADIUS_KM, Surface};
+use crate::frames::{EarthFixed, Position};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use nalgebra::Vector3;
 
@@ -63,19 +64,22 @@ impl std::fmt::Display for Case {
     }
 }
 
-/// Earth-fixed position of a geodetic point at a height over WGS 84, km.
+/// Position of a geodetic point at a height over WGS 84.
 ///
 /// Source: Hofmann-Wellenhof et al., *GNSS* (2008), equation 8.8.
-fn geodetic_position_km([latitude_deg, longitude_deg]: [f64; 2], height_km: f64) -> Vector3<f64> {
+fn geodetic_position_km(
+    [latitude_deg, longitude_deg]: [f64; 2],
+    height_km: f64,
+) -> Position<EarthFixed> {
     let e2 = FLATTENING * (2.0 - FLATTENING);
     let (sin_lat, cos_lat) = latitude_deg.to_radians().sin_cos();
     let (sin_lon, cos_lon) = longitude_deg.to_radians().sin_cos();
     let n = RADIUS_KM / (1.0 - e2 * sin_lat * sin_lat).sqrt();
-    Vector3::new(
+    Position::new(Vector3::new(
         (n + height_km) * cos_lat * cos_lon,
         (n + height_km) * cos_lat * sin_lon,
         (n * (1.0 - e2) + height_km) * sin_lat,
-    )
+    ))
 }
 
 fn stations() -> impl Iterator<Item = [f64; 2]> {
@@ -108,7 +112,7 @@ fn pairs<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + '
 
 /// The horizon of a station from geodesics.
 struct Horizon {
-    origin_km: Vector3<f64>,
+    origin_km: Position<EarthFixed>,
     east: Vector3<f64>,
     north: Vector3<f64>,
     up: Vector3<f64>,
@@ -132,7 +136,7 @@ impl Horizon {
     }
 
     /// Elevation and azimuth, degrees.
-    fn look_angles_deg(&self, target_km: Vector3<f64>) -> [f64; 2] {
+    fn look_angles_deg(&self, target_km: Position<EarthFixed>) -> [f64; 2] {
         let line = target_km - self.origin_km;
         let [e, n, u] = [&self.east, &self.north, &self.up].map(|axis| line.dot(axis));
         [u.atan2(e.hypot(n)).to_degrees(), e.atan2(n).to_degrees()]

@@ -12,7 +12,7 @@ use super::sgp4::causes::Causes;
 use super::sgp4::rates::{angles, closed_form};
 use super::{Check, Findings, Subject, ValidateError};
 use crate::earth::{J2, J3};
-use crate::frames::{State, ric_basis};
+use crate::frames::{State, Teme, ric_basis};
 use crate::orbit::MeanElements;
 use crate::orbit::osculating::{OsculatingOrbit, frozen_eccentricity};
 use crate::stats::line_fit;
@@ -62,7 +62,7 @@ fn track(subject: &Subject<'_>, elements: &MeanElements) -> Result<Track, Valida
     let states = zonals.integrate(&osculating.state(0.0), &times)?;
     let mean = (subject.parts.mean_j2)(elements);
     let rates = closed_form(subject);
-    let apart = |from: &State, to: &State| {
+    let apart = |from: &State<Teme>, to: &State<Teme>| {
         ric_basis(from).map_or_else(Vector3::zeros, |basis| {
             basis * (to.position_km - from.position_km)
         })
@@ -95,14 +95,14 @@ fn track(subject: &Subject<'_>, elements: &MeanElements) -> Result<Track, Valida
 }
 
 /// Largest relative change of the energy and of the polar angular momentum.
-fn conserved(zonals: Zonals, states: &[State]) -> [f64; 2] {
-    let energy = |state: &State| zonals.energy(state);
-    let momentum = |state: &State| state.position_km.cross(&state.velocity_km_s).z;
-    let whole = |state: &State| state.position_km.cross(&state.velocity_km_s).norm();
+fn conserved(zonals: Zonals, states: &[State<Teme>]) -> [f64; 2] {
+    let energy = |state: &State<Teme>| zonals.energy(state);
+    let momentum = |state: &State<Teme>| state.position_km.km().cross(&state.velocity_km_s).z;
+    let whole = |state: &State<Teme>| state.position_km.km().cross(&state.velocity_km_s).norm();
     let Some(first) = states.first() else {
         return [0.0; 2];
     };
-    let change = |value: &dyn Fn(&State) -> f64, scale: f64| {
+    let change = |value: &dyn Fn(&State<Teme>) -> f64, scale: f64| {
         let changes = states.iter().map(|s| (value(s) - value(first)).abs());
         changes.fold(0.0, f64::max) / scale
     };

@@ -173,7 +173,7 @@ fn a_geocentric_vertical() {
     let parts = Parts {
         local_frame: |surface, latitude, longitude| {
             let right = LocalFrame::new(surface, latitude, longitude);
-            let up = right.origin_km.normalize();
+            let up = right.origin_km.km().normalize();
             LocalFrame {
                 up,
                 north: up.cross(&right.east),

@@ -217,7 +217,7 @@ mod tests {
                 .orbit
                 .state_at(minutes * 60.0 - 3600.0)
                 .unwrap();
-            let apart = (state.position_km - Vector3::from(position)).norm();
+            let apart = (state.position_km.km() - Vector3::from(position)).norm();
             // 1e-8 km are printed.
             assert!(apart < 3e-8, "{minutes}: {apart}");
         }

@@ -9,7 +9,9 @@ fn epoch() -> Epoch {
 
 fn earth_fixed(orbit: &GnssOrbit, elapsed_s: f64) -> Vector3<f64> {
     let state = orbit.state_at(elapsed_s).unwrap();
-    EarthRotation::from_gmst(epoch().gmst_rad(elapsed_s)).to_earth_fixed(state.position_km)
+    EarthRotation::from_gmst(epoch().gmst_rad(elapsed_s))
+        .to_earth_fixed(state.position_km)
+        .km()
 }
 
 #[test]

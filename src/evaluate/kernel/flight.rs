@@ -69,7 +69,7 @@ impl Positions {
         (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
         for (n, satellite) in ephemeris.satellites().iter().enumerate() {
             let state = ephemeris.state(satellite, elapsed_s)?;
-            let position = rotation.to_earth_fixed(state.position_km);
+            let position = rotation.to_earth_fixed(state.position_km).km();
             let radius_km = position.norm();
             self.nearest_km = self.nearest_km.min(radius_km);
             self.farthest_km = self.farthest_km.max(radius_km);
@@ -185,7 +185,7 @@ impl PatternFlight {
         let (sin_raan, cos_raan) = (self.raan_rate_rad_s * elapsed_s).sin_cos();
         let arg_perigee_rad = self.arg_perigee_rad + self.arg_perigee_rate_rad_s * elapsed_s;
         let (sin_perigee, cos_perigee) = arg_perigee_rad.sin_cos();
-        let node = rotation.to_earth_fixed(Vector3::new(cos_raan, sin_raan, 0.0));
+        let node = rotation.direction_to_earth_fixed(Vector3::new(cos_raan, sin_raan, 0.0));
         Turn {
             cos_node: node.x,
             sin_node: node.y,

@@ -9,7 +9,7 @@ use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::Flown;
 use crate::evaluate::tests::setup;
 use crate::evaluate::{MetricOptions, Metrics};
-use crate::frames::State;
+use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::stats::Level;
@@ -186,12 +186,12 @@ fn whole_days_equal_the_plain_path() {
 
 /// Stands still over the rotating Earth.
 struct Hovering {
-    position_km: Vector3<f64>,
+    position_km: Position<EarthFixed>,
     epoch: Epoch,
 }
 
 impl Propagator for Hovering {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let rotation = EarthRotation::from_gmst(self.epoch.gmst_rad(elapsed_s));
         Ok(State {
             position_km: rotation.to_teme(self.position_km),

@@ -87,7 +87,7 @@ impl Horizon {
             let radius = site.local.origin_km.norm();
             nearest_km = nearest_km.min(radius);
             farthest_km = farthest_km.max(radius);
-            tilt = tilt.max(site.local.origin_km.cross(&site.local.up).norm() / radius);
+            tilt = tilt.max(site.local.origin_km.km().cross(&site.local.up).norm() / radius);
         }
         let (mask_rad, tilt_rad) = (mask.degrees().to_radians(), tilt.min(1.0).asin());
         let (sin_most, cos_most) = (mask_rad + tilt_rad).min(FRAC_PI_2).sin_cos();
@@ -168,7 +168,7 @@ impl Circle {
     fn around(sites: &[Site], members: &[u32]) -> Option<Self> {
         let units: Vec<_> = members
             .iter()
-            .map(|&m| sites[m as usize].local.origin_km.normalize())
+            .map(|&m| sites[m as usize].local.origin_km.km().normalize())
             .collect();
         let sum: Vector3<f64> = units.iter().sum();
         let mut centre = sum.try_normalize(1e-6)?;
@@ -262,7 +262,7 @@ fn middle(points: usize) -> usize {
 
 /// What points can be ordered by: x, y, z and the longitude, counted from the middle one.
 fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
-    let origin = |m: u32| sites[m as usize].local.origin_km;
+    let origin = |m: u32| sites[m as usize].local.origin_km.km();
     let sum: Vector3<f64> = members.iter().map(|&m| origin(m)).sum();
     let along =
         |key: &dyn Fn(Vector3<f64>) -> f64| members.iter().map(|&m| (m, key(origin(m)))).collect();
@@ -277,7 +277,9 @@ fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
 
 /// The axis along which the bounding box of the points is longest.
 fn longest_side(sites: &[Site], members: &[u32]) -> usize {
-    let points = members.iter().map(|&m| sites[m as usize].local.origin_km);
+    let points = members
+        .iter()
+        .map(|&m| sites[m as usize].local.origin_km.km());
     let low = points.clone().reduce(|a, b| a.inf(&b));
     let high = points.reduce(|a, b| a.sup(&b));
     low.zip(high).map_or(0, |(low, high)| (high - low).imax())
@@ -325,7 +327,7 @@ fn site_lanes<R: Copy>(
         }))
     };
     SiteLanes {
-        origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km, axis)),
+        origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km.km(), axis)),
         up: [0, 1, 2].map(|axis| lanes(|site| site.local.up, axis)),
     }
 }

@@ -16,7 +16,7 @@ use crate::formats::sp3::Sp3Error;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::{WriteError, csv};
 use crate::formats::{sp3, stk, tle};
-use crate::frames::{Frame, from_teme};
+use crate::frames::{EarthFixed, Frame, from_teme};
 use crate::keyword::Word;
 use crate::orbit::Model;
 use crate::orbit::sgp4::Sgp4Orbit;
@@ -116,7 +116,7 @@ impl Source<'_> {
     }
 
     /// The satellites of a design fly alike, so that the first tells of all.
-    fn hermite(&self, sampled: &Sampled<'_>) -> Result<Option<Hermite>, WriteError> {
+    fn hermite(&self, sampled: &Sampled<'_, Frame>) -> Result<Option<Hermite>, WriteError> {
         Ok(match self.ephemeris.satellites() {
             [first, ..] => Hermite::measured(sampled, first)?,
             [] => None,
@@ -217,7 +217,7 @@ impl Source<'_> {
         let (version, letter) = (self.choices.sp3_version, self.choices.sp3_letter);
         let mut metadata = self.flown_metadata(Frame::EarthFixed);
         metadata.time_system = TimeSystem::Gps;
-        let sampled = Sampled::new(&self.ephemeris, Frame::EarthFixed);
+        let sampled = Sampled::new(&self.ephemeris, EarthFixed);
         let satellites: Vec<_> = self
             .ephemeris
             .satellites()
@@ -270,7 +270,7 @@ impl Source<'_> {
         let ephemeris = Ephemeris::of_gnss(preset.satellites(grid.epoch()), grid);
         let objects = Object::all(ephemeris.satellites(), grid.epoch())?;
         let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
-        let sampled = Sampled::new(&ephemeris, Frame::EarthFixed);
+        let sampled = Sampled::new(&ephemeris, EarthFixed);
         let mut metadata = self.metadata(Frame::EarthFixed, Theory::Flown(Model::J2));
         metadata.time_system = TimeSystem::Gps;
         let note = format!("nominal {preset}: slots, not the satellites in orbit");

@@ -97,7 +97,7 @@ fn tables_agree_with_the_files() {
     for (row, line) in of_satellite.zip(&message.segments[0].states) {
         // Both are written to 1e-9 km from the same double.
         let x: f64 = row[9].parse().unwrap();
-        assert_eq!(x, line.state.position_km.x);
+        assert_eq!(x, line.state.position_km.km().x);
     }
     let mut elements = ::csv::Reader::from_reader(files["elements.csv"].as_slice());
     let first = elements.records().next().unwrap().unwrap();

@@ -4,7 +4,7 @@ use super::Fleet;
 use crate::constellation::gnss::{ElementSetError, ElementSets};
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::formats::trajectory::Trajectory;
-use crate::frames::{FromTeme, State};
+use crate::frames::{Frame, FromTeme, State, Teme};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use std::collections::HashSet;
@@ -48,14 +48,14 @@ pub enum FleetError {
     },
 }
 
-/// States at the instants of a grid, TEME.
+/// States at the instants of a grid.
 struct Samples {
     step_s: f64,
-    states: Vec<State>,
+    states: Vec<State<Teme>>,
 }
 
 impl Propagator for Samples {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let k = (elapsed_s / self.step_s).round();
         let missing = PropagationError::NotSampled { elapsed_s };
         if !(k >= 0.0 && (elapsed_s - k * self.step_s).abs() <= SAME_INSTANT_S) {
@@ -73,7 +73,7 @@ struct Shifted {
 }
 
 impl Propagator for Shifted {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         self.propagator.state_at(elapsed_s + self.ahead_s)
     }
 }
@@ -136,7 +136,7 @@ fn flown(name: &str, propagator: impl Propagator + 'static) -> Flown {
 
 /// Satellites of one file share its frame, so that its rotations are kept from one to the next.
 fn sampled(trajectories: &[Trajectory], grid: TimeGrid) -> Result<Vec<Flown>, FleetError> {
-    let mut rotations: Vec<FromTeme> = Vec::new();
+    let mut rotations: Vec<FromTeme<Frame>> = Vec::new();
     let mut frame = None;
     let mut satellites = Vec::with_capacity(trajectories.len());
     for trajectory in trajectories {
@@ -162,7 +162,11 @@ fn sampled(trajectories: &[Trajectory], grid: TimeGrid) -> Result<Vec<Flown>, Fl
 }
 
 /// The sample of an instant, in the frame of the file.
-fn state_at(trajectory: &Trajectory, epoch: Epoch, elapsed_s: f64) -> Result<State, FleetError> {
+fn state_at(
+    trajectory: &Trajectory,
+    epoch: Epoch,
+    elapsed_s: f64,
+) -> Result<State<Frame>, FleetError> {
     let states = &trajectory.states;
     let (Some((first, _)), Some((last, _))) = (states.first(), states.last()) else {
         return Err(FleetError::Empty);

@@ -8,6 +8,7 @@ use crate::formats::trajectory::Trajectory;
 use crate::keyword::Word;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 fn grid() -> TimeGrid {
@@ -172,7 +173,7 @@ fn velocities_follow_from_positions() {
     let at = |t: f64| Vector3::new((t / 900.0).powi(8), 3.0 * t, -t * t / 1e4);
     let positions: Vec<_> = (0..9)
         .map(|k| f64::from(k) * 300.0)
-        .map(|t| (epoch.plus_seconds(t), at(t)))
+        .map(|t| (epoch.plus_seconds(t), Position::<Frame>::new(at(t))))
         .collect();
     for (k, velocity) in velocities(&positions).unwrap().iter().enumerate() {
         let t = k as f64 * 300.0;

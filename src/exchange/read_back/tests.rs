@@ -127,7 +127,7 @@ fn a_second_late(fleet: &mut Fleet) {
             .for_each(|track| track.epoch = track.epoch.plus_seconds(1.0)),
         Fleet::Sampled(trajectories) => {
             for (_, state) in trajectories.iter_mut().flat_map(|one| &mut one.states) {
-                state.position_km -= state.velocity_km_s;
+                state.position_km = state.position_km + -state.velocity_km_s;
             }
         }
     }

@@ -169,7 +169,7 @@ fn validate_orbits_of_an_analysis_centre() {
         let late_s = utc("2025-01-01T00:05:00Z").seconds_since(at);
         assert!((late_s - ahead_s).abs() < 1e-9, "{system}: {late_s}");
         assert_eq!(
-            state.position_km,
+            state.position_km.km(),
             Vector3::new(10_138.887, -7_221.35, 23_465.1)
         );
     }
@@ -230,7 +230,7 @@ fn validate_an_ephemeris_message_of_gmat() {
     assert_eq!((satellites.len(), satellites[0].states.len()), (1, 3));
     assert_eq!(satellites[0].frame, Frame::Eme2000);
     assert_eq!(satellites[0].states[1].0, utc("2026-01-01T12:00:28Z"));
-    assert_eq!(satellites[0].states[1].1.position_km.z, 1357.0);
+    assert_eq!(satellites[0].states[1].1.position_km.km().z, 1357.0);
 }
 
 /// In the layout of Orekit's writer: version 3.0, days of the year, microseconds, blanks for
@@ -293,7 +293,7 @@ fn validate_an_ephemeris_message_of_orekit() {
     // The instant that both arcs have is that of the first.
     assert_eq!(states.len(), 3);
     assert_eq!(states[0].0, utc("2026-01-01T00:00:00Z"));
-    assert_eq!(states[1].1.position_km.x, 7086.0);
+    assert_eq!(states[1].1.position_km.km().x, 7086.0);
     assert_eq!(states[2].0, utc("2026-01-01T00:02:00Z"));
 }
 
@@ -330,7 +330,7 @@ fn validate_ephemerides_of_stk() {
         );
         let (at, state) = satellites[0].states[1];
         assert_eq!(at, utc("2026-01-01T00:01:00Z"));
-        assert!((state.position_km - Vector3::new(7086.0, 441.0, 1357.0)).norm() < 1e-12);
+        assert!((state.position_km.km() - Vector3::new(7086.0, 441.0, 1357.0)).norm() < 1e-12);
         assert!((state.velocity_km_s - Vector3::new(-0.47, 7.34, 0.92)).norm() < 1e-15);
     }
     // Positions alone: x = 7100 - t²/100 km has the velocity -t/50, y = 7 t, z is constant.

@@ -97,7 +97,7 @@ pub struct StateLine {
     /// Instant in the time system of the segment.
     pub epoch: NaiveDateTime,
     /// Position and velocity in the frame of the segment, km and km/s.
-    pub state: State,
+    pub state: State<Frame>,
     /// Acceleration, km/s².
     pub acceleration_km_s2: Option<Vector3<f64>>,
 }
@@ -243,7 +243,7 @@ impl SegmentMetadata {
 
 /// Positions to 1e-9 km and velocities to 1e-12 km/s: below what doubles lose in a day.
 fn write_state(out: &mut impl Write, line: &StateLine, digits: SecondDigits) -> io::Result<()> {
-    let (r, v) = (line.state.position_km, line.state.velocity_km_s);
+    let (r, v) = (line.state.position_km.km(), line.state.velocity_km_s);
     write!(
         out,
         "{} {:.9} {:.9} {:.9} {:.12} {:.12} {:.12}",

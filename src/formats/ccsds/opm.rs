@@ -59,7 +59,7 @@ pub struct Opm {
     /// Instant of the state in the time system.
     pub epoch: NaiveDateTime,
     /// The state, km and km/s.
-    pub state: State,
+    pub state: State<Frame>,
     /// Osculating elements.
     pub keplerian: Option<Keplerian>,
     /// Parameters that users define: names with their prefix, and values.
@@ -75,7 +75,7 @@ impl Opm {
         metadata: &Metadata,
         object: &Object,
         elements: &MeanElements,
-        (epoch, state): (Epoch, State),
+        (epoch, state): (Epoch, State<Frame>),
     ) -> Self {
         let angles = [
             elements.inclination_rad,
@@ -113,7 +113,7 @@ impl Opm {
     /// When the output does not take the bytes.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         self.header.write(out, VERSION)?;
-        let (r, v) = (self.state.position_km, self.state.velocity_km_s);
+        let (r, v) = (self.state.position_km.km(), self.state.velocity_km_s);
         let epoch = calendar(self.epoch, SecondDigits::of_stamp(self.epoch));
         for (key, value) in [
             ("OBJECT_NAME", &self.object_name),

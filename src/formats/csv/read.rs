@@ -163,11 +163,7 @@ pub fn parse_states(input: impl BufRead, findings: &mut Findings) -> io::Result<
             findings.error(row.place(1), "csv-time-order", message);
             return;
         }
-        let state = State {
-            position_km,
-            velocity_km_s,
-        };
-        states.push((at, state));
+        states.push((at, State::new(position_km, velocity_km_s)));
     })?;
     Ok(trajectories)
 }
@@ -307,7 +303,7 @@ mod tests {
                 let expected = ephemeris.state(satellite, 540.0).unwrap();
                 let (_, last) = trajectory.states[9];
                 // Nine decimals of a kilometre.
-                assert!((last.position_km - expected.position_km).norm() < 1e-9);
+                assert!((last.position_km.km() - expected.position_km.km()).norm() < 1e-9);
             }
         }
         let fixed = states.replace("teme_x_km", "other");

@@ -3,7 +3,7 @@
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::formats::maps::scene::Scene;
-use crate::frames::Frame;
+use crate::frames::EarthFixed;
 use crate::ground::shapes::{Place, footprint, lines, place_below, rings};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -35,7 +35,7 @@ impl Ground {
         ephemeris: &Ephemeris,
         period_s: f64,
     ) -> Result<Vec<Self>, EphemerisError> {
-        let sampled = Sampled::new(ephemeris, Frame::EarthFixed);
+        let sampled = Sampled::new(ephemeris, EarthFixed);
         let mask_rad = scene.setup().mask.degrees().to_radians();
         let one = |flown: &Flown| {
             let position = |t: f64| Ok(sampled.state(flown, t)?.position_km);

@@ -6,6 +6,7 @@ use crate::formats::text::finding::Findings;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::time_system_of_name;
+use crate::frames::Position;
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta};
 use nalgebra::Vector3;
@@ -243,7 +244,7 @@ impl Parser {
         }
         states.push(Sample {
             at,
-            position_km,
+            position_km: Position::new(position_km),
             velocity_km_s: None,
         });
     }

@@ -3,7 +3,7 @@ use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::formats::metadata::Theory;
 use crate::formats::text::finding::{Finding, Findings};
-use crate::frames::{Frame, from_teme};
+use crate::frames::{Teme, from_teme};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use nalgebra::Vector3;
@@ -28,7 +28,7 @@ fn written(ephemeris: &Ephemeris, version: Version, letter: char) -> Result<Stri
     };
     let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
     let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
-    let sampled = Sampled::new(ephemeris, Frame::EarthFixed);
+    let sampled = Sampled::new(ephemeris, EarthFixed);
     let mut out = Vec::new();
     write(&mut out, version, letter, &metadata, &sampled, &satellites)?;
     Ok(String::from_utf8(out).unwrap())
@@ -178,10 +178,10 @@ proptest! {
 }
 
 /// A satellite so far away, or so fast, that its numbers take more columns than SP3 has.
-struct Distant(State);
+struct Distant(State<Teme>);
 
 impl crate::orbit::Propagator for Distant {
-    fn state_at(&self, _: f64) -> Result<State, crate::orbit::PropagationError> {
+    fn state_at(&self, _: f64) -> Result<State<Teme>, crate::orbit::PropagationError> {
         Ok(self.0)
     }
 }
@@ -196,10 +196,10 @@ fn regress_numbers_wider_than_their_columns_are_refused() {
         (1e7, 1.0, false),
         (7_000.0, 11_078.0, false),
     ] {
-        let state = State {
-            position_km: Vector3::new(0.0, 0.0, position_km),
-            velocity_km_s: Vector3::new(0.0, 0.0, velocity_km_s),
-        };
+        let state = State::new(
+            Vector3::new(0.0, 0.0, position_km),
+            Vector3::new(0.0, 0.0, velocity_km_s),
+        );
         let far = Flown {
             name: "FAR".to_owned(),
             slot: None,

@@ -71,7 +71,7 @@ struct Parser {
     unit_km: Option<f64>,
     /// Whether the rows have positions alone.
     positions_only: bool,
-    states: Vec<(f64, State)>,
+    states: Vec<(f64, State<Frame>)>,
 }
 
 impl Parser {
@@ -200,18 +200,16 @@ impl Parser {
         }
         let unit_km = self.unit_km.unwrap_or(1e-3);
         let [x, y, z, vx, vy, vz] = numbers.map(|number| number * unit_km);
-        let state = State {
-            position_km: Vector3::new(x, y, z),
-            velocity_km_s: Vector3::new(vx, vy, vz),
-        };
+        let state = State::new(Vector3::new(x, y, z), Vector3::new(vx, vy, vz));
         self.states.push((elapsed_s, state));
     }
 
     fn derive_velocities(&mut self, number: usize, findings: &mut Findings) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
-        let position =
-            |(elapsed_s, state): &(f64, State)| (epoch.plus_seconds(*elapsed_s), state.position_km);
+        let position = |(elapsed_s, state): &(f64, State<Frame>)| {
+            (epoch.plus_seconds(*elapsed_s), state.position_km)
+        };
         let positions: Vec<_> = self.states.iter().map(position).collect();
         match velocities(&positions) {
             Some(velocities) => {

@@ -69,7 +69,10 @@ fn validate_units_and_epoch_of_the_documented_layout() {
     assert_eq!(file.scenario_epoch.to_string(), "2007-07-01 12:00:00.500");
     assert_eq!(file.interpolation_samples_m1, Some(5));
     assert_eq!(file.states[1].0, 60.0);
-    assert_eq!(file.states[0].1.position_km, Vector3::new(7000.0, 0.0, 0.0));
+    assert_eq!(
+        file.states[0].1.position_km.km(),
+        Vector3::new(7000.0, 0.0, 0.0)
+    );
     assert_eq!(file.states[0].1.velocity_km_s.y, 7.5);
 }
 

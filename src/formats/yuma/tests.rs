@@ -1,6 +1,6 @@
 use super::*;
 use crate::constellation::gnss::Preset;
-use crate::frames::{Frame, from_teme};
+use crate::frames::from_teme;
 use crate::keyword::Word;
 use crate::orbit::Propagator;
 
@@ -35,8 +35,8 @@ fn almanacs_hold_the_presets() {
             for since_toa_s in [-86_400.0, 0.0, 30_000.0, 86_400.0] {
                 let t = at.epoch().seconds_since(epoch()) + since_toa_s;
                 let flown = satellite.orbit.state_at(t).unwrap();
-                let ours = from_teme(flown, Frame::EarthFixed, epoch(), t).position_km;
-                let theirs = almanac.position_km(since_toa_s);
+                let ours = from_teme(flown, EarthFixed, epoch(), t).position_km.km();
+                let theirs = almanac.position_km(since_toa_s).km();
                 let moved = theirs - ours * (theirs.norm() / ours.norm());
                 // The quadratic term of sidereal time is below a micrometre in a day.
                 assert!(

@@ -2,10 +2,10 @@ use super::*;
 use crate::earth::RADIUS_KM;
 use crate::ground::PointWeights;
 
-/// Earth-fixed position over a place of the sphere.
-fn over([longitude, latitude]: Place, altitude_km: f64) -> Vector3<f64> {
+/// Position over a place of the sphere.
+fn over([longitude, latitude]: Place, altitude_km: f64) -> Position<EarthFixed> {
     let (latitude, longitude) = (latitude.to_radians(), longitude.to_radians());
-    Surface::Sphere.vertical(latitude, longitude) * (RADIUS_KM + altitude_km)
+    Position::new(Surface::Sphere.vertical(latitude, longitude) * (RADIUS_KM + altitude_km))
 }
 
 fn well_formed(rings: &[Vec<Place>]) {
@@ -33,7 +33,7 @@ fn validate_footprints_against_the_sphere() {
         for [longitude, latitude] in footprint(Surface::Sphere, satellite, mask) {
             let edge = over([longitude, latitude], 0.0);
             // The bisection ends at 2⁻⁴⁰ of a right angle.
-            assert!((edge.angle(&satellite) - expected).abs() < 1e-7);
+            assert!((edge.km().angle(&satellite.km()) - expected).abs() < 1e-7);
         }
     }
 }
@@ -84,7 +84,7 @@ fn footprints_hold_what_sees_the_satellite() {
                 .step_by(4)
                 .map(move |lat| [f64::from(lon) + 0.3, f64::from(lat) + 0.1])
         }) {
-            let apart_deg = over(place, 0.0).angle(&satellite).to_degrees();
+            let apart_deg = over(place, 0.0).km().angle(&satellite.km()).to_degrees();
             // Straight edges of a map stand off the circle, by most around a pole: 5° on the
             // circle are up to a right angle in longitude there.
             if (apart_deg - radius_deg).abs() > 1.5 {

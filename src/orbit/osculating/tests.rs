@@ -91,16 +91,16 @@ fn acceleration(position: Vector3<f64>) -> Vector3<f64> {
 }
 
 /// One step of the classical Runge-Kutta method of fourth order.
-fn step(state: State, h: f64) -> State {
-    let (p, v) = (state.position_km, state.velocity_km_s);
+fn step(state: State<Teme>, h: f64) -> State<Teme> {
+    let (p, v) = (state.position_km.km(), state.velocity_km_s);
     let (v1, a1) = (v, acceleration(p));
     let (v2, a2) = (v + a1 * (h / 2.0), acceleration(p + v1 * (h / 2.0)));
     let (v3, a3) = (v + a2 * (h / 2.0), acceleration(p + v2 * (h / 2.0)));
     let (v4, a4) = (v + a3 * h, acceleration(p + v3 * h));
-    State {
-        position_km: p + (v1 + v2 * 2.0 + v3 * 2.0 + v4) * (h / 6.0),
-        velocity_km_s: v + (a1 + a2 * 2.0 + a3 * 2.0 + a4) * (h / 6.0),
-    }
+    State::new(
+        p + (v1 + v2 * 2.0 + v3 * 2.0 + v4) * (h / 6.0),
+        v + (a1 + a2 * 2.0 + a3 * 2.0 + a4) * (h / 6.0),
+    )
 }
 
 /// Largest RIC distance over one orbit between the theory and J2 integrated numerically from its
@@ -213,7 +213,7 @@ fn validate_frozen_eccentricity_against_sgp4() {
         let mut swing_km = 0.0;
         for k in 0..samples {
             let t = period * f64::from(k) / f64::from(samples);
-            let position = |orbit: &Sgp4Orbit| orbit.state_at(t).unwrap().position_km;
+            let position = |orbit: &Sgp4Orbit| orbit.state_at(t).unwrap().position_km.km();
             let (with, without) = (position(&full), position(&plain));
             let sin_u = without.z / without.norm() / mean.inclination_rad.sin();
             swing_km += (with.norm() - without.norm()) * sin_u * 2.0 / f64::from(samples);

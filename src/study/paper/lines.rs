@@ -121,7 +121,7 @@ fn table1(evidence: &Evidence<'_>) -> Vec<Line> {
             .collect();
         let first = members.first().and_then(|s| s.orbit.state_at(0.0).ok());
         let plane_deg = first.map(|state| {
-            let normal = state.position_km.cross(&state.velocity_km_s);
+            let normal = state.position_km.km().cross(&state.velocity_km_s);
             (normal.z / normal.norm())
                 .clamp(-1.0, 1.0)
                 .acos()

@@ -17,7 +17,7 @@ const NODES: usize = 20_000;
 
 /// Share of time for which a site sees a satellite of this orbit.
 pub(super) fn visible_share(orbit: &MeanElements, site: &Site, mask_deg: f64) -> f64 {
-    let (up, origin) = (site.local.up, site.local.origin_km);
+    let (up, origin) = (site.local.up, site.local.origin_km.km());
     // Everything is symmetric about the site's meridian: distance from the axis, and height over the
     // equator.
     let (up_out, up_pole) = (up.x.hypot(up.y), up.z);

@@ -47,7 +47,7 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     let (turn, shift) = symmetry(subject);
     let theory = subject.parts.mean_j2;
     let at_s = 0.37 * subject.days() * crate::units::SECONDS_PER_DAY;
-    let position = |elements: &MeanElements| theory(elements).state(at_s).position_km;
+    let position = |elements: &MeanElements| theory(elements).state(at_s).position_km.km();
     let places: Vec<Vector3<f64>> = satellites.iter().map(|s| position(&s.elements)).collect();
     let rotation = EarthRotation::from_gmst(turn);
     let is_last = |satellite: &Satellite| satellite.slot.plane + 1 == subject.design.planes();
@@ -61,7 +61,7 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
                 ..*elements
             };
             // Turned forwards about the pole by the angle.
-            rotation.to_teme(position(&shifted))
+            rotation.direction_to_teme(position(&shifted))
         });
     let nearest = |place: Vector3<f64>| {
         let distances = places.iter().map(|other| (other - place).norm());

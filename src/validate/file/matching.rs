@@ -2,7 +2,7 @@
 
 use super::tracks::Track;
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::validate::Subject;
 use std::collections::BTreeMap;
 
@@ -141,7 +141,7 @@ impl Matching {
 
 /// Distance of two states, km, velocities counted by the way in a radian of the orbit: satellites of
 /// two planes that cross are in one place, but not on one course.
-fn apart_km(subject: &Subject<'_>, theirs: &State, own: &State) -> f64 {
+fn apart_km(subject: &Subject<'_>, theirs: &State<Teme>, own: &State<Teme>) -> f64 {
     let apart_km = (theirs.position_km - own.position_km).norm();
     if theirs.velocity_km_s.norm() == 0.0 {
         return apart_km;

@@ -4,7 +4,7 @@ use crate::evaluate::Evaluator;
 use crate::exchange::export::{Choices, Product, Subject as Exported, testing::in_memory};
 use crate::exchange::manifest::Study;
 use crate::formats::trajectory::Trajectory;
-use crate::frames::Frame;
+use crate::frames::{Frame, Position, from_teme};
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::testing;
@@ -38,9 +38,14 @@ fn flown(convention: &str) -> Vec<Comparand> {
     conventions::flown(&subject, convention, fitted)
         .into_iter()
         .map(|(name, flight)| {
-            let states = grid()
-                .iter()
-                .map(|t| (epoch().plus_seconds(t), flight.state_at(t).unwrap()));
+            let states =
+                grid()
+                    .iter()
+                    .map(|t| (t, flight.state_at(t).unwrap()))
+                    .map(|(t, state)| {
+                        let declared = from_teme(state, Frame::Teme, epoch(), t);
+                        (epoch().plus_seconds(t), declared)
+                    });
             Comparand::States(Trajectory {
                 id: name.clone(),
                 name,
@@ -125,7 +130,7 @@ fn an_unknown_difference_is_not_explained() {
             // A tilt by 0.05 rad for every second satellite.
             if n % 2 == 0 {
                 let axis = nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), 0.05);
-                state.position_km = axis * state.position_km;
+                state.position_km = Position::new(axis * state.position_km.km());
                 state.velocity_km_s = axis * state.velocity_km_s;
             }
         }
@@ -146,7 +151,8 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
     let objects = ours.satellites().iter().enumerate().map(|(n, satellite)| {
         let states = grid().iter().map(|t| {
             let state = ours.state(satellite, t + 18.0).unwrap();
-            (epoch().plus_seconds(t), state)
+            let declared = from_teme(state, Frame::Teme, epoch(), t);
+            (epoch().plus_seconds(t), declared)
         });
         Comparand::States(Trajectory {
             id: n.to_string(),

@@ -2,7 +2,7 @@
 
 use super::read::{Comparand, FileError};
 use crate::ephemeris::hermite::hermite_position;
-use crate::frames::{State, to_teme};
+use crate::frames::{State, Teme, to_teme};
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::validate::{Subject, ValidateError};
@@ -19,14 +19,14 @@ const WIDEST_GAP_TURNS: f64 = 0.1;
 /// Most samples at which an object is compared.
 const MOST_SAMPLES: usize = 2_000;
 
-/// An object: TEME states by the seconds since the epoch of the study.
+/// An object: states by the seconds since the epoch of the study.
 #[derive(Debug, Clone)]
 pub(super) struct Track {
     pub(super) name: String,
     /// States in the span of the study, at most [`MOST_SAMPLES`], for comparing.
-    pub(super) states: Vec<(f64, State)>,
+    pub(super) states: Vec<(f64, State<Teme>)>,
     /// All states in or next to the span, for interpolating.
-    all: Vec<(f64, State)>,
+    all: Vec<(f64, State<Teme>)>,
     flown: Option<Sgp4Orbit>,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn tracks(
 fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Trajectory) -> Track {
     let epoch = subject.epoch();
     let last_s = last_s(subject);
-    let all: Vec<(f64, State)> = trajectory
+    let all: Vec<(f64, State<Teme>)> = trajectory
         .states
         .iter()
         .map(|(at, state)| {
@@ -65,7 +65,7 @@ fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Traje
             )
         })
         .collect();
-    let within: Vec<(f64, State)> = all
+    let within: Vec<(f64, State<Teme>)> = all
         .iter()
         .filter(|(t, _)| (-1e-6..=last_s + 1e-6).contains(t))
         .copied()
@@ -148,14 +148,14 @@ impl Track {
 
     /// Whether the states reach over the whole span and carry an interpolation.
     pub(super) fn covers(&self, subject: &Subject<'_>) -> bool {
-        let has_velocity = |(_, state): &(f64, State)| state.velocity_km_s.norm() > 0.0;
+        let has_velocity = |(_, state): &(f64, State<Teme>)| state.velocity_km_s.norm() > 0.0;
         self.covered_share(subject) > 1.0 - 1e-9
             && (self.flown.is_some() || self.all.iter().all(has_velocity))
     }
 
     /// A state near an instant, by the sample that is nearest in time.
-    pub(super) fn at(&self, elapsed_s: f64) -> Option<(f64, State)> {
-        let apart = |(t, _): &&(f64, State)| (t - elapsed_s).abs();
+    pub(super) fn at(&self, elapsed_s: f64) -> Option<(f64, State<Teme>)> {
+        let apart = |(t, _): &&(f64, State<Teme>)| (t - elapsed_s).abs();
         self.states
             .iter()
             .min_by(|a, b| apart(a).total_cmp(&apart(b)))
@@ -165,7 +165,7 @@ impl Track {
 
 impl Propagator for Track {
     /// The state by Hermite interpolation, or of the sample itself; inside the span only.
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         if let Some(flown) = &self.flown {
             return flown.state_at(elapsed_s);
         }

@@ -9,7 +9,7 @@ use crate::validate::{Check, Findings, Subject, ValidateError};
 /// A geodetic point on the ellipsoid whose vertical points away from the Earth's centre: the mistake.
 fn with_geocentric_vertical(latitude_rad: f64, longitude_rad: f64) -> LocalFrame {
     let right = LocalFrame::new(Surface::Wgs84, latitude_rad, longitude_rad);
-    let up = right.origin_km.normalize();
+    let up = right.origin_km.km().normalize();
     LocalFrame {
         up,
         north: up.cross(&right.east),

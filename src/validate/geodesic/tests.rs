@@ -26,7 +26,7 @@ fn validate_positions_against_cartconvert() {
         let largest = expected.amax();
         let ulp = largest.next_up() - largest;
         let floor_km = if height_m <= 2_000e3 { 5e-12 } else { 30e-12 };
-        let apart = (found - expected).amax();
+        let apart = (found.km() - expected).amax();
         assert!(
             apart <= (4.0 * ulp).max(floor_km),
             "{latitude} {longitude} {height_m}: {apart:e}"

@@ -5,7 +5,7 @@
 //! `differential-equations`: maintained, and on the same linear algebra as this library.
 
 use crate::earth::{MU_KM3_S2, RADIUS_KM};
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use differential_equations::prelude::*;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -62,9 +62,9 @@ impl Zonals {
     }
 
     /// Energy per mass, km²/s².
-    pub(in crate::validate) fn energy(self, state: &State) -> f64 {
+    pub(in crate::validate) fn energy(self, state: &State<Teme>) -> f64 {
         let r = state.position_km.norm();
-        let s = state.position_km.z / r;
+        let s = state.position_km.km().z / r;
         let ratio = RADIUS_KM / r;
         let p2 = 0.5 * (3.0 * s * s - 1.0);
         let p3 = 0.5 * s * (5.0 * s * s - 3.0);
@@ -75,9 +75,9 @@ impl Zonals {
     /// The states at `times_s`, which increase from 0, from the state at 0.
     pub(in crate::validate) fn integrate(
         self,
-        start: &State,
+        start: &State<Teme>,
         times_s: &[f64],
-    ) -> Result<Vec<State>, IntegrationError> {
+    ) -> Result<Vec<State<Teme>>, IntegrationError> {
         let span_s = times_s.last().copied().unwrap_or(0.0);
         let failed = |found: usize| IntegrationError {
             span_s,
@@ -88,7 +88,7 @@ impl Zonals {
             let pull = self.acceleration(Vector3::new(y[0], y[1], y[2]));
             *rate = [y[3], y[4], y[5], pull.x, pull.y, pull.z];
         };
-        let (r, v) = (start.position_km, start.velocity_km_s);
+        let (r, v) = (start.position_km.km(), start.velocity_km_s);
         let revolution_s = TAU * (r.norm().powi(3) / MU_KM3_S2).sqrt();
         let solution = IVP::ode_from_fn(derivative, 0.0, span_s, [r.x, r.y, r.z, v.x, v.y, v.z])
             .t_eval(times_s)
@@ -108,9 +108,9 @@ impl Zonals {
     }
 }
 
-fn state_of(y: &[f64; 6]) -> State {
-    State {
-        position_km: Vector3::new(y[0], y[1], y[2]),
-        velocity_km_s: Vector3::new(y[3], y[4], y[5]),
-    }
+fn state_of(y: &[f64; 6]) -> State<Teme> {
+    State::new(
+        Vector3::new(y[0], y[1], y[2]),
+        Vector3::new(y[3], y[4], y[5]),
+    )
 }

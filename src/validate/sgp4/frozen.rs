@@ -4,7 +4,7 @@ use super::Scale;
 use super::causes::Causes;
 use crate::earth::RADIUS_KM;
 use crate::ephemeris::EphemerisError;
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::validate::eccentricity::eccentricity_vector;
@@ -21,7 +21,7 @@ fn vector(
     without: &impl Propagator,
 ) -> Result<Option<[f64; 2]>, PropagationError> {
     let period_s = TAU / orbit.kepler_mean_motion_rad_s();
-    let radius = |state: State| state.position_km.norm();
+    let radius = |state: State<Teme>| state.position_km.norm();
     let mut samples = Vec::with_capacity(SAMPLES);
     for k in 0..SAMPLES {
         let turn = k as f64 / SAMPLES as f64;

@@ -3,7 +3,7 @@
 use super::Scale;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::State;
+use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
@@ -13,12 +13,12 @@ use crate::validate::{Check, Subject};
 const LEAST_SIN_I: f64 = 0.02;
 
 /// Node and argument of latitude of a state, rad.
-pub(in crate::validate) fn angles(state: &State) -> [f64; 2] {
-    let normal = state.position_km.cross(&state.velocity_km_s);
+pub(in crate::validate) fn angles(state: &State<Teme>) -> [f64; 2] {
+    let normal = state.position_km.km().cross(&state.velocity_km_s);
     let node = normal.x.atan2(-normal.y);
     let towards = nalgebra::Vector3::new(node.cos(), node.sin(), 0.0);
     let ahead = normal.cross(&towards) / normal.norm();
-    let r = state.position_km;
+    let r = state.position_km.km();
     [node, r.dot(&ahead).atan2(r.dot(&towards))]
 }
 

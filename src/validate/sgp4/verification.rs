@@ -4,6 +4,7 @@
 //! element sets of `SGP4-VER.TLE` and the states of `tcppver.out`, which are of improved mode; and
 //! the states of the authors' C++ code in both modes.
 
+use crate::frames::{Position, Teme};
 use crate::orbit::sgp4::{Sgp4Mode, Sgp4Orbit, Sgp4Theory};
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
@@ -23,7 +24,7 @@ const REFUSED: u64 = 33_334;
 struct Expected {
     number: u64,
     minutes: f64,
-    position_km: Vector3<f64>,
+    position_km: Position<Teme>,
 }
 
 /// The element sets by catalogue number; the lines go on behind column 69 with the span to fly.
@@ -91,7 +92,7 @@ fn row(number: u64, fields: [&str; 4]) -> Option<Expected> {
     Some(Expected {
         number,
         minutes,
-        position_km: Vector3::new(x, y, z),
+        position_km: Position::new(Vector3::new(x, y, z)),
     })
 }
 

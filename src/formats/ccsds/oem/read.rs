@@ -354,10 +354,7 @@ fn state_line(line: &Line, findings: &mut Findings) -> Option<StateLine> {
     let vector = |from: usize| Vector3::new(values[from], values[from + 1], values[from + 2]);
     Some(StateLine {
         epoch: epoch?,
-        state: State {
-            position_km: vector(0),
-            velocity_km_s: vector(3),
-        },
+        state: State::new(vector(0), vector(3)),
         acceleration_km_s2: (numbers.len() == 9).then(|| vector(6)),
     })
 }

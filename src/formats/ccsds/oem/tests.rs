@@ -122,7 +122,7 @@ fn validate_the_example_of_the_blue_book() {
     );
     let line = first.states[1];
     assert_eq!(
-        line.state.position_km,
+        line.state.position_km.km(),
         Vector3::new(2783.419, -308.143, -1877.071)
     );
     assert_eq!(

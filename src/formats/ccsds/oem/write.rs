@@ -9,6 +9,7 @@ use crate::formats::ccsds::kvn::{Header, Version};
 use crate::formats::ccsds::xml;
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::SecondDigits;
+use crate::frames::Frame;
 use std::io::Write;
 
 /// What the messages of an export share.
@@ -18,7 +19,7 @@ pub struct Writer<'a> {
     /// What they say of themselves.
     pub metadata: &'a Metadata,
     /// The satellites in the frame of the messages.
-    pub sampled: &'a Sampled<'a>,
+    pub sampled: &'a Sampled<'a, Frame>,
     /// What was measured for these states; without it no interpolation is named.
     pub hermite: Option<Hermite>,
 }

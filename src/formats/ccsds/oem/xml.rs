@@ -74,7 +74,7 @@ pub(super) fn write_state(
     line: &StateLine,
     digits: SecondDigits,
 ) -> io::Result<()> {
-    let (r, v) = (line.state.position_km, line.state.velocity_km_s);
+    let (r, v) = (line.state.position_km.km(), line.state.velocity_km_s);
     writeln!(
         out,
         "<stateVector><EPOCH>{}</EPOCH>",
@@ -280,10 +280,7 @@ fn state(block: &Block, place: (usize, usize), findings: &mut Findings) -> Optio
     let acceleration = vector(["X_DDOT", "Y_DDOT", "Z_DDOT"]);
     Some(StateLine {
         epoch: epoch?,
-        state: State {
-            position_km: position?,
-            velocity_km_s: velocity?,
-        },
+        state: State::new(position?, velocity?),
         acceleration_km_s2: acceleration,
     })
 }

@@ -35,8 +35,8 @@ impl Keplerian {
     ///
     /// D. Vallado, *Fundamentals of Astrodynamics and Applications*, algorithm RV2COE.
     #[must_use]
-    pub fn of_state(state: &State, gm_km3_s2: f64) -> Option<Self> {
-        let (r, v) = (state.position_km, state.velocity_km_s);
+    pub fn of_state<F>(state: &State<F>, gm_km3_s2: f64) -> Option<Self> {
+        let (r, v) = (state.position_km.km(), state.velocity_km_s);
         let momentum = r.cross(&v);
         let (distance, normal) = (r.norm(), momentum.try_normalize(0.0)?);
         let semi_major_axis_km = 1.0 / (2.0 / distance - v.norm_squared() / gm_km3_s2);

@@ -159,10 +159,7 @@ fn message(
         ref_frame: block.text("REF_FRAME")?,
         time_system: block.text("TIME_SYSTEM")?,
         epoch: epoch?,
-        state: State {
-            position_km: position?,
-            velocity_km_s: velocity?,
-        },
+        state: State::new(position?, velocity?),
         keplerian,
         user_defined,
     })

@@ -138,10 +138,10 @@ fn what_is_written_reads_back_and_writes_the_same() {
 #[test]
 fn circular_and_equatorial_states_have_angles() {
     let speed = (MU_KM3_S2 / 7000.0_f64).sqrt();
-    let state = State {
-        position_km: Vector3::new(0.0, 7000.0, 0.0),
-        velocity_km_s: Vector3::new(-speed, 0.0, 0.0),
-    };
+    let state = State::<Frame>::new(
+        Vector3::new(0.0, 7000.0, 0.0),
+        Vector3::new(-speed, 0.0, 0.0),
+    );
     let elements = Keplerian::of_state(&state, MU_KM3_S2).unwrap();
     assert_eq!((elements.raan_deg, elements.arg_perigee_deg), (0.0, 0.0));
     assert!((elements.true_anomaly_deg - 90.0).abs() < 1e-12);

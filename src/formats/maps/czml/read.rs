@@ -31,17 +31,14 @@ impl Track {
     /// The state `elapsed_s` after the epoch of the track, as a viewer interpolates it, with the
     /// derivative of the polynomial as velocity; none outside the samples.
     #[must_use]
-    pub fn state(&self, elapsed_s: f64) -> Option<State> {
+    pub fn state(&self, elapsed_s: f64) -> Option<State<Frame>> {
         let (first, last) = (self.nodes.first()?.0, self.nodes.last()?.0);
         if !(first..=last).contains(&elapsed_s) {
             return None;
         }
         let nodes = window(&self.nodes, elapsed_s, self.degree);
         let (position_km, velocity_km_s) = lagrange(nodes, elapsed_s);
-        Some(State {
-            position_km,
-            velocity_km_s,
-        })
+        Some(State::new(position_km, velocity_km_s))
     }
 
     /// The states at the instants of `wanted` that the samples cover.

@@ -9,7 +9,7 @@ use crate::formats::WriteError;
 use crate::formats::maps::scene::{
     Scale, Scene, colour_of, plane_colour, point_place, shown, wrapped,
 };
-use crate::frames::Frame;
+use crate::frames::EarthFixed;
 use crate::ground::Grid;
 use crate::ground::shapes::Place;
 use crate::units::round_decimal;
@@ -107,7 +107,7 @@ impl<W: Write> Packets<'_, W> {
         ephemeris: &Ephemeris,
         look: &(impl Fn(&Flown) -> Look + Sync),
     ) -> Result<f64, WriteError> {
-        let sampled = Sampled::new(ephemeris, Frame::EarthFixed);
+        let sampled = Sampled::new(ephemeris, EarthFixed);
         let mut spacing: Option<Spacing> = None;
         for flown in ephemeris.satellites() {
             // GNSS of several heights: the spacing that suits the lowest suits all.
@@ -206,7 +206,11 @@ impl Shown {
     }
 
     /// The widest spacing within the target, or the best one.
-    fn spacing(&self, sampled: &Sampled<'_>, flown: &Flown) -> Result<Spacing, EphemerisError> {
+    fn spacing(
+        &self,
+        sampled: &Sampled<'_, EarthFixed>,
+        flown: &Flown,
+    ) -> Result<Spacing, EphemerisError> {
         let mut best: Option<Spacing> = None;
         for step_s in SPACINGS_S {
             let error_km = self.error_km(sampled, flown, step_s)?;
@@ -226,7 +230,7 @@ impl Shown {
     /// Largest distance between the polynomial and the model halfway between samples, km.
     fn error_km(
         &self,
-        sampled: &Sampled<'_>,
+        sampled: &Sampled<'_, EarthFixed>,
         flown: &Flown,
         step_s: f64,
     ) -> Result<f64, EphemerisError> {
@@ -241,7 +245,7 @@ impl Shown {
                 k as i64 - BEYOND..=k as i64 + 1 + BEYOND,
             )?;
             let middle_s = (k as f64 + 0.5) * step_s;
-            let exact = sampled.state(flown, middle_s)?.position_km;
+            let exact = sampled.state(flown, middle_s)?.position_km.km();
             worst_km = worst_km.max((lagrange(&nodes, middle_s).0 - exact).norm());
         }
         Ok(worst_km)
@@ -249,7 +253,7 @@ impl Shown {
 
     fn satellite(
         &self,
-        sampled: &Sampled<'_>,
+        sampled: &Sampled<'_, EarthFixed>,
         flown: &Flown,
         spacing: Spacing,
         look: Look,
@@ -292,14 +296,14 @@ impl Shown {
 
 /// Positions at whole multiples of a spacing, Earth-fixed, km.
 fn nodes(
-    sampled: &Sampled<'_>,
+    sampled: &Sampled<'_, EarthFixed>,
     flown: &Flown,
     step_s: f64,
     range: std::ops::RangeInclusive<i64>,
 ) -> Result<Vec<(f64, Vector3<f64>)>, EphemerisError> {
     let node = |k: i64| {
         let t = k as f64 * step_s;
-        Ok((t, sampled.state(flown, t)?.position_km))
+        Ok((t, sampled.state(flown, t)?.position_km.km()))
     };
     range.map(node).collect()
 }

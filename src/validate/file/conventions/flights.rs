@@ -2,7 +2,9 @@
 
 use super::{Flight, fly_each};
 use crate::earth::J2;
-use crate::frames::{Frame, State, from_teme, teme_to_eme2000, to_teme};
+use crate::frames::{
+    Eme2000, Frame, FromTeme, Position, State, Teme, from_teme, teme_to_eme2000, to_teme,
+};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::time::Epoch;
@@ -22,13 +24,21 @@ struct Mislabelled<P> {
 }
 
 impl<P: Propagator> Propagator for Mislabelled<P> {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let state = self.flight.state_at(elapsed_s + self.late_s)?;
         Ok(if self.inverse {
-            to_teme(state, self.frame, self.epoch, elapsed_s)
+            to_teme(taken_for(state), self.frame, self.epoch, elapsed_s)
         } else {
-            from_teme(state, self.frame, self.epoch, elapsed_s)
+            taken_for(from_teme(state, self.frame, self.epoch, elapsed_s))
         })
+    }
+}
+
+/// The numbers of a state taken for those of another frame: the mistake itself.
+fn taken_for<F, G>(state: State<F>) -> State<G> {
+    State {
+        position_km: Position::new(state.position_km.km()),
+        velocity_km_s: state.velocity_km_s,
     }
 }
 
@@ -59,16 +69,13 @@ pub(super) fn gps_minus_utc_s(subject: &Subject<'_>) -> f64 {
 /// equator of J2000, on which the node regresses.
 struct AboutJ2000 {
     orbit: SecularOrbit,
-    to_teme: nalgebra::Matrix3<f64>,
+    from_teme: FromTeme<Eme2000>,
 }
 
 impl Propagator for AboutJ2000 {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let state = self.orbit.state(elapsed_s);
-        Ok(State {
-            position_km: self.to_teme * state.position_km,
-            velocity_km_s: self.to_teme * state.velocity_km_s,
-        })
+        Ok(self.from_teme.undo(taken_for(state)))
     }
 }
 
@@ -91,7 +98,7 @@ pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
         };
         Some(AboutJ2000 {
             orbit: SecularOrbit::j2(&elements),
-            to_teme: to_j2000.transpose(),
+            from_teme: FromTeme::to(Eme2000, subject.epoch(), 0.0),
         })
     })
 }
@@ -99,18 +106,18 @@ pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
 /// The elements taken as osculating at the epoch, and J2 integrated.
 struct Integrated {
     /// One state each [`INTEGRATED_STEP_S`].
-    states: Vec<State>,
+    states: Vec<State<Teme>>,
     step_s: f64,
 }
 
 impl Propagator for Integrated {
-    fn state_at(&self, elapsed_s: f64) -> Result<State, PropagationError> {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let last = self.states.len().saturating_sub(1);
         let before = ((elapsed_s / self.step_s).floor().max(0.0) as usize).min(last);
         let start = before
             .saturating_sub(3)
             .min(self.states.len().saturating_sub(8));
-        let table: Vec<(f64, State)> = (start..self.states.len().min(start + 8))
+        let table: Vec<(f64, State<Teme>)> = (start..self.states.len().min(start + 8))
             .map(|k| (k as f64 * self.step_s, self.states[k]))
             .collect();
         let position_km = crate::ephemeris::hermite::hermite_position(&table, elapsed_s);
