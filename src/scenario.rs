@@ -3,8 +3,8 @@
 //! [`Scenario::parse`] goes in two stages. The first keeps what was written, key by key with its
 //! place, and merges `--set` arguments over it. The second checks types, ranges and what keys say
 //! together, fills in the defaults, and gives a [`Scenario`] in which nothing is left open, or
-//! all [`Problems`] at once. One table of keys drives both, and the template, the JSON schema
-//! and the canonical form too.
+//! all [`Problems`] at once. Each key is declared once, in `scenario/values/`, and that declaration
+//! drives both, and the template, the JSON schema and the canonical form too.
 //!
 //! ```
 //! use navwalker::scenario::{Scenario, builtin};
@@ -15,19 +15,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod algorithm;
 mod builtin;
 mod canonical;
+mod document;
 mod keys;
 mod number;
 mod problem;
-mod resolve;
-mod resolved;
+mod reader;
 mod rule;
 mod setup;
 mod source;
 mod template;
-mod words;
-mod written;
+mod values;
 
 #[cfg(test)]
 mod tests;
@@ -40,21 +40,21 @@ pub use crate::ground::PointWeights;
 pub use crate::keyword::{UnknownWord, Word};
 pub use crate::orbit::Model;
 pub use crate::search::{Constraint, ConstraintError, LaunchCost, Quantity, Relation};
+pub use algorithm::Algorithm;
 pub use builtin::{builtin, builtin_names};
 pub use keys::{KeyDescription, describe_keys};
 pub use problem::{Fault, Problem, Problems};
-pub use resolved::{
-    Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer, Propagation, Region,
-    Scenario, SearchSpace, TimeSpan, Visibility,
-};
 pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
-pub use words::Algorithm;
+pub use values::{
+    Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer, Propagation, Region,
+    Scenario, SearchSpace, TimeSpan, Visibility,
+};
 
+use document::Document;
 use problem::Report;
 use source::Source;
-use written::Written;
 
 impl Scenario {
     /// Parses and validates the bytes of a scenario file, with `--set` arguments
@@ -73,12 +73,12 @@ impl Scenario {
     ) -> Result<Self, Problems> {
         let mut report = Report::default();
         let scenario = decode(label, bytes, &mut report)
-            .and_then(|text| Written::read(label, text, &mut report))
-            .and_then(|mut written| {
+            .and_then(|text| Document::read(label, text, &mut report))
+            .and_then(|mut document| {
                 for (index, argument) in overrides.iter().enumerate() {
-                    written.override_with(index, argument.as_ref(), &mut report);
+                    document.override_with(index, argument.as_ref(), &mut report);
                 }
-                resolve::resolve(&written, &mut report)
+                document.read_scenario(&mut report)
             });
         match scenario {
             Some(scenario) if report.is_empty() => Ok(scenario),

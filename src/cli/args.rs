@@ -161,13 +161,20 @@ pub(crate) enum Command {
 /// The study to work on.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
-    /// A scenario file, or the name of a built-in scenario.
-    #[arg(value_name = "SCENARIO", default_value = "paper")]
-    pub(crate) scenario: String,
+    /// A scenario file, or the name of a built-in scenario [default: paper].
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: Option<String>,
 
     /// Override a scenario key, as in `--set visibility.mask-deg=10`; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+}
+
+impl StudyArgs {
+    /// The scenario that is named, or else the paper's.
+    pub(crate) fn name(&self) -> &str {
+        self.scenario.as_deref().unwrap_or("paper")
+    }
 }
 
 /// Output format on stdout.

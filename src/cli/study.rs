@@ -5,6 +5,7 @@ use crate::cli::{files, output, run};
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
+use crate::report::ScenarioStamp;
 use crate::scenario::{Algorithm, Scenario, builtin};
 use anyhow::{Context, Result, bail};
 use std::fs;
@@ -22,8 +23,9 @@ impl Study {
     /// The scenario that was asked for, with its overrides.
     pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
         let overrides: Vec<&String> = args.overrides.iter().chain(further).collect();
-        let (bytes, directory) = read_scenario(&args.scenario)?;
-        let scenario = Scenario::parse(&args.scenario, &bytes, &overrides)?;
+        let name = args.name();
+        let (bytes, directory) = read_scenario(name)?;
+        let scenario = Scenario::parse(name, &bytes, &overrides)?;
         Ok(Self {
             scenario,
             directory,
@@ -50,21 +52,24 @@ impl Study {
         other
     }
 
-    /// SHA-256 of what is computed, the contents of the scenario's files included.
+    /// What results say about the study.
+    pub(crate) fn stamp(&self) -> Result<ScenarioStamp> {
+        Ok(ScenarioStamp {
+            name: self.scenario.name.clone(),
+            hash: self.hash()?,
+        })
+    }
+
+    /// Identifies what is computed, the contents of the scenario's files included.
     pub(crate) fn hash(&self) -> Result<String> {
         let read = |file: &str| {
             let path = self.directory.join(file);
             files::read_whole(&path).with_context(|| format!("cannot read {}", path.display()))
         };
-        let contents: Vec<Vec<u8>> = self
-            .scenario
-            .files()
-            .into_iter()
-            .map(read)
-            .collect::<Result<_>>()?;
-        Ok(self
-            .scenario
-            .hash_with_files(&contents.iter().map(Vec::as_slice).collect::<Vec<_>>()))
+        let files = self.scenario.files().into_iter();
+        let contents: Vec<Vec<u8>> = files.map(read).collect::<Result<_>>()?;
+        let contents: Vec<&[u8]> = contents.iter().map(Vec::as_slice).collect();
+        Ok(self.scenario.hash(&contents))
     }
 
     /// What an evaluation depends on; refuses what would not fit into memory.
@@ -138,11 +143,8 @@ fn available_memory() -> Option<u64> {
 /// The study and the design that a command works on.
 pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result<(Study, Design)> {
     if let Some(directory) = &design.run {
-        if study.scenario != "paper" {
-            bail!(
-                "a run has its own scenario; leave out '{}' or --run",
-                study.scenario
-            );
+        if let Some(name) = &study.scenario {
+            bail!("a run has its own scenario; leave out '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
         let (picked, why) = run::pick(directory, design.pick)?;

@@ -28,9 +28,9 @@ pub struct ReproduceResult {
 impl ReproduceResult {
     /// The result for a scenario.
     #[must_use]
-    pub fn new(study: Reproduction, scenario: &Scenario) -> Self {
+    pub fn new(study: Reproduction, scenario: &Scenario, stamp: ScenarioStamp) -> Self {
         Self {
-            scenario: scenario.into(),
+            scenario: stamp,
             version: VERSION,
             seed: scenario.optimizer.seed,
             study,

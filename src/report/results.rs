@@ -59,17 +59,8 @@ impl From<&Design> for DesignSummary {
 pub struct ScenarioStamp {
     /// Its name.
     pub name: String,
-    /// SHA-256 of its canonical form.
+    /// What [`Scenario::hash`] gives.
     pub hash: String,
-}
-
-impl From<&Scenario> for ScenarioStamp {
-    fn from(scenario: &Scenario) -> Self {
-        Self {
-            name: scenario.name.clone(),
-            hash: scenario.hash(),
-        }
-    }
 }
 
 /// What `evaluate` prints.
@@ -95,13 +86,13 @@ impl EvaluateResult {
         design: &Design,
         metrics: Metrics,
         dops: Option<DopStatistics>,
-        scenario: &Scenario,
+        scenario: ScenarioStamp,
     ) -> Self {
         Self {
             design: design.into(),
             metrics,
             dops,
-            scenario: scenario.into(),
+            scenario,
             version: VERSION,
         }
     }
@@ -205,7 +196,12 @@ pub struct OptimizeResult {
 impl OptimizeResult {
     /// The result of a search as it stands, the members of its front evaluated once more.
     #[must_use]
-    pub fn new(problem: &DesignProblem<'_>, search: &Search, scenario: &Scenario) -> Self {
+    pub fn new(
+        problem: &DesignProblem<'_>,
+        search: &Search,
+        scenario: &Scenario,
+        stamp: ScenarioStamp,
+    ) -> Self {
         let individuals = search.front();
         let points: Vec<&[f64]> = individuals
             .iter()
@@ -226,7 +222,7 @@ impl OptimizeResult {
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
             certificate: None,
-            scenario: scenario.into(),
+            scenario: stamp,
             version: VERSION,
             history: search.history().to_vec(),
         }
@@ -346,13 +342,13 @@ impl ValidateResult {
         design: &Design,
         against: Vec<String>,
         findings: Findings,
-        scenario: &Scenario,
+        scenario: ScenarioStamp,
     ) -> Self {
         Self {
             design: design.into(),
             passed: findings.passed(),
             findings,
-            scenario: scenario.into(),
+            scenario,
             against,
             basis: Basis::default(),
             version: VERSION,

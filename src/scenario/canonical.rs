@@ -4,8 +4,9 @@ use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
 
-use super::keys::{AnyKey, table::KEYS};
-use super::resolved::{Region, Scenario};
+use super::keys::{Key, KeyPath, Section, Walk, key};
+use super::rule::Rule;
+use super::values::{Export, GnssSetup, Optimizer, PointsFile, Region, Scenario};
 
 impl Scenario {
     /// The scenario as TOML with every key that it has, defaults included, in a fixed order and
@@ -15,22 +16,14 @@ impl Scenario {
         self.canonical(|_| true)
     }
 
-    /// Identifies what is computed: SHA-256, in hex, of [`Scenario::to_toml`] without the keys that
-    /// only name and label (`name` and `[export]`). Seed and optimizer are part of it.
+    /// Identifies what is computed: SHA-256, in hex, of [`Scenario::to_toml`] and of the SHA-256 of
+    /// each file that the scenario names, whose `contents` are in the order of [`Scenario::files`].
     ///
-    /// The contents of the files that the scenario refers to are not; see
-    /// [`Scenario::hash_with_files`].
+    /// Left out are what only names and labels (`name`, `[export]` and the paths of files) and
+    /// `optimizer.generations`, for a search that goes on is the same search.
     #[must_use]
-    pub fn hash(&self) -> String {
-        self.hash_with_files(&[])
-    }
-
-    /// As [`Scenario::hash`], and of the SHA-256 of every file's contents, in the order of
-    /// [`Scenario::files`].
-    #[must_use]
-    pub fn hash_with_files(&self, contents: &[&[u8]]) -> String {
-        let computed = |key: &dyn AnyKey| key.section() != "export" && key.path() != "name";
-        let mut hash = Sha256::new_with_prefix(self.canonical(computed));
+    pub fn hash(&self, contents: &[&[u8]]) -> String {
+        let mut hash = Sha256::new_with_prefix(self.canonical(is_computed));
         for content in contents {
             hash.update(Sha256::digest(content));
         }
@@ -57,19 +50,48 @@ impl Scenario {
             .collect()
     }
 
-    fn canonical(&self, wanted: impl Fn(&dyn AnyKey) -> bool) -> String {
-        let mut text = String::new();
-        let mut section = "";
-        for key in KEYS.iter().filter(|key| wanted(**key)) {
-            let Some(value) = key.written(self) else {
-                continue;
-            };
-            if key.section() != section {
-                section = key.section();
-                text.push_str(&format!("\n[{section}]\n"));
+    fn canonical(&self, wanted: fn(KeyPath) -> bool) -> String {
+        let mut writer = Writer {
+            wanted,
+            section: "",
+            text: String::new(),
+        };
+        Self::walk(&mut writer, Some(self));
+        writer.text
+    }
+}
+
+/// Whether results depend on the text of a key.
+fn is_computed(path: KeyPath) -> bool {
+    let left_out = [
+        key!(Scenario.name),
+        key!(PointsFile.points),
+        key!(GnssSetup.files),
+        key!(Optimizer.generations),
+    ];
+    path.section != Export::SECTION && !left_out.contains(&path)
+}
+
+/// The walk that writes the values.
+struct Writer {
+    wanted: fn(KeyPath) -> bool,
+    /// The section of the last key.
+    section: &'static str,
+    text: String,
+}
+
+impl Walk for Writer {
+    fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value {
+        let KeyPath { section, name } = key.path;
+        let value = value.filter(|value| (self.wanted)(key.path) && !key.rule.is_absent(value));
+        if let Some(value) = value {
+            if section != self.section {
+                self.section = section;
+                self.text.push_str(&format!("\n[{section}]\n"));
             }
-            text.push_str(&format!("{} = {value}\n", key.name()));
+            let value = key.rule.write(value);
+            self.text.push_str(&format!("{name} = {value}\n"));
         }
-        text
+        key.default
     }
 }

@@ -1,66 +1,152 @@
-//! The one table of keys. Parsing, unknown-key suggestions, the template, the JSON schema, the
-//! documentation and the canonical form all come from it.
+//! What a key of a scenario file is, and the walk over all of them.
+//!
+//! A key is declared once, as a field of a [`section!`](declare). Reading, suggestions for unknown
+//! keys, the template, the JSON schema, the documentation and the canonical form are walks over
+//! these declarations.
 
-pub(super) mod table;
+mod declare;
+
+pub(super) use declare::{kebab_bytes, kebab_case, key, section};
+
+use std::fmt;
+use std::sync::LazyLock;
 
 use serde_json::Value as Json;
 
-use super::resolved::Scenario;
+use super::Scenario;
+use super::reader::Reader;
 use super::rule::Rule;
 
-/// A key of a scenario file.
-pub(super) struct Key<R: Rule> {
+/// Which key of a file is meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct KeyPath {
     /// The section, empty at the top.
     pub(super) section: &'static str,
     /// The name within the section.
     pub(super) name: &'static str,
+}
+
+impl fmt::Display for KeyPath {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&path(self.section, self.name))
+    }
+}
+
+/// `section.name`, or the name alone at the top.
+pub(super) fn path(section: &str, name: &str) -> String {
+    if section.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{section}.{name}")
+    }
+}
+
+/// The declaration of a key.
+pub(super) struct Key<R: Rule> {
+    pub(super) path: KeyPath,
+    /// What it means, as the documentation of its field: one sentence with its full stop.
+    pub(super) documentation: &'static str,
     /// The unit of its numbers, empty if they have none.
     pub(super) unit: &'static str,
-    /// What it means, one sentence without a full stop.
-    pub(super) meaning: &'static str,
     /// What it accepts.
     pub(super) rule: R,
-    /// What holds when it is not given.
-    pub(super) otherwise: Otherwise<R::Value>,
-    /// Its value in a scenario; `None` where it has none.
-    pub(super) of: fn(&Scenario) -> Option<R::Value>,
+    /// What holds when it is not given; an example where that follows other keys.
+    pub(super) default: R::Value,
+    /// What the default follows, in words, where the `finish` of a section fills it in.
+    pub(super) follows: Option<&'static str>,
 }
 
-/// What holds when a key is not given.
-pub(super) enum Otherwise<T> {
-    /// A fixed value.
-    Value(fn() -> T),
-    /// Something that depends on other keys.
-    Follows {
-        /// What, in words.
-        what: &'static str,
-        /// A value to show in the template.
-        example: fn() -> T,
-    },
-}
-
-impl<T> Otherwise<T> {
-    /// The fixed value, or the example of one that follows.
-    pub(super) fn value(&self) -> T {
-        match self {
-            Self::Value(value) | Self::Follows { example: value, .. } => value(),
+impl<R: Rule> Key<R> {
+    /// The accepted type, range and unit in words.
+    pub(super) fn accepted(&self) -> String {
+        let accepted = self.rule.accepted();
+        if self.unit.is_empty() {
+            accepted
+        } else {
+            format!("{accepted}, in {}", self.unit)
         }
     }
+
+    fn describe(&self) -> KeyDescription {
+        KeyDescription {
+            section: self.path.section,
+            name: self.path.name,
+            unit: self.unit,
+            meaning: self.documentation.trim().trim_end_matches('.'),
+            accepted: self.rule.accepted(),
+            shown: self.rule.write(&self.default),
+            follows: self.follows,
+        }
+    }
+
+    fn schema(&self) -> Json {
+        let description = self.describe();
+        let mut schema = self.rule.schema();
+        schema["description"] = Json::from(description.meaning);
+        if self.follows.is_none() {
+            // Every default is a TOML value that is also JSON.
+            schema["default"] = serde_json::from_str(&description.shown).unwrap_or(Json::Null);
+        }
+        schema
+    }
 }
 
-/// A key without the type of its value.
-pub(super) trait AnyKey: Sync {
-    fn section(&self) -> &'static str;
-    fn name(&self) -> &'static str;
-    /// The value of the key in `scenario` as canonical TOML.
-    fn written(&self, scenario: &Scenario) -> Option<String>;
-    fn schema(&self) -> Json;
-    /// The key for a reader.
-    fn describe(&self) -> KeyDescription;
+/// Fields of which each is a key, or a section of its own.
+pub(super) trait Section: Sized {
+    /// The section of a file in which its keys stand, empty at the top.
+    const SECTION: &'static str;
 
-    fn path(&self) -> String {
-        path(self.section(), self.name())
+    /// Visits every key in the order of the file, with its value in `values`, and gathers what the
+    /// walk gives for each.
+    fn walk(walk: &mut impl Walk, values: Option<&Self>) -> Self;
+}
+
+/// Something that is done with every key.
+pub(super) trait Walk {
+    /// Visits a key with its value, where there is one, and gives the value that it shall have.
+    fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value;
+
+    /// Completes what was gathered: only a reader has defaults that follow other keys to fill in,
+    /// and checks between keys to make.
+    fn finish<S>(&mut self, gathered: S, _: impl FnOnce(&mut S, &mut Reader<'_>)) -> S {
+        gathered
     }
+}
+
+/// A key as those see it who need not know the type of its value.
+pub(super) struct Listed {
+    pub(super) path: KeyPath,
+    pub(super) description: KeyDescription,
+    pub(super) schema: Json,
+}
+
+impl Walk for Vec<Listed> {
+    fn key<R: Rule>(&mut self, key: Key<R>, _: Option<&R::Value>) -> R::Value {
+        self.push(Listed {
+            path: key.path,
+            description: key.describe(),
+            schema: key.schema(),
+        });
+        key.default
+    }
+}
+
+/// The keys of a section in their order.
+pub(super) fn list<S: Section>() -> Vec<Listed> {
+    let mut keys = Vec::new();
+    S::walk(&mut keys, None);
+    keys
+}
+
+/// The paths of the keys of a section.
+pub(super) fn paths<S: Section>() -> Vec<KeyPath> {
+    list::<S>().iter().map(|key| key.path).collect()
+}
+
+/// Every key of a scenario in the order in which they are written.
+pub(super) fn all() -> &'static [Listed] {
+    static ALL: LazyLock<Vec<Listed>> = LazyLock::new(list::<Scenario>);
+    &ALL
 }
 
 /// A key of a scenario file, described for a reader.
@@ -82,62 +168,9 @@ pub struct KeyDescription {
     pub follows: Option<&'static str>,
 }
 
-impl<R: Rule> Key<R> {
-    /// The accepted type, range and unit in words.
-    pub(super) fn accepted(&self) -> String {
-        let accepted = self.rule.accepted();
-        if self.unit.is_empty() {
-            accepted
-        } else {
-            format!("{accepted}, in {}", self.unit)
-        }
-    }
-}
-
-impl<R: Rule> AnyKey for Key<R> {
-    fn section(&self) -> &'static str {
-        self.section
-    }
-
-    fn name(&self) -> &'static str {
-        self.name
-    }
-
-    fn written(&self, scenario: &Scenario) -> Option<String> {
-        (self.of)(scenario).map(|value| self.rule.write(&value))
-    }
-
-    fn schema(&self) -> Json {
-        let mut schema = self.rule.schema();
-        schema["description"] = Json::from(self.meaning);
-        if let Otherwise::Value(default) = self.otherwise {
-            let default = self.rule.write(&default());
-            // Every default is a TOML value that is also JSON.
-            schema["default"] = serde_json::from_str(&default).unwrap_or(Json::Null);
-        }
-        schema
-    }
-
-    fn describe(&self) -> KeyDescription {
-        let follows = match self.otherwise {
-            Otherwise::Value(_) => None,
-            Otherwise::Follows { what, .. } => Some(what),
-        };
-        KeyDescription {
-            section: self.section,
-            name: self.name,
-            unit: self.unit,
-            meaning: self.meaning,
-            accepted: self.rule.accepted(),
-            shown: self.rule.write(&self.otherwise.value()),
-            follows,
-        }
-    }
-}
-
 /// The sections in the order in which they are written.
 pub(super) fn sections() -> Vec<&'static str> {
-    let mut sections: Vec<&'static str> = table::KEYS.iter().map(|key| key.section()).collect();
+    let mut sections: Vec<&'static str> = all().iter().map(|key| key.path.section).collect();
     sections.dedup();
     sections.retain(|section| !section.is_empty());
     sections
@@ -145,21 +178,12 @@ pub(super) fn sections() -> Vec<&'static str> {
 
 /// The names of the keys of a section.
 pub(super) fn names(section: &str) -> Vec<&'static str> {
-    let keys = table::KEYS.iter().filter(|key| key.section() == section);
-    keys.map(|key| key.name()).collect()
-}
-
-/// `section.name`, or the name alone at the top.
-pub(super) fn path(section: &str, name: &str) -> String {
-    if section.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{section}.{name}")
-    }
+    let keys = all().iter().filter(|key| key.path.section == section);
+    keys.map(|key| key.path.name).collect()
 }
 
 /// Every key in the order in which they are written, described for a reader.
 #[must_use]
 pub fn describe_keys() -> Vec<KeyDescription> {
-    table::KEYS.iter().map(|key| key.describe()).collect()
+    all().iter().map(|key| key.description.clone()).collect()
 }

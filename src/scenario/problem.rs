@@ -154,7 +154,7 @@ fn did_you_mean(nearest: Option<&str>) -> String {
 }
 
 /// Problems beyond this many are left out: no one reads them, and a file of nonsense has millions.
-const MOST_PROBLEMS: usize = 1000;
+const MAX_PROBLEMS: usize = 1000;
 
 /// The problems met so far.
 #[derive(Debug, Default)]
@@ -168,7 +168,7 @@ impl Report {
         key: &str,
         fault: impl Into<Fault>,
     ) {
-        if self.0.len() < MOST_PROBLEMS {
+        if self.0.len() < MAX_PROBLEMS {
             self.0.push(Problem {
                 place: source.place(span),
                 key: printable(key).take(LONGEST_KEY).collect(),

@@ -21,7 +21,7 @@ use super::source::Source;
 pub(super) type Node<'a> = Spanned<DeValue<'a>>;
 
 /// What values a key accepts.
-pub(super) trait Rule: Sync {
+pub(super) trait Rule {
     /// The validated value.
     type Value;
 
@@ -34,8 +34,42 @@ pub(super) trait Rule: Sync {
     /// The JSON schema of the value.
     fn schema(&self) -> Json;
 
+    /// Whether there is nothing to write.
+    fn is_absent(&self, _: &Self::Value) -> bool {
+        false
+    }
+
     /// The value as canonical TOML, which [`Rule::read`] reads back as the same value.
     fn write(&self, value: &Self::Value) -> String;
+}
+
+/// A value that there may not be.
+pub(super) struct Optional<R>(pub(super) R);
+
+impl<R: Rule> Rule for Optional<R> {
+    type Value = Option<R::Value>;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Self::Value> {
+        self.0.read(node, reading).map(Some)
+    }
+
+    fn accepted(&self) -> String {
+        self.0.accepted()
+    }
+
+    fn schema(&self) -> Json {
+        self.0.schema()
+    }
+
+    fn is_absent(&self, value: &Self::Value) -> bool {
+        value.is_none()
+    }
+
+    fn write(&self, value: &Self::Value) -> String {
+        value
+            .as_ref()
+            .map_or_else(String::new, |value| self.0.write(value))
+    }
 }
 
 /// One value being read, and the problems met in it.

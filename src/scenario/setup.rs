@@ -5,9 +5,9 @@ use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{Fleet, ReadFleetError};
-use crate::ground::{self, GroundError, Site, sites_from_csv};
+use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::{DesignSpace, Goals};
+use crate::search::Goals;
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
@@ -180,14 +180,9 @@ impl Scenario {
 
     /// The region, if it is a grid.
     #[must_use]
-    pub fn ground_grid(&self) -> Option<ground::Grid> {
+    pub fn ground_grid(&self) -> Option<Grid> {
         match &self.region {
-            Region::Grid(grid) => Some(ground::Grid {
-                latitude_deg: grid.latitude_deg,
-                longitude_deg: grid.longitude_deg,
-                step_deg: grid.step_deg,
-                weights: grid.weights,
-            }),
+            Region::Grid(grid) => Some(*grid),
             Region::Points { .. } => None,
         }
     }
@@ -195,10 +190,7 @@ impl Scenario {
     fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
         let surface = self.earth.surface;
         match &self.region {
-            Region::Grid(_) => match self.ground_grid() {
-                Some(grid) => Ok(grid.sites(surface)?),
-                None => Ok(Vec::new()),
-            },
+            Region::Grid(grid) => Ok(grid.sites(surface)?),
             Region::Points { file } => {
                 let bytes = read(file).map_err(|source| SetupError::PointsFile {
                     file: file.clone(),
@@ -209,21 +201,6 @@ impl Scenario {
                     source,
                 })
             }
-        }
-    }
-
-    /// The designs among which is searched.
-    #[must_use]
-    pub fn design_space(&self) -> DesignSpace {
-        DesignSpace {
-            pattern: self.search.pattern,
-            planes: self.search.planes,
-            satellites_per_plane: self.search.satellites_per_plane,
-            inclination_deg: self.search.inclination_deg,
-            altitude_km: self.search.altitude_km,
-            phasing: self.search.phasing,
-            eccentricity: self.search.eccentricity,
-            arg_perigee_deg: self.search.arg_perigee_deg,
         }
     }
 
@@ -286,7 +263,7 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: self.design_space().steps([
+                steps: self.search.designs.steps([
                     self.search.inclination_step_deg,
                     self.search.altitude_step_km,
                     self.search.eccentricity_step,

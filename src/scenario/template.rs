@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value as Json, json};
 
-use super::keys::{describe_keys, sections, table::KEYS};
+use super::keys::{all, describe_keys, sections};
 
 /// A commented scenario file with every key, its default, unit, range and meaning. It parses to the
 /// defaults; keys whose default depends on others are commented out.
@@ -58,8 +58,8 @@ pub fn json_schema() -> Json {
 }
 
 fn section_properties(section: &str) -> Map<String, Json> {
-    let keys = KEYS.iter().filter(|key| key.section() == section);
-    keys.map(|key| (key.name().to_owned(), key.schema()))
+    let keys = all().iter().filter(|key| key.path.section == section);
+    keys.map(|key| (key.path.name.to_owned(), key.schema.clone()))
         .collect()
 }
 

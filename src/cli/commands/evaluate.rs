@@ -32,7 +32,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     if let Some(design) = &args.design {
         output::hint(&format!(
             "\nnext: navwalker validate {} --design {design} --against sgp4",
-            args.study.scenario
+            args.study.name()
         ));
     }
     Ok(Status::Done)
@@ -44,7 +44,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
     let metrics = evaluator.design(design)?;
     let dops = further(args, &evaluator, &ephemeris)?;
-    let result = EvaluateResult::new(design, metrics, dops, &study.scenario);
+    let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
     let csv = || metrics_csv([(&result.design, &result.metrics)]);
     let notation = &result.design.notation;
     let measured = (&result.metrics, result.dops.as_ref());
@@ -72,7 +72,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         },
         metrics,
         dops,
-        scenario: (&study.scenario).into(),
+        scenario: study.stamp()?,
         version: VERSION,
     };
     let title = format!(

@@ -122,7 +122,7 @@ pub(super) fn search(
     sweep: Option<&OptimizeResult>,
 ) -> Result<Ended> {
     let scenario = &study.scenario;
-    let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals())?;
+    let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals())?;
     let mut search = start(args, directory, study, &problem)?;
     let progress = Progress::new(&search);
     while !search.is_done() && !interrupted.load(Ordering::Relaxed) {
@@ -131,7 +131,7 @@ pub(super) fn search(
         progress.show(&search);
     }
     progress.finish();
-    let mut result = OptimizeResult::new(&problem, &search, scenario);
+    let mut result = OptimizeResult::new(&problem, &search, scenario, study.stamp()?);
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);
     }

@@ -20,7 +20,8 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
     let study = Study::load(&args.study, seed.as_slice())?;
     let scenario = &study.scenario;
-    if !args.force && !may_replace(&args.out, &scenario.hash())? {
+    let stamp = study.stamp()?;
+    if !args.force && !may_replace(&args.out, &stamp.hash)? {
         bail!(
             "{} holds something else than this study by this version; choose another --out, or \
              replace it with --force",
@@ -31,11 +32,11 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     output::hint("repeating the paper's study; this takes some seconds to minutes");
     let repeated = reproduce(&PaperStudy {
         setup: study.setup()?,
-        designs: scenario.design_space(),
+        designs: scenario.search.designs,
         nsga2: scenario.nsga2(),
         seed: scenario.optimizer.seed,
     })?;
-    let result = ReproduceResult::new(repeated, scenario);
+    let result = ReproduceResult::new(repeated, scenario, stamp);
     let mut written = reproduction_files(&result)?;
     written.push(("scenario.toml", scenario.to_toml()));
     written.push((REPORT, render(&result, StudyFormat::Json)?));

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
             }
         }
     }
-    let result = ValidateResult::new(&design, args.against.clone(), findings, &study.scenario);
+    let result = ValidateResult::new(&design, args.against.clone(), findings, study.stamp()?);
     if let Some(directory) = &out {
         write_reports(directory, &result)?;
     }

@@ -11,7 +11,7 @@ use super::{Node, Number, Reading, Rule, Text};
 use crate::keyword::Word;
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
-use crate::scenario::resolved::MaskPoint;
+use crate::scenario::values::MaskPoint;
 use crate::search::{Constraint, ConstraintError, Relation};
 use crate::visibility::MaskTable;
 

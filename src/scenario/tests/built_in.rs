@@ -3,6 +3,7 @@
 use chrono::{TimeZone, Utc};
 
 use super::{defaults, parse};
+use crate::scenario::values::points;
 use crate::scenario::{
     Algorithm, Clocks, Model, ObservationWeights, Pattern, PointWeights, Preset, Quantity, Region,
     Scenario, Surface, builtin, builtin_names, describe_keys, json_schema, template,
@@ -29,7 +30,7 @@ fn an_empty_file_has_the_documented_defaults() {
     assert_eq!(grid.longitude_deg, [73.0, 136.0]);
     assert_eq!(grid.step_deg, [5.0, 5.0]);
     assert_eq!(grid.weights, PointWeights::Equal);
-    assert_eq!(grid.points(), 143.0);
+    assert_eq!(points(&grid), 143.0);
     let visibility = scenario.visibility;
     assert_eq!((visibility.mask_deg, visibility.gnss_mask_deg), (7.0, 7.0));
     assert_eq!(visibility.pdop_cap, 100.0);
@@ -55,16 +56,17 @@ fn an_empty_file_has_the_documented_search() {
     let parameters = (cost.per_satellite, cost.per_plane, cost.per_1000_km);
     assert_eq!(parameters, (1.0, 5.0, 0.2));
     let search = scenario.search;
-    assert_eq!(search.pattern, Pattern::Delta);
+    let designs = search.designs;
+    assert_eq!(designs.pattern, Pattern::Delta);
     assert_eq!(
-        (search.planes, search.satellites_per_plane),
+        (designs.planes, designs.satellites_per_plane),
         ([11, 15], [11, 15])
     );
     assert_eq!(
-        (search.inclination_deg, search.altitude_km),
+        (designs.inclination_deg, designs.altitude_km),
         ([40.0, 60.0], [400.0, 1000.0])
     );
-    assert_eq!(search.phasing, [1, 1]);
+    assert_eq!(designs.phasing, [1, 1]);
     assert_eq!(
         (search.inclination_step_deg, search.altitude_step_km),
         (0.5, 50.0)

@@ -21,7 +21,10 @@ fn searches_are_bounded() {
             "low limit is above the high",
         );
         assert_eq!(
-            accepts("search", "planes = [11.0, 15]").search.planes,
+            accepts("search", "planes = [11.0, 15]")
+                .search
+                .designs
+                .planes,
             [11, 15]
         );
     }
@@ -38,7 +41,10 @@ fn searches_are_bounded() {
     let range = "each a number > 0 and <= 100000, or one for both, in km";
     refuses("search", "altitude-km = [0, 1000]", "altitude-km", range);
     assert_eq!(
-        accepts("search", "altitude-km = 925").search.altitude_km,
+        accepts("search", "altitude-km = 925")
+            .search
+            .designs
+            .altitude_km,
         [925.0, 925.0]
     );
     for key in ["inclination-step-deg", "altitude-step-km"] {
@@ -71,10 +77,13 @@ fn phasing_is_below_the_number_of_planes() {
         "low limit is above the high",
     );
     let search = accepts("search", "phasing = [0, 20]").search;
-    assert_eq!(search.phasing, [0, 20]);
+    assert_eq!(search.designs.phasing, [0, 20]);
     assert_eq!(search.phasing_for(11), [0, 10]);
     // One plane alone has no phasing but 0, also by default.
-    assert_eq!(accepts("search", "planes = 1").search.phasing, [0, 0]);
+    assert_eq!(
+        accepts("search", "planes = 1").search.designs.phasing,
+        [0, 0]
+    );
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! The first stage: keys and values as written, in a file and then in `--set` arguments.
+//! The first stage: the document, that is keys and values as written, in a file and then in `--set`
+//! arguments.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -7,22 +8,25 @@ use std::rc::Rc;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::keys::{AnyKey, names, path, sections, table::KEYS};
+use super::Scenario;
+use super::keys::{KeyPath, all, key, names, path, paths, sections};
 use super::problem::{Fault, Report};
+use super::reader::{Given, Reader};
 use super::rule::Node;
 use super::source::Source;
+use super::values::{Grid, Objectives, PointsFile};
 use crate::keyword::nearest;
 
 /// The known keys that were given, the last one where several were.
-pub(super) struct Written<'a> {
+pub(super) struct Document<'a> {
     file: Rc<Source<'a>>,
-    entries: BTreeMap<(&'static str, &'static str), Entry<'a>>,
+    entries: BTreeMap<KeyPath, Entry<'a>>,
 }
 
 /// One key as written.
-pub(super) struct Entry<'a> {
-    pub(super) source: Rc<Source<'a>>,
-    pub(super) value: Node<'a>,
+struct Entry<'a> {
+    source: Rc<Source<'a>>,
+    value: Node<'a>,
 }
 
 /// Where a key is written, while it is being looked up.
@@ -31,12 +35,12 @@ struct Site<'s, 'a> {
     span: Range<usize>,
 }
 
-impl<'a> Written<'a> {
+impl<'a> Document<'a> {
     /// Reads a file. `None` where it is not TOML; unknown keys are left out, so that the rest can
     /// still be checked.
     pub(super) fn read(label: &'a str, text: &'a str, report: &mut Report) -> Option<Self> {
         let file = Rc::new(Source::file(label, text));
-        let (document, errors) = DeTable::parse_recoverable(text);
+        let (table, errors) = DeTable::parse_recoverable(text);
         for error in &errors {
             let message = error.message().to_owned();
             let span = error.span().unwrap_or_default();
@@ -45,18 +49,18 @@ impl<'a> Written<'a> {
         if !errors.is_empty() {
             return None;
         }
-        let mut written = Self {
+        let mut document = Self {
             file: Rc::clone(&file),
             entries: BTreeMap::new(),
         };
-        for (key, value) in document.into_inner() {
+        for (key, value) in table.into_inner() {
             let site = Site {
                 source: &file,
                 span: key.span(),
             };
-            written.enter_top(key.get_ref(), value, &site, report);
+            document.enter_top(key.get_ref(), value, &site, report);
         }
-        Some(written)
+        Some(document)
     }
 
     /// Enters a key at the top of the file, which may be a section.
@@ -88,7 +92,7 @@ impl<'a> Written<'a> {
             return site.report(report, &path(section, name), unknown(section, name));
         };
         if !site.source.is_file() {
-            let rivals = superseded_by(section, name);
+            let rivals = superseded_by(key);
             self.entries
                 .retain(|key, entry| !(entry.source.is_file() && rivals.contains(key)));
         }
@@ -96,7 +100,7 @@ impl<'a> Written<'a> {
             source: Rc::clone(site.source),
             value,
         };
-        self.entries.insert((key.section(), key.name()), entry);
+        self.entries.insert(key, entry);
     }
 
     /// Enters the `index`-th `--set` argument over what is there.
@@ -122,23 +126,21 @@ impl<'a> Written<'a> {
         self.enter((section, name), value, &site, report);
     }
 
-    pub(super) fn entry(&self, key: &dyn AnyKey) -> Option<&Entry<'a>> {
-        self.entries.get(&(key.section(), key.name()))
+    /// Checks everything that was written, and adds what is wrong to `report`.
+    ///
+    /// `None` only if something is wrong.
+    pub(super) fn read_scenario(&self, report: &mut Report) -> Option<Scenario> {
+        let given = self.entries.iter();
+        let given = given.map(|(path, entry)| (*path, entry.given())).collect();
+        Reader::new(given, &self.file, report).read()
     }
+}
 
-    /// Reports a problem between several keys: at the first that a `--set` argument gives, else at
-    /// the first that the file gives.
-    pub(super) fn report_between(&self, keys: &[&dyn AnyKey], fault: Fault, report: &mut Report) {
-        let given = || {
-            keys.iter()
-                .filter_map(|key| Some((*key, self.entry(*key)?)))
-        };
-        let argument = given().find(|(_, entry)| !entry.source.is_file());
-        match argument.or_else(|| given().next()) {
-            Some((key, entry)) => {
-                report.add(&entry.source, entry.value.span(), &key.path(), fault);
-            }
-            None => report.add(&self.file, 0..0, "", fault),
+impl Entry<'_> {
+    fn given(&self) -> Given<'_> {
+        Given {
+            source: &self.source,
+            node: &self.value,
         }
     }
 }
@@ -151,19 +153,16 @@ impl Site<'_, '_> {
 
 /// The keys of a file that a `--set` of another key replaces: the one or the other describes the
 /// points, and a reference point belongs to its list of objectives.
-fn superseded_by(section: &str, name: &str) -> &'static [(&'static str, &'static str)] {
-    match (section, name) {
-        ("region", "points") => &[
-            ("region", "latitude-deg"),
-            ("region", "longitude-deg"),
-            ("region", "step-deg"),
-            ("region", "weights"),
-        ],
-        ("region", "latitude-deg" | "longitude-deg" | "step-deg" | "weights") => {
-            &[("region", "points")]
-        }
-        ("objectives", "minimize") => &[("objectives", "hypervolume-reference")],
-        _ => &[],
+fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
+    let (grid, points) = (paths::<Grid>(), key!(PointsFile.points));
+    if path == points {
+        grid
+    } else if grid.contains(&path) {
+        vec![points]
+    } else if path == key!(Objectives.minimize) {
+        vec![key!(Objectives.hypervolume_reference)]
+    } else {
+        Vec::new()
     }
 }
 
@@ -179,9 +178,9 @@ fn value(text: &str) -> Result<Node<'_>, Fault> {
     }
 }
 
-fn find(section: &str, name: &str) -> Option<&'static dyn AnyKey> {
-    let same = |key: &&&dyn AnyKey| key.section() == section && key.name() == name;
-    KEYS.iter().find(same).copied()
+fn find(section: &str, name: &str) -> Option<KeyPath> {
+    let mut paths = all().iter().map(|key| key.path);
+    paths.find(|path| path.section == section && path.name == name)
 }
 
 /// The fault of a key that is not there, with the key that was most likely meant: the same name in
@@ -198,11 +197,12 @@ fn unknown(section: &str, name: &str) -> Fault {
         Vec::new()
     };
     let elsewhere = |name: &str| {
-        KEYS.iter()
-            .find(|key| key.name() == name)
-            .map(|key| key.path())
+        let mut paths = all().iter().map(|key| key.path);
+        paths
+            .find(|path| path.name == name)
+            .map(|path| path.to_string())
     };
-    let everywhere: Vec<&str> = KEYS.iter().map(|key| key.name()).collect();
+    let everywhere: Vec<&str> = all().iter().map(|key| key.path.name).collect();
     let nearest = elsewhere(name)
         .or_else(|| nearest(name, &candidates).map(|name| path(section, name)))
         .or_else(|| nearest(name, &everywhere).and_then(elsewhere))

@@ -1,4 +1,4 @@
-//! The words of a scenario file that belong to no other module.
+//! The strategies of the search, as a scenario names them.
 
 use crate::keyword::words;
 

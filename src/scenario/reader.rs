@@ -1,0 +1,117 @@
+//! The second stage: what was written becomes values, or a list of problems.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::keys::{Key, KeyPath, Section, Walk};
+use super::problem::{Fault, Report};
+use super::rule::{Node, Reading, Rule};
+use super::source::Source;
+
+/// The value of a key as written.
+#[derive(Clone, Copy)]
+pub(super) struct Given<'r> {
+    pub(super) source: &'r Source<'r>,
+    pub(super) node: &'r Node<'r>,
+}
+
+/// The walk that reads: each key gets what was given, checked, or else its default.
+pub(super) struct Reader<'r> {
+    given: BTreeMap<KeyPath, Given<'r>>,
+    /// Where a problem is reported that no given key is behind.
+    file: &'r Source<'r>,
+    /// The keys whose values were refused; they hold their defaults.
+    wrong: BTreeSet<KeyPath>,
+    is_sound: bool,
+    report: &'r mut Report,
+}
+
+impl<'r> Reader<'r> {
+    pub(super) fn new(
+        given: BTreeMap<KeyPath, Given<'r>>,
+        file: &'r Source<'r>,
+        report: &'r mut Report,
+    ) -> Self {
+        Self {
+            given,
+            file,
+            wrong: BTreeSet::new(),
+            is_sound: true,
+            report,
+        }
+    }
+
+    /// The values, unless something is wrong with them; all of that is in the report.
+    pub(super) fn read<S: Section>(mut self) -> Option<S> {
+        let values = S::walk(&mut self, None);
+        self.is_sound.then_some(values)
+    }
+
+    /// Whether a key was given, rightly or wrongly.
+    pub(super) fn is_given(&self, key: KeyPath) -> bool {
+        self.given.contains_key(&key)
+    }
+
+    /// Whether a key holds its default because its value was refused.
+    pub(super) fn is_wrong(&self, key: KeyPath) -> bool {
+        self.wrong.contains(&key)
+    }
+
+    /// Whether nothing has been wrong so far.
+    pub(super) fn is_sound(&self) -> bool {
+        self.is_sound
+    }
+
+    /// Reports a problem between several keys: at the first that a `--set` argument gives, else at
+    /// the first that the file gives. Where one of them is wrong by itself, that is enough.
+    pub(super) fn refuse(&mut self, keys: &[KeyPath], fault: Fault) {
+        if keys.iter().any(|key| self.is_wrong(*key)) {
+            return;
+        }
+        self.is_sound = false;
+        let given = || {
+            keys.iter()
+                .filter_map(|key| Some((*key, *self.given.get(key)?)))
+        };
+        let argument = given().find(|(_, given)| !given.source.is_file());
+        match argument.or_else(|| given().next()) {
+            Some((key, Given { source, node })) => {
+                self.report
+                    .add(source, node.span(), &key.to_string(), fault);
+            }
+            None => self.report.add(self.file, 0..0, "", fault),
+        }
+    }
+
+    /// Refuses more than `most` of something.
+    pub(super) fn at_most(&mut self, most: u64, count: f64, what: &'static str, keys: &[KeyPath]) {
+        // A count that overflowed to infinity is too many as well.
+        if count > most as f64 {
+            self.refuse(keys, Fault::TooMany { what, count, most });
+        }
+    }
+}
+
+impl Walk for Reader<'_> {
+    fn key<R: Rule>(&mut self, key: Key<R>, _: Option<&R::Value>) -> R::Value {
+        let Some(Given { source, node }) = self.given.get(&key.path).copied() else {
+            return key.default;
+        };
+        let mut reading = Reading {
+            source,
+            key: key.path.to_string(),
+            accepted: key.accepted(),
+            report: self.report,
+        };
+        let value = key.rule.read(node, &mut reading);
+        value.unwrap_or_else(|| {
+            self.is_sound = false;
+            self.wrong.insert(key.path);
+            key.default
+        })
+    }
+
+    fn finish<S>(&mut self, mut gathered: S, finish: impl FnOnce(&mut S, &mut Reader<'_>)) -> S {
+        finish(&mut gathered, self);
+        gathered
+    }
+}

@@ -1,0 +1,108 @@
+//! The setting of a study: when, on which Earth, seen how, beside which GNSS.
+
+use chrono::{DateTime, Utc};
+
+use super::{JANUARY_2025, STEP_SLACK};
+use crate::scenario::keys::{key, section};
+use crate::scenario::reader::Reader;
+use crate::scenario::rule::{Instant, Number, OneOf, Paths, Skyline, SomeOf};
+use crate::scenario::{Clocks, Model, ObservationWeights, Preset, Surface};
+
+/// Samples in time: 366 days at every 3.2 seconds.
+const MAX_SAMPLES: u64 = 10_000_000;
+
+section! {
+    /// Samples at `epoch + k step_s` for every k from 0 with `k step_s < duration_h`.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    pub struct TimeSpan in "time", finish check_samples {
+        /// First sample, UTC; the elements of every design hold at it.
+        pub epoch: DateTime<Utc> = Instant, default JANUARY_2025;
+        /// Length of the study; the closing instant is no sample.
+        pub duration_h: f64 = Number::above_to(0.0, 366.0 * 24.0), unit "h", default 24.0;
+        /// Interval between samples.
+        pub step_s: f64 = Number::above(0.0), unit "s", default 60.0;
+    }
+}
+
+impl TimeSpan {
+    /// Number of samples, at least 1.
+    #[must_use]
+    pub fn samples(&self) -> usize {
+        // Both are bounded on validation; a cast from a float saturates.
+        (self.steps() - STEP_SLACK).ceil().max(1.0) as usize
+    }
+
+    pub(super) fn steps(&self) -> f64 {
+        self.duration_h * 3600.0 / self.step_s
+    }
+}
+
+fn check_samples(span: &mut TimeSpan, reader: &mut Reader<'_>) {
+    let keys = [key!(TimeSpan.step_s), key!(TimeSpan.duration_h)];
+    reader.at_most(MAX_SAMPLES, span.steps(), "samples in time", &keys);
+}
+
+section! {
+    /// The Earth.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub struct Earth in "earth" {
+        /// Surface on which ground points lie and to which their verticals belong.
+        pub surface: Surface = OneOf::new(), default Surface::Wgs84;
+    }
+}
+
+section! {
+    /// The motion of the LEO design.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub struct Propagation in "propagation" {
+        /// Motion of the LEO design; GNSS constellations are always flown as they are defined.
+        pub model: Model = OneOf::new(), default Model::J2;
+    }
+}
+
+section! {
+    /// What a receiver sees, and when it has a solution.
+    #[derive(Debug, Clone, PartialEq)]
+    pub struct Visibility in "visibility", finish share_mask {
+        /// Lowest elevation of a visible LEO satellite.
+        pub mask_deg: f64 = Number::from_below(0.0, 90.0), unit "deg", default 7.0;
+        /// Lowest elevation of a visible GNSS satellite.
+        pub gnss_mask_deg: f64 = Number::from_below(0.0, 90.0), unit "deg",
+            follows "mask-deg", example 7.0;
+        /// Skyline [[azimuth, mask], ...] from 0 to 360 deg, linear between its points; counts where
+        /// it is higher than a mask.
+        pub mask_table: Vec<MaskPoint> = Skyline, unit "deg", default Vec::new();
+        /// How a line of sight counts in the least-squares solution.
+        pub weighting: ObservationWeights = OneOf::new(), default ObservationWeights::Unit;
+        /// PDOP above which a sample has no solution.
+        pub pdop_cap: f64 = Number::above(1.0), default 100.0;
+    }
+}
+
+/// One point of a skyline.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaskPoint {
+    /// Azimuth from north over east, degrees, 0 to 360.
+    pub azimuth_deg: f64,
+    /// Lowest elevation of a visible satellite there, degrees.
+    pub mask_deg: f64,
+}
+
+fn share_mask(visibility: &mut Visibility, reader: &mut Reader<'_>) {
+    if !reader.is_given(key!(Visibility.gnss_mask_deg)) {
+        visibility.gnss_mask_deg = visibility.mask_deg;
+    }
+}
+
+section! {
+    /// The GNSS that is augmented.
+    #[derive(Debug, Clone, PartialEq, Eq)]
+    pub struct GnssSetup in "gnss" {
+        /// Built-in GNSS constellations that the design augments.
+        pub constellations: Vec<Preset> = SomeOf::at_least(0), default vec![Preset::Beidou3];
+        /// TLE or OMM files of GNSS satellites, paths relative to this file.
+        pub files: Vec<String> = Paths, default Vec::new();
+        /// Receiver clocks solved for beside the position.
+        pub clocks: Clocks = OneOf::new(), default Clocks::PerSystem;
+    }
+}
