@@ -138,7 +138,7 @@ fn design_plain(bencher: Bencher) {
     let setup = paper();
     let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
     let evaluator = Evaluator::new(setup).expect(SOUND);
-    bencher.bench_local(|| evaluator.plain(&ephemeris).expect(SOUND));
+    bencher.bench_local(|| evaluator.evaluate_plain(&ephemeris).expect(SOUND));
 }
 
 /// A whole design by the kernel.
@@ -146,5 +146,5 @@ fn design_plain(bencher: Bencher) {
 fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
     let evaluator = Evaluator::with_instructions(paper(), instructions).expect(SOUND);
     let design = design();
-    bencher.bench_local(|| evaluator.design(&design).expect(SOUND));
+    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
 }

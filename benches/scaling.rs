@@ -57,7 +57,7 @@ fn time(bencher: Bencher, setup: Setup, notation: &str, threads: usize) {
         .num_threads(threads)
         .build()
         .expect(SOUND);
-    bencher.bench_local(|| pool.install(|| evaluator.design(&design).expect(SOUND)));
+    bencher.bench_local(|| pool.install(|| evaluator.evaluate(&design).expect(SOUND)));
 }
 
 #[divan::bench(args = [5.0, 2.0, 1.0, 0.5], sample_count = 3)]

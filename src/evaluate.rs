@@ -170,15 +170,15 @@ impl Evaluator {
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
-    pub fn design(&self, design: &Design) -> Result<Metrics, EphemerisError> {
-        Ok(self.design_counted(design)?.0)
+    pub fn evaluate(&self, design: &Design) -> Result<Metrics, EphemerisError> {
+        Ok(self.evaluate_counted(design)?.0)
     }
 
     /// The metrics of a design, and how many samples f32 could not hold.
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
-    pub fn design_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
+    pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
         self.counted(&ephemeris, Some(design))
     }
@@ -187,7 +187,7 @@ impl Evaluator {
     ///
     /// # Errors
     /// When a satellite cannot be propagated.
-    pub fn ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+    pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         Ok(self.counted(ephemeris, None)?.0)
     }
 
@@ -197,7 +197,7 @@ impl Evaluator {
         design: Option<&Design>,
     ) -> Result<(Metrics, Retakes), EphemerisError> {
         let Some(kernel) = &self.kernel else {
-            return Ok((self.plain(ephemeris)?, Retakes::default()));
+            return Ok((self.evaluate_plain(ephemeris)?, Retakes::default()));
         };
         let (evaluated, retakes) = kernel.evaluate(self, ephemeris, design)?;
         Ok((self.metrics(&evaluated, ephemeris), retakes))
@@ -208,7 +208,7 @@ impl Evaluator {
     ///
     /// # Errors
     /// When a satellite cannot be propagated.
-    pub fn plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+    pub fn evaluate_plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         let evaluated = plain::evaluate(self, ephemeris)?;
         Ok(self.metrics(&evaluated, ephemeris))
     }

@@ -214,7 +214,7 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
         let design = self.designs.design(genome).ok()?;
-        let metrics = self.evaluator.design(&design).ok()?;
+        let metrics = self.evaluator.evaluate(&design).ok()?;
         Some((design, metrics))
     }
 

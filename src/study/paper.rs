@@ -241,7 +241,7 @@ fn measure(
     assumption: &str,
     designs: Vec<Design>,
 ) -> Result<Measured, PaperError> {
-    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.design(design)?.into());
+    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.evaluate(design)?.into());
     Ok(Measured {
         assumption: assumption.to_owned(),
         values: designs.par_iter().map(value).collect::<Result<_, _>>()?,
@@ -252,7 +252,7 @@ fn measure(
 fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperError> {
     let sky = Evaluator::new(fit::sky(setup))?;
     let fit = |row: &Row| {
-        let printed = sky.design(&row.design)?.mean_visible;
+        let printed = sky.evaluate(&row.design)?.mean_visible;
         if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
             return Ok(None);
         }
@@ -299,7 +299,7 @@ fn cost_of_size(evaluator: &Evaluator, study: &PaperStudy) -> Result<CostOfSize,
         let size = (satellites[end], planes, phasing);
         let (i, h) = (reference.inclination_deg(), reference.altitude_km());
         let design = Design::new(reference.pattern(), size, i, h)?;
-        j_cost[end] = evaluator.design(&design)?.j_cost;
+        j_cost[end] = evaluator.evaluate(&design)?.j_cost;
     }
     Ok(CostOfSize { satellites, j_cost })
 }

@@ -114,7 +114,7 @@ fn validate_metrics_against_an_independent_evaluator() {
     for case in &cases {
         let metrics = Evaluator::new(case.setup())
             .unwrap()
-            .design(&case.design())
+            .evaluate(&case.design())
             .unwrap();
         let compared = [
             (

@@ -148,13 +148,13 @@ proptest! {
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluators = InstructionSet::ALL
             .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
-        let plain = evaluators[0].plain(&ephemeris).unwrap();
-        let fast = evaluators.each_ref().map(|evaluator| evaluator.design(&design).unwrap());
+        let plain = evaluators[0].evaluate_plain(&ephemeris).unwrap();
+        let fast = evaluators.each_ref().map(|evaluator| evaluator.evaluate(&design).unwrap());
         compare(&fast[0], &plain)?;
         prop_assert_eq!(fast[0], fast[1]);
         prop_assert_eq!(fast[0], fast[2]);
         // Without the pattern behind them, satellites are asked one by one.
-        compare(&evaluators[0].ephemeris(&ephemeris).unwrap(), &plain)?;
+        compare(&evaluators[0].evaluate_ephemeris(&ephemeris).unwrap(), &plain)?;
     }
 }
 
@@ -174,8 +174,8 @@ fn whole_days_equal_the_plain_path() {
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let plain = evaluator.plain(&ephemeris).unwrap();
-        let (fast, retakes) = evaluator.design_counted(&design).unwrap();
+        let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+        let (fast, retakes) = evaluator.evaluate_counted(&design).unwrap();
         compare(&fast, &plain).unwrap();
         // Means do better than single values: roundings cancel.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
@@ -229,8 +229,8 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let kernel = evaluator.kernel.as_ref().unwrap();
     let (_, retakes) = kernel.evaluate(&evaluator, &ephemeris, None).unwrap();
     assert!(retakes.near_mask >= 143 * 10, "{retakes:?}");
-    let plain = evaluator.plain(&ephemeris).unwrap();
-    compare(&evaluator.ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
 }
 
 /// No satellite at all, and satellites that never rise.
@@ -242,8 +242,8 @@ fn nothing_in_view_is_no_failure() {
     };
     let nobody = Ephemeris::new(setup.grid, vec![]);
     let evaluator = Evaluator::new(setup).unwrap();
-    let metrics = evaluator.ephemeris(&nobody).unwrap();
-    assert_eq!(metrics, evaluator.plain(&nobody).unwrap());
+    let metrics = evaluator.evaluate_ephemeris(&nobody).unwrap();
+    assert_eq!(metrics, evaluator.evaluate_plain(&nobody).unwrap());
     assert_eq!((metrics.solved_fraction, metrics.max_pdop), (0.0, None));
 }
 
@@ -268,13 +268,13 @@ fn streaming_equals_keeping() {
         let rotations = &kept.rotations;
         streamed.kernel =
             Kernel::keeping_at_most(nothing, &setup, rotations, InstructionSet::detect()).ok();
-        let expected = kept.design(&design).unwrap();
+        let expected = kept.evaluate(&design).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| streamed.design(&design).unwrap())
+            pool.install(|| streamed.evaluate(&design).unwrap())
         };
         let one = on_threads(1);
         assert_eq!(one, on_threads(2));
@@ -316,7 +316,7 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     }
     let per_sample = looked_at as f64 / setup.grid.len() as f64 / tiles.tiles.len() as f64;
     let evaluator = Evaluator::new(setup).unwrap();
-    let seen = evaluator.design(&design).unwrap().mean_visible;
+    let seen = evaluator.evaluate(&design).unwrap().mean_visible;
     // 16.6 for 7.84; a worse cut of the tiles shows here before it shows in the time.
     assert!((2.0..2.2).contains(&(per_sample / seen)), "{per_sample}");
 }
@@ -330,7 +330,7 @@ fn decisions_at_a_threshold_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
     let plain = Evaluator::new(setup.clone())
         .unwrap()
-        .plain(&ephemeris)
+        .evaluate_plain(&ephemeris)
         .unwrap();
     for value in [
         plain.p50_pdop,
@@ -342,8 +342,8 @@ fn decisions_at_a_threshold_are_those_of_the_plain_path() {
             let mut setup = setup.clone();
             setup.metrics.availability_pdop = value.unwrap() * (1.0 + side);
             let evaluator = Evaluator::new(setup).unwrap();
-            let plain = evaluator.plain(&ephemeris).unwrap();
-            let fast = evaluator.design(&design).unwrap();
+            let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+            let fast = evaluator.evaluate(&design).unwrap();
             assert_eq!(fast.availability, plain.availability, "{value:?} {side}");
         }
     }
@@ -365,8 +365,8 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
         let design: Design = "delta:40:900/30/1@0.05".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let plain = evaluator.plain(&ephemeris).unwrap();
-        compare(&evaluator.ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+        let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+        compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
     }
 }
 

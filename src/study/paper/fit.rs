@@ -85,7 +85,7 @@ pub(super) fn fitting_inclination(
 ) -> Result<Option<f64>, PaperError> {
     let excess = |inclination_deg: f64| {
         let design = inclined(&row.design, inclination_deg)?;
-        Ok::<f64, PaperError>(evaluator.design(&design)?.mean_visible - row.mean_visible)
+        Ok::<f64, PaperError>(evaluator.evaluate(&design)?.mean_visible - row.mean_visible)
     };
     let printed = row.design.inclination_deg();
     let here = excess(printed)?;
@@ -154,7 +154,7 @@ fn row_mask(setup: &Setup, row: &Row) -> Result<Option<f64>, PaperError> {
     let excess = |mask_deg: f64| {
         let mask = Mask::from_degrees(mask_deg)?;
         let setup = Setup { mask, ..sky(setup) };
-        let metrics = Evaluator::new(setup)?.design(&row.design)?;
+        let metrics = Evaluator::new(setup)?.evaluate(&row.design)?;
         Ok(metrics.mean_visible - row.mean_visible)
     };
     crossing(excess, MASKS_DEG)
