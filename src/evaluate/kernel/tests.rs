@@ -2,9 +2,9 @@ use super::candidates::Candidates;
 use super::flight::{PatternFlight, Positions};
 use super::tiles::{Horizon, Tiles};
 use super::*;
-use crate::constellation::Pattern;
 use crate::constellation::gnss::Preset;
-use crate::dop::{Clocks, ObservationWeights};
+use crate::constellation::{DesignParameters, Pattern};
+use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::Flown;
 use crate::evaluate::tests::setup;
@@ -57,11 +57,17 @@ fn designs() -> impl Strategy<Value = Design> {
     ];
     (pattern, shape, 0.0..180.0_f64, 300.0..3000.0_f64, ellipse).prop_map(
         |(pattern, (planes, per_plane, phasing), inclination_deg, altitude_km, (e, w))| {
-            let tpf = (planes * per_plane, planes, phasing % planes);
             let e = e * altitude_km / (RADIUS_KM + altitude_km);
-            Design::new(pattern, tpf, inclination_deg, altitude_km)
-                .and_then(|design| design.with_ellipse(e, w))
-                .unwrap()
+            Design::new(DesignParameters {
+                pattern,
+                planes,
+                satellites_per_plane: per_plane,
+                phasing: phasing % planes,
+                inclination_deg,
+                altitude_km,
+            })
+            .and_then(|design| design.with_ellipse(e, w))
+            .unwrap()
         },
     )
 }
@@ -118,23 +124,18 @@ fn setups() -> impl Strategy<Value = Setup> {
             |(sites, mask, gnss_mask, clocks, gnss, (pdop_cap, availability_pdop), hours)| {
                 let first = Epoch::from_utc("2023-06-01T00:00:00Z".parse().unwrap());
                 let epoch = first.plus_seconds(f64::from(hours) * 3600.0);
-                Setup {
-                    grid: TimeGrid::new(epoch, 3600.0, 97.0).unwrap(),
-                    sites,
-                    mask: Mask::from_degrees(mask).unwrap(),
-                    gnss_mask: Mask::from_degrees(gnss_mask).unwrap(),
-                    gnss,
-                    clocks,
-                    skyline: None,
-                    observation_weights: ObservationWeights::Unit,
-                    pdop_cap,
-                    model: Model::J2,
-                    metrics: MetricOptions {
-                        cvar_weight: 0.5,
-                        cvar_level: Level::new(0.9).unwrap(),
-                        availability_pdop,
-                    },
-                }
+                let metrics = MetricOptions {
+                    cvar_level: Level::new(0.9).unwrap(),
+                    availability_pdop,
+                    ..MetricOptions::default()
+                };
+                Setup::new(TimeGrid::new(epoch, 3600.0, 97.0).unwrap(), sites)
+                    .with_mask(Mask::from_degrees(mask).unwrap())
+                    .with_gnss_mask(Mask::from_degrees(gnss_mask).unwrap())
+                    .with_gnss(gnss)
+                    .with_clocks(clocks)
+                    .with_pdop_cap(pdop_cap)
+                    .with_metrics(metrics)
             },
         )
 }

@@ -1,7 +1,7 @@
 //! One-dimensional fits to the visibility column of Table II.
 
 use super::{PaperError, Row};
-use crate::constellation::Design;
+use crate::constellation::{Design, DesignParameters};
 use crate::evaluate::{Evaluator, Setup};
 use crate::visibility::Mask;
 use rayon::prelude::*;
@@ -67,14 +67,10 @@ pub(super) fn sky(setup: &Setup) -> Setup {
 
 /// The design with another inclination.
 pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, PaperError> {
-    let size = (design.satellite_count(), design.planes(), design.phasing());
-    let altitude_km = design.altitude_km();
-    Ok(Design::new(
-        design.pattern(),
-        size,
+    Ok(Design::new(DesignParameters {
         inclination_deg,
-        altitude_km,
-    )?)
+        ..design.parameters()
+    })?)
 }
 
 /// The inclination nearest to the printed one at which the row's N̄ comes out, in steps of a
