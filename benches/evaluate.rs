@@ -7,16 +7,15 @@
 use divan::{Bencher, black_box};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::Preset;
-use navwalker::dop::{ClockGroup, Clocks, Geometry, ObservationWeights};
+use navwalker::dop::{ClockGroup, Geometry};
 use navwalker::earth::Surface;
 use navwalker::ephemeris::Ephemeris;
-use navwalker::evaluate::{Evaluator, InstructionSet, MetricOptions, Setup};
+use navwalker::evaluate::{Evaluator, InstructionSet, Setup};
 use navwalker::frames::EarthRotation;
 use navwalker::ground::{Grid, PointWeights};
 use navwalker::orbit::Model;
 use navwalker::stats::{Level, summarize};
 use navwalker::time::{Epoch, TimeGrid};
-use navwalker::visibility::Mask;
 
 fn main() {
     divan::main();
@@ -34,23 +33,11 @@ fn paper() -> Setup {
         step_deg: [5.0, 5.0],
         weights: PointWeights::Equal,
     };
-    Setup {
-        grid: TimeGrid::new(epoch, 86_400.0, 60.0).expect(SOUND),
-        sites: region.sites(Surface::Sphere).expect(SOUND),
-        mask: Mask::from_degrees(7.0).expect(SOUND),
-        gnss_mask: Mask::from_degrees(7.0).expect(SOUND),
-        gnss: vec![Preset::Beidou3.into()],
-        clocks: Clocks::PerSystem,
-        skyline: None,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).expect(SOUND),
-            availability_pdop: 6.0,
-        },
-    }
+    Setup::new(
+        TimeGrid::new(epoch, 86_400.0, 60.0).expect(SOUND),
+        region.sites(Surface::Sphere).expect(SOUND),
+    )
+    .with_gnss(vec![Preset::Beidou3.into()])
 }
 
 fn design() -> Design {
@@ -139,7 +126,7 @@ fn design_plain(bencher: Bencher) {
     let setup = paper();
     let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
     let evaluator = Evaluator::new(setup).expect(SOUND);
-    bencher.bench_local(|| evaluator.plain(&ephemeris).expect(SOUND));
+    bencher.bench_local(|| evaluator.evaluate_plain(&ephemeris).expect(SOUND));
 }
 
 /// A whole design by the kernel.
@@ -147,5 +134,5 @@ fn design_plain(bencher: Bencher) {
 fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
     let evaluator = Evaluator::with_instructions(paper(), instructions).expect(SOUND);
     let design = design();
-    bencher.bench_local(|| evaluator.design(&design).expect(SOUND));
+    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
 }

@@ -5,14 +5,10 @@
 use divan::Bencher;
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::Preset;
-use navwalker::dop::{Clocks, ObservationWeights};
 use navwalker::earth::Surface;
-use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
+use navwalker::evaluate::{Evaluator, Setup};
 use navwalker::ground::{Grid, PointWeights};
-use navwalker::orbit::Model;
-use navwalker::stats::Level;
 use navwalker::time::{Epoch, TimeGrid};
-use navwalker::visibility::Mask;
 
 fn main() {
     divan::main();
@@ -31,23 +27,11 @@ fn setup((latitude_deg, longitude_deg): ([f64; 2], [f64; 2]), step_deg: f64, hou
         step_deg: [step_deg, step_deg],
         weights: PointWeights::Equal,
     };
-    Setup {
-        grid: TimeGrid::new(epoch, hours * 3600.0, 60.0).expect(SOUND),
-        sites: region.sites(Surface::Sphere).expect(SOUND),
-        mask: Mask::from_degrees(7.0).expect(SOUND),
-        gnss_mask: Mask::from_degrees(7.0).expect(SOUND),
-        gnss: vec![Preset::Beidou3.into()],
-        clocks: Clocks::PerSystem,
-        skyline: None,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95).expect(SOUND),
-            availability_pdop: 6.0,
-        },
-    }
+    Setup::new(
+        TimeGrid::new(epoch, hours * 3600.0, 60.0).expect(SOUND),
+        region.sites(Surface::Sphere).expect(SOUND),
+    )
+    .with_gnss(vec![Preset::Beidou3.into()])
 }
 
 fn time(bencher: Bencher, setup: Setup, notation: &str, threads: usize) {
@@ -57,7 +41,7 @@ fn time(bencher: Bencher, setup: Setup, notation: &str, threads: usize) {
         .num_threads(threads)
         .build()
         .expect(SOUND);
-    bencher.bench_local(|| pool.install(|| evaluator.design(&design).expect(SOUND)));
+    bencher.bench_local(|| pool.install(|| evaluator.evaluate(&design).expect(SOUND)));
 }
 
 #[divan::bench(args = [5.0, 2.0, 1.0, 0.5], sample_count = 3)]

@@ -5,7 +5,7 @@ mod notation;
 mod shell;
 
 pub use notation::NotationError;
-pub use shell::{Design, DesignError, Pattern};
+pub use shell::{Design, DesignError, DesignParameters, Pattern};
 
 use crate::orbit::MeanElements;
 use std::fmt;

@@ -32,7 +32,10 @@ use nalgebra::Vector3;
 use std::sync::OnceLock;
 
 /// Everything that an evaluation depends on, but for the design.
+///
+/// [`Setup::new`] takes what has no default; the `with_` methods change the rest.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Setup {
     /// Samples in time.
     pub grid: TimeGrid,
@@ -52,13 +55,96 @@ pub struct Setup {
     pub observation_weights: ObservationWeights,
     /// PDOP above which a sample counts as unsolved.
     pub pdop_cap: f64,
-    /// Theory that flies the LEO design.
+    /// Theory that propagates the LEO design.
     pub model: Model,
-    /// What is made of the samples.
+    /// How the samples are turned into metrics.
     pub metrics: MetricOptions,
 }
 
 impl Setup {
+    /// Samples in time and ground points, with the defaults of a scenario: 7° masks, one clock
+    /// per system, unit weights, unsolved above a PDOP of 100 and secular J2; without GNSS.
+    #[must_use]
+    pub fn new(grid: TimeGrid, sites: Vec<Site>) -> Self {
+        Self {
+            grid,
+            sites,
+            mask: Mask::default(),
+            gnss_mask: Mask::default(),
+            skyline: None,
+            gnss: Vec::new(),
+            clocks: Clocks::PerSystem,
+            observation_weights: ObservationWeights::Unit,
+            pdop_cap: 100.0,
+            model: Model::J2,
+            metrics: MetricOptions::default(),
+        }
+    }
+
+    /// One elevation mask for all satellites.
+    #[must_use]
+    pub fn with_mask(self, mask: Mask) -> Self {
+        Self {
+            mask,
+            gnss_mask: mask,
+            ..self
+        }
+    }
+
+    /// An elevation mask for the GNSS satellites alone.
+    #[must_use]
+    pub fn with_gnss_mask(self, gnss_mask: Mask) -> Self {
+        Self { gnss_mask, ..self }
+    }
+
+    /// A skyline that every satellite must clear besides its mask.
+    #[must_use]
+    pub fn with_skyline(self, skyline: MaskTable) -> Self {
+        Self {
+            skyline: Some(skyline),
+            ..self
+        }
+    }
+
+    /// The GNSS in view.
+    #[must_use]
+    pub fn with_gnss(self, gnss: Vec<System>) -> Self {
+        Self { gnss, ..self }
+    }
+
+    /// The clock states.
+    #[must_use]
+    pub fn with_clocks(self, clocks: Clocks) -> Self {
+        Self { clocks, ..self }
+    }
+
+    /// How observations count in least squares.
+    #[must_use]
+    pub fn with_observation_weights(self, observation_weights: ObservationWeights) -> Self {
+        Self {
+            observation_weights,
+            ..self
+        }
+    }
+
+    /// The PDOP above which a sample counts as unsolved.
+    #[must_use]
+    pub fn with_pdop_cap(self, pdop_cap: f64) -> Self {
+        Self { pdop_cap, ..self }
+    }
+
+    /// The theory that propagates the LEO design.
+    #[must_use]
+    pub fn with_model(self, model: Model) -> Self {
+        Self { model, ..self }
+    }
+
+    /// How the samples are turned into metrics.
+    #[must_use]
+    pub fn with_metrics(self, metrics: MetricOptions) -> Self {
+        Self { metrics, ..self }
+    }
+
     /// Points times samples.
     #[must_use]
     pub fn sample_count(&self) -> usize {
@@ -170,15 +256,15 @@ impl Evaluator {
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
-    pub fn design(&self, design: &Design) -> Result<Metrics, EphemerisError> {
-        Ok(self.design_counted(design)?.0)
+    pub fn evaluate(&self, design: &Design) -> Result<Metrics, EphemerisError> {
+        Ok(self.evaluate_counted(design)?.0)
     }
 
     /// The metrics of a design, and how many samples f32 could not hold.
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
-    pub fn design_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
+    pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
         self.counted(&ephemeris, Some(design))
     }
@@ -187,7 +273,7 @@ impl Evaluator {
     ///
     /// # Errors
     /// When a satellite cannot be propagated.
-    pub fn ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+    pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         Ok(self.counted(ephemeris, None)?.0)
     }
 
@@ -197,7 +283,7 @@ impl Evaluator {
         design: Option<&Design>,
     ) -> Result<(Metrics, Retakes), EphemerisError> {
         let Some(kernel) = &self.kernel else {
-            return Ok((self.plain(ephemeris)?, Retakes::default()));
+            return Ok((self.evaluate_plain(ephemeris)?, Retakes::default()));
         };
         let (evaluated, retakes) = kernel.evaluate(self, ephemeris, design)?;
         Ok((self.metrics(&evaluated, ephemeris), retakes))
@@ -208,7 +294,7 @@ impl Evaluator {
     ///
     /// # Errors
     /// When a satellite cannot be propagated.
-    pub fn plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
+    pub fn evaluate_plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         let evaluated = plain::evaluate(self, ephemeris)?;
         Ok(self.metrics(&evaluated, ephemeris))
     }

@@ -7,7 +7,7 @@ mod quantity;
 pub use constraint::{Constraint, ConstraintError, Relation};
 pub use quantity::{LaunchCost, Quantity};
 
-use crate::constellation::{Design, DesignError, Pattern};
+use crate::constellation::{Design, DesignError, DesignParameters, Pattern};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Evaluation, Kind, OptimizeError, Problem, Space, Variable};
 use crate::units::round_decimal;
@@ -138,13 +138,14 @@ impl DesignSpace {
     /// When the vector is no design: an ellipse whose perigee is not above ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
-        let satellites = count(PLANES) * count(PER_PLANE);
-        Design::new(
-            self.pattern,
-            (satellites, count(PLANES), count(PHASING)),
-            genome[INCLINATION],
-            genome[ALTITUDE],
-        )
+        Design::new(DesignParameters {
+            pattern: self.pattern,
+            planes: count(PLANES),
+            satellites_per_plane: count(PER_PLANE),
+            phasing: count(PHASING),
+            inclination_deg: genome[INCLINATION],
+            altitude_km: genome[ALTITUDE],
+        })
         .and_then(|design| {
             let (eccentricity, arg_perigee_deg) = self.ellipse(genome);
             design.with_ellipse(eccentricity, arg_perigee_deg)
@@ -214,7 +215,7 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
         let design = self.designs.design(genome).ok()?;
-        let metrics = self.evaluator.design(&design).ok()?;
+        let metrics = self.evaluator.evaluate(&design).ok()?;
         Some((design, metrics))
     }
 

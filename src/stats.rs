@@ -16,6 +16,13 @@ pub struct LevelError(pub f64);
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Level(f64);
 
+impl Default for Level {
+    /// 0.95, the mean of the worst twentieth.
+    fn default() -> Self {
+        Self(0.95)
+    }
+}
+
 impl Level {
     /// The level itself.
     ///

@@ -20,6 +20,13 @@ pub struct Mask {
     sin2: f64,
 }
 
+impl Default for Mask {
+    /// 7°.
+    fn default() -> Self {
+        Self::unchecked(7.0)
+    }
+}
+
 impl Mask {
     /// The mask of an elevation in degrees, 0 <= elevation < 90.
     ///
@@ -27,13 +34,17 @@ impl Mask {
     /// When the elevation is outside that range.
     pub fn from_degrees(degrees: f64) -> Result<Self, MaskError> {
         if (0.0..90.0).contains(&degrees) {
-            let sin = degrees.to_radians().sin();
-            Ok(Self {
-                degrees,
-                sin2: sin * sin,
-            })
+            Ok(Self::unchecked(degrees))
         } else {
             Err(MaskError(degrees))
+        }
+    }
+
+    fn unchecked(degrees: f64) -> Self {
+        let sin = degrees.to_radians().sin();
+        Self {
+            degrees,
+            sin2: sin * sin,
         }
     }
 

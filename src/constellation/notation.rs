@@ -1,6 +1,6 @@
 //! Walker's notation with pattern and altitude: `delta:55:182/13/1@925[,e=0.01,w=270]`.
 
-use super::{Design, DesignError};
+use super::{Design, DesignError, DesignParameters};
 use crate::keyword::UnknownWord;
 use std::fmt;
 use std::str::FromStr;
@@ -79,16 +79,20 @@ impl FromStr for Design {
             .map_err(|_| form())?;
         let mut options = rest.split(',');
         let altitude = options.next().unwrap_or_default();
-        let design = Self::new(
-            pattern.parse()?,
-            (
-                number("satellites T", t)?,
-                number("planes P", p)?,
-                number("phasing F", f)?,
-            ),
-            decimal("inclination", inclination)?,
-            decimal("altitude", altitude)?,
-        )?;
+        let pattern = pattern.parse()?;
+        let satellites = number("satellites T", t)?;
+        let planes = number("planes P", p)?;
+        let phasing = number("phasing F", f)?;
+        let inclination_deg = decimal("inclination", inclination)?;
+        let altitude_km = decimal("altitude", altitude)?;
+        let design = Self::new(DesignParameters {
+            pattern,
+            planes,
+            satellites_per_plane: Self::per_plane(satellites, planes)?,
+            phasing,
+            inclination_deg,
+            altitude_km,
+        })?;
         let (mut eccentricity, mut arg_perigee_deg) = (None, None);
         for option in options {
             let (slot, field, value) = match option.split_once('=') {
@@ -165,6 +169,14 @@ mod tests {
         assert!(error("helix:55:182/13/1@925").contains("(choices: delta, star, lattice)"));
         assert!(error("delta:55:182/13/1@925,f=3").starts_with("option 'f=3' is unknown"));
         assert!(error("delta:55:182/13/1@925,e=0,e=0").contains("given twice"));
+        assert_eq!(
+            error("delta:55:183/13/0@925"),
+            "satellites T = 183 is not a multiple of planes P = 13; nearest: 182 or 195"
+        );
+        assert_eq!(
+            error("delta:55:10/0/0@925"),
+            "planes P = 0; at least one plane is needed"
+        );
         assert!(error("delta:55:4/2/1@925,e=0.95").contains("outside [0, 0.9)"));
         assert!(error("delta:55:4/2/1@925+delta:40:4/2/1@925").contains("several shells"));
     }
@@ -173,12 +185,19 @@ mod tests {
         #[test]
         fn any_design_round_trips(
             pattern in prop::sample::select(<Pattern as Word>::ALL.to_vec()),
-            planes in 1_usize..40, per_plane in 1_usize..40, f in 0_usize..40,
-            inclination in 0.0..180.0_f64, altitude in 200.0..30_000.0_f64,
+            planes in 1_usize..40, satellites_per_plane in 1_usize..40, f in 0_usize..40,
+            inclination_deg in 0.0..180.0_f64, altitude_km in 200.0..30_000.0_f64,
             e in 0.0..0.02_f64, w in 0.0..360.0_f64,
         ) {
-            let design = Design::new(pattern, (planes * per_plane, planes, f % planes), inclination, altitude)
-                .unwrap().with_ellipse(e, w).unwrap();
+            let parameters = DesignParameters {
+                pattern,
+                planes,
+                satellites_per_plane,
+                phasing: f % planes,
+                inclination_deg,
+                altitude_km,
+            };
+            let design = Design::new(parameters).unwrap().with_ellipse(e, w).unwrap();
             prop_assert_eq!(design.to_string().parse::<Design>().unwrap(), design);
         }
 

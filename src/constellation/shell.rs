@@ -67,15 +67,27 @@ pub enum DesignError {
     Orbit(#[from] ElementsError),
 }
 
+/// The parameters of a circular design.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DesignParameters {
+    /// The layout of planes and phases.
+    pub pattern: Pattern,
+    /// Number of planes P (`N_o` of a lattice).
+    pub planes: usize,
+    /// Satellites per plane S (`N_so` of a lattice); T = P S.
+    pub satellites_per_plane: usize,
+    /// Phasing F, or `N_c` of a lattice.
+    pub phasing: usize,
+    /// Inclination, degrees.
+    pub inclination_deg: f64,
+    /// Semi-major axis minus the equatorial radius, km.
+    pub altitude_km: f64,
+}
+
 /// A LEO constellation design: a pattern and the orbit that its satellites share.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Design {
-    pattern: Pattern,
-    planes: usize,
-    satellites_per_plane: usize,
-    phasing: usize,
-    inclination_deg: f64,
-    altitude_km: f64,
+    parameters: DesignParameters,
     eccentricity: f64,
     arg_perigee_deg: f64,
 }
@@ -87,28 +99,45 @@ impl Design {
     /// Largest altitude over the equatorial radius, km.
     pub const MAX_ALTITUDE_KM: f64 = 100_000.0;
 
-    /// A circular design of `satellites` (T) in `planes` (P) with phasing F (`N_c` of a lattice).
+    /// A circular design.
     ///
     /// # Errors
     /// Names the quantity that is out of range.
-    pub fn new(
-        pattern: Pattern,
-        (satellites, planes, phasing): (usize, usize, usize),
-        inclination_deg: f64,
-        altitude_km: f64,
-    ) -> Result<Self, DesignError> {
+    pub fn new(parameters: DesignParameters) -> Result<Self, DesignError> {
+        let DesignParameters {
+            planes,
+            satellites_per_plane,
+            phasing,
+            altitude_km,
+            ..
+        } = parameters;
         if planes == 0 {
             return Err(DesignError::NoPlane);
         }
-        if satellites == 0 {
+        if satellites_per_plane == 0 {
             return Err(DesignError::NoSatellite);
         }
-        if satellites > Self::MAX_SATELLITES {
-            return Err(DesignError::TooMany {
-                satellites,
-                limit: Self::MAX_SATELLITES,
-            });
+        check_count(planes.saturating_mul(satellites_per_plane))?;
+        if phasing >= planes {
+            return Err(DesignError::Phasing { phasing, planes });
         }
+        if !(altitude_km > 0.0 && altitude_km <= Self::MAX_ALTITUDE_KM) {
+            return Err(DesignError::Altitude(altitude_km));
+        }
+        Self {
+            parameters,
+            eccentricity: 0.0,
+            arg_perigee_deg: 0.0,
+        }
+        .checked()
+    }
+
+    /// Satellites per plane, from Walker's T and P.
+    pub(super) fn per_plane(satellites: usize, planes: usize) -> Result<usize, DesignError> {
+        if planes == 0 {
+            return Err(DesignError::NoPlane);
+        }
+        check_count(satellites)?;
         if !satellites.is_multiple_of(planes) {
             let below = (satellites / planes).max(1) * planes;
             let above = (satellites / planes + 1) * planes;
@@ -119,23 +148,7 @@ impl Design {
                 above,
             });
         }
-        if phasing >= planes {
-            return Err(DesignError::Phasing { phasing, planes });
-        }
-        if !(altitude_km > 0.0 && altitude_km <= Self::MAX_ALTITUDE_KM) {
-            return Err(DesignError::Altitude(altitude_km));
-        }
-        Self {
-            pattern,
-            planes,
-            satellites_per_plane: satellites / planes,
-            phasing,
-            inclination_deg,
-            altitude_km,
-            eccentricity: 0.0,
-            arg_perigee_deg: 0.0,
-        }
-        .checked()
+        Ok(satellites / planes)
     }
 
     /// The same design on an ellipse: the semi-major axis stays R + altitude.
@@ -160,46 +173,52 @@ impl Design {
         Ok(self)
     }
 
+    /// Everything but the ellipse.
+    #[must_use]
+    pub fn parameters(&self) -> DesignParameters {
+        self.parameters
+    }
+
     /// The layout of planes and phases.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
-        self.pattern
+        self.parameters.pattern
     }
 
     /// Number of planes P (`N_o` of a lattice).
     #[must_use]
     pub fn planes(&self) -> usize {
-        self.planes
+        self.parameters.planes
     }
 
     /// Satellites per plane S (`N_so` of a lattice).
     #[must_use]
     pub fn satellites_per_plane(&self) -> usize {
-        self.satellites_per_plane
+        self.parameters.satellites_per_plane
     }
 
     /// Satellites T = P S.
     #[must_use]
     pub fn satellite_count(&self) -> usize {
-        self.planes * self.satellites_per_plane
+        self.parameters.planes * self.parameters.satellites_per_plane
     }
 
     /// Phasing F, or `N_c` of a lattice.
     #[must_use]
     pub fn phasing(&self) -> usize {
-        self.phasing
+        self.parameters.phasing
     }
 
     /// Inclination, degrees.
     #[must_use]
     pub fn inclination_deg(&self) -> f64 {
-        self.inclination_deg
+        self.parameters.inclination_deg
     }
 
-    /// Semi-major axis less the equatorial radius, km.
+    /// Semi-major axis minus the equatorial radius, km.
     #[must_use]
     pub fn altitude_km(&self) -> f64 {
-        self.altitude_km
+        self.parameters.altitude_km
     }
 
     /// Eccentricity.
@@ -216,7 +235,7 @@ impl Design {
 
     /// The slots, plane by plane.
     pub fn slots(&self) -> impl Iterator<Item = Slot> + use<> {
-        let per_plane = self.satellites_per_plane;
+        let per_plane = self.parameters.satellites_per_plane;
         (0..self.satellite_count()).map(move |n| Slot {
             plane: n / per_plane,
             index: n % per_plane,
@@ -240,21 +259,24 @@ impl Design {
     /// Davis and Mortari (2013), *Celest. Mech. Dyn. Astron.* 116:325, for the lattice.
     #[must_use]
     pub fn elements(&self, slot: Slot) -> MeanElements {
-        let (p, s) = (self.planes as f64, self.satellites_per_plane as f64);
+        let (p, s) = (
+            self.parameters.planes as f64,
+            self.parameters.satellites_per_plane as f64,
+        );
         let (k, j) = (slot.plane as f64, slot.index as f64);
-        let f = self.phasing as f64;
-        let raan_turns = match self.pattern {
+        let f = self.parameters.phasing as f64;
+        let raan_turns = match self.parameters.pattern {
             Pattern::Delta | Pattern::Lattice => k / p,
             Pattern::Star => 0.5 * k / p,
         };
-        let anomaly_turns = match self.pattern {
+        let anomaly_turns = match self.parameters.pattern {
             Pattern::Delta | Pattern::Star => j / s + f * k / (p * s),
             Pattern::Lattice => (j - f * k / p) / s,
         };
         MeanElements {
-            semi_major_axis_km: RADIUS_KM + self.altitude_km,
+            semi_major_axis_km: RADIUS_KM + self.parameters.altitude_km,
             eccentricity: self.eccentricity,
-            inclination_rad: self.inclination_deg.to_radians(),
+            inclination_rad: self.parameters.inclination_deg.to_radians(),
             raan_rad: raan_turns * std::f64::consts::TAU,
             arg_perigee_rad: self.arg_perigee_deg.to_radians(),
             mean_anomaly_rad: wrap_two_pi(anomaly_turns * std::f64::consts::TAU),
@@ -262,19 +284,35 @@ impl Design {
     }
 }
 
+fn check_count(satellites: usize) -> Result<(), DesignError> {
+    let limit = Design::MAX_SATELLITES;
+    if satellites > limit {
+        return Err(DesignError::TooMany { satellites, limit });
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn design(pattern: Pattern, tpf: (usize, usize, usize)) -> Design {
-        Design::new(pattern, tpf, 55.0, 925.0).unwrap()
+    fn design(pattern: Pattern, [planes, satellites_per_plane, phasing]: [usize; 3]) -> Design {
+        Design::new(DesignParameters {
+            pattern,
+            planes,
+            satellites_per_plane,
+            phasing,
+            inclination_deg: 55.0,
+            altitude_km: 925.0,
+        })
+        .unwrap()
     }
 
     /// Galileo's 24/3/1 at 56°: planes 120° apart, satellites 45° apart, planes 15° ahead of
     /// each other (Galileo OS SIS ICD, issue 2.0: 24 slots, phase step 15°).
     #[test]
     fn validate_delta_against_galileo_slots() {
-        let satellites = design(Pattern::Delta, (24, 3, 1)).satellites();
+        let satellites = design(Pattern::Delta, [3, 8, 1]).satellites();
         let angles = |n: usize| {
             let e = satellites[n].elements;
             (
@@ -292,7 +330,7 @@ mod tests {
     /// Iridium, 66/6/2 star: nodes 30° apart and phase step 360° × 2/66.
     #[test]
     fn validate_star_spacing() {
-        let e = design(Pattern::Star, (66, 6, 2)).elements(Slot { plane: 1, index: 0 });
+        let e = design(Pattern::Star, [6, 11, 2]).elements(Slot { plane: 1, index: 0 });
         assert!((e.raan_rad.to_degrees() - 30.0).abs() < 1e-12);
         assert!((e.mean_anomaly_rad.to_degrees() - 720.0 / 66.0).abs() < 1e-12);
     }
@@ -300,8 +338,8 @@ mod tests {
     #[test]
     fn lattice_is_delta_with_the_opposite_phasing() {
         for f in 0..13 {
-            let delta = design(Pattern::Delta, (182, 13, f)).satellites();
-            let lattice = design(Pattern::Lattice, (182, 13, (13 - f) % 13)).satellites();
+            let delta = design(Pattern::Delta, [13, 14, f]).satellites();
+            let lattice = design(Pattern::Lattice, [13, 14, (13 - f) % 13]).satellites();
             // The same places in each plane; the numbering in the plane may start elsewhere.
             for d in &delta {
                 let same_place = lattice.iter().any(|l| {
@@ -315,32 +353,48 @@ mod tests {
 
     #[test]
     fn bad_designs_are_named() {
-        let error = |tpf, i, h| {
-            Design::new(Pattern::Delta, tpf, i, h)
-                .unwrap_err()
-                .to_string()
-        };
+        let good = design(Pattern::Delta, [13, 14, 1]).parameters();
+        let error = |parameters| Design::new(parameters).unwrap_err().to_string();
         assert_eq!(
-            error((10, 0, 0), 55.0, 925.0),
+            error(DesignParameters { planes: 0, ..good }),
             "planes P = 0; at least one plane is needed"
         );
         assert_eq!(
-            error((183, 13, 0), 55.0, 925.0),
-            "satellites T = 183 is not a multiple of planes P = 13; nearest: 182 or 195"
+            error(DesignParameters {
+                satellites_per_plane: 0,
+                ..good
+            }),
+            "satellites T = 0; at least one satellite is needed"
         );
         assert_eq!(
-            error((182, 13, 13), 55.0, 925.0),
+            error(DesignParameters {
+                satellites_per_plane: usize::MAX,
+                ..good
+            }),
+            format!("{} satellites exceed the limit of 100000", usize::MAX)
+        );
+        assert_eq!(
+            error(DesignParameters {
+                phasing: 13,
+                ..good
+            }),
             "phasing F = 13 is outside 0 to P - 1 = 12"
         );
         assert_eq!(
-            error((182, 13, 1), 55.0, -5.0),
+            error(DesignParameters {
+                altitude_km: -5.0,
+                ..good
+            }),
             "altitude -5 km is outside 0 to 100000 km"
         );
         assert_eq!(
-            error((182, 13, 1), 181.0, 925.0),
+            error(DesignParameters {
+                inclination_deg: 181.0,
+                ..good
+            }),
             "inclination 181° is outside [0°, 180°]"
         );
-        let low = design(Pattern::Delta, (4, 2, 1))
+        let low = design(Pattern::Delta, [2, 2, 1])
             .with_ellipse(0.2, 90.0)
             .unwrap_err();
         assert!(low.to_string().contains("is not above the ground"));

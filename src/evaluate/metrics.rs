@@ -14,6 +14,17 @@ pub struct MetricOptions {
     pub availability_pdop: f64,
 }
 
+impl Default for MetricOptions {
+    /// λ = 0.5, α = 0.95, available up to a PDOP of 6.
+    fn default() -> Self {
+        Self {
+            cvar_weight: 0.5,
+            cvar_level: Level::default(),
+            availability_pdop: 6.0,
+        }
+    }
+}
+
 /// The metrics of a constellation. Every one is without unit.
 ///
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved

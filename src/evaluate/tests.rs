@@ -59,7 +59,7 @@ fn validate_visible_count_by_quadrature() {
             .map(|site| visible_by_quadrature(&design, site.latitude_deg.to_radians(), mask_rad))
             .sum::<f64>()
             / setup.sites.len() as f64;
-        let metrics = Evaluator::new(setup).unwrap().design(&design).unwrap();
+        let metrics = Evaluator::new(setup).unwrap().evaluate(&design).unwrap();
         let apart = metrics.mean_visible - expected;
         assert!(
             apart.abs() < 0.02,
@@ -77,7 +77,7 @@ fn what_is_never_seen_has_no_cost() {
         ..setup([80.0, 85.0], Surface::Wgs84)
     })
     .unwrap();
-    let metrics = evaluator.design(&design).unwrap();
+    let metrics = evaluator.evaluate(&design).unwrap();
     assert_eq!(metrics.mean_visible, 0.0);
     assert_eq!(
         (metrics.j_cost, metrics.j_pos, metrics.max_pdop),
@@ -96,7 +96,7 @@ fn a_higher_mask_sees_less() {
             ..setup([3.0, 54.0], Surface::Wgs84)
         })
         .unwrap();
-        evaluator.design(&design).unwrap().mean_visible
+        evaluator.evaluate(&design).unwrap().mean_visible
     };
     assert!(at(5.0) > at(10.0) && at(10.0) > at(40.0));
 }

@@ -138,7 +138,7 @@ impl<'a> Original<'a> {
             design: *design,
             flown: Seen {
                 ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
-                metrics: evaluator.design(design)?,
+                metrics: evaluator.evaluate(design)?,
             },
             semi_major_axis_km: RADIUS_KM + design.altitude_km(),
             eccentricity: design.eccentricity(),
@@ -167,7 +167,7 @@ impl<'a> Original<'a> {
         let of_design = self.design.satellites();
         let flown = of_design.iter().zip(&objects).zip(satellites).map(fly);
         let ephemeris = Ephemeris::new(grid, flown.collect::<Result<_, EphemerisError>>()?);
-        let metrics = self.evaluator.ephemeris(&ephemeris)?;
+        let metrics = self.evaluator.evaluate_ephemeris(&ephemeris)?;
         Ok(Seen { ephemeris, metrics })
     }
 
@@ -200,7 +200,7 @@ impl<'a> Original<'a> {
         let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
         let reference = by_sgp4.as_ref().unwrap_or(&self.flown);
         let read_back = fleet.fly(setup.grid, setup.model)?;
-        let metrics = self.evaluator.ephemeris(&read_back)?;
+        let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
         let gate_km = self.position_gate_km(format, sets);
         let relative = gate_km.map(|km| km / SCALE_KM);
         let flips = FLIPS / setup.sample_count() as f64;

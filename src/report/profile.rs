@@ -165,7 +165,7 @@ mod tests {
         let evaluator = Evaluator::new(setup).unwrap();
         let design = "delta:55:42/7/1@925".parse().unwrap();
         let profile = Profile::new(&evaluator, &design).unwrap();
-        let metrics = evaluator.design(&design).unwrap();
+        let metrics = evaluator.evaluate(&design).unwrap();
         // Sums in another order.
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
         close(profile.tail.unwrap().cvar, metrics.cvar_pdop.unwrap());

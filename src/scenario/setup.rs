@@ -113,23 +113,25 @@ impl Scenario {
     /// # Errors
     /// When a file cannot be read, or the values together leave no point or sample.
     pub fn setup(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Setup, SetupError> {
-        Ok(Setup {
-            grid: self.time_grid()?,
-            sites: self.sites(read)?,
-            mask: Mask::from_degrees(self.visibility.mask_deg)?,
-            gnss_mask: Mask::from_degrees(self.visibility.gnss_mask_deg)?,
-            skyline: self.skyline()?,
-            gnss: self.systems(read)?,
-            clocks: self.gnss.clocks,
-            observation_weights: self.visibility.weighting,
-            pdop_cap: self.visibility.pdop_cap,
-            model: self.propagation.model,
-            metrics: MetricOptions {
+        let visibility = &self.visibility;
+        let setup = Setup::new(self.time_grid()?, self.sites(read)?)
+            .with_mask(Mask::from_degrees(visibility.mask_deg)?)
+            .with_gnss_mask(Mask::from_degrees(visibility.gnss_mask_deg)?);
+        let setup = match self.skyline()? {
+            Some(skyline) => setup.with_skyline(skyline),
+            None => setup,
+        };
+        Ok(setup
+            .with_gnss(self.systems(read)?)
+            .with_clocks(self.gnss.clocks)
+            .with_observation_weights(visibility.weighting)
+            .with_pdop_cap(visibility.pdop_cap)
+            .with_model(self.propagation.model)
+            .with_metrics(MetricOptions {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
-            },
-        })
+            }))
     }
 
     /// The presets, and then a system for each file, named by the file.

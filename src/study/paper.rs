@@ -19,7 +19,7 @@ pub use lines::{PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
 pub use searches::{FoundMember, FoundSet};
 pub use table::{PERCENTAGES, Percentage, Printable, Row, Scheme, TABLE1, table2};
 
-use crate::constellation::{Design, DesignError, NotationError};
+use crate::constellation::{Design, DesignError, DesignParameters, NotationError};
 use crate::ephemeris::EphemerisError;
 use crate::evaluate::{Evaluator, Metrics, Setup};
 use crate::ground::GroundError;
@@ -241,7 +241,7 @@ fn measure(
     assumption: &str,
     designs: Vec<Design>,
 ) -> Result<Measured, PaperError> {
-    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.design(design)?.into());
+    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.evaluate(design)?.into());
     Ok(Measured {
         assumption: assumption.to_owned(),
         values: designs.par_iter().map(value).collect::<Result<_, _>>()?,
@@ -252,7 +252,7 @@ fn measure(
 fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperError> {
     let sky = Evaluator::new(fit::sky(setup))?;
     let fit = |row: &Row| {
-        let printed = sky.design(&row.design)?.mean_visible;
+        let printed = sky.evaluate(&row.design)?.mean_visible;
         if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
             return Ok(None);
         }
@@ -294,12 +294,14 @@ fn cost_of_size(evaluator: &Evaluator, study: &PaperStudy) -> Result<CostOfSize,
     let mut j_cost = [None; 2];
     for end in [0, 1] {
         let planes = space.planes[end] as usize;
-        satellites[end] = planes * space.satellites_per_plane[end] as usize;
-        let phasing = reference.phasing().min(planes - 1);
-        let size = (satellites[end], planes, phasing);
-        let (i, h) = (reference.inclination_deg(), reference.altitude_km());
-        let design = Design::new(reference.pattern(), size, i, h)?;
-        j_cost[end] = evaluator.design(&design)?.j_cost;
+        let design = Design::new(DesignParameters {
+            planes,
+            satellites_per_plane: space.satellites_per_plane[end] as usize,
+            phasing: reference.phasing().min(planes - 1),
+            ..reference.parameters()
+        })?;
+        satellites[end] = design.satellite_count();
+        j_cost[end] = evaluator.evaluate(&design)?.j_cost;
     }
     Ok(CostOfSize { satellites, j_cost })
 }

@@ -59,8 +59,8 @@ impl Seen<'_> {
             gates.map_or(UNBOUNDED, |_| "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude"),
         ));
         let metrics = [
-            self.evaluator.ephemeris(self.first)?,
-            self.evaluator.ephemeris(self.second)?,
+            self.evaluator.evaluate_ephemeris(self.first)?,
+            self.evaluator.evaluate_ephemeris(self.second)?,
         ];
         findings.checks.extend(metric_checks(name, &metrics, gates));
         self.passes(name, &mut findings)?;

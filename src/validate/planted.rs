@@ -6,7 +6,7 @@ use super::geodesic::against_geodesics;
 use super::numerical::against_integration;
 use super::sgp4::against_sgp4;
 use super::{Findings, Parts, Subject, testing};
-use crate::constellation::{Design, Pattern};
+use crate::constellation::{Design, DesignParameters, Pattern};
 use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
@@ -231,13 +231,10 @@ fn sidereal_time_off_by_a_minute() {
 fn star_for_delta() {
     let parts = Parts {
         satellites: |design| {
-            let counts = (design.satellite_count(), design.planes(), design.phasing());
-            Design::new(
-                Pattern::Star,
-                counts,
-                design.inclination_deg(),
-                design.altitude_km(),
-            )
+            Design::new(DesignParameters {
+                pattern: Pattern::Star,
+                ..design.parameters()
+            })
             .unwrap()
             .satellites()
         },

@@ -1,13 +1,11 @@
 //! The evaluator against an independent one: `validation/cases/evaluate-reference.json`.
 
 use navwalker::constellation::gnss::Preset;
-use navwalker::constellation::{Design, Pattern};
-use navwalker::dop::{Clocks, ObservationWeights};
+use navwalker::constellation::{Design, DesignParameters, Pattern};
+use navwalker::dop::Clocks;
 use navwalker::earth::Surface;
-use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
+use navwalker::evaluate::{Evaluator, Setup};
 use navwalker::ground::{Grid, PointWeights};
-use navwalker::orbit::Model;
-use navwalker::stats::Level;
 use navwalker::time::{Epoch, TimeGrid};
 use navwalker::visibility::Mask;
 use serde::Deserialize;
@@ -58,11 +56,17 @@ impl Case {
             (None, 180.0) => (Pattern::Star, self.phasing),
             _ => (Pattern::Delta, self.phasing),
         };
-        let counts = (self.planes * self.sats_per_plane, self.planes, phasing);
-        Design::new(pattern, counts, self.inclination_deg, self.altitude_km)
-            .unwrap()
-            .with_ellipse(self.eccentricity, self.arg_perigee_deg)
-            .unwrap()
+        Design::new(DesignParameters {
+            pattern,
+            planes: self.planes,
+            satellites_per_plane: self.sats_per_plane,
+            phasing,
+            inclination_deg: self.inclination_deg,
+            altitude_km: self.altitude_km,
+        })
+        .unwrap()
+        .with_ellipse(self.eccentricity, self.arg_perigee_deg)
+        .unwrap()
     }
 
     fn setup(&self) -> Setup {
@@ -78,31 +82,20 @@ impl Case {
             "wgs84" => Surface::Wgs84,
             other => panic!("surface {other}"),
         };
-        Setup {
-            grid: TimeGrid::new(epoch, self.hours * 3600.0, self.step_s).unwrap(),
-            sites: grid.sites(surface).unwrap(),
-            mask: Mask::from_degrees(self.mask_deg).unwrap(),
-            gnss_mask: Mask::from_degrees(self.gnss_mask_deg).unwrap(),
-            gnss: if self.gnss == "all" {
-                vec![Preset::Beidou3.into()]
-            } else {
-                vec![]
-            },
-            clocks: if self.clock == "shared" {
-                Clocks::Shared
-            } else {
-                Clocks::PerSystem
-            },
-            skyline: None,
-            observation_weights: ObservationWeights::Unit,
-            pdop_cap: 100.0,
-            model: Model::J2,
-            metrics: MetricOptions {
-                cvar_weight: 0.5,
-                cvar_level: Level::new(0.95).unwrap(),
-                availability_pdop: 6.0,
-            },
-        }
+        let gnss = match self.gnss.as_str() {
+            "all" => vec![Preset::Beidou3.into()],
+            _ => vec![],
+        };
+        let clocks = match self.clock.as_str() {
+            "shared" => Clocks::Shared,
+            _ => Clocks::PerSystem,
+        };
+        let time = TimeGrid::new(epoch, self.hours * 3600.0, self.step_s).unwrap();
+        Setup::new(time, grid.sites(surface).unwrap())
+            .with_mask(Mask::from_degrees(self.mask_deg).unwrap())
+            .with_gnss_mask(Mask::from_degrees(self.gnss_mask_deg).unwrap())
+            .with_gnss(gnss)
+            .with_clocks(clocks)
     }
 }
 
@@ -114,7 +107,7 @@ fn validate_metrics_against_an_independent_evaluator() {
     for case in &cases {
         let metrics = Evaluator::new(case.setup())
             .unwrap()
-            .design(&case.design())
+            .evaluate(&case.design())
             .unwrap();
         let compared = [
             (

@@ -42,7 +42,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
-    let metrics = evaluator.design(design)?;
+    let metrics = evaluator.evaluate(design)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
     let csv = || metrics_csv([(&result.design, &result.metrics)]);
@@ -56,7 +56,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = fleet.fly(setup.grid, setup.model)?;
-    let metrics = evaluator.ephemeris(&ephemeris)?;
+    let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let name = |path: &PathBuf| {
         path.file_name()

@@ -7,7 +7,7 @@
 //! element sets.
 
 use super::{GeosynchronousOrbit, GnssOrbit, GnssSatellite};
-use crate::constellation::{Design, Pattern};
+use crate::constellation::{Design, DesignParameters, Pattern};
 use crate::earth::RADIUS_KM;
 use crate::orbit::MeanElements;
 use crate::orbit::j2::SecularOrbit;
@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 /// Navigation Office, *BeiDou Open Service Performance Standard* 3.0, 2021); the IGSO share one
 /// ground track that crosses the equator at 118°E.
 pub(super) fn beidou3(epoch: Epoch) -> Vec<GnssSatellite> {
-    let mut satellites = walker("MEO", (24, 3, 1), 56.0, 21_528.0);
+    let mut satellites = walker_24_3_1("MEO", 56.0, 21_528.0);
     let gmst = epoch.gmst_rad(0.0);
     for member in 0..3 {
         let offset = TAU * f64::from(member) / 3.0;
@@ -88,7 +88,7 @@ const GPS_PLANES: [(char, f64, [f64; 4]); 6] = [
 /// which 17 revolutions take ten sidereal days under J2; the almanac of the *OS SIS Interface
 /// Control Document* refers to 29 600 km.
 pub(super) fn galileo() -> Vec<GnssSatellite> {
-    walker("GAL", (24, 3, 1), 56.0, 29_600.318 - RADIUS_KM)
+    walker_24_3_1("GAL", 56.0, 29_600.318 - RADIUS_KM)
 }
 
 /// GLONASS: Walker 24/3/1 at 64.8°, semi-major axis 25 508 km, 17 revolutions in eight sidereal
@@ -97,22 +97,19 @@ pub(super) fn galileo() -> Vec<GnssSatellite> {
 /// Source: *GLONASS Interface Control Document*, edition 5.1 (2008), section on the orbital
 /// constellation: three planes 120° apart, eight satellites 45° apart, planes shifted by 15°.
 pub(super) fn glonass() -> Vec<GnssSatellite> {
-    walker("GLO", (24, 3, 1), 64.8, 25_508.0 - RADIUS_KM)
+    walker_24_3_1("GLO", 64.8, 25_508.0 - RADIUS_KM)
 }
 
-/// A circular Walker delta constellation under secular J2; the first satellite has Ω = M = 0.
-fn walker(
-    prefix: &str,
-    (total, planes, phasing): (usize, usize, usize),
-    inclination_deg: f64,
-    altitude_km: f64,
-) -> Vec<GnssSatellite> {
-    let design = Design::new(
-        Pattern::Delta,
-        (total, planes, phasing),
+/// A circular Walker delta 24/3/1 under secular J2; the first satellite has Ω = M = 0.
+fn walker_24_3_1(prefix: &str, inclination_deg: f64, altitude_km: f64) -> Vec<GnssSatellite> {
+    let design = Design::new(DesignParameters {
+        pattern: Pattern::Delta,
+        planes: 3,
+        satellites_per_plane: 8,
+        phasing: 1,
         inclination_deg,
         altitude_km,
-    );
+    });
     // The presets are constants of this module, which its tests build.
     let satellites = design.map(|design| design.satellites()).unwrap_or_default();
     (1..)

@@ -2,9 +2,9 @@ use super::candidates::Candidates;
 use super::flight::{PatternFlight, Positions};
 use super::tiles::{Horizon, Tiles};
 use super::*;
-use crate::constellation::Pattern;
 use crate::constellation::gnss::Preset;
-use crate::dop::{Clocks, ObservationWeights};
+use crate::constellation::{DesignParameters, Pattern};
+use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::Flown;
 use crate::evaluate::tests::setup;
@@ -57,11 +57,17 @@ fn designs() -> impl Strategy<Value = Design> {
     ];
     (pattern, shape, 0.0..180.0_f64, 300.0..3000.0_f64, ellipse).prop_map(
         |(pattern, (planes, per_plane, phasing), inclination_deg, altitude_km, (e, w))| {
-            let tpf = (planes * per_plane, planes, phasing % planes);
             let e = e * altitude_km / (RADIUS_KM + altitude_km);
-            Design::new(pattern, tpf, inclination_deg, altitude_km)
-                .and_then(|design| design.with_ellipse(e, w))
-                .unwrap()
+            Design::new(DesignParameters {
+                pattern,
+                planes,
+                satellites_per_plane: per_plane,
+                phasing: phasing % planes,
+                inclination_deg,
+                altitude_km,
+            })
+            .and_then(|design| design.with_ellipse(e, w))
+            .unwrap()
         },
     )
 }
@@ -118,23 +124,18 @@ fn setups() -> impl Strategy<Value = Setup> {
             |(sites, mask, gnss_mask, clocks, gnss, (pdop_cap, availability_pdop), hours)| {
                 let first = Epoch::from_utc("2023-06-01T00:00:00Z".parse().unwrap());
                 let epoch = first.plus_seconds(f64::from(hours) * 3600.0);
-                Setup {
-                    grid: TimeGrid::new(epoch, 3600.0, 97.0).unwrap(),
-                    sites,
-                    mask: Mask::from_degrees(mask).unwrap(),
-                    gnss_mask: Mask::from_degrees(gnss_mask).unwrap(),
-                    gnss,
-                    clocks,
-                    skyline: None,
-                    observation_weights: ObservationWeights::Unit,
-                    pdop_cap,
-                    model: Model::J2,
-                    metrics: MetricOptions {
-                        cvar_weight: 0.5,
-                        cvar_level: Level::new(0.9).unwrap(),
-                        availability_pdop,
-                    },
-                }
+                let metrics = MetricOptions {
+                    cvar_level: Level::new(0.9).unwrap(),
+                    availability_pdop,
+                    ..MetricOptions::default()
+                };
+                Setup::new(TimeGrid::new(epoch, 3600.0, 97.0).unwrap(), sites)
+                    .with_mask(Mask::from_degrees(mask).unwrap())
+                    .with_gnss_mask(Mask::from_degrees(gnss_mask).unwrap())
+                    .with_gnss(gnss)
+                    .with_clocks(clocks)
+                    .with_pdop_cap(pdop_cap)
+                    .with_metrics(metrics)
             },
         )
 }
@@ -148,13 +149,13 @@ proptest! {
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluators = InstructionSet::ALL
             .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
-        let plain = evaluators[0].plain(&ephemeris).unwrap();
-        let fast = evaluators.each_ref().map(|evaluator| evaluator.design(&design).unwrap());
+        let plain = evaluators[0].evaluate_plain(&ephemeris).unwrap();
+        let fast = evaluators.each_ref().map(|evaluator| evaluator.evaluate(&design).unwrap());
         compare(&fast[0], &plain)?;
         prop_assert_eq!(fast[0], fast[1]);
         prop_assert_eq!(fast[0], fast[2]);
         // Without the pattern behind them, satellites are asked one by one.
-        compare(&evaluators[0].ephemeris(&ephemeris).unwrap(), &plain)?;
+        compare(&evaluators[0].evaluate_ephemeris(&ephemeris).unwrap(), &plain)?;
     }
 }
 
@@ -174,8 +175,8 @@ fn whole_days_equal_the_plain_path() {
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let plain = evaluator.plain(&ephemeris).unwrap();
-        let (fast, retakes) = evaluator.design_counted(&design).unwrap();
+        let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+        let (fast, retakes) = evaluator.evaluate_counted(&design).unwrap();
         compare(&fast, &plain).unwrap();
         // Means do better than single values: roundings cancel.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
@@ -229,8 +230,8 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let kernel = evaluator.kernel.as_ref().unwrap();
     let (_, retakes) = kernel.evaluate(&evaluator, &ephemeris, None).unwrap();
     assert!(retakes.near_mask >= 143 * 10, "{retakes:?}");
-    let plain = evaluator.plain(&ephemeris).unwrap();
-    compare(&evaluator.ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
 }
 
 /// No satellite at all, and satellites that never rise.
@@ -242,8 +243,8 @@ fn nothing_in_view_is_no_failure() {
     };
     let nobody = Ephemeris::new(setup.grid, vec![]);
     let evaluator = Evaluator::new(setup).unwrap();
-    let metrics = evaluator.ephemeris(&nobody).unwrap();
-    assert_eq!(metrics, evaluator.plain(&nobody).unwrap());
+    let metrics = evaluator.evaluate_ephemeris(&nobody).unwrap();
+    assert_eq!(metrics, evaluator.evaluate_plain(&nobody).unwrap());
     assert_eq!((metrics.solved_fraction, metrics.max_pdop), (0.0, None));
 }
 
@@ -268,13 +269,13 @@ fn streaming_equals_keeping() {
         let rotations = &kept.rotations;
         streamed.kernel =
             Kernel::keeping_at_most(nothing, &setup, rotations, InstructionSet::detect()).ok();
-        let expected = kept.design(&design).unwrap();
+        let expected = kept.evaluate(&design).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)
                 .build()
                 .unwrap();
-            pool.install(|| streamed.design(&design).unwrap())
+            pool.install(|| streamed.evaluate(&design).unwrap())
         };
         let one = on_threads(1);
         assert_eq!(one, on_threads(2));
@@ -316,7 +317,7 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     }
     let per_sample = looked_at as f64 / setup.grid.len() as f64 / tiles.tiles.len() as f64;
     let evaluator = Evaluator::new(setup).unwrap();
-    let seen = evaluator.design(&design).unwrap().mean_visible;
+    let seen = evaluator.evaluate(&design).unwrap().mean_visible;
     // 16.6 for 7.84; a worse cut of the tiles shows here before it shows in the time.
     assert!((2.0..2.2).contains(&(per_sample / seen)), "{per_sample}");
 }
@@ -330,7 +331,7 @@ fn decisions_at_a_threshold_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
     let plain = Evaluator::new(setup.clone())
         .unwrap()
-        .plain(&ephemeris)
+        .evaluate_plain(&ephemeris)
         .unwrap();
     for value in [
         plain.p50_pdop,
@@ -342,8 +343,8 @@ fn decisions_at_a_threshold_are_those_of_the_plain_path() {
             let mut setup = setup.clone();
             setup.metrics.availability_pdop = value.unwrap() * (1.0 + side);
             let evaluator = Evaluator::new(setup).unwrap();
-            let plain = evaluator.plain(&ephemeris).unwrap();
-            let fast = evaluator.design(&design).unwrap();
+            let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+            let fast = evaluator.evaluate(&design).unwrap();
             assert_eq!(fast.availability, plain.availability, "{value:?} {side}");
         }
     }
@@ -365,8 +366,8 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
         let design: Design = "delta:40:900/30/1@0.05".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let plain = evaluator.plain(&ephemeris).unwrap();
-        compare(&evaluator.ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+        let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+        compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
     }
 }
 

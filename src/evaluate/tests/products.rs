@@ -26,7 +26,10 @@ fn a_weight_is_a_repetition() {
             ..base.clone()
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-        Evaluator::new(setup).unwrap().plain(&ephemeris).unwrap()
+        Evaluator::new(setup)
+            .unwrap()
+            .evaluate_plain(&ephemeris)
+            .unwrap()
     };
     let weighted = metrics(&[(5.0, 2.0), (40.0, 1.0), (75.0, 3.0)]);
     let repeated = metrics(&[5.0, 5.0, 40.0, 75.0, 75.0, 75.0].map(|latitude| (latitude, 1.0)));
@@ -81,7 +84,7 @@ fn series_add_up_to_the_metrics() {
     let setup = small([1.0, 2.0, 0.5]);
     let evaluator = Evaluator::new(setup.clone()).unwrap();
     let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
-    let metrics = evaluator.plain(&ephemeris).unwrap();
+    let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
     let Series {
         epochs,
         points,
@@ -142,7 +145,7 @@ fn a_point_of_the_series_is_an_evaluation_of_that_point() {
     };
     let series = Evaluator::new(all).unwrap().series(&ephemeris).unwrap();
     let evaluator = Evaluator::new(alone).unwrap();
-    let metrics = evaluator.plain(&ephemeris).unwrap();
+    let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
     let point = series.points[1];
     assert_eq!(point.p95_pdop, metrics.p95_pdop);
     assert_eq!(point.mean_visible, metrics.mean_visible);
@@ -168,7 +171,7 @@ fn dops_have_the_pdop_of_the_metrics() {
         };
         let evaluator = Evaluator::new(setup.clone()).unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, setup.grid).unwrap();
-        let metrics = evaluator.plain(&ephemeris).unwrap();
+        let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
         let dops = evaluator.dops(&ephemeris).unwrap();
         let pdop = dops.pdop.unwrap();
         // Inverse and trace of the inverse round differently.
@@ -208,7 +211,7 @@ fn a_level_skyline_is_a_mask() {
     };
     let dops = |setup: &Setup| {
         let evaluator = Evaluator::new(setup.clone()).unwrap();
-        let metrics = evaluator.plain(&ephemeris).unwrap();
+        let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
         (evaluator.dops(&ephemeris).unwrap(), metrics.mean_visible)
     };
     let (in_open, visible_in_open) = dops(&open);
@@ -233,7 +236,7 @@ fn sine_weights_dilute() {
             ..setup.clone()
         };
         let evaluator = Evaluator::new(setup).unwrap();
-        let metrics = evaluator.plain(&ephemeris).unwrap();
+        let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
         let dops = evaluator.dops(&ephemeris).unwrap();
         // Inverse and trace of the inverse round differently.
         let apart = dops.pdop.unwrap().mean / metrics.mean_pdop.unwrap() - 1.0;

@@ -28,7 +28,7 @@ impl Baseline {
         evaluator: &Evaluator,
         goals: &Goals,
     ) -> Option<Self> {
-        let metrics = evaluator.design(design).ok()?;
+        let metrics = evaluator.evaluate(design).ok()?;
         let value = |quantity: &Quantity| quantity.value(design, &metrics, &goals.launch_cost);
         Some(Self {
             name: name.to_owned(),

@@ -165,7 +165,7 @@ fn cuts_are_those_of_the_design() {
         ..page(&run, Some(&evaluator))
     };
     let data = data(&written(&page));
-    let metrics = evaluator.design(&design).unwrap();
+    let metrics = evaluator.evaluate(&design).unwrap();
     let cuts = &data["baselines"][0]["cuts"];
     let largest = cuts["maps"].as_array().unwrap();
     let largest = largest.iter().find(|pair| pair[0] == "max-pdop").unwrap();

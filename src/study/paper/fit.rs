@@ -1,7 +1,7 @@
 //! One-dimensional fits to the visibility column of Table II.
 
 use super::{PaperError, Row};
-use crate::constellation::Design;
+use crate::constellation::{Design, DesignParameters};
 use crate::evaluate::{Evaluator, Setup};
 use crate::visibility::Mask;
 use rayon::prelude::*;
@@ -67,14 +67,10 @@ pub(super) fn sky(setup: &Setup) -> Setup {
 
 /// The design with another inclination.
 pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, PaperError> {
-    let size = (design.satellite_count(), design.planes(), design.phasing());
-    let altitude_km = design.altitude_km();
-    Ok(Design::new(
-        design.pattern(),
-        size,
+    Ok(Design::new(DesignParameters {
         inclination_deg,
-        altitude_km,
-    )?)
+        ..design.parameters()
+    })?)
 }
 
 /// The inclination nearest to the printed one at which the row's N̄ comes out, in steps of a
@@ -85,7 +81,7 @@ pub(super) fn fitting_inclination(
 ) -> Result<Option<f64>, PaperError> {
     let excess = |inclination_deg: f64| {
         let design = inclined(&row.design, inclination_deg)?;
-        Ok::<f64, PaperError>(evaluator.design(&design)?.mean_visible - row.mean_visible)
+        Ok::<f64, PaperError>(evaluator.evaluate(&design)?.mean_visible - row.mean_visible)
     };
     let printed = row.design.inclination_deg();
     let here = excess(printed)?;
@@ -154,7 +150,7 @@ fn row_mask(setup: &Setup, row: &Row) -> Result<Option<f64>, PaperError> {
     let excess = |mask_deg: f64| {
         let mask = Mask::from_degrees(mask_deg)?;
         let setup = Setup { mask, ..sky(setup) };
-        let metrics = Evaluator::new(setup)?.design(&row.design)?;
+        let metrics = Evaluator::new(setup)?.evaluate(&row.design)?;
         Ok(metrics.mean_visible - row.mean_visible)
     };
     crossing(excess, MASKS_DEG)

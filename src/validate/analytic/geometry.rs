@@ -131,7 +131,8 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         ..setup.clone()
     };
     let flown = subject.fly_mean_j2()?.into_satellites();
-    let metrics = Evaluator::new(solved_for)?.ephemeris(&Ephemeris::new(setup.grid, flown))?;
+    let metrics =
+        Evaluator::new(solved_for)?.evaluate_ephemeris(&Ephemeris::new(setup.grid, flown))?;
     let samples = setup.sample_count() as f64;
     let unit_weights = setup.observation_weights == ObservationWeights::Unit;
     let reason = "the same definitions by another way: angles for squares of sines, whole matrices for Schur complements";

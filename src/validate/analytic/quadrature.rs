@@ -115,7 +115,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     let expected = share * subject.design.satellite_count() as f64;
     let found = subject
         .evaluator
-        .ephemeris(&subject.fly_mean_j2()?)?
+        .evaluate_ephemeris(&subject.fly_mean_j2()?)?
         .mean_visible;
     Ok(vec![
         Check::new(

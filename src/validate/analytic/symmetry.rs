@@ -81,12 +81,14 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
 }
 
 fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
-    let forwards = subject.evaluator.ephemeris(&subject.fly_mean_j2()?)?;
+    let forwards = subject
+        .evaluator
+        .evaluate_ephemeris(&subject.fly_mean_j2()?)?;
     let mut satellites = subject.fly_mean_j2()?.into_satellites();
     satellites.reverse();
     let backwards = subject
         .evaluator
-        .ephemeris(&Ephemeris::new(subject.grid(), satellites))?;
+        .evaluate_ephemeris(&Ephemeris::new(subject.grid(), satellites))?;
     let pairs = [
         (Some(forwards.mean_visible), Some(backwards.mean_visible)),
         (forwards.mean_pdop, backwards.mean_pdop),
@@ -120,7 +122,7 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let masks = std::iter::once(setup.mask.degrees()).chain(raised);
     for mask in masks.filter_map(|degrees| Mask::from_degrees(degrees).ok()) {
         let visible = Evaluator::new(without_gnss(setup, mask))?
-            .ephemeris(&flown)?
+            .evaluate_ephemeris(&flown)?
             .mean_visible;
         if let Some(before) = before {
             largest_gain = largest_gain.max(visible - before);

@@ -39,7 +39,7 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
     let flown = subject.fly_mean_j2()?;
     let metrics = |frame: Frames| {
         let evaluator = Evaluator::new(setup_with(subject.setup(), frame))?;
-        evaluator.ephemeris(&flown)
+        evaluator.evaluate_ephemeris(&flown)
     };
     let right = metrics(|lat, lon| LocalFrame::new(Surface::Wgs84, lat, lon))?;
     let others: [(&str, &str, Frames); 2] = [

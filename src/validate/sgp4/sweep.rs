@@ -2,7 +2,7 @@
 //! do so by chance.
 
 use super::{Flights, Scale};
-use crate::constellation::{Design, Pattern};
+use crate::constellation::{Design, DesignParameters, Pattern};
 use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::distribution::{Distribution, Residual};
@@ -15,9 +15,6 @@ use serde::Serialize;
 const INCLINATIONS_DEG: [f64; 8] = [30.0, 40.0, 50.0, 55.0, 60.0, 70.0, 86.4, 98.0];
 
 const ALTITUDES_KM: [f64; 3] = [400.0, 925.0, 1500.0];
-
-/// Satellites, planes and phasing: four in a plane cancel what goes once, twice or thrice around.
-const COUNTS: (usize, usize, usize) = (12, 3, 1);
 
 /// Time between samples, s: eleven or so in a revolution.
 const STEP_S: f64 = 480.0;
@@ -60,7 +57,15 @@ pub(super) fn over_inclination_and_altitude(
     let mut shares: Vec<Share> = Vec::new();
     for inclination_deg in INCLINATIONS_DEG {
         for altitude_km in ALTITUDES_KM {
-            let design = Design::new(Pattern::Delta, COUNTS, inclination_deg, altitude_km)?;
+            let design = Design::new(DesignParameters {
+                pattern: Pattern::Delta,
+                planes: 3,
+                // Four in a plane cancel what goes once, twice or thrice around.
+                satellites_per_plane: 4,
+                phasing: 1,
+                inclination_deg,
+                altitude_km,
+            })?;
             let (cell, found) = cell(&Subject { design, ..*subject })?;
             findings.sweep.push(cell);
             shares.extend(found);
