@@ -3,7 +3,7 @@
 //! Least squares with three position states and one clock state for each group of
 //! systems that share a clock. A clock drops out by the Schur complement: a group of n visible
 //! satellites with unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix
-//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19; with weights M-28).
+//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-24 to M-26; with weights M-27).
 //! No matrix of the size of the satellites is built.
 
 mod family;
@@ -56,7 +56,7 @@ impl Symmetric3 {
         }
     }
 
-    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant (M-19).
+    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant (M-26).
     ///
     /// `None` when the matrix is not positive definite (Sylvester's criterion).
     #[must_use]

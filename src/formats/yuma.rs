@@ -5,7 +5,7 @@
 //! the almanac's subset (20.3.3.5.1.2): a mean motion of sqrt(mu/A³) and a constant rate of the
 //! node. A preset fits without loss of angle: A is chosen for the rate of the argument of latitude,
 //! which moves the radius, and the node's rate absorbs the difference of the two rates of the Earth
-//! (M-47).
+//! (M-39).
 
 mod read;
 

@@ -22,7 +22,7 @@ const CORNERS: usize = 72;
 const DECIMALS: usize = 6;
 
 /// The circle of ground points that see a satellite (Earth-fixed, km) at the mask, counterclockwise,
-/// not closed (M-46).
+/// not closed (M-38).
 pub(crate) fn footprint(surface: Surface, satellite_km: Vector3<f64>, mask_rad: f64) -> Vec<Place> {
     let centre = satellite_km.normalize();
     // A horizontal direction: away from the axis that is farthest from the centre.
