@@ -21,8 +21,8 @@ const CORNERS: usize = 72;
 /// Decimals of a degree that maps are written with: a decimetre.
 const DECIMALS: usize = 6;
 
-/// The circle of ground points that see a satellite (Earth-fixed, km) at the mask, counterclockwise,
-/// not closed (M-38).
+/// The circle of ground points that see a satellite (Earth-fixed, km) at the mask,
+/// counterclockwise, not closed ([M-38](crate::models#m-38)).
 pub(crate) fn footprint(surface: Surface, satellite_km: Vector3<f64>, mask_rad: f64) -> Vec<Place> {
     let centre = satellite_km.normalize();
     // A horizontal direction: away from the axis that is farthest from the centre.
