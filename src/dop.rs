@@ -1,10 +1,11 @@
 //! Position dilution of precision with one clock state per clock group.
 //!
-//! Least squares with three position states and one clock state for each group of
-//! systems that share a clock. A clock drops out by the Schur complement: a group of n visible
-//! satellites with unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix
-//! of the position, and PDOP² = tr(A⁻¹) of the sum over groups (M-17 to M-19; with weights M-28).
-//! No matrix of the size of the satellites is built.
+//! Least squares with three position states and one clock state for each group of systems that
+//! share a clock. A clock drops out by the Schur complement: a group of n visible satellites with
+//! unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix of the position,
+//! and PDOP² = tr(A⁻¹) of the sum over groups ([M-24](crate::models#m-24) to
+//! [M-26](crate::models#m-26); with weights [M-27](crate::models#m-27)). No matrix of the size of
+//! the satellites is built.
 
 mod family;
 
@@ -56,7 +57,8 @@ impl Symmetric3 {
         }
     }
 
-    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant (M-19).
+    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant
+    /// ([M-26](crate::models#m-26)).
     ///
     /// `None` when the matrix is not positive definite (Sylvester's criterion).
     #[must_use]

@@ -56,7 +56,7 @@ impl Surface {
     /// Earth-fixed position of a point at height 0, km.
     ///
     /// Latitude and longitude in radians. Source: Hofmann-Wellenhof et al.,
-    /// *GNSS* (2008), equation 8.8, with h = 0 (M-13).
+    /// *GNSS* (2008), equation 8.8, with h = 0 ([M-21](crate::models#m-21)).
     #[must_use]
     pub fn position_km(self, latitude_rad: f64, longitude_rad: f64) -> Vector3<f64> {
         let f = self.flattening();
@@ -73,8 +73,8 @@ impl Surface {
     }
 
     /// Latitude and longitude below an Earth-fixed position, radians: where the vertical of the
-    /// surface goes through it (M-45). Bowring, *Survey Review* 23 (1976) 323, repeated until
-    /// it stands still; at the centre of the Earth, which has none, 0.
+    /// surface goes through it ([M-37](crate::models#m-37)). Bowring, *Survey Review* 23 (1976)
+    /// 323, repeated until it stands still; at the centre of the Earth, which has none, 0.
     #[must_use]
     pub fn below_rad(self, position_km: Vector3<f64>) -> (f64, f64) {
         let f = self.flattening();

@@ -39,7 +39,8 @@ fn axes_turned_about_z(angle_rad: f64) -> Matrix3<f64> {
     Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0)
 }
 
-/// The bridge between TEME and the Earth-fixed frame at one instant (M-11, M-12).
+/// The bridge between TEME and the Earth-fixed frame at one instant ([M-17](crate::models#m-17),
+/// [M-18](crate::models#m-18)).
 #[derive(Debug, Clone, Copy)]
 pub struct EarthRotation {
     sin: f64,
@@ -113,8 +114,9 @@ fn earth_rate() -> Vector3<f64> {
     Vector3::new(0.0, 0.0, GMST_RATE_RAD_S)
 }
 
-/// Matrix from TEME to EME2000 at an epoch (M-14): TEME → true of date by the equation of
-/// the equinoxes (IAU 1994), then the transpose of the IAU 1976/1980 precession-nutation matrix.
+/// Matrix from TEME to EME2000 at an epoch ([M-19](crate::models#m-19)): TEME → true of date by the
+/// equation of the equinoxes (IAU 1994), then the transpose of the IAU 1976/1980
+/// precession-nutation matrix.
 #[must_use]
 pub fn teme_to_eme2000(epoch: Epoch) -> Matrix3<f64> {
     let (tt1, tt2) = epoch.terrestrial_julian_date();
@@ -123,7 +125,8 @@ pub fn teme_to_eme2000(epoch: Epoch) -> Matrix3<f64> {
     precession_nutation.transpose() * true_of_date
 }
 
-/// Matrix from EME2000 to GCRF: the transpose of the frame bias (IAU 2000; M-15).
+/// Matrix from EME2000 to GCRF: the transpose of the frame bias (IAU 2000;
+/// [M-20](crate::models#m-20)).
 #[must_use]
 pub fn eme2000_to_gcrf() -> Matrix3<f64> {
     let (bias, _, _) = sofars::pnp::bp00(2_451_545.0, 0.0);

@@ -20,6 +20,8 @@ pub mod formats;
 pub mod frames;
 pub mod ground;
 pub mod keyword;
+#[doc = include_str!("../docs/models.md")]
+pub mod models {}
 pub mod optimize;
 pub mod orbit;
 pub mod report;

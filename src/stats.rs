@@ -61,7 +61,7 @@ pub struct Summary {
 }
 
 /// The 1-based rank of the quantile of level `q` in a sample of `n`: ⌈q n - 1e-9⌉,
-/// at least 1 (equation M-24 of `docs/models.md`).
+/// at least 1 (equation [M-28](crate::models#m-28) of `docs/models.md`).
 #[must_use]
 pub fn quantile_rank(q: f64, n: usize) -> usize {
     let rank = (q * n as f64 - 1e-9).ceil();
@@ -82,9 +82,9 @@ pub fn quantile(sample: &mut [f64], q: Level) -> Option<f64> {
     (!sample.is_empty()).then(|| select(sample, rank))
 }
 
-/// Conditional value-at-risk: the mean of the worst (1 - α) share of the sample, the
-/// quantile itself counted with the fraction that is left (Rockafellar and Uryasev,
-/// *Journal of Risk* 2 (2000), equation 4, on the empirical distribution; M-25).
+/// Conditional value-at-risk: the mean of the worst (1 - α) share of the sample, the quantile
+/// itself counted with the fraction that is left (Rockafellar and Uryasev, *Journal of Risk* 2
+/// (2000), equation 4, on the empirical distribution; [M-29](crate::models#m-29)).
 ///
 /// `None` for an empty sample. Reorders `sample`.
 #[must_use]

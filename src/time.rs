@@ -107,7 +107,8 @@ impl Epoch {
 
     /// Greenwich mean sidereal time (IAU 1982) `elapsed_s` after this epoch, in [0, 2π) radians.
     ///
-    /// Source: Aoki et al. (1982), by the SOFA routine `gmst82`, with UT1 = UTC (M-11).
+    /// Source: Aoki et al. (1982), by the SOFA routine `gmst82`, with UT1 = UTC
+    /// ([M-17](crate::models#m-17)).
     #[must_use]
     pub fn gmst_rad(self, elapsed_s: f64) -> f64 {
         let (midnight, fraction) = self.julian_date();

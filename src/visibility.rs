@@ -59,8 +59,9 @@ impl Mask {
         self.sin2
     }
 
-    /// The unit vector from the site to the satellite (Earth-fixed axes) when the satellite is
-    /// visible: its elevation over the local horizon is at least the mask (M-16).
+    /// The unit vector from the site to the satellite (Earth-fixed, km) when the satellite is
+    /// visible: its elevation over the local horizon is at least the mask
+    /// ([M-22](crate::models#m-22)).
     ///
     /// sin(elevation) = u·d / |d| is compared by squares, so that no root is taken for what is
     /// not seen; u·d >= 0 keeps the sign, as masks are not negative.

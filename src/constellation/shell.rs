@@ -253,7 +253,7 @@ impl Design {
             .collect()
     }
 
-    /// Mean elements of a slot at the epoch (M-1 to M-3).
+    /// Mean elements of a slot at the epoch ([M-1](crate::models#m-1) to [M-3](crate::models#m-3)).
     ///
     /// Sources: Walker (1984), *J. Brit. Interplanet. Soc.* 37:559, for delta and star; Avendaño,
     /// Davis and Mortari (2013), *Celest. Mech. Dyn. Astron.* 116:325, for the lattice.

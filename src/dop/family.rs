@@ -1,8 +1,9 @@
 //! Every dilution of precision of one geometry: position, its parts, and the clocks.
 //!
-//! Least squares with a weight for each observation (M-28). The position block of the
-//! inverse normal matrix is turned to east, north and up as a whole, so that horizontal and
-//! vertical parts are those of the local horizon, whatever the orientation of the axes.
+//! Least squares with a weight for each observation ([M-27](crate::models#m-27)). The position
+//! block of the inverse normal matrix is turned to east, north and up as a whole, so that
+//! horizontal and vertical parts are those of the local horizon, whatever the orientation of the
+//! axes.
 
 use super::{ClockGroup, Symmetric3};
 use crate::frames::LocalFrame;

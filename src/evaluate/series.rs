@@ -6,7 +6,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::stats::{Level, Weighted, quantile};
 use serde::Serialize;
 
-/// One instant, over all points; every point counts with its weight (M-29).
+/// One instant, over all points; every point counts with its weight ([M-31](crate::models#m-31)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EpochMetrics {
     /// Seconds since the epoch of the grid.

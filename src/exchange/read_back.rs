@@ -36,10 +36,11 @@ const CZML_KM: f64 = 2.0 * crate::formats::maps::czml::TARGET_KM + 2e-4;
 
 /// SGP4 against a theory of J2 alone, km: the frozen eccentricity of J3 (8.1 km up and down, 16.2
 /// along the track at most), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
-/// 10.6 km at most); M-30 to M-33.
+/// 10.6 km at most); [M-40](crate::models#m-40) to [M-42](crate::models#m-42).
 const SGP4_KM: f64 = 30.0;
 
-/// Second-order secular terms along the track, km/day: 14 J2² (Re/a)⁴ n a at most (M-34).
+/// Second-order secular terms along the track, km/day: 14 J2² (Re/a)⁴ n a at most
+/// ([M-43](crate::models#m-43)).
 const SGP4_KM_PER_DAY: f64 = 8.0;
 
 /// Kilometres off that change the mean in view, or a PDOP, by less than the whole of itself.

@@ -1,11 +1,11 @@
 //! YUMA almanacs of nominal GNSS constellations, written and read.
 //!
 //! Source: U.S. Coast Guard Navigation Center, *GPS NANUS, Almanacs*: "Definition of a Yuma
-//! Almanac" (fields, their order and units); the user's algorithm is that of IS-GPS-200, table 20-IV, with
-//! the almanac's subset (20.3.3.5.1.2): a mean motion of sqrt(mu/A³) and a constant rate of the
-//! node. A preset fits without loss of angle: A is chosen for the rate of the argument of latitude,
-//! which moves the radius, and the node's rate absorbs the difference of the two rates of the Earth
-//! (M-47).
+//! Almanac" (fields, their order and units); the user's algorithm is that of IS-GPS-200, table
+//! 20-IV, with the almanac's subset (20.3.3.5.1.2): a mean motion of sqrt(mu/A³) and a constant
+//! rate of the node. A preset fits without loss of angle: A is chosen for the rate of the argument
+//! of latitude, which moves the radius, and the node's rate absorbs the difference of the two rates
+//! of the Earth ([M-39](crate::models#m-39)).
 
 mod read;
 

@@ -22,7 +22,7 @@ const CORNERS: usize = 72;
 const DECIMALS: usize = 6;
 
 /// The circle of ground points that see a satellite at the mask, counterclockwise,
-/// not closed (M-46).
+/// not closed ([M-38](crate::models#m-38)).
 pub(crate) fn footprint(
     surface: Surface,
     satellite_km: Position<EarthFixed>,

@@ -32,8 +32,9 @@ impl SecularRates {
         }
     }
 
-    /// The first-order secular rates of J2 (M-5 to M-7): Brouwer, *Astron. J.* 64 (1959) 378;
-    /// Vallado, *Fundamentals of Astrodynamics* (4th ed.), equations 9-38, 9-40 and 9-41.
+    /// The first-order secular rates of J2 ([M-6](crate::models#m-6) to [M-8](crate::models#m-8)):
+    /// Brouwer, *Astron. J.* 64 (1959) 378; Vallado, *Fundamentals of Astrodynamics* (4th ed.),
+    /// equations 9-38, 9-40 and 9-41.
     #[must_use]
     pub fn j2(elements: &MeanElements) -> Self {
         let n = elements.kepler_mean_motion_rad_s();
@@ -118,8 +119,9 @@ impl Propagator for SecularOrbit {
 }
 
 /// Position of the elements on their ellipse, and its time derivative under the secular rates
-/// (M-8, M-9). The rates of the node and the perigee turn the ellipse, so that the velocity
-/// is the derivative of the position and not Kepler's, which is up to 10 m/s off.
+/// ([M-9](crate::models#m-9), [M-10](crate::models#m-10)). The rates of the node and the perigee
+/// turn the ellipse, so that the velocity is the derivative of the position and not Kepler's, which
+/// is up to 10 m/s off.
 fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State<Teme> {
     let e = elements.eccentricity;
     let eta = (1.0 - e * e).sqrt();

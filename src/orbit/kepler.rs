@@ -2,7 +2,7 @@
 
 use crate::units::wrap_pi;
 
-/// Eccentric anomaly E of E - e sin E = M, radians; for 0 <= e < 1 (M-4).
+/// Eccentric anomaly E of E - e sin E = M, radians; for 0 <= e < 1 ([M-5](crate::models#m-5)).
 ///
 /// Newton's iteration from the start E = M + 0.85 e sign(sin M) of Danby and Burkardt,
 /// *Celestial Mechanics* 31 (1983) 95, on M wrapped to [-π, π); it stops when a step no

@@ -61,10 +61,10 @@ impl Propagator for OsculatingOrbit {
 }
 
 /// Part of the osculating radius that does not depend on where the satellite is, less that of
-/// the mean ellipse, km (M-23): ¾ J2 (R²/a)(1 - 3 cos² i) for e = 0.
+/// the mean ellipse, km ([M-15](crate::models#m-15)): ¾ J2 (R²/a)(1 - 3 cos² i) for e = 0.
 ///
-/// For e > 0 the mean over time of the terms without θ in M-20, from the means r̄ = a (1 + e²/2)
-/// and -e² of κ.
+/// For e > 0 the mean over time of the terms without θ in [M-12](crate::models#m-12), from the
+/// means r̄ = a (1 + e²/2) and -e² of κ.
 #[must_use]
 pub fn radius_shift_km(elements: &MeanElements) -> f64 {
     let e2 = elements.eccentricity * elements.eccentricity;
@@ -76,7 +76,8 @@ pub fn radius_shift_km(elements: &MeanElements) -> f64 {
     0.5 * J2 * RADIUS_KM * RADIUS_KM / parameter_km * zonal * (eta + (2.0 + e2) / eta)
 }
 
-/// Eccentricity that J3 holds at ω = 90°, to first order: |J3 / (2 J2)| (R/a) sin i (M-26).
+/// Eccentricity that J3 holds at ω = 90°, to first order: |J3 / (2 J2)| (R/a) sin i
+/// ([M-16](crate::models#m-16)).
 ///
 /// Source: Cook, *Planet. Space Sci.* 14 (1966) 433, without the harmonics above J3. Not valid
 /// within about a degree of the critical inclinations, 63.4° and 116.6°.
@@ -202,7 +203,7 @@ impl ShortPeriod {
         }
     }
 
-    /// r + Δr (M-20), Δr = ∂W/∂ṙ.
+    /// r + Δr ([M-12](crate::models#m-12)), Δr = ∂W/∂ṙ.
     fn radius_km(&self, place: &Place, double: &DoubleArgument) -> Moving {
         let (eta, s2) = (self.eta, self.sin_i * self.sin_i);
         let zonal = 1.5 * s2 - 1.0;
@@ -218,7 +219,7 @@ impl ShortPeriod {
         }
     }
 
-    /// Δθ = ∂W/∂G (M-21).
+    /// Δθ = ∂W/∂G ([M-13](crate::models#m-13)).
     fn argument(&self, place: &Place, double: &DoubleArgument) -> Moving {
         let (s2, c2) = (self.sin_i * self.sin_i, self.cos_i * self.cos_i);
         let one_eta = 1.0 + self.eta;
@@ -246,7 +247,7 @@ impl ShortPeriod {
         }
     }
 
-    /// ΔΩ = ∂W/∂H, H = G cos i (M-22).
+    /// ΔΩ = ∂W/∂H, H = G cos i ([M-14](crate::models#m-14)).
     fn node(&self, place: &Place, double: &DoubleArgument) -> Moving {
         // ΔΩ = -ε c {3 (f - M + σ) - (3/2 + 2κ) sin 2θ + σ cos 2θ}
         let sine = 1.5 + 2.0 * place.kappa;
@@ -263,7 +264,7 @@ impl ShortPeriod {
         }
     }
 
-    /// i from G + ΔG, ΔG = -∂W/∂θ, and G cos i, which stays (M-22).
+    /// i from G + ΔG, ΔG = -∂W/∂θ, and G cos i, which stays ([M-14](crate::models#m-14)).
     fn inclination(&self, place: &Place, double: &DoubleArgument) -> Moving {
         let s2 = self.sin_i * self.sin_i;
         // ΔG/G = s² y, y = ε {(3/2 + 2κ) cos 2θ + σ sin 2θ}

@@ -12,7 +12,8 @@ use std::f64::consts::TAU;
 /// What stands in the mean motion slot of an SGP4 element set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeanMotionSlot {
-    /// dM/dt of secular J2, which is Kozai's mean motion to first order: the right one (M-10).
+    /// dM/dt of secular J2, which is Kozai's mean motion to first order: the right one
+    /// ([M-11](crate::models#m-11)).
     Kozai,
     /// sqrt(μ/a³), the common mistake; up to 400 km/day along the track.
     Kepler,

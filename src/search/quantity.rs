@@ -30,7 +30,8 @@ words! {
     }
 }
 
-/// Parameters of the launch cost c_T T (1 + c_h h/1000 km) + c_P P (M-40), in any one unit.
+/// Parameters of the launch cost c_T T (1 + c_h h/1000 km) + c_P P ([M-32](crate::models#m-32)), in
+/// any one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
     /// c_T, cost of one satellite brought up to a vanishing altitude.

@@ -32,7 +32,7 @@ impl<'a> Sorted<'a> {
     }
 
     /// The smallest value at which the weights add up to `q` of their sum, less 1e-9 of the mean
-    /// weight (M-24 with weights), and the index behind it.
+    /// weight ([M-28](crate::models#m-28) with weights), and the index behind it.
     fn quantile(&self, q: f64) -> Option<(f64, usize)> {
         let slack = 1e-9 * self.total / self.sample.len() as f64;
         let wanted = q * self.total - slack;
@@ -77,7 +77,7 @@ pub fn weighted_mean(sample: &[Weighted]) -> Option<f64> {
 }
 
 /// The quantile of level `q`: the smallest value that has at least the share `q` of the weights at
-/// or below it (M-24); `None` for an empty sample. Reorders `sample`.
+/// or below it ([M-28](crate::models#m-28)); `None` for an empty sample. Reorders `sample`.
 #[must_use]
 pub fn weighted_quantile(sample: &mut [Weighted], q: Level) -> Option<f64> {
     if let Some(mut values) = of_equal_weights(sample) {
@@ -89,8 +89,8 @@ pub fn weighted_quantile(sample: &mut [Weighted], q: Level) -> Option<f64> {
 }
 
 /// Conditional value-at-risk: the mean of the worst (1 - α) share of the weights (Rockafellar and
-/// Uryasev, *J. Banking & Finance* 26 (2002), proposition 8; M-25). `None` for an empty sample.
-/// Reorders `sample`.
+/// Uryasev, *J. Banking & Finance* 26 (2002), proposition 8; [M-29](crate::models#m-29)). `None`
+/// for an empty sample. Reorders `sample`.
 #[must_use]
 pub fn weighted_cvar(sample: &mut [Weighted], level: Level) -> Option<f64> {
     if let Some(mut values) = of_equal_weights(sample) {

@@ -43,7 +43,8 @@ pub enum MaskTableError {
     },
 }
 
-/// An elevation mask by azimuth: straight lines between vertices from 0° to 360° (M-27).
+/// An elevation mask by azimuth: straight lines between vertices from 0° to 360°
+/// ([M-23](crate::models#m-23)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaskTable {
     /// (azimuth, mask), degrees; azimuths increase from 0 to 360.

@@ -9,7 +9,7 @@ The script runs unchanged. The trajectories of the OEMs, in EME2000, are those o
 was made with: j2 (mean elements, which differ by the short-period terms) or j2-osculating. Differences
 are GMAT's less ours in the RIC basis of ours, km. The exit status is 1 if one is larger than GATE_KM, which
 holds for a day from 40 to 90 degrees: the shifted radius and the short-period terms, and the drift of the second
-order (docs/models.md, M-30, M-31, M-33). A node that turns the wrong way is 900 km off by then.
+order (docs/models.md, M-40, M-41, M-43). A node that turns the wrong way is 900 km off by then.
 """
 
 import shutil

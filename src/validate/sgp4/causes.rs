@@ -17,7 +17,8 @@ const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 /// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
-/// Closed forms of the causes, for one orbit; all at e = 0 (M-30 to M-35).
+/// Closed forms of the causes, for one orbit; all at e = 0 ([M-40](crate::models#m-40) to
+/// [M-45](crate::models#m-45)).
 #[derive(Debug, Clone, Copy)]
 pub(in crate::validate) struct Causes {
     /// Constant shift of the radius, km.
