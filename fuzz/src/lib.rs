@@ -19,7 +19,6 @@ use navwalker::formats::ccsds::{oem, opm};
 use navwalker::formats::{stk, tle};
 use navwalker::frames::{Frame, State};
 use navwalker::keyword::Word;
-use nalgebra::Vector3;
 use std::fmt::Debug;
 
 pub use sampled::sp3;
@@ -49,11 +48,11 @@ fn near(one: f64, other: f64, digits: i32) -> bool {
 
 /// Asserts that two states are the same to the decimals that files are written with.
 fn same_state(one: &State<Frame>, other: &State<Frame>) {
-    let near_all = |one: Vector3<f64>, other: Vector3<f64>, digits: i32| {
-        (0..3).all(|axis| near(one[axis], other[axis], digits))
-    };
-    assert!(near_all(one.position_km.km(), other.position_km.km(), 9));
-    assert!(near_all(one.velocity_km_s, other.velocity_km_s, 12));
+    let (position_km, expected_km) = (one.position_km.km(), other.position_km.km());
+    for axis in 0..3 {
+        assert!(near(position_km[axis], expected_km[axis], 9));
+        assert!(near(one.velocity_km_s[axis], other.velocity_km_s[axis], 12));
+    }
 }
 
 /// Two-line element sets.
