@@ -56,6 +56,25 @@ pub enum Search {
 }
 
 impl Search {
+    /// Gives the search the number of steps that `method` has, to go on beyond the number that it was
+    /// started with. A search does not depend on how long it will go on, so the result is that of
+    /// one started with the greater number.
+    pub fn set_budget(&mut self, method: &Method) {
+        match (self, method) {
+            (Self::Nsga2(search), Method::Nsga2(config)) => {
+                search.set_generations(config.generations);
+            }
+            (Self::Mopso(search), Method::Mopso(config)) => {
+                search.set_iterations(config.iterations);
+            }
+            (Self::Random(search), Method::Random(config)) => {
+                search.set_evaluations(config.evaluations);
+            }
+            // A grid is as long as it is; and no other strategy's budget is a search's own.
+            _ => {}
+        }
+    }
+
     fn strategy(&self) -> &dyn Strategy {
         match self {
             Self::Nsga2(search) => search,
@@ -108,6 +127,39 @@ mod tests {
                 hypervolume_reference: None,
             }),
         ]
+    }
+
+    #[test]
+    fn a_search_that_goes_on_is_one_that_began_longer() {
+        let problem = mixed();
+        let methods = |steps: usize| {
+            let (mut nsga2, mut mopso, mut random) = (
+                Nsga2Config::default(),
+                MopsoConfig::default(),
+                RandomConfig::default(),
+            );
+            (nsga2.generations, mopso.iterations) = (steps, steps);
+            random.evaluations = steps * random.batch;
+            [
+                Method::Nsga2(nsga2),
+                Method::Mopso(mopso),
+                Method::Random(random),
+            ]
+        };
+        for (short, long) in methods(3).into_iter().zip(methods(5)) {
+            let mut continued = short.start(&problem, 5).unwrap();
+            let mut unbroken = long.clone().start(&problem, 5).unwrap();
+            while !continued.is_done() {
+                continued.step(&problem).unwrap();
+            }
+            continued.set_budget(&long);
+            for search in [&mut continued, &mut unbroken] {
+                while !search.is_done() {
+                    search.step(&problem).unwrap();
+                }
+            }
+            assert_eq!(continued, unbroken);
+        }
     }
 
     #[test]

@@ -173,6 +173,11 @@ impl Mopso {
         })
     }
 
+    /// Lets the search end after so many iterations in all.
+    pub(super) fn set_iterations(&mut self, iterations: usize) {
+        self.config.iterations = iterations;
+    }
+
     fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let begun = self.iteration.min(1);

@@ -124,6 +124,11 @@ impl Nsga2 {
         })
     }
 
+    /// Lets the search end after so many generations in all.
+    pub(super) fn set_generations(&mut self, generations: usize) {
+        self.config.generations = generations;
+    }
+
     /// The settings that the run was started with.
     #[must_use]
     pub fn config(&self) -> &Nsga2Config {

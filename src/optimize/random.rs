@@ -80,6 +80,11 @@ impl RandomSearch {
         })
     }
 
+    /// Lets the search end after so many evaluations in all.
+    pub(super) fn set_evaluations(&mut self, evaluations: usize) {
+        self.config.evaluations = evaluations;
+    }
+
     fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         check_equal("history", self.history.len() as u64, self.step)?;

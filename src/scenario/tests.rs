@@ -2,6 +2,7 @@
 
 mod agreement;
 mod built_in;
+mod nested;
 mod overrides;
 mod problems;
 mod random;

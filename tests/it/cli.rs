@@ -366,6 +366,44 @@ fn a_killed_run_resumes_to_the_same_bytes() {
     }
 }
 
+/// A finished run goes on to more generations, to the result of a run that had them from the start.
+#[test]
+fn a_finished_run_goes_on_to_more_generations() {
+    let directory = TempDir::new().unwrap();
+    let run = |out: &'static str, generations: &str, further: &[&'static str]| {
+        let set = format!("optimizer.generations={generations}");
+        let arguments = [optimize(&["--out", out, "--set", &set]), further.to_vec()].concat();
+        ran(directory.path(), &arguments)
+    };
+    assert_eq!(run("whole", "6", &[]).status, 0);
+    assert_eq!(run("longer", "3", &[]).status, 0);
+    let resumed = run("longer", "6", &["--resume"]);
+    assert_eq!(resumed.status, 0, "{}", resumed.stderr);
+    for name in ["front.json", "history.json", "scenario.toml", "checkpoint"] {
+        let read = |run: &str| fs::read(directory.path().join(run).join(name)).unwrap();
+        assert!(read("whole") == read("longer"), "{name}");
+    }
+    let shorter = run("longer", "5", &["--resume"]);
+    assert_eq!(shorter.status, 2);
+    let message = "the run has 6 generations already, more than the 5 of the scenario";
+    assert!(shorter.stderr.contains(message), "{}", shorter.stderr);
+}
+
+/// A run has a scenario: none may be named beside it, not even the one that is the default.
+#[test]
+fn a_scenario_beside_a_run_is_refused() {
+    let directory = TempDir::new().unwrap();
+    for scenario in ["paper", "regional"] {
+        let export = [
+            "export", scenario, "--run", "r", "--as", "tle", "--out", "out",
+        ];
+        let refused = ran(directory.path(), &export);
+        assert_eq!(refused.status, 2);
+        let message = format!("a run has its own scenario; leave out '{scenario}' or --run");
+        assert!(refused.stderr.contains(&message), "{}", refused.stderr);
+    }
+}
+
 #[test]
 fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     let directory = TempDir::new().unwrap();

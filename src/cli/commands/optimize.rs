@@ -13,7 +13,7 @@ use crate::optimize::{Search, Strategy};
 use crate::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
 use crate::scenario::{Algorithm, Word};
 use crate::search::{DesignProblem, Quantity};
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -171,8 +171,16 @@ fn start(
     } else {
         None
     };
-    if let Some(search) = resumed {
+    if let Some(mut search) = resumed {
+        search.set_budget(&study.scenario.method());
         let progress = search.progress();
+        if progress.step > progress.steps {
+            bail!(
+                "the run has {} generations already, more than the {} of the scenario",
+                progress.step,
+                progress.steps
+            );
+        }
         output::hint(&format!(
             "resuming after generation {} of {}",
             progress.step, progress.steps
