@@ -23,6 +23,7 @@ pub mod keyword;
 pub mod optimize;
 pub mod orbit;
 pub mod report;
+pub mod run;
 pub mod scenario;
 pub mod search;
 pub mod stats;
