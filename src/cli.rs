@@ -12,12 +12,11 @@ mod args;
 mod chart;
 mod commands;
 mod files;
-mod fleets;
-mod look;
 mod output;
-mod pick;
 mod progress;
+mod read_constellation;
 mod run;
+mod run_view;
 mod study;
 
 use args::{Cli, Command};

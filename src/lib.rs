@@ -25,6 +25,7 @@ pub mod models {}
 pub mod optimize;
 pub mod orbit;
 pub mod report;
+pub mod run;
 pub mod scenario;
 pub mod search;
 pub mod stats;

@@ -47,6 +47,7 @@ mod hypervolume;
 mod method;
 mod mopso;
 mod nsga2;
+mod pick;
 mod problem;
 mod random;
 mod sorting;
@@ -62,6 +63,7 @@ pub use hypervolume::hypervolume;
 pub use method::{Method, Search};
 pub use mopso::{Mopso, MopsoConfig};
 pub use nsga2::{Nsga2, Nsga2Config};
+pub use pick::{Pick, Picked, UnknownPick};
 pub use problem::{Evaluation, Individual, Kind, Problem, Space, Variable};
 pub use random::{RandomConfig, RandomSearch};
 pub use sorting::{

@@ -11,27 +11,16 @@ pub mod page;
 pub mod profile;
 mod reproduction;
 mod results;
-pub mod run;
 mod seeds;
 mod table;
 mod validation;
 
-pub use certificate::{Certificate, Missed};
-pub use csv::{
-    CsvError, checks_csv, constellation_csv, dops_csv, front_csv, history_csv, metrics_csv,
-    records_csv,
-};
-pub use diagnostics::{Diagnostic, at_bounds, diagnose, dominated_by, seed_spread};
+pub use csv::{checks_csv, constellation_csv, dops_csv, metrics_csv, records_csv};
+pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
 };
-pub use results::{
-    ConstellationResult, ConstellationSummary, DesignSummary, EvaluateResult, FrontMember,
-    Hypervolume, OptimizeResult, ScenarioStamp, ValidateResult,
-};
+pub use results::{ConstellationResult, ConstellationSummary, EvaluateResult};
 pub use seeds::{SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
 pub use validation::{checks_junit, validation_markdown, validation_text};
-
-/// The version of this program, which every result carries.
-pub const VERSION: &str = env!("CARGO_PKG_VERSION");

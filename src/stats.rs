@@ -4,7 +4,7 @@ mod weighted;
 
 pub use weighted::{Weighted, summarize_weighted, weighted_cvar, weighted_mean, weighted_quantile};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 /// A level that is not a probability strictly between 0 and 1.
@@ -44,7 +44,7 @@ impl Level {
 }
 
 /// Mean, quantiles, tail and extreme of one sample, all in the sample's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Arithmetic mean.
     pub mean: f64,

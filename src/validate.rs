@@ -29,11 +29,12 @@ use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use distribution::Distribution;
 use residuals::BudgetLine;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
+use std::borrow::Cow;
 use thiserror::Error;
 
 /// One number of a validation, with the bound that it must keep.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Unique name, `target/case/quantity`.
     pub name: String,
@@ -43,7 +44,8 @@ pub struct Check {
     pub unit: String,
     /// Which statistic of it.
     pub statistic: String,
-    /// The value.
+    /// The value; JSON has `null` for one that is not finite.
+    #[serde(deserialize_with = "null_is_nan")]
     pub value: f64,
     /// The bound on its size; `None` when it is reported only.
     pub gate: Option<f64>,
@@ -76,57 +78,62 @@ impl Check {
     }
 }
 
+fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
+}
+
 /// A crate that validations lean on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Judge {
     /// Its name.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// The version that is built in.
-    pub version: &'static str,
+    pub version: Cow<'static, str>,
     /// What it judges.
-    pub role: &'static str,
+    pub role: Cow<'static, str>,
 }
 
 /// The crates whose word counts, in the versions that the lock file pins.
 pub const JUDGES: [Judge; 4] = [
     Judge {
-        name: "sgp4",
-        version: "2.4.0",
-        role: "SGP4 in AFSPC and improved mode",
+        name: Cow::Borrowed("sgp4"),
+        version: Cow::Borrowed("2.4.0"),
+        role: Cow::Borrowed("SGP4 in AFSPC and improved mode"),
     },
     Judge {
-        name: "geographiclib-rs",
-        version: "0.2.7",
-        role: "geodesics on the ellipsoid",
+        name: Cow::Borrowed("geographiclib-rs"),
+        version: Cow::Borrowed("0.2.7"),
+        role: Cow::Borrowed("geodesics on the ellipsoid"),
     },
     Judge {
-        name: "differential-equations",
-        version: "0.7.0",
-        role: "numerical integration, DOP853",
+        name: Cow::Borrowed("differential-equations"),
+        version: Cow::Borrowed("0.7.0"),
+        role: Cow::Borrowed("numerical integration, DOP853"),
     },
     Judge {
-        name: "sofars",
-        version: "0.6.2",
-        role: "sidereal time, precession and nutation",
+        name: Cow::Borrowed("sofars"),
+        version: Cow::Borrowed("0.6.2"),
+        role: Cow::Borrowed("sidereal time, precession and nutation"),
     },
 ];
 
 /// What a validation found.
-#[derive(Debug, Clone, PartialEq, Serialize, Default)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct Findings {
     /// The checks, in the order in which they are read.
+    #[serde(default)]
     pub checks: Vec<Check>,
     /// The error budget by cause, for comparisons of trajectories.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetLine>,
     /// The budget over inclinations and altitudes.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sweep: Vec<SweepCell>,
     /// How residuals are distributed.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub distributions: Vec<Distribution>,
     /// Comparisons with the ephemerides of other programs.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<file::FileComparison>,
 }
 

@@ -1,13 +1,12 @@
 //! The arguments of the program.
 
-mod look;
 mod products;
+mod run_view;
 mod scenario;
 
-pub(crate) use look::{PlotArgs, ReportArgs, RunArgs};
+pub(crate) use run_view::{PlotArgs, ReportArgs, RunArgs};
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
-use crate::cli::pick::Pick;
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::exchange::export::Product;
@@ -17,6 +16,7 @@ use crate::formats::sp3::Version as Sp3Version;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::Frame;
+use crate::optimize::Pick;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use products::PRODUCTS;
 use std::num::NonZeroUsize;

@@ -1,6 +1,6 @@
 //! A small chart of a front for the terminal, in characters of dots.
 
-use crate::report::OptimizeResult;
+use crate::run::OptimizeResult;
 use textplots::{Chart, Plot, Shape};
 
 /// Dots of the chart: two to a column, four to a row.

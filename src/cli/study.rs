@@ -5,7 +5,7 @@ use crate::cli::{files, output, run};
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
-use crate::report::ScenarioStamp;
+use crate::run::ScenarioStamp;
 use crate::scenario::{Algorithm, Scenario, builtin};
 use anyhow::{Context, Result, bail};
 use std::fs;

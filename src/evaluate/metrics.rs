@@ -1,7 +1,7 @@
 //! The figures of merit of a constellation over points and times.
 
 use crate::stats::{Level, Summary};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// How samples are turned into metrics.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ impl Default for MetricOptions {
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved
 /// samples, and `None` when there is none. Every point counts with its weight in all of them:
 /// means, shares, quantiles and the tail are those of samples weighted by their point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
     /// N̄, mean number of visible LEO satellites (equation 10 of the paper).
     pub mean_visible: f64,

@@ -1,44 +1,11 @@
 //! A front against the exact front of a lattice: how good it is, and what it missed.
 
-use super::{FrontMember, OptimizeResult};
+use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
 use crate::search::Quantity;
-use serde::Serialize;
 
 /// A swept design counts as found when a front member is no worse than it by more than this share
 /// of the exact front's range in every objective: the spacing of thirty members along a front.
 const FOUND_WITHIN: f64 = 1.0 / 30.0;
-
-/// What a sweep says of a front.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Certificate {
-    /// Designs that the sweep evaluated.
-    pub evaluations: u64,
-    /// Members of the exact front of the lattice.
-    pub exact_members: usize,
-    /// Hypervolume of the exact front of the lattice.
-    pub exact_hypervolume: Option<f64>,
-    /// Hypervolume of the certified front.
-    pub found_hypervolume: Option<f64>,
-    /// Distance of each front member to the exact front, in the order of the front.
-    pub distances: Vec<f64>,
-    /// The exact members that no front member comes near to, if any.
-    pub missed: Option<Missed>,
-}
-
-/// A part of the exact front that a search did not find, by the ranges of its designs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Missed {
-    /// Exact members that were not found.
-    pub members: usize,
-    /// Planes, lowest and highest.
-    pub planes: [usize; 2],
-    /// Satellites per plane, lowest and highest.
-    pub satellites_per_plane: [usize; 2],
-    /// Inclination, lowest and highest, degrees.
-    pub inclination_deg: [f64; 2],
-    /// Altitude, lowest and highest, km.
-    pub altitude_km: [f64; 2],
-}
 
 impl Certificate {
     /// Holds a front against the result of a sweep of the same problem.
@@ -79,10 +46,10 @@ impl Certificate {
             .filter_map(|(member, target)| (!is_found(target)).then_some(member))
             .collect();
         Self {
-            evaluations: sweep.evaluations,
+            evaluations: sweep.search.evaluations,
             exact_members: exact.len(),
-            exact_hypervolume: sweep.hypervolume.value,
-            found_hypervolume: found.hypervolume.value,
+            exact_hypervolume: sweep.search.hypervolume.value,
+            found_hypervolume: found.search.hypervolume.value,
             distances: front.iter().filter_map(nearest).collect(),
             missed: Missed::of(&missed),
         }

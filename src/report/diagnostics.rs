@@ -9,28 +9,9 @@ mod rivals;
 pub use bounds::at_bounds;
 pub use rivals::{dominated_by, seed_spread};
 
-use super::FrontMember;
 use crate::optimize::{Individual, Search, Strategy};
+use crate::run::{Diagnostic, FrontMember};
 use crate::search::DesignProblem;
-use serde::Serialize;
-
-/// Something worth knowing about a result, in plain words.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Diagnostic {
-    /// Stable name, for programs.
-    pub code: String,
-    /// The sentence, for people.
-    pub message: String,
-}
-
-impl Diagnostic {
-    fn new(code: &str, message: String) -> Self {
-        Self {
-            code: code.to_owned(),
-            message,
-        }
-    }
-}
 
 /// Everything that a search shows of itself. The front and the individuals behind it are in the
 /// same order. Evaluates some variations of the chosen design.

@@ -11,9 +11,9 @@ mod words;
 
 use super::figures::{Baseline, NamedFront};
 use super::profile::Profile;
-use super::run::StoredRun;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
+use crate::run::Run;
 use askama::Template;
 use payload::Payload;
 use std::io::Write;
@@ -35,7 +35,7 @@ pub enum PageError {
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
     /// The run.
-    pub run: &'a StoredRun,
+    pub run: &'a Run,
     /// Its scenario as written.
     pub scenario_toml: Option<&'a str>,
     /// Computes maps and series; without it there are none.
@@ -84,8 +84,11 @@ struct Html<'a> {
 /// When it cannot be written; a run with gaps gives a page that names them.
 pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let places = members_with_cuts(page);
-    let members = &page.run.front.members;
-    let designs: Vec<Design> = places.iter().filter_map(|&n| members[n].design).collect();
+    let members = &page.run.front;
+    let designs: Vec<Design> = places
+        .iter()
+        .filter_map(|&n| members[n].design.design())
+        .collect();
     let beside: Vec<Design> = page.beside.iter().map(|(_, design)| *design).collect();
     let profiles = |designs: &[Design]| match page.evaluator {
         Some(evaluator) => Profile::of_all(evaluator, designs),
@@ -114,19 +117,19 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         validated: words::validated(page.run),
         conventions: words::conventions(page.run),
         scenario_toml: page.scenario_toml,
-        version: super::VERSION,
+        version: crate::run::VERSION,
     };
     Ok(html.write_into(&mut to)?)
 }
 
 /// The members whose cuts the page carries, by place: evenly over the front, and the chosen one.
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
-    let members = &page.run.front.members;
+    let members = &page.run.front;
     let Some(evaluator) = page.evaluator else {
         return Vec::new();
     };
     let flown: Vec<usize> = (0..members.len())
-        .filter(|&n| members[n].design.is_some())
+        .filter(|&n| members[n].design.design().is_some())
         .collect();
     let setup = evaluator.setup();
     let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());

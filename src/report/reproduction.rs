@@ -4,8 +4,9 @@ mod files;
 
 pub use files::{reproduction_csv, reproduction_files};
 
-use super::{Align, ScenarioStamp, Table, VERSION};
+use super::{Align, Table};
 use crate::keyword::Word;
+use crate::run::{ScenarioStamp, VERSION};
 use crate::scenario::Scenario;
 use crate::study::paper::{Expected, Line, Reproduction, Verdict};
 use serde::Serialize;

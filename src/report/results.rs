@@ -1,67 +1,18 @@
-//! The objects that `--format json` prints and that run directories hold.
+//! The objects that `--format json` prints, made from what was computed.
 
-use super::{Certificate, Diagnostic, VERSION, diagnose, dominated_by};
+use super::{diagnose, dominated_by};
 use crate::constellation::Design;
-use crate::earth;
 use crate::evaluate::{DopStatistics, Metrics};
-use crate::optimize::{Individual, Record, Search, Strategy, best, fuzzy, hypervolume};
+use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
+use crate::run::{
+    Basis, Certificate, DesignSummary, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
+    SearchSummary, VERSION, ValidateResult,
+};
 use crate::scenario::Scenario;
 use crate::search::{DesignProblem, Quantity};
-use crate::validate::{Findings, JUDGES, Judge};
+use crate::validate::Findings;
 use rayon::prelude::*;
-use serde::ser::SerializeMap;
-use serde::{Serialize, Serializer};
-
-/// A design, spelled out.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DesignSummary {
-    /// Walker notation that reads back to the design.
-    pub notation: String,
-    /// `delta`, `star` or `lattice`.
-    pub pattern: String,
-    /// Planes P.
-    pub planes: usize,
-    /// Satellites per plane S.
-    pub satellites_per_plane: usize,
-    /// Satellites T.
-    pub satellites: usize,
-    /// Phasing F, or `N_c` of a lattice.
-    pub phasing: usize,
-    /// Inclination, degrees.
-    pub inclination_deg: f64,
-    /// Altitude over the equatorial radius, km.
-    pub altitude_km: f64,
-    /// Eccentricity.
-    pub eccentricity: f64,
-    /// Argument of perigee, degrees.
-    pub arg_perigee_deg: f64,
-}
-
-impl From<&Design> for DesignSummary {
-    fn from(design: &Design) -> Self {
-        Self {
-            notation: design.to_string(),
-            pattern: design.pattern().to_string(),
-            planes: design.planes(),
-            satellites_per_plane: design.satellites_per_plane(),
-            satellites: design.satellite_count(),
-            phasing: design.phasing(),
-            inclination_deg: design.inclination_deg(),
-            altitude_km: design.altitude_km(),
-            eccentricity: design.eccentricity(),
-            arg_perigee_deg: design.arg_perigee_deg(),
-        }
-    }
-}
-
-/// Which study a result belongs to.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ScenarioStamp {
-    /// Its name.
-    pub name: String,
-    /// What [`Scenario::hash`] gives.
-    pub hash: String,
-}
+use serde::{Deserialize, Serialize};
 
 /// What `evaluate` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -99,7 +50,7 @@ impl EvaluateResult {
 }
 
 /// A constellation that comes from files.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ConstellationSummary {
     /// Name of its file or directory, without the way to it.
     pub name: String,
@@ -127,72 +78,6 @@ pub struct ConstellationResult {
     pub version: &'static str,
 }
 
-/// A non-dominated design of the last population.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FrontMember {
-    /// Place in the front from 1, by the first objective; what `--pick N` takes.
-    pub index: usize,
-    /// The design.
-    pub design: DesignSummary,
-    /// Its metrics.
-    pub metrics: Metrics,
-    /// Value of each objective by name, in its own direction.
-    #[serde(serialize_with = "as_map")]
-    pub objectives: Vec<(String, f64)>,
-    /// Fuzzy membership: the least over the objectives.
-    pub membership: f64,
-    /// Fuzzy membership: the normalised sum over the objectives.
-    pub membership_sum: f64,
-    /// Whether this is the pick of the fuzzy decision.
-    pub chosen: bool,
-}
-
-fn as_map<S: Serializer>(pairs: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(Some(pairs.len()))?;
-    for (name, value) in pairs {
-        map.serialize_entry(name, value)?;
-    }
-    map.end()
-}
-
-/// The volume that a front dominates.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Hypervolume {
-    /// The volume, in the product of the objectives' units; `None` without a reference point.
-    pub value: Option<f64>,
-    /// The reference point, one coordinate per objective.
-    pub reference: Option<Vec<f64>>,
-}
-
-/// What `optimize` prints.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct OptimizeResult {
-    /// The front, by the first objective.
-    pub front: Vec<FrontMember>,
-    /// Designs evaluated.
-    pub evaluations: u64,
-    /// Volume that the front dominates.
-    pub hypervolume: Hypervolume,
-    /// Seed of the search.
-    pub seed: u64,
-    /// Name of the algorithm.
-    pub algorithm: String,
-    /// Generations done, and asked for.
-    pub generations: [u64; 2],
-    /// What the program notices.
-    pub diagnostics: Vec<Diagnostic>,
-    /// What a sweep of the same problem says of the front, when it was asked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub certificate: Option<Certificate>,
-    /// The study.
-    pub scenario: ScenarioStamp,
-    /// Version of the program.
-    pub version: &'static str,
-    /// One record per generation; goes to the history files.
-    #[serde(skip)]
-    pub history: Vec<Record>,
-}
-
 impl OptimizeResult {
     /// The result of a search as it stands, the members of its front evaluated once more.
     #[must_use]
@@ -210,9 +95,7 @@ impl OptimizeResult {
         let front = front_members(problem, &individuals, &points);
         let progress = search.progress();
         let reference = scenario.minimised_reference();
-        Self {
-            diagnostics: diagnose(problem, search, &front, &individuals),
-            front,
+        let summary = SearchSummary {
             evaluations: progress.evaluations,
             hypervolume: Hypervolume {
                 value: reference.map(|reference| hypervolume(&points, &reference)),
@@ -221,9 +104,14 @@ impl OptimizeResult {
             seed: scenario.optimizer.seed,
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
+            diagnostics: diagnose(problem, search, &front, &individuals),
             certificate: None,
             scenario: stamp,
-            version: VERSION,
+            version: VERSION.to_owned(),
+        };
+        Self {
+            front,
+            search: summary,
             history: search.history().to_vec(),
         }
     }
@@ -237,15 +125,10 @@ impl OptimizeResult {
             };
             result.front.iter().map(point).collect()
         };
-        self.diagnostics
+        self.search
+            .diagnostics
             .extend(dominated_by(&points(self), &points(sweep)));
-        self.certificate = Some(Certificate::new(self, sweep, objectives));
-    }
-
-    /// The pick of the fuzzy decision.
-    #[must_use]
-    pub fn chosen(&self) -> Option<&FrontMember> {
-        self.front.iter().find(|member| member.chosen)
+        self.search.certificate = Some(Certificate::new(self, sweep, objectives));
     }
 }
 
@@ -288,53 +171,6 @@ fn front_members(
         .collect()
 }
 
-/// What `validate` prints.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ValidateResult {
-    /// The design.
-    pub design: DesignSummary,
-    /// The checks, and the budget of sgp4.
-    #[serde(flatten)]
-    pub findings: Findings,
-    /// Whether every gate is kept.
-    pub passed: bool,
-    /// The study.
-    pub scenario: ScenarioStamp,
-    /// The targets, in the order in which they were asked for.
-    pub against: Vec<String>,
-    /// What every number rests on.
-    pub basis: Basis,
-    /// Version of the program.
-    pub version: &'static str,
-}
-
-/// Constants and crates behind a validation. There is no random number in it, and no seed.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Basis {
-    /// Gravitational parameter, km³/s².
-    pub mu_km3_s2: f64,
-    /// Equatorial radius, km.
-    pub radius_km: f64,
-    /// Second zonal harmonic.
-    pub j2: f64,
-    /// Flattening of the ellipsoid.
-    pub flattening: f64,
-    /// The crates whose word counts.
-    pub judges: [Judge; 4],
-}
-
-impl Default for Basis {
-    fn default() -> Self {
-        Self {
-            mu_km3_s2: earth::MU_KM3_S2,
-            radius_km: earth::RADIUS_KM,
-            j2: earth::J2,
-            flattening: earth::FLATTENING,
-            judges: JUDGES,
-        }
-    }
-}
-
 impl ValidateResult {
     /// The result of validating one design.
     #[must_use]
@@ -351,7 +187,7 @@ impl ValidateResult {
             scenario,
             against,
             basis: Basis::default(),
-            version: VERSION,
+            version: VERSION.to_owned(),
         }
     }
 }

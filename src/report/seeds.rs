@@ -1,12 +1,15 @@
 //! The same search with several seeds.
 
-use super::csv::{CsvError, optional, text};
-use super::{Align, OptimizeResult, Table, seed_spread};
+use super::{Align, Table, seed_spread};
+use crate::run::OptimizeResult;
+use crate::run::columns::{cells, fields};
+use crate::run::tables::text;
 use ::csv::Writer;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+use std::io;
 
 /// One of the searches.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeedRun {
     /// Its seed.
     pub seed: u64,
@@ -23,9 +26,9 @@ pub struct SeedRun {
 impl From<&OptimizeResult> for SeedRun {
     fn from(result: &OptimizeResult) -> Self {
         Self {
-            seed: result.seed,
-            hypervolume: result.hypervolume.value,
-            evaluations: result.evaluations,
+            seed: result.search.seed,
+            hypervolume: result.search.hypervolume.value,
+            evaluations: result.search.evaluations,
             front_size: result.front.len(),
             pick: result.chosen().map(|member| member.design.notation.clone()),
         }
@@ -81,7 +84,7 @@ impl SeedsResult {
         let spread = volumes.and_then(|volumes| Spread::of(&volumes));
         let mut first = results.into_iter().next()?;
         let diagnostic = spread.and_then(|s| seed_spread(s.mean, s.std_dev, seeds.len()));
-        first.diagnostics.extend(diagnostic);
+        first.search.diagnostics.extend(diagnostic);
         Some(Self {
             first,
             seeds,
@@ -132,17 +135,11 @@ impl SeedsResult {
     ///
     /// # Errors
     /// Never for a table in memory.
-    pub fn to_csv(&self) -> Result<String, CsvError> {
+    pub fn to_csv(&self) -> io::Result<String> {
         let mut writer = Writer::from_writer(Vec::new());
-        writer.write_record(["seed", "hypervolume", "evaluations", "front_size", "pick"])?;
+        writer.write_record(fields::<SeedRun>())?;
         for run in &self.seeds {
-            writer.write_record([
-                run.seed.to_string(),
-                optional(run.hypervolume),
-                run.evaluations.to_string(),
-                run.front_size.to_string(),
-                run.pick.clone().unwrap_or_default(),
-            ])?;
+            writer.write_record(cells(run, fields::<SeedRun>())?)?;
         }
         text(writer)
     }

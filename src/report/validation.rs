@@ -1,7 +1,7 @@
 //! A validation as text, Markdown and `JUnit`.
 
-use super::results::Basis;
-use super::{Align, Table, ValidateResult};
+use super::{Align, Table};
+use crate::run::{Basis, ValidateResult};
 use crate::units::round_decimal;
 use crate::validate::Check;
 use crate::validate::distribution::Distribution;
@@ -81,9 +81,11 @@ fn check_table(checks: &[Check]) -> Table {
 
 /// What every number rests on, in one line.
 fn conventions(basis: &Basis) -> String {
-    let judges = basis
+    let judges: Vec<String> = basis
         .judges
-        .map(|one| format!("{} {}", one.name, one.version));
+        .iter()
+        .map(|one| format!("{} {}", one.name, one.version))
+        .collect();
     format!(
         "mu {} km3/s2, R {} km, J2 {:e}; SGP4: WGS-72, AFSPC mode, B* = 0; TEME; UT1 = UTC; {}; no random numbers",
         basis.mu_km3_s2,

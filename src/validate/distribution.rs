@@ -1,10 +1,10 @@
 //! How residuals are distributed: three quantiles, the largest, and where it was found.
 
 use crate::stats::quantile_rank;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Sizes of residuals.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
     /// What was compared, as in the names of checks.
     pub name: String,

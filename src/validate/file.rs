@@ -25,7 +25,7 @@ use crate::stats::line_fit;
 use crate::units::SECONDS_PER_DAY;
 use matching::Matching;
 use nalgebra::Vector3;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use tracks::{Track, tracks};
 
 /// Distance within which a file is the design's own, km: a decimetre, above what the digits of any
@@ -33,7 +33,7 @@ use tracks::{Track, tracks};
 const SAME_KM: f64 = 1e-4;
 
 /// How a satellite of the file differs from its slot.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SatelliteDifference {
     /// The slot.
     pub slot: String,
@@ -52,7 +52,7 @@ pub struct SatelliteDifference {
 }
 
 /// A comparison with the ephemeris of another program.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileComparison {
     /// What was read.
     pub source: String,

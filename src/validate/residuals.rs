@@ -7,10 +7,10 @@ use crate::stats::line_fit;
 use crate::units::SECONDS_PER_DAY;
 use nalgebra::Vector3;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A number for each axis of the RIC basis.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ric {
     /// Along the position vector.
     pub radial: f64,
@@ -21,6 +21,12 @@ pub struct Ric {
 }
 
 impl Ric {
+    /// Radial, in-track, cross-track.
+    #[must_use]
+    pub fn axes(&self) -> [f64; 3] {
+        [self.radial, self.in_track, self.cross_track]
+    }
+
     pub(super) fn from_vector(v: Vector3<f64>) -> Self {
         Self {
             radial: v.x,
@@ -31,7 +37,7 @@ impl Ric {
 }
 
 /// Where the largest difference was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// Name of the satellite.
     pub satellite: String,
@@ -42,7 +48,7 @@ pub struct Worst {
 }
 
 /// One line of an error budget: second trajectory minus first, over every satellite and sample.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BudgetLine {
     /// What is compared: `first/second`.
     pub case: String,

@@ -112,11 +112,11 @@ fn judges_are_those_of_the_lock_file() {
     for judge in navwalker::validate::JUDGES {
         let locked = packages
             .iter()
-            .find(|package| package["name"].as_str() == Some(judge.name))
+            .find(|package| package["name"].as_str() == Some(&*judge.name))
             .unwrap();
         assert_eq!(
             locked["version"].as_str(),
-            Some(judge.version),
+            Some(&*judge.version),
             "{}",
             judge.name
         );

@@ -24,6 +24,7 @@ const LEVELS: &[&[&str]] = &[
     &["scenario"],
     &["study"],
     &["validate"],
+    &["run"],
     &["report"],
     &["cli"],
 ];

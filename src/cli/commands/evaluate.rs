@@ -2,14 +2,15 @@
 
 use crate::cli::args::{EvaluateArgs, Format};
 use crate::cli::study::Study;
-use crate::cli::{Status, files, fleets, output};
+use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
 use crate::report::{
-    Align, ConstellationResult, ConstellationSummary, CsvError, EvaluateResult, Table, VERSION,
-    constellation_csv, dops_csv, metrics_csv, records_csv,
+    Align, ConstellationResult, ConstellationSummary, EvaluateResult, Table, constellation_csv,
+    dops_csv, metrics_csv, records_csv,
 };
+use crate::run::VERSION;
 use anyhow::Result;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -52,7 +53,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
-    let (format, fleet) = fleets::read(&args.constellation)?;
+    let (format, fleet) = read_constellation::read(&args.constellation)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = fleet.fly(setup.grid, setup.model)?;
@@ -103,7 +104,7 @@ fn print(
     (study, title): (&Study, &str),
     (metrics, dops): (&Metrics, Option<&DopStatistics>),
     result: &impl Serialize,
-    csv: impl Fn() -> Result<String, CsvError>,
+    csv: impl Fn() -> std::io::Result<String>,
 ) -> Result<()> {
     match args.format {
         Format::Text => output::result(&text(study, title, metrics, dops)),

@@ -3,7 +3,7 @@
 use crate::cli::args::ExportArgs;
 use crate::cli::progress::FileCount;
 use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, files, fleets, output};
+use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::exchange::export::{Choices, Product, Subject, export_scene};
@@ -124,7 +124,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     ]);
     let mut passed = true;
     for (name, paths) in groups(args, manifest) {
-        let (format, mut fleet) = fleets::read(&paths)?;
+        let (format, mut fleet) = read_constellation::read(&paths)?;
         if format == LintFormat::Sp3 {
             fleet.name_by_place();
         }

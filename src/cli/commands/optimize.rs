@@ -3,16 +3,17 @@
 mod seeds;
 
 use crate::cli::args::{Format, OptimizeArgs};
-use crate::cli::pick::Pick;
 use crate::cli::progress::Progress;
-use crate::cli::run::{Identity, RunDirectory};
+use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
 use crate::cli::{Status, chart, output};
 use crate::evaluate::Evaluator;
-use crate::optimize::{Search, Strategy};
-use crate::report::{Align, FrontMember, OptimizeResult, Table, front_csv};
-use crate::scenario::{Algorithm, Word};
-use crate::search::{DesignProblem, Quantity};
+use crate::optimize::{Pick, Search, Strategy};
+use crate::report::{Align, Table};
+use crate::run::checkpoint::Identity;
+use crate::run::{FrontMember, OptimizeResult, front_csv};
+use crate::scenario::Algorithm;
+use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -152,7 +153,7 @@ pub(super) fn status(result: &OptimizeResult) -> Status {
 }
 
 pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
-    let [done, of] = result.generations;
+    let [done, of] = result.search.generations;
     output::hint(&format!(
         "\ninterrupted after generation {done} of {of}; the results so far are in {shown}\n\
          go on with the same command and --resume"
@@ -230,21 +231,22 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     for member in &result.front {
         table.row(row(member));
     }
-    let [done, of] = result.generations;
+    let [done, of] = result.search.generations;
     let mut text = format!(
         "Pareto set of scenario {scenario}: {} designs, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
         result.front.len(),
-        result.evaluations,
-        result.algorithm,
-        result.seed,
+        result.search.evaluations,
+        result.search.algorithm,
+        result.search.seed,
         table.to_text()
     );
     if let Some(chart) = chart::front(result) {
         text += &format!("\n{chart}");
     }
-    if let (Some(value), Some(reference)) =
-        (result.hypervolume.value, &result.hypervolume.reference)
-    {
+    if let (Some(value), Some(reference)) = (
+        result.search.hypervolume.value,
+        &result.search.hypervolume.reference,
+    ) {
         let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
         text += &format!("\nhypervolume {value:.4} at ({})\n", at.join(", "));
     }
@@ -255,10 +257,10 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         );
     }
     text += &other_picks(result);
-    if let Some(certificate) = &result.certificate {
+    if let Some(certificate) = &result.search.certificate {
         text += &certificate.to_text();
     }
-    for diagnostic in &result.diagnostics {
+    for diagnostic in &result.search.diagnostics {
         text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);
     }
     text
@@ -266,25 +268,20 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
 
 /// What the other methods of decision pick, and why.
 fn other_picks(result: &OptimizeResult) -> String {
-    let values = |member: &FrontMember| {
-        let minimised = |(name, value): &(String, f64)| {
-            Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
-        };
-        member.objectives.iter().map(minimised).collect()
-    };
-    let points: Vec<Vec<f64>> = result.front.iter().map(values).collect();
+    let points: Vec<Vec<f64>> = result.front.iter().map(FrontMember::minimised).collect();
     let mut text = String::new();
     for pick in Pick::METHODS
         .into_iter()
         .filter(|pick| *pick != Pick::Fuzzy)
     {
-        if let Some((place, why)) = pick.place(&points) {
-            let member = &result.front[place];
+        if let Some(picked) = pick.apply(&points) {
+            let member = &result.front[picked.place];
             text += &format!(
-                "  --pick {}: {} {}, {why}\n",
+                "  --pick {}: {} {}, {}\n",
                 pick.word(),
                 member.index,
-                member.design.notation
+                member.design.notation,
+                picked.reason
             );
         }
     }

@@ -1,7 +1,7 @@
 //! `navwalker plot`.
 
 use crate::cli::args::PlotArgs;
-use crate::cli::look::Look;
+use crate::cli::run_view::RunView;
 use crate::cli::{Status, files, output};
 use crate::constellation::Design;
 use crate::report::figures::draw::{Form, png, svg};
@@ -14,8 +14,8 @@ use std::path::Path;
 
 pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let form = form(args)?;
-    let look = Look::at(&args.run)?;
-    let plate = plate(args, &look)?;
+    let view = RunView::at(&args.run)?;
+    let plate = plate(args, &view)?;
     let bytes = render(&plate, form)?;
     let Some(out) = &args.out else {
         if form == Form::Png && io::stdout().is_terminal() {
@@ -58,46 +58,46 @@ fn render(plate: &Plate, form: Form) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn plate(args: &PlotArgs, look: &Look) -> Result<Plate> {
+fn plate(args: &PlotArgs, view: &RunView) -> Result<Plate> {
     let measure = |usual: Measure| args.measure.unwrap_or(usual);
     Ok(match args.figure {
-        Figure::Pareto => figures::pareto(&look.run, &look.baselines(), &look.fronts)?,
-        Figure::Convergence => figures::convergence(&look.run)?,
-        Figure::Budget => figures::budget(look.run.validation.as_ref())?,
+        Figure::Pareto => figures::pareto(&view.run, &view.baselines(), &view.fronts)?,
+        Figure::Convergence => figures::convergence(&view.run)?,
+        Figure::Budget => figures::budget(view.run.validation.as_ref())?,
         Figure::Map => {
-            let profiles = profiles(args, look, false)?;
-            figures::map(&profiles[0].1, measure(Measure::MeanPdop), cell_deg(look))?
+            let profiles = profiles(args, view, false)?;
+            figures::map(&profiles[0].1, measure(Measure::MeanPdop), cell_deg(view))?
         }
         Figure::Cdf => {
-            let profiles = profiles(args, look, true)?;
+            let profiles = profiles(args, view, true)?;
             figures::cdf(&named(&profiles), measure(Measure::MeanVisible))?
         }
         Figure::Series => {
-            let profiles = profiles(args, look, true)?;
+            let profiles = profiles(args, view, true)?;
             figures::series(&named(&profiles), measure(Measure::MaxPdop))?
         }
     })
 }
 
 /// The steps of the region's grid, if it is one.
-fn cell_deg(look: &Look) -> Option<[f64; 2]> {
-    match look.run.scenario.as_ref()?.region {
+fn cell_deg(view: &RunView) -> Option<[f64; 2]> {
+    match view.run.scenario.as_ref()?.region {
         Region::Grid(grid) => Some(grid.step_deg),
         Region::Points { .. } => None,
     }
 }
 
 /// The picked design, and those beside it, evaluated.
-fn profiles(args: &PlotArgs, look: &Look, with_others: bool) -> Result<Vec<(String, Profile)>> {
-    let evaluator = look
+fn profiles(args: &PlotArgs, view: &RunView, with_others: bool) -> Result<Vec<(String, Profile)>> {
+    let evaluator = view
         .evaluator
         .as_ref()
         .context("the scenario of the run cannot be set up, which this figure needs")?;
-    let member = look.pick(args.pick)?;
-    let design: Design = member.notation.parse()?;
+    let member = view.pick(args.pick)?;
+    let design: Design = member.design.notation.parse()?;
     let mut wanted = vec![(design.to_string(), design)];
     if with_others {
-        let others = look.beside.iter().filter(|(_, other)| *other != design);
+        let others = view.beside.iter().filter(|(_, other)| *other != design);
         wanted.extend(others.cloned());
     }
     let one = |(name, design): (String, Design)| Ok((name, Profile::new(evaluator, &design)?));

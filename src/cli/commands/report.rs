@@ -1,7 +1,7 @@
 //! `navwalker report`.
 
 use crate::cli::args::{ReportArgs, RunArgs};
-use crate::cli::look::Look;
+use crate::cli::run_view::RunView;
 use crate::cli::{Status, files, output};
 use crate::report::page::{self, Page};
 use anyhow::Result;
@@ -30,15 +30,15 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
 }
 
 fn write(args: &RunArgs, out: &Path) -> Result<()> {
-    let look = Look::at(args)?;
+    let view = RunView::at(args)?;
     let mut html = Vec::new();
     let page = Page {
-        run: &look.run,
-        scenario_toml: look.scenario_toml.as_deref(),
-        evaluator: look.evaluator.as_ref(),
-        baselines: &look.baselines(),
-        beside: &look.beside,
-        fronts: &look.fronts,
+        run: &view.run,
+        scenario_toml: view.scenario_toml.as_deref(),
+        evaluator: view.evaluator.as_ref(),
+        baselines: &view.baselines(),
+        beside: &view.beside,
+        fronts: &view.fronts,
     };
     page::write(&page, &mut html)?;
     files::write_atomically(out, &html)

@@ -4,9 +4,9 @@ use crate::cli::args::{ReproduceArgs, StudyFormat};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
 use crate::report::{
-    ReproduceResult, VERSION, reproduction_csv, reproduction_files, reproduction_markdown,
-    reproduction_text,
+    ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
 };
+use crate::run::{ScenarioStamp, VERSION};
 use crate::study::paper::{PaperStudy, reproduce};
 use anyhow::{Result, bail};
 use serde::Deserialize;
@@ -65,13 +65,8 @@ fn render(result: &ReproduceResult, format: StudyFormat) -> Result<String> {
 /// What of a report tells which study it is of.
 #[derive(Deserialize)]
 struct Stored {
-    scenario: StoredScenario,
+    scenario: ScenarioStamp,
     version: String,
-}
-
-#[derive(Deserialize)]
-struct StoredScenario {
-    hash: String,
 }
 
 /// Whether a directory is vacant or holds this study by this version.

@@ -4,9 +4,8 @@ use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, files, output};
 use crate::exchange::manifest::{FILE_NAME, Manifest};
-use crate::report::{
-    ValidateResult, checks_csv, checks_junit, validation_markdown, validation_text,
-};
+use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
+use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
 use crate::validate::file::{Comparand, against_file, read};
 use crate::validate::{Findings, Subject, Target};

@@ -1,7 +1,6 @@
 //! Variables whose bounds decide the front.
 
-use super::Diagnostic;
-use crate::report::FrontMember;
+use crate::run::{Diagnostic, FrontMember};
 use crate::search::DesignSpace;
 
 /// A front may rest on a bound with this share of its members before that is worth saying.
@@ -66,35 +65,8 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constellation::{Design, Pattern};
-    use crate::evaluate::Metrics;
-
-    fn member(text: &str) -> FrontMember {
-        let design: Design = text.parse().unwrap();
-        let metrics = Metrics {
-            mean_visible: 8.0,
-            mean_pdop: None,
-            cvar_pdop: None,
-            cvar_level: 0.95,
-            p50_pdop: None,
-            p95_pdop: None,
-            p99_pdop: None,
-            max_pdop: None,
-            solved_fraction: 0.0,
-            availability: 0.0,
-            j_pos: None,
-            j_cost: None,
-        };
-        FrontMember {
-            index: 1,
-            design: (&design).into(),
-            metrics,
-            objectives: vec![],
-            membership: 0.0,
-            membership_sum: 0.0,
-            chosen: false,
-        }
-    }
+    use crate::constellation::Pattern;
+    use crate::run::testing;
 
     #[test]
     fn bounds_that_decide_are_named() {
@@ -113,7 +85,7 @@ mod tests {
             "delta:47:210/15/1@999.9",
             "delta:49:195/15/1@800",
         ];
-        let front: Vec<_> = front.into_iter().map(member).collect();
+        let front = front.map(|design| testing::member(1, design));
         let codes: Vec<_> = at_bounds(&front, &space)
             .into_iter()
             .map(|d| d.code)

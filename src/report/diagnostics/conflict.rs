@@ -1,7 +1,7 @@
 //! Objectives that can be had together.
 
-use super::Diagnostic;
 use crate::optimize::Individual;
+use crate::run::Diagnostic;
 use crate::search::Quantity;
 
 /// Members of a front below which the order of two objectives over it is chance.

@@ -1,7 +1,8 @@
 //! What the objectives do not depend on, by varying one variable at a time.
 
-use super::{Diagnostic, listed};
+use super::listed;
 use crate::optimize::{Individual, Problem};
+use crate::run::Diagnostic;
 use crate::search::{DesignProblem, Quantity};
 
 /// Relative change of an objective, over the whole interval of a variable, below which it does

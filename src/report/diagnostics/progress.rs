@@ -1,7 +1,7 @@
 //! Whether a search still moves at its end.
 
-use super::Diagnostic;
 use crate::optimize::Record;
+use crate::run::Diagnostic;
 
 /// Relative rise of the hypervolume that counts as progress.
 const RISE: f64 = 1e-4;

@@ -1,7 +1,7 @@
 //! A front against another search, and a search against itself with other seeds.
 
-use super::Diagnostic;
 use crate::optimize::dominates;
+use crate::run::Diagnostic;
 
 /// Relative standard deviation of the hypervolume up to which the seed does not matter.
 const STEADY: f64 = 0.005;

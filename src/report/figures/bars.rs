@@ -2,14 +2,14 @@
 
 use super::table::Csv;
 use super::{BarChart, Chart, Figure, FigureError, Plate};
-use crate::report::run::StoredValidation;
+use crate::run::ValidateResult;
 
 /// The root mean square differences of each case, by axis.
 ///
 /// # Errors
 /// When there is no validation with a budget.
-pub fn budget(validation: Option<&StoredValidation>) -> Result<Plate, FigureError> {
-    let lines = validation.map_or(&[][..], |validation| &validation.budget);
+pub fn budget(validation: Option<&ValidateResult>) -> Result<Plate, FigureError> {
+    let lines = validation.map_or(&[][..], |validation| &validation.findings.budget);
     if lines.is_empty() {
         return Err(FigureError::Nothing {
             figure: Figure::Budget,

@@ -4,7 +4,7 @@ use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style};
 use crate::evaluate::EpochMetrics;
 use crate::report::profile::{Profile, Quantile, quantiles_of};
-use crate::report::run::StoredRun;
+use crate::run::Run;
 use crate::units::{SECONDS_PER_HOUR, round_decimal};
 
 /// A profile with the name that it has in the legend.
@@ -190,7 +190,7 @@ pub fn series(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureEr
 ///
 /// # Errors
 /// When the run has no history.
-pub fn convergence(run: &StoredRun) -> Result<Plate, FigureError> {
+pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
     if run.history.is_empty() {
         return Err(FigureError::Nothing {
             figure: Figure::Convergence,
@@ -222,7 +222,7 @@ pub fn convergence(run: &StoredRun) -> Result<Plate, FigureError> {
         let size = (!has_volume).then_some(record.front_size as f64);
         Some((record.evaluations as f64, record.hypervolume.or(size)?))
     });
-    let y = match (has_volume, &run.front.reference) {
+    let y = match (has_volume, run.reference()) {
         (true, Some(reference)) => {
             let at: Vec<_> = reference.iter().map(ToString::to_string).collect();
             format!("hypervolume at ({})", at.join(", "))

@@ -4,7 +4,7 @@ use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantity_label};
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::report::run::{StoredFront, StoredRun};
+use crate::run::{FrontMember, Run};
 use crate::scenario::{Quantity, Word};
 use crate::search::Goals;
 
@@ -43,8 +43,8 @@ impl Baseline {
 pub struct NamedFront {
     /// What it is called.
     pub name: String,
-    /// The front.
-    pub front: StoredFront,
+    /// Its members.
+    pub front: Vec<FrontMember>,
 }
 
 /// Rows of the plane: name of the set, generation, index, notation, objectives, membership.
@@ -63,13 +63,13 @@ struct Row<'a> {
 /// # Errors
 /// When the run has no front or only one objective.
 pub fn pareto(
-    run: &StoredRun,
+    run: &Run,
     baselines: &[Baseline],
     fronts: &[NamedFront],
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Pareto;
     let names = run.objective_names();
-    if run.front.members.is_empty() {
+    if run.front.is_empty() {
         let reason = "the front is empty";
         return Err(FigureError::Nothing { figure, reason });
     }
@@ -109,7 +109,7 @@ pub fn pareto(
         let own = points(&|row| row.set == "baseline" && row.notation == baseline.notation);
         layers.push(layer(&baseline.name, own, Style::Marks(n + 1)));
     }
-    let chosen = run.chosen().map(|n| &run.front.members[n]);
+    let chosen = run.chosen().map(|n| &run.front[n]);
     let at = chosen.and_then(|m| Some((m.objectives.first()?.1, m.objectives.get(1)?.1)));
     layers.push(layer(
         "fuzzy choice",
@@ -130,20 +130,20 @@ pub fn pareto(
 }
 
 fn rows<'a>(
-    run: &'a StoredRun,
+    run: &'a Run,
     names: &[String],
     baselines: &'a [Baseline],
     fronts: &'a [NamedFront],
 ) -> Vec<Row<'a>> {
-    let of_front = |set: &'a str, front: &'a StoredFront| {
+    let of_front = |set: &'a str, front: &'a [FrontMember]| {
         let names = names.to_vec();
-        front.members.iter().map(move |member| Row {
+        front.iter().map(move |member| Row {
             set,
             generation: None,
             index: Some(member.index),
-            notation: &member.notation,
+            notation: &member.design.notation,
             objectives: names.iter().map(|name| member.objective(name)).collect(),
-            membership: member.membership,
+            membership: Some(member.membership),
         })
     };
     let mut rows: Vec<Row<'_>> = of_front("front", &run.front).collect();
@@ -172,7 +172,7 @@ fn rows<'a>(
 }
 
 /// The fronts of earlier generations, point by point, in the objectives' own directions.
-pub(in crate::report) fn earlier(run: &StoredRun, names: &[String]) -> Vec<(u64, Vec<f64>)> {
+pub(in crate::report) fn earlier(run: &Run, names: &[String]) -> Vec<(u64, Vec<f64>)> {
     let quantities: Vec<_> = names
         .iter()
         .map(|name| Quantity::from_word(name).ok())

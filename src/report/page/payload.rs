@@ -10,7 +10,7 @@ use crate::orbit::j2::SecularRates;
 use crate::report::coastline::{self, Bounds};
 use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_label};
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
-use crate::report::run::{StoredFront, StoredMember, StoredRun};
+use crate::run::{FrontMember, Run};
 use crate::scenario::{Quantity, Region, Scenario, Word};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -174,7 +174,7 @@ impl Payload {
         let generations = earlier(run, &names).into_iter();
         Self {
             objectives: names.iter().map(|name| Objective::new(name)).collect(),
-            front: Front::new(&run.front.members, &names),
+            front: Front::new(&run.front, &names),
             chosen: run.chosen(),
             generations: generations
                 .map(|(g, x)| (g, x.into_iter().map(short).collect()))
@@ -186,7 +186,7 @@ impl Payload {
                 .map(|f| OtherFront::new(&f.name, &f.front, &names))
                 .collect(),
             history: history(run),
-            reference: run.front.reference.clone(),
+            reference: run.reference().map(<[f64]>::to_vec),
             levels: drawn_levels().into_iter().map(short).collect(),
             cuts: of_members.collect(),
             region: setup.zip(run.scenario.as_ref()).and_then(RegionData::new),
@@ -216,7 +216,7 @@ fn baselines(
     beside.collect()
 }
 
-fn history(run: &StoredRun) -> Vec<Generation> {
+fn history(run: &Run) -> Vec<Generation> {
     let records = run.history.iter().map(|record| Generation {
         generation: record.generation,
         evaluations: record.evaluations,
@@ -226,11 +226,11 @@ fn history(run: &StoredRun) -> Vec<Generation> {
     records.collect()
 }
 
-fn budget(run: &StoredRun) -> Vec<Budget> {
+fn budget(run: &Run) -> Vec<Budget> {
     let lines = run
         .validation
         .iter()
-        .flat_map(|validation| &validation.budget);
+        .flat_map(|validation| &validation.findings.budget);
     let budget = lines.map(|line| Budget {
         case: line.case.clone(),
         rms_km: line.rms_km.axes().map(short),
@@ -256,17 +256,18 @@ impl Objective {
 }
 
 impl Front {
-    fn new(members: &[StoredMember], names: &[String]) -> Self {
-        let column = |value: &dyn Fn(&StoredMember) -> Option<f64>| {
+    fn new(members: &[FrontMember], names: &[String]) -> Self {
+        let column = |value: &dyn Fn(&FrontMember) -> Option<f64>| {
             members
                 .iter()
                 .map(|m| value(m).map(short))
                 .collect::<Vec<_>>()
         };
-        let of_design = |value: fn(&Design) -> f64| column(&move |m| m.design.as_ref().map(value));
+        let of_design =
+            |value: fn(&Design) -> f64| column(&move |m| m.design.design().as_ref().map(value));
         Self {
             index: members.iter().map(|m| m.index).collect(),
-            notation: members.iter().map(|m| m.notation.clone()).collect(),
+            notation: members.iter().map(|m| m.design.notation.clone()).collect(),
             objectives: names
                 .iter()
                 .map(|name| {
@@ -277,16 +278,16 @@ impl Front {
                         .collect()
                 })
                 .collect(),
-            membership: column(&|m| m.membership),
-            membership_sum: column(&|m| m.membership_sum),
+            membership: column(&|m| Some(m.membership)),
+            membership_sum: column(&|m| Some(m.membership_sum)),
             metrics: vec![
-                ("mean visible", column(&|m| m.metrics.mean_visible)),
+                ("mean visible", column(&|m| Some(m.metrics.mean_visible))),
                 ("mean PDOP", column(&|m| m.metrics.mean_pdop)),
                 ("CVaR of PDOP", column(&|m| m.metrics.cvar_pdop)),
                 ("95 % PDOP", column(&|m| m.metrics.p95_pdop)),
                 ("largest PDOP", column(&|m| m.metrics.max_pdop)),
-                ("availability", column(&|m| m.metrics.availability)),
-                ("solved", column(&|m| m.metrics.solved_fraction)),
+                ("availability", column(&|m| Some(m.metrics.availability))),
+                ("solved", column(&|m| Some(m.metrics.solved_fraction))),
             ],
             variables: vec![
                 ("satellites", of_design(|d| d.satellite_count() as f64)),
@@ -301,14 +302,14 @@ impl Front {
 }
 
 impl OtherFront {
-    fn new(name: &str, front: &StoredFront, names: &[String]) -> Self {
+    fn new(name: &str, front: &[FrontMember], names: &[String]) -> Self {
         let objective = |name: &String| {
-            let values = front.members.iter().map(|m| m.objective(name).map(short));
+            let values = front.iter().map(|m| m.objective(name).map(short));
             values.collect()
         };
         Self {
             name: name.to_owned(),
-            notation: front.members.iter().map(|m| m.notation.clone()).collect(),
+            notation: front.iter().map(|m| m.design.notation.clone()).collect(),
             objectives: names.iter().map(objective).collect(),
         }
     }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::report::figures::Baseline;
-use crate::report::run::{RunFiles, StoredMember, StoredMetrics};
+use crate::run::{Diagnostic, FrontMember, RunFiles, testing};
 use crate::scenario::Scenario;
 
 const SCENARIO: &str = include_str!("../../../data/scenarios/paper.toml");
@@ -14,34 +14,29 @@ fn evaluator() -> (Scenario, Evaluator) {
     (scenario, Evaluator::new(setup).unwrap())
 }
 
-fn member(n: usize, notation: &str) -> StoredMember {
-    StoredMember {
-        index: n + 1,
-        notation: notation.to_owned(),
-        design: notation.parse().ok(),
-        metrics: StoredMetrics::default(),
+fn member(n: usize, notation: &str) -> FrontMember {
+    FrontMember {
         objectives: vec![
             ("j-pos".to_owned(), 1.0 + n as f64),
             ("j-cost".to_owned(), 30.0 - n as f64),
         ],
-        membership: Some(0.5),
-        membership_sum: None,
         chosen: n == 1,
+        ..testing::member(n + 1, notation)
     }
 }
 
-fn run(scenario: Option<Scenario>, members: usize) -> StoredRun {
-    let mut run = StoredRun {
+fn run(scenario: Option<Scenario>, members: usize) -> Run {
+    let mut run = Run {
         scenario,
-        ..StoredRun::default()
+        ..Run::default()
     };
-    run.front.members = (0..members)
+    run.front = (0..members)
         .map(|n| member(n, &format!("delta:{}:12/3/1@900", 40.0 + n as f64 / 1000.0)))
         .collect();
     run
 }
 
-fn page<'a>(run: &'a StoredRun, evaluator: Option<&'a Evaluator>) -> Page<'a> {
+fn page<'a>(run: &'a Run, evaluator: Option<&'a Evaluator>) -> Page<'a> {
     Page {
         run,
         scenario_toml: Some("a = \"<b>\""),
@@ -97,11 +92,16 @@ fn the_same_run_has_the_same_bytes() {
 fn texts_of_files_cannot_leave_their_place() {
     let attack = "</script><img src=x onerror=alert(1)>";
     let mut run = run(None, 1);
-    run.front.members.push(member(1, attack));
-    run.front.algorithm = Some(attack.to_owned());
-    run.front
-        .diagnostics
-        .push(("c".to_owned(), attack.to_owned()));
+    let mut attacker = member(1, "delta:40:12/3/1@900");
+    attacker.design.notation = attack.to_owned();
+    run.front.push(attacker);
+    let mut search = testing::summary();
+    search.algorithm = attack.to_owned();
+    search.diagnostics.push(Diagnostic {
+        code: "c".to_owned(),
+        message: attack.to_owned(),
+    });
+    run.search = Some(search);
     run.gaps.push(attack.to_owned());
     let html = written(&page(&run, None));
     assert!(!html.contains("<img"));
@@ -111,7 +111,7 @@ fn texts_of_files_cannot_leave_their_place() {
 #[test]
 fn gaps_leave_the_rest() {
     let none = || Err("none".to_owned());
-    let nothing = StoredRun::read(&RunFiles {
+    let nothing = Run::read(&RunFiles {
         scenario: none(),
         front: none(),
         history: none(),

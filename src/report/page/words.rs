@@ -3,8 +3,8 @@
 use super::Page;
 use crate::earth;
 use crate::report::figures::quantity_label;
-use crate::report::run::{StoredMember, StoredRun};
 use crate::report::validation::digits;
+use crate::run::{FrontMember, Hypervolume, Run, VERSION};
 use crate::scenario::{Algorithm, Quantity, Region, Scenario, Word};
 use crate::units::round_decimal;
 
@@ -47,7 +47,7 @@ pub(super) struct CheckRow {
 }
 
 /// The title of the page.
-pub(super) fn title(run: &StoredRun) -> String {
+pub(super) fn title(run: &Run) -> String {
     match &run.scenario {
         Some(scenario) => format!("Constellation study: {}", scenario.name),
         None => "Constellation study".to_owned(),
@@ -76,9 +76,10 @@ impl Summary {
         paragraphs.extend(run.scenario.as_ref().map(setting));
         paragraphs.push(found(run));
         paragraphs.extend(choice(run));
-        let notes = run.front.diagnostics.iter().map(|d| d.1.clone()).collect();
+        let notes = run.search.iter().flat_map(|search| &search.diagnostics);
+        let notes = notes.map(|d| d.message.clone()).collect();
         let mut gaps = run.gaps.clone();
-        let (cut, all) = (places_with_cuts.len(), run.front.members.len());
+        let (cut, all) = (places_with_cuts.len(), run.front.len());
         if page.evaluator.is_some() && cut < all {
             gaps.push(format!(
                 "this page holds the maps and series of {cut} of the {all} designs on the front; \
@@ -160,32 +161,27 @@ fn hemisphere(degrees: f64, positive: char, negative: char) -> String {
 }
 
 /// What the search did.
-fn found(run: &StoredRun) -> String {
-    let front = &run.front;
-    let members = match front.members.len() {
+fn found(run: &Run) -> String {
+    let members = match run.front.len() {
         0 => "no design that meets the constraints".to_owned(),
         1 => "one design".to_owned(),
         n => format!("{n} designs, none of which dominates another"),
     };
-    let algorithm = front
-        .algorithm
-        .as_deref()
-        .map_or("The search", algorithm_title);
-    let effort = front
-        .evaluations
-        .map(|n| format!(" evaluated {n} designs and"));
-    let seed = front.seed.map(|seed| format!(" (seed {seed})"));
+    let Some(search) = &run.search else {
+        return format!("The search found {members}.");
+    };
     let mut text = format!(
-        "{algorithm}{}{} found {members}.",
-        seed.unwrap_or_default(),
-        effort.unwrap_or_default()
+        "{} (seed {}) evaluated {} designs and found {members}.",
+        algorithm_title(&search.algorithm),
+        search.seed,
+        search.evaluations
     );
-    if let Some([done, of]) = front.generations
-        && done < of
-    {
+    let [done, of] = search.generations;
+    if done < of {
         text += &format!(" It was stopped after generation {done} of {of}.");
     }
-    if let (Some(value), Some(reference)) = (front.hypervolume, &front.reference) {
+    let Hypervolume { value, reference } = &search.hypervolume;
+    if let (Some(value), Some(reference)) = (value, reference) {
         let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
         text += &format!(" The hypervolume at ({}) is {value:.4}.", at.join(", "));
     }
@@ -193,8 +189,8 @@ fn found(run: &StoredRun) -> String {
 }
 
 /// The chosen design and why.
-fn choice(run: &StoredRun) -> Option<String> {
-    let member = &run.front.members[run.chosen()?];
+fn choice(run: &Run) -> Option<String> {
+    let member = &run.front[run.chosen()?];
     let objectives: Vec<String> = member
         .objectives
         .iter()
@@ -204,10 +200,10 @@ fn choice(run: &StoredRun) -> Option<String> {
     Some(format!(
         "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}. \
          On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
-        member.notation,
+        member.design.notation,
         objectives.join(", "),
-        number(member.membership),
-        number(metrics.mean_visible),
+        number(Some(member.membership)),
+        number(Some(metrics.mean_visible)),
         number(metrics.mean_pdop),
         number(metrics.cvar_pdop),
         number(metrics.max_pdop)
@@ -215,19 +211,19 @@ fn choice(run: &StoredRun) -> Option<String> {
 }
 
 /// The best design by each objective.
-pub(super) fn best(run: &StoredRun) -> Vec<Best> {
+pub(super) fn best(run: &Run) -> Vec<Best> {
     let of = |name: &String| {
         let quantity = Quantity::from_word(name).ok();
-        let key = |member: &StoredMember| {
+        let key = |member: &FrontMember| {
             let value = member.objective(name).unwrap_or(f64::INFINITY);
             quantity.map_or(value, |q| q.minimised(value))
         };
-        let members = run.front.members.iter().enumerate();
+        let members = run.front.iter().enumerate();
         let (place, member) = members.min_by(|a, b| key(a.1).total_cmp(&key(b.1)))?;
         Some(Best {
             objective: quantity_label(name),
             place,
-            notation: member.notation.clone(),
+            notation: member.design.notation.clone(),
             value: number(member.objective(name)),
         })
     };
@@ -235,8 +231,8 @@ pub(super) fn best(run: &StoredRun) -> Vec<Best> {
 }
 
 /// The members of the table: at most `most`, evenly over the front, and the chosen one.
-pub(super) fn members(run: &StoredRun, most: usize) -> Vec<Member> {
-    let all = &run.front.members;
+pub(super) fn members(run: &Run, most: usize) -> Vec<Member> {
+    let all = &run.front;
     let shown = all.len().min(most);
     let at = |k: usize| k * (all.len() - 1) / (shown - 1).max(1);
     let mut places: Vec<usize> = (0..shown).map(at).collect();
@@ -250,7 +246,7 @@ pub(super) fn members(run: &StoredRun, most: usize) -> Vec<Member> {
         .collect()
 }
 
-fn row(place: usize, member: &StoredMember) -> Member {
+fn row(place: usize, member: &FrontMember) -> Member {
     let metrics = &member.metrics;
     let mut cells: Vec<String> = member
         .objectives
@@ -259,28 +255,29 @@ fn row(place: usize, member: &StoredMember) -> Member {
         .collect();
     cells.extend(
         [
-            metrics.mean_visible,
+            Some(metrics.mean_visible),
             metrics.mean_pdop,
             metrics.cvar_pdop,
             metrics.max_pdop,
-            metrics.availability,
-            member.membership,
+            Some(metrics.availability),
+            Some(member.membership),
         ]
         .map(number),
     );
     Member {
         place,
         index: member.index,
-        notation: member.notation.clone(),
+        notation: member.design.notation.clone(),
         chosen: member.chosen,
         cells,
     }
 }
 
 /// The verdict of the validation.
-pub(super) fn validated(run: &StoredRun) -> Option<String> {
+pub(super) fn validated(run: &Run) -> Option<String> {
     let validation = run.validation.as_ref()?;
     let gated = validation
+        .findings
         .checks
         .iter()
         .filter(|check| check.gate.is_some());
@@ -297,11 +294,11 @@ pub(super) fn validated(run: &StoredRun) -> Option<String> {
 }
 
 /// The checks of the validation.
-pub(super) fn checks(run: &StoredRun) -> Vec<CheckRow> {
+pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
     let checks = run
         .validation
         .iter()
-        .flat_map(|validation| &validation.checks);
+        .flat_map(|validation| &validation.findings.checks);
     let row = checks.map(|check| CheckRow {
         name: check.name.clone(),
         verdict: match (check.gate, check.passed) {
@@ -309,7 +306,11 @@ pub(super) fn checks(run: &StoredRun) -> Vec<CheckRow> {
             (Some(_), true) => "pass",
             (Some(_), false) => "FAIL",
         },
-        value: check.value.map_or_else(|| "none".to_owned(), digits),
+        value: if check.value.is_finite() {
+            digits(check.value)
+        } else {
+            "none".to_owned()
+        },
         gate: check.gate.map_or_else(String::new, digits),
         unit: check.unit.clone(),
         reason: check.reason.clone(),
@@ -318,7 +319,7 @@ pub(super) fn checks(run: &StoredRun) -> Vec<CheckRow> {
 }
 
 /// What every number rests on.
-pub(super) fn conventions(run: &StoredRun) -> Vec<(&'static str, String)> {
+pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         (
             "Constants",
@@ -350,14 +351,14 @@ pub(super) fn conventions(run: &StoredRun) -> Vec<(&'static str, String)> {
     if let Some(scenario) = &run.scenario {
         rows.extend(of_scenario(scenario));
     }
-    if let Some(hash) = &run.front.scenario_hash {
-        rows.push(("Scenario hash", hash.clone()));
+    if let Some(search) = &run.search {
+        rows.push(("Scenario hash", search.scenario.hash.clone()));
     }
-    let by = run.front.version.as_deref().unwrap_or("unknown");
-    let this = crate::report::VERSION;
+    let by = run.search.as_ref();
+    let by = by.map_or("unknown", |search| &search.version);
     rows.push((
         "Versions",
-        format!("run by navwalker {by}; this page by navwalker {this}"),
+        format!("run by navwalker {by}; this page by navwalker {VERSION}"),
     ));
     rows.push((
         "Parts of this page",

@@ -1,17 +1,17 @@
 //! The files of the study: one table each, and the data of the paper's figures.
 
 use super::{ReproduceResult, expected};
-use crate::report::csv::{CsvError, optional, text};
+use crate::run::columns::optional;
+use crate::run::tables::text;
 use crate::study::paper::{Curve, Line, Place, Reproduction};
 use ::csv::Writer;
+use std::io;
 
 /// Name and contents of every table of the study, as CSV.
 ///
 /// # Errors
 /// Never for tables in memory.
-pub fn reproduction_files(
-    result: &ReproduceResult,
-) -> Result<Vec<(&'static str, String)>, CsvError> {
+pub fn reproduction_files(result: &ReproduceResult) -> io::Result<Vec<(&'static str, String)>> {
     let (study, figures) = (&result.study, &result.study.figures);
     Ok(vec![
         ("statements.csv", reproduction_csv(&study.lines)?),
@@ -33,7 +33,7 @@ fn cell(value: f64) -> String {
 ///
 /// # Errors
 /// Never for a table in memory.
-pub fn reproduction_csv(lines: &[Line]) -> Result<String, CsvError> {
+pub fn reproduction_csv(lines: &[Line]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let header = [
         "place",
@@ -62,7 +62,7 @@ pub fn reproduction_csv(lines: &[Line]) -> Result<String, CsvError> {
 }
 
 /// Table II, the paper's and ours, one row a row.
-fn table2_csv(study: &Reproduction) -> Result<String, CsvError> {
+fn table2_csv(study: &Reproduction) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "row",
@@ -100,7 +100,7 @@ fn table2_csv(study: &Reproduction) -> Result<String, CsvError> {
 }
 
 /// The sensitivity of every row, one assumption and row a row.
-fn sensitivity_csv(study: &Reproduction) -> Result<String, CsvError> {
+fn sensitivity_csv(study: &Reproduction) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "assumption",
@@ -126,7 +126,7 @@ fn sensitivity_csv(study: &Reproduction) -> Result<String, CsvError> {
 }
 
 /// Figure 2: places in the plane of both objectives, with the fuzzy values over each set.
-fn places_csv(places: &[Place]) -> Result<String, CsvError> {
+fn places_csv(places: &[Place]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "set",
@@ -155,7 +155,7 @@ fn places_csv(places: &[Place]) -> Result<String, CsvError> {
 }
 
 /// Figures 3(a) and 4(a): the distribution function of `E_g(N_visible)` over the instants.
-fn distribution_csv(curves: &[Curve]) -> Result<String, CsvError> {
+fn distribution_csv(curves: &[Curve]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record(["name", "design", "mean_visible", "cumulative_share"])?;
     for curve in curves {
@@ -174,7 +174,7 @@ fn distribution_csv(curves: &[Curve]) -> Result<String, CsvError> {
 }
 
 /// Figures 3(b) and 4(b): `PDOP_max` and `E_g(PDOP)` over the day.
-fn course_csv(curves: &[Curve]) -> Result<String, CsvError> {
+fn course_csv(curves: &[Curve]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "name",

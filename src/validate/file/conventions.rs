@@ -15,7 +15,7 @@ use crate::orbit::{MeanElements, Propagator};
 use crate::units::wrap_two_pi;
 use crate::validate::{Subject, ValidateError};
 use flights::{about_j2000, gps_minus_utc_s, mislabelled, taken_as_osculating};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A convention explains a difference when it leaves less than this share of it...
@@ -31,7 +31,7 @@ const SAMPLES: usize = 600;
 const RADIUS_DIGIT_KM: f64 = 1e-4;
 
 /// The convention that explains a difference.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
     /// Its name.
     pub convention: String,

@@ -8,7 +8,7 @@ use crate::units::SECONDS_PER_DAY;
 use crate::validate::distribution::{Distribution, Residual};
 use crate::validate::residuals::Ric;
 use crate::validate::{Check, Findings, Subject, ValidateError};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// From where the mean radius shift is largest, over 54.7°, where the common mistake of the mean
 /// motion slot hides, to a sun-synchronous orbit.
@@ -23,7 +23,7 @@ const STEP_S: f64 = 480.0;
 const CASES: usize = 5;
 
 /// A case of the budget in a cell.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepLine {
     /// The case, as in the budget.
     pub case: String,
@@ -34,7 +34,7 @@ pub struct SweepLine {
 }
 
 /// The budget of a circular pattern at an inclination and altitude.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepCell {
     /// Inclination, degrees.
     pub inclination_deg: f64,

@@ -1,10 +1,11 @@
-//! Which design of a run to take, and why.
+//! Which member of a front to take, and why.
 
-use crate::optimize::{best, fuzzy, knee, topsis};
+use super::decision::{best, fuzzy, knee, topsis};
+use thiserror::Error;
 
 /// A method that picks, or the member itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pick {
+pub enum Pick {
     /// The fuzzy decision: the largest least membership.
     Fuzzy,
     /// The largest normalised sum of memberships.
@@ -17,8 +18,22 @@ pub(crate) enum Pick {
     Index(usize),
 }
 
+/// A member that was picked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picked {
+    /// Its place in the front, from 0.
+    pub place: usize,
+    /// Why it is that one, in words.
+    pub reason: String,
+}
+
+/// A word that names no pick.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+#[error("expected fuzzy, sum, topsis, knee, or the index of a front member from 1")]
+pub struct UnknownPick;
+
 impl std::str::FromStr for Pick {
-    type Err = String;
+    type Err = UnknownPick;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         match text {
@@ -28,10 +43,7 @@ impl std::str::FromStr for Pick {
             "knee" => Ok(Self::Knee),
             _ => match text.parse() {
                 Ok(index) if index > 0 => Ok(Self::Index(index)),
-                _ => Err(
-                    "expected fuzzy, sum, topsis, knee, or the index of a front member from 1"
-                        .to_owned(),
-                ),
+                _ => Err(UnknownPick),
             },
         }
     }
@@ -39,10 +51,11 @@ impl std::str::FromStr for Pick {
 
 impl Pick {
     /// The methods, for tables of what each picks.
-    pub(crate) const METHODS: [Self; 4] = [Self::Fuzzy, Self::Sum, Self::Topsis, Self::Knee];
+    pub const METHODS: [Self; 4] = [Self::Fuzzy, Self::Sum, Self::Topsis, Self::Knee];
 
-    /// The word that is typed.
-    pub(crate) fn word(self) -> String {
+    /// The word that reads back to the pick.
+    #[must_use]
+    pub fn word(self) -> String {
         match self {
             Self::Fuzzy => "fuzzy".to_owned(),
             Self::Sum => "sum".to_owned(),
@@ -65,13 +78,17 @@ impl Pick {
         }
     }
 
-    /// The place of the pick, from 0, among members whose objectives are all minimised, and why it is
-    /// that; `None` when there is no such member.
-    pub(crate) fn place(self, members: &[Vec<f64>]) -> Option<(usize, String)> {
+    /// Picks among members whose objectives are all minimised; `None` when there is no such member
+    /// or the members cannot be scored.
+    #[must_use]
+    pub fn apply(self, members: &[Vec<f64>]) -> Option<Picked> {
         let scores = match self {
             Self::Index(index) => {
-                let place = index - 1;
-                return (place < members.len()).then(|| (place, self.reason().to_owned()));
+                let place = index
+                    .checked_sub(1)
+                    .filter(|place| *place < members.len())?;
+                let reason = self.reason().to_owned();
+                return Some(Picked { place, reason });
             }
             Self::Fuzzy => fuzzy(members).map(|memberships| memberships.minimum),
             Self::Sum => fuzzy(members).map(|memberships| memberships.share),
@@ -80,7 +97,8 @@ impl Pick {
         };
         let scores = scores.ok()?;
         let place = best(&scores)?;
-        Some((place, format!("{} ({:.3})", self.reason(), scores[place])))
+        let reason = format!("{} ({:.3})", self.reason(), scores[place]);
+        Some(Picked { place, reason })
     }
 }
 
@@ -97,7 +115,7 @@ mod tests {
             vec![2.0, 42.0],
             vec![4.0, 40.0],
         ];
-        let place = |pick: Pick| pick.place(&front).map(|(place, _)| place);
+        let place = |pick: Pick| pick.apply(&front).map(|picked| picked.place);
         // Memberships: (1, 0), (0.933, 0.667), (0.667, 0.967), (0, 1); the sums of the middle ones
         // are 1.6 and 1.633.
         assert_eq!(place(Pick::Fuzzy), Some(1));
@@ -107,7 +125,7 @@ mod tests {
         assert_eq!(place(Pick::Topsis), Some(1));
         assert_eq!(place(Pick::Index(4)), Some(3));
         assert_eq!(place(Pick::Index(5)), None);
-        assert_eq!(Pick::Knee.place(&[]), None);
+        assert_eq!(Pick::Knee.apply(&[]), None);
     }
 
     #[test]

@@ -1,22 +1,24 @@
-//! A run directory as `report` and `plot` look at it: what is there, and what can be computed anew.
+//! A run as `report` and `plot` show it: what its directory holds, and what is computed from that.
 
 use crate::cli::args::RunArgs;
 use crate::cli::output;
-use crate::cli::pick::Pick;
 use crate::cli::study::Study;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
+use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
-use crate::report::run::{RunFiles, StoredMember, StoredRun, stored_front};
-use crate::scenario::{Quantity, Word};
+use crate::run::{
+    FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
+    VALIDATION_REPORT,
+};
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::io;
 use std::path::Path;
 
 /// A run, and the designs and fronts that are shown beside it.
-pub(crate) struct Look {
-    pub(crate) run: StoredRun,
+pub(crate) struct RunView {
+    pub(crate) run: Run,
     /// Text of the scenario, for the provenance.
     pub(crate) scenario_toml: Option<String>,
     /// `None` when the scenario cannot be set up any more.
@@ -26,11 +28,11 @@ pub(crate) struct Look {
     pub(crate) fronts: Vec<NamedFront>,
 }
 
-impl Look {
+impl RunView {
     /// Reads what there is; fails only where there is no run at all.
     pub(crate) fn at(args: &RunArgs) -> Result<Self> {
         let files = read(args)?;
-        let mut run = StoredRun::read(&files);
+        let mut run = Run::read(&files);
         let evaluator = match evaluator(&args.directory, &run) {
             Ok(evaluator) => evaluator,
             Err(error) => {
@@ -65,28 +67,21 @@ impl Look {
     }
 
     /// The member that is picked.
-    pub(crate) fn pick(&self, pick: Pick) -> Result<&StoredMember> {
-        let members = &self.run.front.members;
-        let points: Vec<Vec<f64>> = members.iter().map(minimised).collect();
-        let found = pick.place(&points).map(|(place, _)| &members[place]);
+    pub(crate) fn pick(&self, pick: Pick) -> Result<&FrontMember> {
+        let members = &self.run.front;
+        let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
+        let found = pick.apply(&points).map(|picked| &members[picked.place]);
         found.with_context(|| format!("the front has {} members and not that one", members.len()))
     }
-}
-
-fn minimised(member: &StoredMember) -> Vec<f64> {
-    let value = |(name, value): &(String, f64)| {
-        Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
-    };
-    member.objectives.iter().map(value).collect()
 }
 
 fn read(args: &RunArgs) -> Result<RunFiles> {
     let directory = &args.directory;
     let read = |name: &str| fs::read(directory.join(name)).map_err(reason);
     let files = RunFiles {
-        scenario: read("scenario.toml"),
-        front: read("front.json"),
-        history: read("history.json"),
+        scenario: read(SCENARIO),
+        front: read(FRONT_JSON),
+        history: read(HISTORY_JSON),
         validation: validation(args)?,
     };
     if files.scenario.is_err() && files.front.is_err() && files.history.is_err() {
@@ -108,11 +103,10 @@ fn reason(error: io::Error) -> String {
 
 /// The validation that is asked for, or the one in the run directory if there is one.
 fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
-    let within = |path: &Path| path.join("report.json");
     match &args.validation {
         Some(path) => {
             let file = if path.is_dir() {
-                within(path)
+                path.join(VALIDATION_REPORT)
             } else {
                 path.clone()
             };
@@ -120,19 +114,19 @@ fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
                 fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
             Ok(Some(bytes))
         }
-        None => Ok(fs::read(within(&args.directory.join("validation"))).ok()),
+        None => Ok(fs::read(args.directory.join(VALIDATION).join(VALIDATION_REPORT)).ok()),
     }
 }
 
 /// The evaluator of the run's scenario, where it has one.
-fn evaluator(directory: &Path, run: &StoredRun) -> Result<Option<Evaluator>> {
+fn evaluator(directory: &Path, run: &Run) -> Result<Option<Evaluator>> {
     if run.scenario.is_none() {
         return Ok(None);
     }
     Ok(Some(Study::of_run(directory, &[])?.evaluator()?))
 }
 
-fn beside(args: &RunArgs, run: &StoredRun) -> Vec<(String, Design)> {
+fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
     let reference = run
         .scenario
         .as_ref()
@@ -150,20 +144,18 @@ fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
     let mut name = args.directory.file_name().unwrap_or_default().to_owned();
     name.push("-sweep");
     let sweep = args.directory.with_file_name(name);
-    let found = sweep.join("front.json").exists().then_some(&sweep);
+    let found = sweep.join(FRONT_JSON).exists().then_some(&sweep);
     let wanted = found.into_iter().chain(&args.front);
     wanted.map(|path| front(path)).collect()
 }
 
 fn front(directory: &Path) -> Result<NamedFront> {
-    let path = directory.join("front.json");
+    let path = directory.join(FRONT_JSON);
     let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
-    let front = stored_front(&bytes)
-        .map_err(anyhow::Error::msg)
+    let found = OptimizeResult::read(&bytes)
         .with_context(|| format!("{} is no front of a run", path.display()))?;
-    let algorithm = front.algorithm.as_deref().unwrap_or("another run");
     Ok(NamedFront {
-        name: format!("front of {algorithm}"),
-        front,
+        name: format!("front of {}", found.search.algorithm),
+        front: found.front,
     })
 }

@@ -1,7 +1,7 @@
 //! Arguments of the commands that show a run.
 
-use crate::cli::pick::Pick;
 use crate::constellation::Design;
+use crate::optimize::Pick;
 use crate::report::figures::draw::Form;
 use crate::report::figures::{Figure, Measure};
 use clap::Args;

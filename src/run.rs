@@ -1,0 +1,265 @@
+//! A run: the files of its directory and what they hold, written and read by the same types.
+//!
+//! Reading is lenient: what is damaged or missing is named, and the rest is kept.
+
+pub mod checkpoint;
+pub(crate) mod columns;
+mod results;
+pub(crate) mod tables;
+mod validation;
+
+pub use results::{
+    Certificate, DesignSummary, Diagnostic, FrontMember, Hypervolume, Missed, OptimizeResult,
+    ScenarioStamp, SearchSummary,
+};
+pub use tables::{front_csv, history_csv};
+pub use validation::{Basis, ValidateResult};
+
+use crate::optimize::Record;
+use crate::scenario::Scenario;
+use serde::de::DeserializeOwned;
+use serde_json::Value;
+
+/// The version of this program, which every result carries.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The scenario with everything that was overridden.
+pub const SCENARIO: &str = "scenario.toml";
+/// The front and how the search went.
+pub const FRONT_JSON: &str = "front.json";
+/// The front as a table.
+pub const FRONT_CSV: &str = "front.csv";
+/// One record per generation.
+pub const HISTORY_JSON: &str = "history.json";
+/// The generations as a table.
+pub const HISTORY_CSV: &str = "history.csv";
+/// The state of the search.
+pub const CHECKPOINT: &str = "checkpoint";
+/// The state of the search one generation earlier.
+pub const PREVIOUS_CHECKPOINT: &str = "checkpoint.previous";
+/// The directory for a validation of one of the designs.
+pub const VALIDATION: &str = "validation";
+/// The result of a validation, in its directory.
+pub const VALIDATION_REPORT: &str = "report.json";
+
+/// The files that a run writes; whatever else lies in its directory was put there about it.
+pub const FILES: [&str; 7] = [
+    CHECKPOINT,
+    PREVIOUS_CHECKPOINT,
+    SCENARIO,
+    FRONT_JSON,
+    FRONT_CSV,
+    HISTORY_JSON,
+    HISTORY_CSV,
+];
+
+/// The result files of a finished run: names and contents.
+///
+/// # Errors
+/// Never for results in memory.
+pub fn result_files(
+    scenario: &Scenario,
+    result: &OptimizeResult,
+) -> std::io::Result<[(&'static str, String); 5]> {
+    let objectives = scenario.objectives.minimize.iter();
+    let objectives: Vec<String> = objectives.map(ToString::to_string).collect();
+    Ok([
+        (SCENARIO, scenario.to_toml()),
+        (FRONT_JSON, serde_json::to_string_pretty(result)? + "\n"),
+        (FRONT_CSV, front_csv(result)?),
+        (
+            HISTORY_JSON,
+            serde_json::to_string_pretty(&result.history)? + "\n",
+        ),
+        (HISTORY_CSV, history_csv(&result.history, &objectives)?),
+    ])
+}
+
+/// What could be read of a run.
+#[derive(Debug, Clone, Default)]
+pub struct Run {
+    /// The study; `None` when it is missing or not a scenario.
+    pub scenario: Option<Scenario>,
+    /// Members of the front that could be read.
+    pub front: Vec<FrontMember>,
+    /// How the search went; `None` when it is missing or damaged.
+    pub search: Option<SearchSummary>,
+    /// One record per generation.
+    pub history: Vec<Record>,
+    /// A validation of one of its designs.
+    pub validation: Option<ValidateResult>,
+    /// What is missing or damaged, in words.
+    pub gaps: Vec<String>,
+}
+
+/// The bytes of a run's files; `Err` says why there are none.
+#[derive(Debug, Clone)]
+pub struct RunFiles {
+    /// [`SCENARIO`].
+    pub scenario: Result<Vec<u8>, String>,
+    /// [`FRONT_JSON`].
+    pub front: Result<Vec<u8>, String>,
+    /// [`HISTORY_JSON`].
+    pub history: Result<Vec<u8>, String>,
+    /// The `report.json` of a validation, where there is one.
+    pub validation: Option<Vec<u8>>,
+}
+
+impl Run {
+    /// Reads what can be read.
+    #[must_use]
+    pub fn read(files: &RunFiles) -> Self {
+        let mut run = Self::default();
+        run.read_scenario(&files.scenario);
+        match json(FRONT_JSON, &files.front) {
+            Ok(value) => run.read_front(value),
+            Err(gap) => run.gaps.push(gap),
+        }
+        match json(HISTORY_JSON, &files.history) {
+            Ok(history) => run.history = history,
+            Err(gap) => run.gaps.push(gap),
+        }
+        if let Some(bytes) = &files.validation {
+            match json("the validation", &Ok(bytes.clone())) {
+                Ok(validation) => run.validation = Some(validation),
+                Err(gap) => run.gaps.push(gap),
+            }
+        }
+        run.sort_objectives();
+        run.compare_versions();
+        run
+    }
+
+    /// The pick of the fuzzy decision, by place in the members.
+    #[must_use]
+    pub fn chosen(&self) -> Option<usize> {
+        self.front.iter().position(|member| member.chosen)
+    }
+
+    /// The reference point of the hypervolume.
+    #[must_use]
+    pub fn reference(&self) -> Option<&[f64]> {
+        self.search.as_ref()?.hypervolume.reference.as_deref()
+    }
+
+    /// The objectives' names, in the order of the scenario.
+    #[must_use]
+    pub fn objective_names(&self) -> Vec<String> {
+        match (&self.scenario, self.front.first()) {
+            (Some(scenario), _) => {
+                let names = scenario.objectives.minimize.iter();
+                names.map(ToString::to_string).collect()
+            }
+            (None, Some(member)) => member
+                .objectives
+                .iter()
+                .map(|(name, _)| name.clone())
+                .collect(),
+            (None, None) => Vec::new(),
+        }
+    }
+
+    fn read_scenario(&mut self, bytes: &Result<Vec<u8>, String>) {
+        match bytes {
+            Ok(bytes) => match Scenario::parse::<&str>(SCENARIO, bytes, &[]) {
+                Ok(scenario) => self.scenario = Some(scenario),
+                Err(problems) => self.gaps.push(format!(
+                    "{SCENARIO} is no scenario of this version, so that nothing can be computed \
+                     anew: {}",
+                    first_line(&problems.to_string())
+                )),
+            },
+            Err(reason) => self.gaps.push(format!(
+                "{SCENARIO} is missing, so that nothing can be computed anew: {reason}"
+            )),
+        }
+    }
+
+    /// Brings every member's objectives into the scenario's order; a member that lacks one goes.
+    fn sort_objectives(&mut self) {
+        let names = self.objective_names();
+        let before = self.front.len();
+        self.front.retain_mut(|member| {
+            let value = |name: &String| {
+                let found = member.objectives.iter().find(|(n, _)| n == name)?;
+                Some((name.clone(), found.1))
+            };
+            let sorted: Option<Vec<_>> = names.iter().map(value).collect();
+            let complete = sorted.is_some();
+            member.objectives = sorted.unwrap_or_default();
+            complete
+        });
+        let lost = before - self.front.len();
+        if lost > 0 {
+            self.gaps.push(format!(
+                "{lost} front members lack an objective of the scenario and are left out"
+            ));
+        }
+    }
+
+    /// Reads the members one by one, and then what came with them.
+    fn read_front(&mut self, mut value: Value) {
+        let written = match value.get_mut("front").map(Value::take) {
+            Some(Value::Array(members)) => members,
+            _ => Vec::new(),
+        };
+        let count = written.len();
+        let members = written.into_iter().map(serde_json::from_value);
+        self.front = members.filter_map(Result::ok).collect();
+        if self.front.len() < count {
+            let lost = count - self.front.len();
+            self.gaps
+                .push(format!("{lost} of {count} front members cannot be read"));
+        }
+        if self.front.is_empty() {
+            self.gaps
+                .push("the front has no member that can be shown".to_owned());
+        }
+        match serde_json::from_value(value) {
+            Ok(search) => self.search = Some(search),
+            Err(error) => self.gaps.push(format!(
+                "{FRONT_JSON} does not say how the search went: {error}"
+            )),
+        }
+    }
+
+    fn compare_versions(&mut self) {
+        if let Some(search) = &self.search
+            && search.version != VERSION
+        {
+            self.gaps.push(format!(
+                "the run was made by version {}; this page by version {VERSION}, which computed \
+                 maps and series anew",
+                search.version
+            ));
+        }
+    }
+}
+
+impl OptimizeResult {
+    /// Reads `front.json` strictly: every member and everything that came with them.
+    ///
+    /// # Errors
+    /// When the bytes are not the front of a run.
+    pub fn read(front_json: &[u8]) -> serde_json::Result<Self> {
+        serde_json::from_slice(front_json)
+    }
+}
+
+/// Reads one file; the error names it and what is wrong.
+fn json<T: DeserializeOwned>(name: &str, bytes: &Result<Vec<u8>, String>) -> Result<T, String> {
+    let bytes = bytes
+        .as_ref()
+        .map_err(|reason| format!("{name} is missing: {reason}"))?;
+    serde_json::from_slice(bytes).map_err(|error| format!("{name} is damaged: {error}"))
+}
+
+/// The first line of a message, which may be long.
+fn first_line(text: &str) -> String {
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
+#[cfg(test)]
+pub(crate) mod testing;
+#[cfg(test)]
+mod tests;

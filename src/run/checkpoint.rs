@@ -1,0 +1,124 @@
+//! The checkpoint of a run: two lines, what it is a checkpoint of and the state of the search.
+
+use super::VERSION;
+use crate::optimize::Search;
+use crate::scenario::Scenario;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use thiserror::Error;
+
+/// What a run is a run of: only the same continues or replaces it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// Hash of the scenario.
+    pub scenario_hash: String,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Version of the program.
+    pub version: String,
+}
+
+impl Identity {
+    /// The identity of a run of `scenario`, which has this hash.
+    #[must_use]
+    pub fn of(scenario: &Scenario, hash: String) -> Self {
+        Self {
+            scenario_hash: hash,
+            seed: scenario.optimizer.seed,
+            version: VERSION.to_owned(),
+        }
+    }
+
+    /// The identity that a checkpoint states; its second line may be damaged.
+    #[must_use]
+    pub fn read(checkpoint: &str) -> Option<Self> {
+        let header: Header = serde_json::from_str(checkpoint.lines().next()?).ok()?;
+        Some(header.identity)
+    }
+}
+
+/// The first line; the second is the state of the search as JSON.
+#[derive(Debug, Serialize, Deserialize)]
+struct Header {
+    #[serde(flatten)]
+    identity: Identity,
+    /// SHA-256 of the second line, hex.
+    sha256: String,
+}
+
+/// Why a checkpoint cannot be read.
+#[derive(Debug, Error)]
+pub enum CheckpointError {
+    /// Not UTF-8.
+    #[error("it is no text")]
+    Text(#[source] std::str::Utf8Error),
+    /// No second line.
+    #[error("it is cut short")]
+    Short,
+    /// The first line.
+    #[error("its header cannot be read")]
+    Header(#[source] serde_json::Error),
+    /// The second line is not the one that was written.
+    #[error("its checksum does not fit")]
+    Checksum,
+    /// The second line.
+    #[error("its state cannot be read")]
+    State(#[source] serde_json::Error),
+}
+
+/// The text of a checkpoint.
+///
+/// # Errors
+/// Never for a search in memory.
+pub fn write(identity: &Identity, search: &Search) -> serde_json::Result<String> {
+    let state = serde_json::to_string(search)?;
+    let header = Header {
+        identity: identity.clone(),
+        sha256: hex_sha256(state.as_bytes()),
+    };
+    Ok(format!("{}\n{state}\n", serde_json::to_string(&header)?))
+}
+
+/// Reads a checkpoint.
+///
+/// # Errors
+/// When it is not whole.
+pub fn read(bytes: &[u8]) -> Result<(Identity, Search), CheckpointError> {
+    let text = str::from_utf8(bytes).map_err(CheckpointError::Text)?;
+    let (header, state) = text.split_once('\n').ok_or(CheckpointError::Short)?;
+    let header: Header = serde_json::from_str(header).map_err(CheckpointError::Header)?;
+    let state = state.trim_end();
+    if hex_sha256(state.as_bytes()) != header.sha256 {
+        return Err(CheckpointError::Checksum);
+    }
+    let search = serde_json::from_str(state).map_err(CheckpointError::State)?;
+    Ok((header.identity, search))
+}
+
+fn hex_sha256(bytes: &[u8]) -> String {
+    let sum = Sha256::digest(bytes);
+    sum.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spoiled_checkpoint_is_noticed() {
+        let header = Header {
+            identity: Identity {
+                scenario_hash: "h".to_owned(),
+                seed: 1,
+                version: VERSION.to_owned(),
+            },
+            sha256: hex_sha256(b"other"),
+        };
+        let text = format!("{}\n{{}}\n", serde_json::to_string(&header).unwrap());
+        let error = read(text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(error, "its checksum does not fit");
+        assert!(read(b"").is_err());
+        let error = read(b"\xff\n{}").unwrap_err().to_string();
+        assert_eq!(error, "it is no text");
+    }
+}

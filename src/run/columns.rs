@@ -1,0 +1,113 @@
+//! The columns of a table, taken from the fields of the types that its rows serialise.
+
+use serde::de::value::Error;
+use serde::de::{Deserialize, Deserializer, Error as _, Visitor};
+use serde::ser::Serialize;
+use serde_json::Value;
+
+/// The names of a struct's fields as they are serialised, in order.
+pub(crate) fn fields<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
+    let mut names: &'static [&'static str] = &[];
+    // A deserialiser that only listens for the names never yields a value.
+    let _ = T::deserialize(Listener { names: &mut names });
+    names
+}
+
+/// Hears which fields a struct asks for.
+struct Listener<'a> {
+    names: &'a mut &'static [&'static str],
+}
+
+impl<'de> Deserializer<'de> for Listener<'_> {
+    type Error = Error;
+
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _name: &'static str,
+        fields: &'static [&'static str],
+        _visitor: V,
+    ) -> Result<V::Value, Error> {
+        *self.names = fields;
+        Err(Error::custom("only the names were asked for"))
+    }
+
+    fn deserialize_any<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, Error> {
+        Err(Error::custom("no struct"))
+    }
+
+    serde::forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option
+        unit unit_struct newtype_struct seq tuple tuple_struct map enum identifier ignored_any
+    }
+}
+
+/// The values of the fields `names` of a struct, in that order, as the cells of a row.
+///
+/// # Errors
+/// When the struct cannot be serialised.
+pub(crate) fn cells(row: &impl Serialize, names: &[&str]) -> serde_json::Result<Vec<String>> {
+    let value = serde_json::to_value(row)?;
+    Ok(names.iter().map(|name| cell(&value[*name])).collect())
+}
+
+/// The shortest digits that read back; empty for what has no value.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Number(number) if number.is_f64() => optional(number.as_f64()),
+        other => other.to_string(),
+    }
+}
+
+/// The shortest digits that read back; empty for a metric without a value.
+pub(crate) fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evaluate::Metrics;
+    use crate::run::DesignSummary;
+
+    #[derive(serde::Serialize, serde::Deserialize)]
+    struct Row {
+        whole: f64,
+        small: f64,
+        count: u64,
+        yes: bool,
+        none: Option<f64>,
+        text: String,
+    }
+
+    #[test]
+    fn cells_are_the_shortest_digits() {
+        let row = Row {
+            whole: 925.0,
+            small: 1e-7,
+            count: 3,
+            yes: true,
+            none: None,
+            text: "a b".to_owned(),
+        };
+        let names = fields::<Row>();
+        assert_eq!(names, ["whole", "small", "count", "yes", "none", "text"]);
+        let expected = ["925", "0.0000001", "3", "true", "", "a b"];
+        assert_eq!(cells(&row, names).unwrap(), expected);
+    }
+
+    /// What JSON has of a design, a table has too.
+    #[test]
+    fn every_field_of_json_is_a_column() {
+        let design: crate::constellation::Design = "delta:55:182/13/1@925".parse().unwrap();
+        let value = serde_json::to_value(DesignSummary::from(&design)).unwrap();
+        let keys = value.as_object().unwrap().keys();
+        assert!(
+            keys.clone()
+                .all(|key| fields::<DesignSummary>().contains(&key.as_str()))
+        );
+        assert_eq!(keys.count(), fields::<DesignSummary>().len());
+        assert_eq!(fields::<Metrics>().len(), 12);
+    }
+}

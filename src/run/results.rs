@@ -1,0 +1,231 @@
+//! The results that the files of a run hold, and that `--format json` prints.
+
+use crate::constellation::Design;
+use crate::evaluate::Metrics;
+use crate::keyword::Word;
+use crate::optimize::Record;
+use crate::search::Quantity;
+use serde::{Deserialize, Serialize};
+
+/// A design, spelled out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DesignSummary {
+    /// Walker notation that reads back to the design.
+    pub notation: String,
+    /// `delta`, `star` or `lattice`.
+    pub pattern: String,
+    /// Planes P.
+    pub planes: usize,
+    /// Satellites per plane S.
+    pub satellites_per_plane: usize,
+    /// Satellites T.
+    pub satellites: usize,
+    /// Phasing F, or `N_c` of a lattice.
+    pub phasing: usize,
+    /// Inclination, degrees.
+    pub inclination_deg: f64,
+    /// Altitude over the equatorial radius, km.
+    pub altitude_km: f64,
+    /// Eccentricity.
+    pub eccentricity: f64,
+    /// Argument of perigee, degrees.
+    pub arg_perigee_deg: f64,
+}
+
+impl From<&Design> for DesignSummary {
+    fn from(design: &Design) -> Self {
+        Self {
+            notation: design.to_string(),
+            pattern: design.pattern().to_string(),
+            planes: design.planes(),
+            satellites_per_plane: design.satellites_per_plane(),
+            satellites: design.satellite_count(),
+            phasing: design.phasing(),
+            inclination_deg: design.inclination_deg(),
+            altitude_km: design.altitude_km(),
+            eccentricity: design.eccentricity(),
+            arg_perigee_deg: design.arg_perigee_deg(),
+        }
+    }
+}
+
+impl DesignSummary {
+    /// The design of the notation; `None` when the notation is not one.
+    #[must_use]
+    pub fn design(&self) -> Option<Design> {
+        self.notation.parse().ok()
+    }
+}
+
+/// Which study a result belongs to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ScenarioStamp {
+    /// Its name.
+    pub name: String,
+    /// What [`Scenario::hash`](crate::scenario::Scenario::hash) gives.
+    pub hash: String,
+}
+
+/// A non-dominated design of the last population.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FrontMember {
+    /// Place in the front from 1, by the first objective; what `--pick N` takes.
+    pub index: usize,
+    /// The design.
+    pub design: DesignSummary,
+    /// Its metrics.
+    pub metrics: Metrics,
+    /// Value of each objective by name, in its own direction.
+    #[serde(with = "by_name")]
+    pub objectives: Vec<(String, f64)>,
+    /// Fuzzy membership: the least over the objectives.
+    pub membership: f64,
+    /// Fuzzy membership: the normalised sum over the objectives.
+    pub membership_sum: f64,
+    /// Whether this is the pick of the fuzzy decision.
+    pub chosen: bool,
+}
+
+impl FrontMember {
+    /// An objective by its name.
+    #[must_use]
+    pub fn objective(&self, name: &str) -> Option<f64> {
+        let found = self.objectives.iter().find(|(n, _)| n == name);
+        found.map(|(_, value)| *value)
+    }
+
+    /// The objectives as the optimiser minimises them; one of another name is taken as it is.
+    #[must_use]
+    pub fn minimised(&self) -> Vec<f64> {
+        let value = |(name, value): &(String, f64)| {
+            Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
+        };
+        self.objectives.iter().map(value).collect()
+    }
+}
+
+/// Objectives as a map from name to value.
+mod by_name {
+    use serde::de::{Deserialize, Deserializer};
+    use serde::ser::Serializer;
+    use std::collections::BTreeMap;
+
+    pub(super) fn serialize<S: Serializer>(
+        pairs: &[(String, f64)],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Vec<(String, f64)>, D::Error> {
+        let map = BTreeMap::<String, f64>::deserialize(deserializer)?;
+        Ok(map.into_iter().collect())
+    }
+}
+
+/// The volume that a front dominates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Hypervolume {
+    /// The volume, in the product of the objectives' units; `None` without a reference point.
+    pub value: Option<f64>,
+    /// The reference point, one coordinate per objective.
+    pub reference: Option<Vec<f64>>,
+}
+
+/// How a search went: what a front comes with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SearchSummary {
+    /// Designs evaluated.
+    pub evaluations: u64,
+    /// Volume that the front dominates.
+    pub hypervolume: Hypervolume,
+    /// Seed of the search.
+    pub seed: u64,
+    /// Name of the algorithm.
+    pub algorithm: String,
+    /// Generations done, and asked for.
+    pub generations: [u64; 2],
+    /// What the program notices.
+    #[serde(default)]
+    pub diagnostics: Vec<Diagnostic>,
+    /// What a sweep of the same problem says of the front, when it was asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<Certificate>,
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// What `optimize` prints, and what `front.json` holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OptimizeResult {
+    /// The front, by the first objective.
+    pub front: Vec<FrontMember>,
+    /// How the search went.
+    #[serde(flatten)]
+    pub search: SearchSummary,
+    /// One record per generation; goes to the history files.
+    #[serde(skip)]
+    pub history: Vec<Record>,
+}
+
+impl OptimizeResult {
+    /// The pick of the fuzzy decision.
+    #[must_use]
+    pub fn chosen(&self) -> Option<&FrontMember> {
+        self.front.iter().find(|member| member.chosen)
+    }
+}
+
+/// What a sweep says of a front.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Certificate {
+    /// Designs that the sweep evaluated.
+    pub evaluations: u64,
+    /// Members of the exact front of the lattice.
+    pub exact_members: usize,
+    /// Hypervolume of the exact front of the lattice.
+    pub exact_hypervolume: Option<f64>,
+    /// Hypervolume of the certified front.
+    pub found_hypervolume: Option<f64>,
+    /// Distance of each front member to the exact front, in the order of the front.
+    pub distances: Vec<f64>,
+    /// The exact members that no front member comes near to, if any.
+    pub missed: Option<Missed>,
+}
+
+/// A part of the exact front that a search did not find, by the ranges of its designs.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Missed {
+    /// Exact members that were not found.
+    pub members: usize,
+    /// Planes, lowest and highest.
+    pub planes: [usize; 2],
+    /// Satellites per plane, lowest and highest.
+    pub satellites_per_plane: [usize; 2],
+    /// Inclination, lowest and highest, degrees.
+    pub inclination_deg: [f64; 2],
+    /// Altitude, lowest and highest, km.
+    pub altitude_km: [f64; 2],
+}
+
+/// Something worth knowing about a result, in plain words.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Diagnostic {
+    /// Stable name, for programs.
+    pub code: String,
+    /// The sentence, for people.
+    pub message: String,
+}
+
+impl Diagnostic {
+    pub(crate) fn new(code: &str, message: String) -> Self {
+        Self {
+            code: code.to_owned(),
+            message,
+        }
+    }
+}

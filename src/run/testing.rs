@@ -1,0 +1,53 @@
+//! Members of a front for tests.
+
+use super::{DesignSummary, Diagnostic, FrontMember, Hypervolume, ScenarioStamp, SearchSummary};
+use crate::constellation::Design;
+use crate::evaluate::Metrics;
+
+/// A member with this index and design that sees little.
+pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
+    let design: Design = notation.parse().unwrap();
+    FrontMember {
+        index,
+        design: DesignSummary::from(&design),
+        metrics: Metrics {
+            mean_visible: 8.0,
+            mean_pdop: None,
+            cvar_pdop: None,
+            cvar_level: 0.95,
+            p50_pdop: None,
+            p95_pdop: None,
+            p99_pdop: None,
+            max_pdop: None,
+            solved_fraction: 0.0,
+            availability: 0.0,
+            j_pos: None,
+            j_cost: None,
+        },
+        objectives: Vec::new(),
+        membership: 0.5,
+        membership_sum: 0.5,
+        chosen: false,
+    }
+}
+
+/// A search by another version, with a diagnostic.
+pub(crate) fn summary() -> SearchSummary {
+    SearchSummary {
+        evaluations: 900,
+        hypervolume: Hypervolume {
+            value: Some(0.6),
+            reference: Some(vec![2.0, 22.0]),
+        },
+        seed: 7,
+        algorithm: "nsga2".to_owned(),
+        generations: [30, 30],
+        diagnostics: vec![Diagnostic::new("c", "m".to_owned())],
+        certificate: None,
+        scenario: ScenarioStamp {
+            name: "paper".to_owned(),
+            hash: "h".to_owned(),
+        },
+        version: "0.0.0".to_owned(),
+    }
+}

@@ -1,0 +1,53 @@
+//! The result of a validation, which a run directory may hold beside the run.
+
+use super::{DesignSummary, ScenarioStamp};
+use crate::earth;
+use crate::validate::{Findings, JUDGES, Judge};
+use serde::{Deserialize, Serialize};
+
+/// What `validate` prints.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ValidateResult {
+    /// The design.
+    pub design: DesignSummary,
+    /// The checks, and the budget of sgp4.
+    #[serde(flatten)]
+    pub findings: Findings,
+    /// Whether every gate is kept.
+    pub passed: bool,
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// The targets, in the order in which they were asked for.
+    pub against: Vec<String>,
+    /// What every number rests on.
+    pub basis: Basis,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// Constants and crates behind a validation. There is no random number in it, and no seed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Basis {
+    /// Gravitational parameter, km³/s².
+    pub mu_km3_s2: f64,
+    /// Equatorial radius, km.
+    pub radius_km: f64,
+    /// Second zonal harmonic.
+    pub j2: f64,
+    /// Flattening of the ellipsoid.
+    pub flattening: f64,
+    /// The crates whose word counts.
+    pub judges: Vec<Judge>,
+}
+
+impl Default for Basis {
+    fn default() -> Self {
+        Self {
+            mu_km3_s2: earth::MU_KM3_S2,
+            radius_km: earth::RADIUS_KM,
+            j2: earth::J2,
+            flattening: earth::FLATTENING,
+            judges: JUDGES.to_vec(),
+        }
+    }
+}
