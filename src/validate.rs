@@ -55,21 +55,32 @@ pub struct Check {
     pub reason: String,
 }
 
+/// What the number of a [`Check`] is.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure<'a> {
+    /// What was measured.
+    pub quantity: &'a str,
+    /// Its unit.
+    pub unit: &'a str,
+    /// Which statistic of it.
+    pub statistic: &'a str,
+}
+
 impl Check {
     /// A check whose gate bounds |value|; a value that is not a number never passes a gate.
     #[must_use]
     pub fn new(
         name: &str,
-        [quantity, unit, statistic]: [&str; 3],
+        measure: Measure<'_>,
         value: f64,
         gate: Option<f64>,
         reason: &str,
     ) -> Self {
         Self {
             name: name.to_owned(),
-            quantity: quantity.to_owned(),
-            unit: unit.to_owned(),
-            statistic: statistic.to_owned(),
+            quantity: measure.quantity.to_owned(),
+            unit: measure.unit.to_owned(),
+            statistic: measure.statistic.to_owned(),
             value,
             gate,
             passed: gate.is_none_or(|gate| value.abs() <= gate),
@@ -371,7 +382,20 @@ mod tests {
 
     #[test]
     fn gates_bound_the_size() {
-        let check = |value, gate| Check::new("a/b", ["q", "km", "max"], value, gate, "").passed;
+        let check = |value, gate| {
+            Check::new(
+                "a/b",
+                Measure {
+                    quantity: "q",
+                    unit: "km",
+                    statistic: "max",
+                },
+                value,
+                gate,
+                "",
+            )
+            .passed
+        };
         assert!(check(-1.0, Some(1.0)) && !check(-1.1, Some(1.0)));
         assert!(check(1e9, None));
         assert!(!check(f64::NAN, Some(1.0)));

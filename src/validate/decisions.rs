@@ -1,7 +1,7 @@
 //! What a difference of two trajectories does to visibility decisions, passes and metrics.
 
 use super::distribution::{Distribution, Residual};
-use super::{Check, Findings};
+use super::{Check, Findings, Measure};
 use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::frames::{EarthFixed, EarthRotation, Position};
@@ -53,7 +53,11 @@ impl Seen<'_> {
         let mut findings = Findings::default();
         findings.checks.push(Check::new(
             &format!("{name}/flipped-decisions"),
-            ["visibility decisions that flip", "1", "share"],
+            Measure {
+                quantity: "visibility decisions that flip",
+                unit: "1",
+                statistic: "share",
+            },
             flips,
             gates.map(|gates| gates.flips),
             gates.map_or(UNBOUNDED, |_| "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude"),
@@ -116,7 +120,7 @@ impl Seen<'_> {
             .map(|(a, b)| self.pass_shifts(&sites, a, b))
             .collect::<Result<_, _>>()?;
         let shifts: Vec<Shift> = shifts.into_iter().flatten().collect();
-        let kinds: [(&str, &str, Measure); 3] = [
+        let kinds: [(&str, &str, ShiftMeasure); 3] = [
             ("rise", "shift of the rise", |shift| shift.rise_s),
             ("set", "shift of the set", |shift| shift.set_s),
             ("duration", "change of the duration of a pass", |shift| {
@@ -184,7 +188,7 @@ fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
 }
 
 /// What is measured of a shift.
-type Measure = fn(&Shift) -> f64;
+type ShiftMeasure = fn(&Shift) -> f64;
 
 /// How a pass moved.
 struct Shift {
@@ -301,7 +305,11 @@ fn metric_checks(
     let relative = gates.map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
     let mut checks = vec![Check::new(
         &format!("{name}/mean-visible"),
-        ["change of mean visible satellites", "1", "mean"],
+        Measure {
+            quantity: "change of mean visible satellites",
+            unit: "1",
+            statistic: "mean",
+        },
         second.mean_visible - first.mean_visible,
         visible_gate,
         gates.map_or(
@@ -320,7 +328,11 @@ fn metric_checks(
             let gate = relative.zip(factor);
             checks.push(Check::new(
                 &format!("{name}/{quantity}"),
-                [&format!("change of {quantity}"), "1", "difference"],
+                Measure {
+                    quantity: &format!("change of {quantity}"),
+                    unit: "1",
+                    statistic: "difference",
+                },
                 after - before,
                 gate.map(|(relative, factor)| factor * relative * before),
                 gates.map_or(UNBOUNDED, |_| "each flip changes PDOP by about 1/n of n satellites; fourfold in the tail, where n is small; the maximum is one sample and has no bound"),

@@ -17,7 +17,7 @@ pub use read::{Comparand, FileError, read};
 use super::decisions::Seen;
 use super::distribution::{Distribution, Residual};
 use super::residuals::Ric;
-use super::{Check, Findings, Subject, ValidateError};
+use super::{Check, Findings, Measure, Subject, ValidateError};
 use crate::ephemeris::Ephemeris;
 use crate::frames::ric_basis;
 use crate::orbit::Propagator;
@@ -191,7 +191,11 @@ fn coverage_checks(
     let count = |name: &str, quantity: &str, value: f64, reason: &str| {
         Check::new(
             &format!("file/{source}/{name}"),
-            [quantity, "1", "count"],
+            Measure {
+                quantity,
+                unit: "1",
+                statistic: "count",
+            },
             value,
             Some(0.0),
             reason,
@@ -216,11 +220,11 @@ fn coverage_checks(
         ),
         Check::new(
             &format!("file/{source}/uncovered-span"),
-            [
-                "share of the span of the study that an object leaves out at most",
-                "1",
-                "max",
-            ],
+            Measure {
+                quantity: "share of the span of the study that an object leaves out at most",
+                unit: "1",
+                statistic: "max",
+            },
             1.0 - shortest,
             Some(1e-9),
             "states reach from the first to the last sample of the study without a gap of more than a tenth of a revolution; metrics are compared only then",
@@ -231,7 +235,11 @@ fn coverage_checks(
 fn misplaced_check(source: &str, misplaced: usize) -> Check {
     Check::new(
         &format!("file/{source}/misplaced-objects"),
-        ["objects far from the slot of their name", "1", "count"],
+        Measure {
+            quantity: "objects far from the slot of their name",
+            unit: "1",
+            statistic: "count",
+        },
         misplaced as f64,
         Some(0.0),
         "at its first sample an object is nearer to its own slot than to the next: else it is another pattern, frame or time",
@@ -271,11 +279,11 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
         .map(|(name, unit, statistic, value)| {
             Check::new(
                 &format!("file/{source}/{name}"),
-                [
-                    &format!("{name} of the file from the design"),
+                Measure {
+                    quantity: &format!("{name} of the file from the design"),
                     unit,
                     statistic,
-                ],
+                },
                 value,
                 None,
                 reason,

@@ -10,7 +10,7 @@ mod footprint;
 mod surfaces;
 
 use super::distribution::{Distribution, Residual};
-use super::{Check, Findings, Subject, ValidateError};
+use super::{Check, Findings, Measure, Subject, ValidateError};
 use crate::earth::{FLATTENING, RADIUS_KM, Surface};
 use crate::frames::{EarthFixed, Position};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
@@ -261,9 +261,13 @@ impl Findings {
     ) {
         let found = Distribution::of(name, [quantity, unit], residuals, I::to_string);
         if let Some(found) = found {
-            let text = [quantity, unit, "max"];
+            let measure = Measure {
+                quantity,
+                unit,
+                statistic: "max",
+            };
             self.checks
-                .push(Check::new(name, text, found.max, gate, reason));
+                .push(Check::new(name, measure, found.max, gate, reason));
             self.distributions.push(found);
         }
     }

@@ -10,7 +10,7 @@ pub mod integrator;
 use super::eccentricity::eccentricity_vector;
 use super::sgp4::causes::Causes;
 use super::sgp4::rates::{angles, closed_form};
-use super::{Check, Findings, Subject, ValidateError};
+use super::{Check, Findings, Measure, Subject, ValidateError};
 use crate::earth::{J2, J3};
 use crate::frames::{State, Teme, ric_basis};
 use crate::orbit::MeanElements;
@@ -140,11 +140,11 @@ fn conservation_checks(tracks: &[Track]) -> Vec<Check> {
         .map(|(name, n)| {
             Check::new(
                 &format!("numerical/conserved/{name}"),
-                [
-                    &format!("relative change of the {name} over 30 days"),
-                    "1",
-                    "max",
-                ],
+                Measure {
+                    quantity: &format!("relative change of the {name} over 30 days"),
+                    unit: "1",
+                    statistic: "max",
+                },
                 largest(n),
                 Some(1e-10),
                 "a zonal field conserves both; 1e-10 of the energy is 1e-6 km of semi-major axis",
@@ -182,11 +182,11 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
     vec![
         Check::new(
             &name("in-track-drift"),
-            [
-                "in-track drift of the integration from mean J2",
-                "km/day",
-                "mean slope",
-            ],
+            Measure {
+                quantity: "in-track drift of the integration from mean J2",
+                unit: "km/day",
+                statistic: "mean slope",
+            },
             drift,
             // δa of a few J2² a at the start drifts by 3/2 n δa.
             Some(6.0 * second_order),
@@ -194,40 +194,44 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("fitted-mean-a"),
-            [
-                "mean semi-major axis of the integration less that of the elements",
-                "m",
-                "mean",
-            ],
+            Measure {
+                quantity: "mean semi-major axis of the integration less that of the elements",
+                unit: "m",
+                statistic: "mean",
+            },
             fitted_a_m,
             None,
             "the drift read as the starting element that it comes from",
         ),
         Check::new(
             &name("node-rate"),
-            ["node rate less its closed form", "deg/day", "mean slope"],
+            Measure {
+                quantity: "node rate less its closed form",
+                unit: "deg/day",
+                statistic: "mean slope",
+            },
             node,
             Some((second_order / a / orbit.inclination_rad.sin().max(1e-3)).to_degrees()),
             "second-order secular terms of J2: at most (2 + 12 cos^4 i) J2^2 n, over sin i",
         ),
         Check::new(
             &name("in-track-after-fit"),
-            [
-                "in-track difference from J2 with short-period terms, mean a fitted",
-                "km",
-                "rms",
-            ],
+            Measure {
+                quantity: "in-track difference from J2 with short-period terms, mean a fitted",
+                unit: "km",
+                statistic: "rms",
+            },
             rms[1],
             Some(gate_after_fit_km(&causes, &orbit, days)),
             "first-order terms are good to J2 of their size; the perigee of the O(J2^2) eccentricity turns; long-period terms of order e J2",
         ),
         Check::new(
             &name("cross-track-after-fit"),
-            [
-                "cross-track difference from J2 with short-period terms",
-                "km",
-                "rms",
-            ],
+            Measure {
+                quantity: "cross-track difference from J2 with short-period terms",
+                unit: "km",
+                statistic: "rms",
+            },
             rms[2],
             Some(gate_after_fit_km(&causes, &orbit, days) + second_order * days),
             "second-order secular terms of the node, growing with time",
@@ -299,7 +303,11 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
     Ok(both.map(|(first, last)| {
         Check::new(
             "numerical/j3/frozen-eccentricity",
-            ["change of the frozen eccentricity vector in a week, over its size", "1", "difference"],
+            Measure {
+                quantity: "change of the frozen eccentricity vector in a week, over its size",
+                unit: "1",
+                statistic: "difference",
+            },
             (first[0] - last[0]).hypot(first[1] - last[1]) / frozen,
             Some(0.1),
             "under J2 and J3 the vector circles the frozen one; started there to first order it stays within a tenth",

@@ -1,6 +1,6 @@
 //! The paper's Table II as checks with gates.
 
-use super::{Check, Findings};
+use super::{Check, Findings, Measure};
 use crate::evaluate::Setup;
 use crate::study::paper::{self, PaperError, Scheme};
 
@@ -18,7 +18,11 @@ pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
         let name = format!("paper/{}/mean-visible", row.name());
         checks.push(Check::new(
             &name,
-            ["mean-visible", "", "difference"],
+            Measure {
+                quantity: "mean-visible",
+                unit: "",
+                statistic: "difference",
+            },
             value.mean_visible - row.mean_visible,
             Some(paper::VISIBLE_TOLERANCE),
             "half a digit of Table II, and the epoch and the step of fits that it does not state",
@@ -35,7 +39,11 @@ pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
         };
         checks.push(Check::new(
             &name,
-            ["mean-pdop", "%", "relative difference"],
+            Measure {
+                quantity: "mean-pdop",
+                unit: "%",
+                statistic: "relative difference",
+            },
             100.0 * (mean_pdop / row.mean_pdop - 1.0),
             own.then_some(paper::PDOP_TOLERANCE_PERCENT),
             reason,

@@ -14,7 +14,7 @@ mod verification;
 
 use super::decisions::{DecisionGates, Seen, flip_gate};
 use super::residuals::{BudgetLine, compare};
-use super::{Check, Findings, Subject, ValidateError};
+use super::{Check, Findings, Measure, Subject, ValidateError};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::orbit::osculating::OsculatingOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Mode, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
@@ -240,7 +240,11 @@ impl Scale {
             .map(|((axis, value), bound)| {
                 Check::new(
                     &format!("sgp4/{}/{axis}-rms", line.case),
-                    [&format!("{axis} difference"), "km", "rms"],
+                    Measure {
+                        quantity: &format!("{axis} difference"),
+                        unit: "km",
+                        statistic: "rms",
+                    },
                     value,
                     self.gate(bound),
                     self.reason("closed forms of radius shift, short period, frozen eccentricity and second order, with 15 %"),
@@ -249,7 +253,11 @@ impl Scale {
             .collect();
         checks.push(Check::new(
             &format!("sgp4/{}/in-track-growth", line.case),
-            ["in-track growth", "km/day", "slope"],
+            Measure {
+                quantity: "in-track growth",
+                unit: "km/day",
+                statistic: "slope",
+            },
             line.growth_km_per_day.in_track,
             self.gate(self.causes.growth_gate_km_per_day(self.days)),
             self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and what a part of a revolution leaves"),
@@ -265,7 +273,11 @@ impl Scale {
             + (causes.eccentric_factor - 1.0) * causes.short_period_km[0];
         Check::new(
             "sgp4/radius-shift/closed-form",
-            ["mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)", "km", "mean"],
+            Measure {
+                quantity: "mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)",
+                unit: "km",
+                statistic: "mean",
+            },
             without_j3j4.mean_km.radial - causes.radius_shift_km,
             self.gate(bound),
             self.reason("the short-period theory of J2 moves the mean radius by a constant, known to first order"),
@@ -277,14 +289,22 @@ impl Scale {
         [
             Check::new(
                 "sgp4/kepler-slot/in-track-growth",
-                ["in-track growth", "km/day", "slope"],
+                Measure {
+                    quantity: "in-track growth",
+                    unit: "km/day",
+                    statistic: "slope",
+                },
                 growth,
                 None,
                 "what sqrt(mu/a^3) in the mean motion slot of an element set costs",
             ),
             Check::new(
                 "sgp4/kepler-slot/closed-form",
-                ["in-track growth less -dM/dt(J2) a", "km/day", "slope"],
+                Measure {
+                    quantity: "in-track growth less -dM/dt(J2) a",
+                    unit: "km/day",
+                    statistic: "slope",
+                },
                 growth - self.causes.kepler_slot_km_per_day,
                 self.gate(self.causes.growth_gate_km_per_day(self.days)),
                 self.reason("the drift is the J2 term of dM/dt, up to second order"),

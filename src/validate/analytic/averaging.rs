@@ -4,7 +4,7 @@
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::orbit::MeanElements;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
-use crate::validate::{Check, Subject};
+use crate::validate::{Check, Measure, Subject};
 use std::f64::consts::TAU;
 
 /// Nodes of the quadrature over the true anomaly; the integrand is a trigonometric polynomial of
@@ -94,7 +94,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
             let apart = (found[n] - expected[n]) * SECONDS_PER_DAY;
             Check::new(
                 &format!("analytic/rates/{name}"),
-                [&format!("rate of the {name} less that of the averaged potential"), "deg/day", "value"],
+                Measure {
+                    quantity: &format!("rate of the {name} less that of the averaged potential"),
+                    unit: "deg/day",
+                    statistic: "value",
+                },
                 apart.to_degrees(),
                 Some(1e-5),
                 "Lagrange's equations with the J2 potential averaged by quadrature: differences at 1e-4, good to 1e-7 of the J2 rates",

@@ -7,7 +7,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::frames::EarthRotation;
 use crate::ground::Site;
 use crate::time::TimeGrid;
-use crate::validate::{Check, Subject, ValidateError};
+use crate::validate::{Check, Measure, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::{DMatrix, Vector3};
 
@@ -138,11 +138,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     let reason = "the same definitions by another way: angles for squares of sines, whole matrices for Schur complements";
     let mut checks = vec![Check::new(
         "analytic/geometry/mean-visible",
-        [
-            "mean visible satellites of some samples, by angles",
-            "1",
-            "difference",
-        ],
+        Measure {
+            quantity: "mean visible satellites of some samples, by angles",
+            unit: "1",
+            statistic: "difference",
+        },
         metrics.mean_visible - visible / samples,
         // A satellite within rounding of the mask may count on either side.
         Some(1.5 / samples),
@@ -163,11 +163,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         if let Some(found) = found.filter(|_| unit_weights) {
             checks.push(Check::new(
                 &format!("analytic/geometry/{name}"),
-                [
-                    &format!("{name} of some samples, by whole matrices"),
-                    "1",
-                    "difference",
-                ],
+                Measure {
+                    quantity: &format!("{name} of some samples, by whole matrices"),
+                    unit: "1",
+                    statistic: "difference",
+                },
                 found - expected,
                 Some(gate),
                 reason,

@@ -9,7 +9,7 @@ use crate::evaluate::Setup;
 use crate::ground::Site;
 use crate::orbit::MeanElements;
 use crate::orbit::kepler::eccentric_anomaly;
-use crate::validate::{Check, Subject, ValidateError};
+use crate::validate::{Check, Measure, Subject, ValidateError};
 use std::f64::consts::{PI, TAU};
 
 /// Nodes over the mean anomaly. Arcs end like square roots: an error of N^-3/2, 1e-6.
@@ -120,18 +120,22 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     Ok(vec![
         Check::new(
             "analytic/mean-visible/quadrature",
-            ["mean visible satellites, by quadrature", "1", "mean"],
+            Measure {
+                quantity: "mean visible satellites, by quadrature",
+                unit: "1",
+                statistic: "mean",
+            },
             expected,
             None,
             "the limit of a long time: node and place in the orbit independent",
         ),
         Check::new(
             "analytic/mean-visible",
-            [
-                "mean visible satellites of the study over quadrature, less 1",
-                "1",
-                "mean",
-            ],
+            Measure {
+                quantity: "mean visible satellites of the study over quadrature, less 1",
+                unit: "1",
+                statistic: "mean",
+            },
             found / expected - 1.0,
             Some(finite_span(subject)),
             "a finite span misses at most a pass or two of each satellite's revolutions; satellites that are spread share the error",

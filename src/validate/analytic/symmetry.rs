@@ -6,7 +6,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::frames::EarthRotation;
 use crate::orbit::MeanElements;
 use crate::units::wrap_two_pi;
-use crate::validate::{Check, Subject, ValidateError};
+use crate::validate::{Check, Measure, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -69,11 +69,11 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     };
     Some(Check::new(
         "analytic/symmetry/turn",
-        [
-            "distance of the pattern, turned and shifted, from itself",
-            "km",
-            "max",
-        ],
+        Measure {
+            quantity: "distance of the pattern, turned and shifted, from itself",
+            unit: "km",
+            statistic: "max",
+        },
         moved.map(nearest).fold(0.0, f64::max),
         Some(1e-6),
         "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
@@ -101,11 +101,11 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     };
     Ok(Check::new(
         "analytic/symmetry/order",
-        [
-            "change of the metrics when satellites are reordered",
-            "1",
-            "max",
-        ],
+        Measure {
+            quantity: "change of the metrics when satellites are reordered",
+            unit: "1",
+            statistic: "max",
+        },
         pairs.into_iter().map(change).fold(0.0, f64::max),
         Some(1e-6),
         "sums in another order: rounding only, of single precision where the fast path takes it",
@@ -132,11 +132,11 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     Ok(largest_gain.is_finite().then(|| {
         Check::new(
             "analytic/mask",
-            [
-                "gain of mean visible satellites when the mask is raised",
-                "1",
-                "max",
-            ],
+            Measure {
+                quantity: "gain of mean visible satellites when the mask is raised",
+                unit: "1",
+                statistic: "max",
+            },
             largest_gain.max(0.0),
             Some(0.0),
             "what is above a higher mask is above the lower one",

@@ -1,7 +1,7 @@
 //! The area that a satellite sees, by geodesic polygons, against the spherical cap.
 
 use crate::earth::{FLATTENING, RADIUS_KM, Surface};
-use crate::validate::{Check, Subject};
+use crate::validate::{Check, Measure, Subject};
 use geographiclib_rs::{DirectGeodesic, Geodesic, PolygonArea, Winding};
 use std::f64::consts::PI;
 
@@ -59,18 +59,22 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     vec![
         Check::new(
             "geographiclib/footprint/cap",
-            ["area of the footprint by the cap formula", "km^2", "value"],
+            Measure {
+                quantity: "area of the footprint by the cap formula",
+                unit: "km^2",
+                statistic: "value",
+            },
             cap_km2,
             None,
             "2 pi R^2 (1 - cos psi) on the sphere of the equatorial radius",
         ),
         Check::new(
             "geographiclib/footprint/geodesic-polygon",
-            [
-                "area of the footprint by a geodesic polygon over that of the cap, less 1",
-                "1",
-                "max",
-            ],
+            Measure {
+                quantity: "area of the footprint by a geodesic polygon over that of the cap, less 1",
+                unit: "1",
+                statistic: "max",
+            },
             worst,
             // Radii of curvature are between R (1 - 2f) and R (1 + f); at a fixed height the area
             // goes with the first power of the radius.

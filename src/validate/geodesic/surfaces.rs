@@ -4,7 +4,7 @@ use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup};
 use crate::frames::LocalFrame;
 use crate::ground::Site;
-use crate::validate::{Check, Findings, Subject, ValidateError};
+use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
 
 /// A geodetic point on the ellipsoid whose vertical points away from the Earth's centre: the mistake.
 fn with_geocentric_vertical(latitude_rad: f64, longitude_rad: f64) -> LocalFrame {
@@ -62,7 +62,11 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
                 let label = format!("change of {quantity} against WGS 84");
                 findings.checks.push(Check::new(
                     &format!("geographiclib/{name}/{quantity}"),
-                    [&label, "1", "difference"],
+                    Measure {
+                        quantity: &label,
+                        unit: "1",
+                        statistic: "difference",
+                    },
                     after - before,
                     None,
                     reason,

@@ -6,7 +6,7 @@ use crate::formats::{element_set, tle};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::validate::residuals::{BudgetLine, compare};
-use crate::validate::{Check, Findings, Subject, ValidateError};
+use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
 
 /// Half of the last digit of an angle of a TLE, degrees.
 const ANGLE_DEG: f64 = 0.5e-4;
@@ -98,7 +98,11 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
     let drift_km = std::f64::consts::TAU * MEAN_MOTION_REV_DAY * subject.days() * a;
     Check::new(
         "sgp4/tle/digits",
-        ["distance by the digits of a TLE", "km", "max"],
+        Measure {
+            quantity: "distance by the digits of a TLE",
+            unit: "km",
+            statistic: "max",
+        },
         line.worst.distance_km,
         // Sets whose epoch lies before the span drift a little longer; 10 % covers it.
         Some(1.1 * (angles_km + shape_km + drift_km)),
@@ -109,7 +113,11 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
 fn epoch_check(line: &BudgetLine) -> Check {
     Check::new(
         "sgp4/tle/epoch",
-        ["distance by the epoch of a TLE", "km", "max"],
+        Measure {
+            quantity: "distance by the epoch of a TLE",
+            unit: "km",
+            statistic: "max",
+        },
         line.worst.distance_km,
         Some(2e-4),
         "elements are carried to the rounded epoch, at most 0.43 ms away: what is left is the dating of doubles, 20 us; uncarried it would be 3.2 m",
@@ -131,11 +139,11 @@ fn sidereal_check(subject: &Subject<'_>) -> Check {
     });
     Check::new(
         "sgp4/sidereal-time",
-        [
-            "shift of the Earth by SGP4's own sidereal time",
-            "km",
-            "max",
-        ],
+        Measure {
+            quantity: "shift of the Earth by SGP4's own sidereal time",
+            unit: "km",
+            statistic: "max",
+        },
         apart[0].max(apart[1]),
         Some(0.05),
         "the expression of AFSPC mode (1970) and IAU 1982 differ by some 1e-6 rad this century",

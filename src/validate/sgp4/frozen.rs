@@ -8,7 +8,7 @@ use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::validate::eccentricity::eccentricity_vector;
-use crate::validate::{Check, Subject};
+use crate::validate::{Check, Measure, Subject};
 use std::f64::consts::TAU;
 
 /// Samples over the first revolution.
@@ -59,25 +59,33 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
     Ok(vec![
         Check::new(
             "sgp4/frozen-eccentricity",
-            ["e sin w that J3 forces", "1", "fit"],
+            Measure {
+                quantity: "e sin w that J3 forces",
+                unit: "1",
+                statistic: "fit",
+            },
             forced[1],
             None,
             "an element set with e = 0 flies this eccentricity at w = 90 deg",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/closed-form",
-            ["forced e sin w less |J3/(2 J2)| R/a sin i", "1", "fit"],
+            Measure {
+                quantity: "forced e sin w less |J3/(2 J2)| R/a sin i",
+                unit: "1",
+                statistic: "fit",
+            },
             forced[1] - frozen,
             Some(0.02 * frozen + floor),
             "first order in J3/J2; SGP4 floors the eccentricity at 1e-6",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
-            [
-                "e left when the set carries the frozen e at the cancelling w",
-                "1",
-                "fit",
-            ],
+            Measure {
+                quantity: "e left when the set carries the frozen e at the cancelling w",
+                unit: "1",
+                statistic: "fit",
+            },
             left[0].hypot(left[1]),
             Some(0.1 * frozen + floor),
             "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",

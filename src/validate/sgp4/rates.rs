@@ -7,7 +7,7 @@ use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
-use crate::validate::{Check, Subject};
+use crate::validate::{Check, Measure, Subject};
 
 /// Below this sine of the inclination there is no node to speak of.
 const LEAST_SIN_I: f64 = 0.02;
@@ -88,21 +88,33 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
         let unit = "deg/day";
         checks.push(Check::new(
             &format!("sgp4/rates/{name}"),
-            [&format!("rate of the {name}, closed form"), unit, "rate"],
+            Measure {
+                quantity: &format!("rate of the {name}, closed form"),
+                unit,
+                statistic: "rate",
+            },
             closed[n],
             None,
             "secular J2: -g cos i; n + g (2 - 5/2 sin^2 i + sqrt(1 - e^2) (1 - 3/2 sin^2 i))",
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/mean-j2"),
-            [&format!("rate of the {name} less closed form"), unit, "slope"],
+            Measure {
+                quantity: &format!("rate of the {name} less closed form"),
+                unit,
+                statistic: "slope",
+            },
             ours[n],
             Some(1e-6 + if n == 1 { leftover_deg } else { 0.0 }),
             "states of the model against the closed form of its rates: rounding, and what a part of a revolution leaves",
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/sgp4"),
-            [&format!("rate of the {name} less closed form"), unit, "slope"],
+            Measure {
+                quantity: &format!("rate of the {name} less closed form"),
+                unit,
+                statistic: "slope",
+            },
             theirs[n],
             scale.gate(lever * in_track_deg + leftover_deg),
             scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and what a part of a revolution leaves"),

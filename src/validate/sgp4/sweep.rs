@@ -7,7 +7,7 @@ use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::distribution::{Distribution, Residual};
 use crate::validate::residuals::Ric;
-use crate::validate::{Check, Findings, Subject, ValidateError};
+use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
 use serde::{Deserialize, Serialize};
 
 /// From where the mean radius shift is largest, over 54.7°, where the common mistake of the mean
@@ -75,7 +75,11 @@ pub(super) fn over_inclination_and_altitude(
     let worst = shares.iter().map(|one| one.value).fold(0.0, f64::max);
     findings.checks.push(Check::new(
         name,
-        ["largest share of a gate over inclination and altitude", "1", "max"],
+        Measure {
+            quantity: "largest share of a gate over inclination and altitude",
+            unit: "1",
+            statistic: "max",
+        },
         worst,
         Some(1.0),
         "the closed forms hold from 30 to 98 deg and from 400 to 1500 km, and not by chance at one design",

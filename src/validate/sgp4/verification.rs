@@ -9,7 +9,7 @@ use crate::orbit::sgp4::{Sgp4Mode, Sgp4Orbit, Sgp4Theory};
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
 use crate::validate::distribution::{Distribution, Residual};
-use crate::validate::{Check, Findings};
+use crate::validate::{Check, Findings, Measure};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -144,11 +144,11 @@ pub fn against_the_verification_set() -> Findings {
         let max = residuals.iter().map(|one| one.value).fold(0.0, f64::max);
         findings.checks.push(Check::new(
             name,
-            [
-                "distance of the sgp4 crate from the verification set",
-                "km",
-                "max",
-            ],
+            Measure {
+                quantity: "distance of the sgp4 crate from the verification set",
+                unit: "km",
+                statistic: "max",
+            },
             max,
             Some(gate),
             reason,
