@@ -1,11 +1,11 @@
 //! Position dilution of precision with one clock state per clock group.
 //!
 //! Least squares with three position states and one clock state for each group of systems that
-//! share a clock. A clock drops out by the Schur complement: a group of n visible satellites with
-//! unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix of the position,
+//! share a clock. The clock is eliminated by the Schur complement: a group of n visible satellites
+//! with unit vectors v contributes A = Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the normal matrix of the position,
 //! and PDOP² = tr(A⁻¹) of the sum over groups ([M-24](crate::models#m-24) to
-//! [M-26](crate::models#m-26); with weights [M-27](crate::models#m-27)). No matrix of the size of
-//! the satellites is built.
+//! [M-26](crate::models#m-26); with weights [M-27](crate::models#m-27)). The full geometry matrix is
+//! never built.
 
 mod family;
 
@@ -16,7 +16,7 @@ use nalgebra::Vector3;
 use std::ops::AddAssign;
 
 words! {
-    /// How many clock states there are.
+    /// Which systems share a clock state.
     Clocks {
         /// One for each system in view.
         PerSystem = "per-system",
@@ -72,7 +72,7 @@ impl Symmetric3 {
         definite.then(|| (minor_xx + minor_yy + minor_zz) / determinant)
     }
 
-    /// The inverse, by cofactors; `None` when the matrix is not positive definite.
+    /// The inverse, by cofactors; `None` if the matrix is not positive definite.
     #[must_use]
     pub fn inverse(&self) -> Option<Self> {
         let cofactor_xx = self.yy * self.zz - self.yz * self.yz;
@@ -110,7 +110,7 @@ impl AddAssign for Symmetric3 {
     }
 }
 
-/// The observations that share one clock, each with its weight in least squares.
+/// The observations that share one clock, each with its least-squares weight.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClockGroup {
     /// Σ w v vᵀ.
@@ -119,12 +119,12 @@ pub struct ClockGroup {
     sum: Vector3<f64>,
     /// Σ w.
     weight: f64,
-    /// Satellites.
+    /// Number of satellites.
     count: u32,
 }
 
 impl ClockGroup {
-    /// Adds a visible satellite by its unit vector; a weight that is not positive adds nothing.
+    /// Adds a visible satellite by its unit vector; a weight of zero or less adds nothing.
     pub fn add(&mut self, unit: Vector3<f64>, weight: f64) {
         if weight > 0.0 {
             self.squares += Symmetric3::outer(unit, weight);
@@ -144,7 +144,7 @@ impl AddAssign for ClockGroup {
     }
 }
 
-/// The normal matrix of the position, gathered group by group.
+/// The normal matrix of the position, accumulated group by group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Geometry {
     normal: Symmetric3,
@@ -164,7 +164,7 @@ impl Geometry {
         self.clocks += 1;
     }
 
-    /// PDOP; `None` when unsolved: fewer satellites than states, a position block that is not
+    /// PDOP; `None` if unsolved: fewer satellites than states, a position block that is not
     /// positive definite, or a value above `cap`.
     #[must_use]
     pub fn pdop(&self, cap: f64) -> Option<f64> {

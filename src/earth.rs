@@ -1,4 +1,4 @@
-//! The one set of physical constants, and the surface that ground points stand on.
+//! The one set of physical constants, and the surface on which ground points lie.
 
 use crate::keyword::words;
 use nalgebra::Vector3;
@@ -13,8 +13,8 @@ pub const RADIUS_KM: f64 = 6_378.137;
 pub const J2: f64 = 1.082_626_68e-3;
 
 /// Third zonal harmonic, unnormalised (EGM96: -√7 C̄₃₀, C̄₃₀ = 0.957 254 173 792e-6; Lemoine et al.,
-/// NASA/TP-1998-206861). No theory here flies it but SGP4, which has the value of WGS-72; it
-/// sizes the frozen eccentricity.
+/// NASA/TP-1998-206861). Only SGP4 propagates with it, using the WGS-72 value; here it
+/// gives the size of the frozen eccentricity.
 pub const J3: f64 = -2.532_656_485_33e-6;
 
 /// Flattening of the WGS 84 ellipsoid.
@@ -27,14 +27,15 @@ pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;
 
-/// Gravitational parameter that users of GPS ephemerides compute with, m³/s² (IS-GPS-200, 20.3.3.4.3.3).
+/// Gravitational parameter prescribed for users of GPS ephemerides, m³/s² (IS-GPS-200,
+/// 20.3.3.4.3.3).
 pub const GPS_MU_M3_S2: f64 = 3.986_005e14;
 
-/// Rotation rate of the Earth that they compute with, rad/s (the same place).
+/// Rotation rate of the Earth prescribed with it, rad/s (same section).
 pub const GPS_EARTH_RATE_RAD_S: f64 = 7.292_115_146_7e-5;
 
 words! {
-    /// What ground points, their heights and their verticals refer to.
+    /// Reference surface of ground points, heights and verticals.
     Surface {
         /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.
         Wgs84 = "wgs84",
@@ -72,9 +73,9 @@ impl Surface {
         )
     }
 
-    /// Latitude and longitude below an Earth-fixed position, radians: where the vertical of the
-    /// surface goes through it ([M-37](crate::models#m-37)). Bowring, *Survey Review* 23 (1976)
-    /// 323, repeated until it stands still; at the centre of the Earth, which has none, 0.
+    /// Latitude and longitude of the point below an Earth-fixed position, radians: where the vertical
+    /// of the surface passes through it ([M-37](crate::models#m-37)). Bowring, *Survey Review* 23 (1976)
+    /// 323, iterated to convergence; 0 at the centre of the Earth, where it is undefined.
     #[must_use]
     pub fn below_rad(self, position_km: Vector3<f64>) -> (f64, f64) {
         let f = self.flattening();
@@ -82,7 +83,7 @@ impl Surface {
         let polar_km = RADIUS_KM * (1.0 - f);
         let second_e2 = e2 / (1.0 - e2);
         let axis_km = position_km.x.hypot(position_km.y);
-        // The parametric latitude, from that of the sphere through the position.
+        // Start from the parametric latitude on the sphere through the position.
         let mut reduced = (position_km.z * RADIUS_KM).atan2(axis_km * polar_km);
         let mut latitude = 0.0;
         for _ in 0..4 {
@@ -137,7 +138,7 @@ mod tests {
         assert!((pole.z - RADIUS_KM).abs() < 1e-9);
     }
 
-    /// The point below comes back to the place from which its height was laid off.
+    /// The point below a raised ground point is that ground point.
     #[test]
     fn a_point_lies_below_its_own_vertical() {
         for surface in [Surface::Wgs84, Surface::Sphere] {

@@ -1,4 +1,4 @@
-//! Ground points: the grid of a region, or points one by one, with their verticals and weights.
+//! Ground points, from the grid of a region or from a list, with their verticals and weights.
 
 pub(crate) mod shapes;
 
@@ -9,7 +9,7 @@ use crate::units::wrap_360;
 use std::io::Read;
 use thiserror::Error;
 
-/// Why a region has no points.
+/// Why a region is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum GroundError {
     /// Latitudes outside [-90°, 90°] or in the wrong order.
@@ -24,12 +24,12 @@ pub enum GroundError {
     /// More points than [`MAX_POINTS`].
     #[error("{points} grid points exceed the limit of {MAX_POINTS}")]
     TooMany {
-        /// Points that the grid would have.
+        /// Number of points of the grid.
         points: f64,
     },
     /// A point that is not on the Earth.
     #[error(
-        "latitude {latitude_deg}, longitude {longitude_deg} is no point: latitudes are -90 to 90, longitudes -360 to 360 degrees"
+        "latitude {latitude_deg}, longitude {longitude_deg} is not on the Earth: latitudes are -90 to 90, longitudes -360 to 360 degrees"
     )]
     Point {
         /// Latitude, degrees.
@@ -48,20 +48,20 @@ pub enum GroundError {
         /// What is wrong with it.
         reason: String,
     },
-    /// A list without a point.
-    #[error("the list has no point")]
+    /// An empty list.
+    #[error("the list is empty")]
     Empty,
 }
 
-/// Most points that a region may have: a global grid at 0.1°.
+/// Maximum number of points of a region: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
 
 words! {
-    /// How grid points count in means and tails.
+    /// How grid points are weighted in means and tails.
     PointWeights {
-        /// Every point counts the same.
+        /// Equally.
         Equal = "equal",
-        /// By the cosine of latitude, that is by area.
+        /// By the cosine of latitude, that is, by area.
         CosLatitude = "cos-latitude",
     }
 }
@@ -83,7 +83,7 @@ impl Site {
     /// The point of `surface` at a latitude and longitude in degrees.
     ///
     /// # Errors
-    /// When the point is not on the Earth or the weight is not positive.
+    /// If the point is not on the Earth or the weight is not positive.
     pub fn new(
         surface: Surface,
         latitude_deg: f64,
@@ -113,16 +113,16 @@ impl Site {
     }
 }
 
-/// A latitude-longitude grid: values from the south and from the west in equal steps.
+/// A latitude-longitude grid, with equal steps from its south-west corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// South and north edge, degrees.
     pub latitude_deg: [f64; 2],
-    /// West and east edge, degrees; runs eastwards, so that [160, -155] is [160, 205].
+    /// West and east edge, degrees; it runs eastwards, so [160, -155] is [160, 205].
     pub longitude_deg: [f64; 2],
     /// Steps in latitude and longitude, degrees.
     pub step_deg: [f64; 2],
-    /// How points count.
+    /// How points are weighted.
     pub weights: PointWeights,
 }
 
@@ -130,7 +130,7 @@ impl Grid {
     /// The latitudes of the rows, from the south, degrees.
     ///
     /// # Errors
-    /// When the edges or the step are out of range.
+    /// If the edges or the step are out of range.
     pub fn latitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
         let [south, north] = self.latitude_deg;
         if !(-90.0 <= south && south <= north && north <= 90.0) {
@@ -142,7 +142,7 @@ impl Grid {
     /// The longitudes of the columns, from the west, degrees, increasing.
     ///
     /// # Errors
-    /// When the edges or the step are out of range.
+    /// If the edges or the step are out of range.
     pub fn longitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
         let [west, east] = self.longitude_deg;
         let error = GroundError::Longitudes(west, east);
@@ -170,7 +170,7 @@ impl Grid {
     /// The grid points, row by row from the south, each row from the west.
     ///
     /// # Errors
-    /// When the edges or the steps are out of range, or the points are too many.
+    /// If the edges or the steps are out of range, or there are too many points.
     pub fn sites(&self, surface: Surface) -> Result<Vec<Site>, GroundError> {
         let (latitudes, longitudes) = (self.latitudes_deg()?, self.longitudes_deg()?);
         let points = latitudes.len() as f64 * longitudes.len() as f64;
@@ -181,14 +181,14 @@ impl Grid {
         for &latitude in &latitudes {
             let weight = match self.weights {
                 PointWeights::Equal => 1.0,
-                // A pole has no area of its own; its points share half a step's cap instead of 0.
+                // The cosine vanishes at a pole; its points get the weight of the cap within half a step.
                 PointWeights::CosLatitude => latitude
                     .to_radians()
                     .cos()
                     .max((self.step_deg[0] / 4.0).to_radians().sin()),
             };
             for &longitude in &longitudes {
-                // Eastward grids may reach 540°, which is a longitude less a turn.
+                // Eastward grids may reach 540°; reduce that to a valid longitude.
                 let on_earth = if longitude > 360.0 {
                     longitude - 360.0
                 } else {
@@ -204,7 +204,7 @@ impl Grid {
 }
 
 /// floor(span/step + 1e-9) + 1 values from `start` (the 1e-9 keeps a last value that rounding
-/// would lose).
+/// would drop).
 fn steps(start: f64, span: f64, step: f64) -> Result<Vec<f64>, GroundError> {
     if !(step > 0.0 && step.is_finite()) {
         return Err(GroundError::Step(step));
@@ -221,7 +221,7 @@ fn steps(start: f64, span: f64, step: f64) -> Result<Vec<f64>, GroundError> {
 /// Points from CSV with the header `latitude_deg,longitude_deg[,weight]`.
 ///
 /// # Errors
-/// Names the line that cannot be read.
+/// If a line cannot be read, with its number, or there is no point.
 pub fn sites_from_csv(source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
     #[derive(serde::Deserialize)]
     #[serde(deny_unknown_fields)]

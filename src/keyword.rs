@@ -1,13 +1,13 @@
-//! Enums that are spelled by a fixed set of words, in files, notation and results.
+//! Enums spelled by fixed keywords, in files, notation and results.
 //!
-//! The macro `words!` declares one: the word that its `Display` writes is the one that its `FromStr`
-//! takes, and an unknown word is answered with the nearest.
+//! The macro `words!` declares one: `Display` writes the keyword that `FromStr` reads, and an unknown
+//! keyword is reported with the nearest valid one.
 
 use std::fmt;
 
-/// A type whose values are spelled by a fixed set of words.
+/// A type whose values are spelled by fixed keywords.
 pub trait Word: Copy + Eq + 'static {
-    /// Every value, in the order in which choices are listed.
+    /// Every value, in the order in which they are listed as choices.
     const ALL: &'static [Self];
 
     /// The spelling in a file.
@@ -16,7 +16,7 @@ pub trait Word: Copy + Eq + 'static {
     /// The value spelled `text`.
     ///
     /// # Errors
-    /// [`UnknownWord`] with the choices and the nearest of them.
+    /// [`UnknownWord`], with the choices and the nearest of them.
     fn from_word(text: &str) -> Result<Self, UnknownWord> {
         let known = Self::ALL.iter().find(|value| value.word() == text);
         known
@@ -30,12 +30,12 @@ pub trait Word: Copy + Eq + 'static {
     }
 }
 
-/// A word that is not one of the choices.
+/// A keyword that is not one of the choices.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UnknownWord {
-    /// The word as written.
+    /// The keyword as written.
     pub found: String,
-    /// The words that are known.
+    /// The valid keywords.
     pub choices: Vec<&'static str>,
     /// The choice that was most likely meant.
     pub nearest: Option<&'static str>,
@@ -101,8 +101,8 @@ const WORTH_SUGGESTING: f64 = 0.7;
 
 /// The candidate most similar to `written`, if one is similar enough.
 ///
-/// Jaro-Winkler favours a common beginning, so that `latitude` finds
-/// `latitude-deg`, of which an edit distance would say that it is four edits away.
+/// Jaro-Winkler favours a common prefix, so `latitude` finds `latitude-deg`, which is four edits
+/// away by edit distance.
 pub(crate) fn nearest<'c>(written: &str, candidates: &[&'c str]) -> Option<&'c str> {
     let written = written.to_lowercase().replace('_', "-");
     candidates

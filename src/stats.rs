@@ -1,4 +1,4 @@
-//! Quantiles and the conditional value-at-risk of a finite sample.
+//! Quantiles and conditional value-at-risk of a finite sample.
 
 mod weighted;
 
@@ -27,7 +27,7 @@ impl Level {
     /// The level itself.
     ///
     /// # Errors
-    /// When `level` is not strictly between 0 and 1.
+    /// If `level` is not strictly between 0 and 1.
     pub fn new(level: f64) -> Result<Self, LevelError> {
         if level > 0.0 && level < 1.0 {
             Ok(Self(level))
@@ -43,7 +43,7 @@ impl Level {
     }
 }
 
-/// Mean, quantiles, tail and extreme of one sample, all in the sample's unit.
+/// Mean, quantiles, tail and maximum of one sample, all in the sample's unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Arithmetic mean.
@@ -54,14 +54,14 @@ pub struct Summary {
     pub p95: f64,
     /// 99 % quantile, an order statistic.
     pub p99: f64,
-    /// Largest value.
+    /// Maximum.
     pub max: f64,
-    /// Mean of the worst (1 - level) share.
+    /// Conditional value-at-risk: the mean of the worst 1 - level of the sample.
     pub cvar: f64,
 }
 
 /// The 1-based rank of the quantile of level `q` in a sample of `n`: ⌈q n - 1e-9⌉,
-/// at least 1 (equation [M-28](crate::models#m-28) of `docs/models.md`).
+/// at least 1 ([M-28](crate::models#m-28)).
 #[must_use]
 pub fn quantile_rank(q: f64, n: usize) -> usize {
     let rank = (q * n as f64 - 1e-9).ceil();
@@ -70,7 +70,7 @@ pub fn quantile_rank(q: f64, n: usize) -> usize {
 
 /// The order statistic of rank `rank` (1-based). Reorders `sample`.
 ///
-/// Everything behind that rank is then at least as large.
+/// Afterwards every later element is at least as large.
 fn select(sample: &mut [f64], rank: usize) -> f64 {
     *sample.select_nth_unstable_by(rank - 1, f64::total_cmp).1
 }
@@ -82,8 +82,8 @@ pub fn quantile(sample: &mut [f64], q: Level) -> Option<f64> {
     (!sample.is_empty()).then(|| select(sample, rank))
 }
 
-/// Conditional value-at-risk: the mean of the worst (1 - α) share of the sample, the quantile
-/// itself counted with the fraction that is left (Rockafellar and Uryasev, *Journal of Risk* 2
+/// Conditional value-at-risk: the mean of the worst 1 - α of the sample, with fractional
+/// weight on the quantile sample (Rockafellar and Uryasev, *Journal of Risk* 2
 /// (2000), equation 4, on the empirical distribution; [M-29](crate::models#m-29)).
 ///
 /// `None` for an empty sample. Reorders `sample`.
@@ -94,7 +94,7 @@ pub fn cvar(sample: &mut [f64], level: Level) -> Option<f64> {
     }
     let rank = quantile_rank(level.get(), sample.len());
     let value_at_risk = select(sample, rank);
-    // Sorted, so that the sum does not depend on the order in which samples came.
+    // Sorted, so that the sum does not depend on the order of the samples.
     let tail = &mut sample[rank..];
     tail.sort_unstable_by(f64::total_cmp);
     let excess: f64 = tail.iter().map(|x| x - value_at_risk).sum();
@@ -102,7 +102,7 @@ pub fn cvar(sample: &mut [f64], level: Level) -> Option<f64> {
     Some(value_at_risk + excess / share)
 }
 
-/// All the statistics of one sample; `None` when it is empty. Reorders `sample`.
+/// All statistics of one sample; `None` if it is empty. Reorders `sample`.
 #[must_use]
 pub fn summarize(sample: &mut [f64], level: Level) -> Option<Summary> {
     if sample.is_empty() {
@@ -122,9 +122,9 @@ pub fn summarize(sample: &mut [f64], level: Level) -> Option<Summary> {
     })
 }
 
-/// The straight line through points: (intercept, slope) by least squares.
+/// Least-squares line through points: (intercept, slope).
 ///
-/// `None` when fewer than two abscissae differ.
+/// `None` unless at least two abscissae differ.
 #[must_use]
 pub fn line_fit(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let n = x.len().min(y.len()) as f64;
@@ -178,7 +178,7 @@ mod tests {
         assert!((cvar(&mut sample, level(0.95)).unwrap() - 98.0).abs() < 1e-12);
     }
 
-    /// Ten values at 95 %: half a sample is left, which is all of the largest.
+    /// Ten values at 95 %: the tail is half a sample, all of it the largest.
     /// Thirty values: one and a half samples, (30 + 0.5 * 29) / 1.5.
     #[test]
     fn validate_cvar_of_a_fractional_tail() {

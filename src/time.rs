@@ -1,8 +1,8 @@
 //! UTC epochs, their sidereal time, and the sampling of a span.
 //!
 //! chrono carries UTC; sidereal time and leap seconds come from the SOFA port.
-//! UT1 is taken as UTC throughout (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator;
-//! the pseudo-Earth-fixed frame absorbs it).
+//! UT1 is taken to equal UTC throughout (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator,
+//! absorbed by the pseudo-Earth-fixed frame).
 
 use crate::units::SECONDS_PER_DAY;
 use chrono::{DateTime, Datelike, TimeDelta, Timelike, Utc};
@@ -12,11 +12,11 @@ use thiserror::Error;
 /// Why a time span cannot be sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TimeError {
-    /// Step not a positive number of seconds.
+    /// The step is not a positive number of seconds.
     #[error("step of {0} s is not positive")]
     Step(f64),
-    /// No sample fits into the span.
-    #[error("a span of {duration_s} s has no sample")]
+    /// The span is not a positive number of seconds.
+    #[error("span of {duration_s} s is not positive")]
     NoSample {
         /// Length of the span, s.
         duration_s: f64,
@@ -24,9 +24,9 @@ pub enum TimeError {
     /// More samples than [`TimeGrid::MAX_SAMPLES`].
     #[error("{samples} samples exceed the limit of {limit}")]
     TooMany {
-        /// Samples asked for.
+        /// Samples requested.
         samples: f64,
-        /// Most samples that a span may have.
+        /// Maximum number of samples.
         limit: usize,
     },
 }
@@ -50,7 +50,7 @@ impl Epoch {
 
     /// This epoch moved by a number of seconds, to the nearest nanosecond.
     ///
-    /// Moves beyond what the calendar holds (some 290 years) saturate.
+    /// Saturates beyond the range of the calendar.
     #[must_use]
     pub fn plus_seconds(self, seconds: f64) -> Self {
         let whole = seconds.floor();
@@ -74,7 +74,7 @@ impl Epoch {
         delta.num_seconds() as f64 + f64::from(delta.subsec_nanos()) * 1e-9
     }
 
-    /// UTC as a two-part Julian date: the midnight before, and the fraction of the day.
+    /// UTC as a two-part Julian date: the preceding midnight, and the fraction of the day.
     #[must_use]
     pub fn julian_date(self) -> (f64, f64) {
         let days_from_ce = f64::from(self.0.num_days_from_ce());
@@ -97,7 +97,7 @@ impl Epoch {
 
     /// TAI - UTC in seconds.
     ///
-    /// Before 1960, where UTC does not exist, 0; after the last known leap second, its value.
+    /// 0 before 1960, when UTC did not exist; constant after the last known leap second.
     #[must_use]
     pub fn leap_seconds(self) -> f64 {
         let (_, fraction) = self.julian_date();
@@ -117,14 +117,14 @@ impl Epoch {
 }
 
 impl fmt::Display for Epoch {
-    /// ISO 8601 with the digits that are needed: `2025-01-01T00:00:00Z`.
+    /// ISO 8601 with as many digits as needed: `2025-01-01T00:00:00Z`.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let text = self.0.to_rfc3339_opts(chrono::SecondsFormat::AutoSi, true);
         formatter.write_str(&text)
     }
 }
 
-/// Equally spaced samples of a span that starts at an epoch: every k·step < duration, from k = 0.
+/// Equally spaced instants of a span from an epoch: every k·step < duration, from k = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeGrid {
     epoch: Epoch,
@@ -133,13 +133,13 @@ pub struct TimeGrid {
 }
 
 impl TimeGrid {
-    /// Most samples that a grid may have: one a second for a leap year, with room.
+    /// Maximum number of samples: ample for one per second over a leap year.
     pub const MAX_SAMPLES: usize = 100_000_000;
 
     /// The samples of the span of `duration_s` seconds from `epoch`.
     ///
     /// # Errors
-    /// When the step is not positive, or no sample or too many would come out.
+    /// If the step or the duration is not positive, or there would be too many samples.
     pub fn new(epoch: Epoch, duration_s: f64, step_s: f64) -> Result<Self, TimeError> {
         if !(step_s > 0.0 && step_s.is_finite()) {
             return Err(TimeError::Step(step_s));
@@ -154,7 +154,7 @@ impl TimeGrid {
                 limit: Self::MAX_SAMPLES,
             });
         }
-        // The quotient may round to either side of a whole number; the product decides.
+        // The quotient may round either way at a whole number; the product decides.
         while samples > 1.0 && (samples - 1.0) * step_s >= duration_s {
             samples -= 1.0;
         }
@@ -171,7 +171,7 @@ impl TimeGrid {
         self.epoch
     }
 
-    /// Spacing, s.
+    /// Step, s.
     #[must_use]
     pub fn step_s(&self) -> f64 {
         self.step_s
@@ -183,7 +183,7 @@ impl TimeGrid {
         self.samples
     }
 
-    /// Never: a grid has at least one sample.
+    /// Always false: a grid has at least one sample.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         false

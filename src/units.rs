@@ -1,4 +1,4 @@
-//! Angle and time units, and the two number formats that results depend on.
+//! Angle and time units, and decimal rounding.
 
 use std::f64::consts::{PI, TAU};
 
@@ -11,7 +11,7 @@ pub const SECONDS_PER_HOUR: f64 = 3_600.0;
 /// Minutes in a day.
 pub const MINUTES_PER_DAY: f64 = 1_440.0;
 
-/// An angle brought to [0, 2π), in radians.
+/// An angle wrapped to [0, 2π), radians.
 #[must_use]
 pub fn wrap_two_pi(angle_rad: f64) -> f64 {
     let wrapped = angle_rad.rem_euclid(TAU);
@@ -19,27 +19,27 @@ pub fn wrap_two_pi(angle_rad: f64) -> f64 {
     if wrapped >= TAU { 0.0 } else { wrapped }
 }
 
-/// An angle brought to [-π, π), in radians.
+/// An angle wrapped to [-π, π), radians.
 #[must_use]
 pub fn wrap_pi(angle_rad: f64) -> f64 {
     wrap_two_pi(angle_rad + PI) - PI
 }
 
-/// An angle brought to [0, 360), in degrees.
+/// An angle wrapped to [0, 360), degrees.
 #[must_use]
 pub fn wrap_360(angle_deg: f64) -> f64 {
     let wrapped = angle_deg.rem_euclid(360.0);
     if wrapped >= 360.0 { 0.0 } else { wrapped }
 }
 
-/// `value` rounded to a multiple of `10^-digits`, exactly as its decimal text reads.
+/// `value` rounded to `digits` decimals: the double nearest to its decimal text.
 ///
 /// Going through text keeps the shortest round-trip form short: `0.1 + 0.2`
 /// rounded to three digits is the double nearest 0.3, which prints as `0.3`.
 #[must_use]
 pub fn round_decimal(value: f64, digits: usize) -> f64 {
     let text = format!("{value:.digits$}");
-    // A formatted finite number always parses; anything else is returned untouched.
+    // A formatted finite number always parses; anything else is returned unchanged.
     text.parse().map_or(value, |rounded: f64| rounded + 0.0)
 }
 

@@ -1,4 +1,4 @@
-//! Who sees what: the one definition of visibility.
+//! The one definition of visibility.
 
 mod table;
 
@@ -31,7 +31,7 @@ impl Mask {
     /// The mask of an elevation in degrees, 0 <= elevation < 90.
     ///
     /// # Errors
-    /// When the elevation is outside that range.
+    /// If the elevation is outside that range.
     pub fn from_degrees(degrees: f64) -> Result<Self, MaskError> {
         if (0.0..90.0).contains(&degrees) {
             Ok(Self::unchecked(degrees))
@@ -54,17 +54,17 @@ impl Mask {
         self.degrees
     }
 
-    /// The square of the sine of the elevation, which decisions compare with.
+    /// The square of the sine of the elevation, used in the visibility test.
     pub(crate) fn sine_squared(self) -> f64 {
         self.sin2
     }
 
-    /// The unit vector from the site to the satellite (Earth-fixed, km) when the satellite is
+    /// The unit vector from the site to the satellite (Earth-fixed, km) if the satellite is
     /// visible: its elevation over the local horizon is at least the mask
     /// ([M-22](crate::models#m-22)).
     ///
-    /// sin(elevation) = u·d / |d| is compared by squares, so that no root is taken for what is
-    /// not seen; u·d >= 0 keeps the sign, as masks are not negative.
+    /// sin(elevation) = u·d / |d| is compared in squared form, which needs no root for satellites out
+    /// of view; u·d >= 0 fixes the sign, because masks are not negative.
     #[must_use]
     pub fn line_of_sight(
         self,
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
     use crate::earth::Surface;
 
-    /// The decision follows the elevation from the local frame on both sides of the mask.
+    /// The decision agrees with the elevation in the local frame on both sides of the mask.
     #[test]
     fn decisions_follow_the_elevation() {
         let site = LocalFrame::new(Surface::Wgs84, 0.6, 1.9);

@@ -1,18 +1,17 @@
-//! Every dilution of precision of one geometry: position, its parts, and the clocks.
+//! All DOPs of one geometry: position, its horizontal and vertical parts, and the clocks.
 //!
-//! Least squares with a weight for each observation ([M-27](crate::models#m-27)). The position
-//! block of the inverse normal matrix is turned to east, north and up as a whole, so that
-//! horizontal and vertical parts are those of the local horizon, whatever the orientation of the
-//! axes.
+//! Weighted least squares ([M-27](crate::models#m-27)). The position block of the inverse normal
+//! matrix is projected on east, north and up, so that the horizontal and vertical parts refer to
+//! the local horizon.
 
 use super::{ClockGroup, Symmetric3};
 use crate::frames::LocalFrame;
 use crate::keyword::words;
 
 words! {
-    /// How observations count in least squares.
+    /// How observations are weighted in least squares.
     ObservationWeights {
-        /// All the same.
+        /// Equally.
         Unit = "unit",
         /// sin² of the elevation: the standard deviation of an observation is that of the zenith
         /// over sin(elevation), as in Dach et al., *Bernese GNSS Software Version 5.2* (2015),
@@ -32,8 +31,8 @@ impl ObservationWeights {
     }
 }
 
-/// The dilutions of precision at one point and time, each without unit: standard deviations in
-/// units of that of an observation of weight one.
+/// The dilutions of precision at one point and instant, dimensionless: standard deviations relative
+/// to that of an observation of unit weight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DopFamily {
     /// Of position and all clocks.
@@ -44,15 +43,15 @@ pub struct DopFamily {
     pub hdop: f64,
     /// Of the height.
     pub vdop: f64,
-    /// Of each clock, in the order of the groups, in units of length; `None` for a group without
-    /// a satellite, which has no clock state.
+    /// Of each clock, as a length, in the order of the groups; `None` for an empty group, which has
+    /// no clock state.
     pub tdop: Vec<Option<f64>>,
 }
 
 impl DopFamily {
-    /// The dilutions of precision of groups of observations, with the horizon of `site`.
+    /// The dilutions of precision of groups of observations, in the local axes of `site`.
     ///
-    /// `None` when unsolved, by the rule of [`super::Geometry::pdop`].
+    /// `None` if unsolved, by the rule of [`super::Geometry::pdop`].
     #[must_use]
     pub fn of(groups: &[ClockGroup], site: &LocalFrame, cap: f64) -> Option<Self> {
         let mut normal = Symmetric3::default();
@@ -99,7 +98,7 @@ mod tests {
     use nalgebra::{DMatrix, Vector3};
     use proptest::prelude::*;
 
-    /// Direction over the horizon of a site.
+    /// Direction from a site by elevation and azimuth.
     fn direction(site: &LocalFrame, (elevation_deg, azimuth_deg): (f64, f64)) -> Vector3<f64> {
         let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
         let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
@@ -122,8 +121,8 @@ mod tests {
         sky.iter().map(group).collect()
     }
 
-    /// (Gᵀ W G)⁻¹ with rows (east, north, up, clock ...), written down in the local frame and
-    /// inverted whole: variances of east, north, up and the clocks in view.
+    /// (Gᵀ W G)⁻¹ with rows (east, north, up, clock ...), in the local frame and
+    /// inverted in full: variances of east, north, up and the clocks in view.
     fn variances_by_inversion(
         sky: &[Vec<(f64, f64)>],
         weights: ObservationWeights,
@@ -186,7 +185,7 @@ mod tests {
         assert_eq!(of(&[], 100.0), None);
     }
 
-    /// A satellite on the horizon has no weight by the sine of its elevation, and is no observation.
+    /// A satellite on the horizon has zero weight by the sine of its elevation and does not count.
     #[test]
     fn a_satellite_without_weight_is_not_there() {
         let site = LocalFrame::new(Surface::Sphere, 0.0, 0.0);
@@ -200,7 +199,7 @@ mod tests {
     }
 
     proptest! {
-        /// At any place on Earth and for either weighting, all are those of the whole matrix.
+        /// Anywhere on Earth and for either weighting, all DOPs equal those of the full matrix.
         #[test]
         fn validate_the_family_against_inversion(
             a in sky(4..12), b in sky(0..8), c in sky(0..3),
@@ -210,7 +209,7 @@ mod tests {
             let site = LocalFrame::new(Surface::Wgs84, latitude, longitude);
             let sky = [a, b, c];
             let ours = DopFamily::of(&groups(&site, &sky, weights), &site, 20.0);
-            // Beyond PDOP 20 the inversion itself loses the digits that are compared.
+            // Above PDOP 20 the inversion itself loses the digits that are compared.
             if let (Some(ours), Some(variances)) = (ours, variances_by_inversion(&sky, weights)) {
                 let mut expected = vec![
                     (ours.hdop, variances[0] + variances[1]),

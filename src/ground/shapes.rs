@@ -1,9 +1,9 @@
 //! Lines and areas on the ground for maps: footprints, grid cells and ground tracks, cut at the
 //! antimeridian.
 //!
-//! Points are [longitude, latitude] in degrees, as in RFC 7946, 3.1.1; areas come out as closed rings
-//! within ±180°, counterclockwise seen from above (3.1.6), one ring for each side of the
-//! antimeridian (3.1.9).
+//! Points are [longitude, latitude] in degrees, as in RFC 7946, 3.1.1; areas are closed rings
+//! within ±180°, counterclockwise seen from above (3.1.6), one on each side of the antimeridian
+//! (3.1.9).
 
 use crate::earth::Surface;
 use crate::frames::{EarthFixed, LocalFrame, Position};
@@ -18,10 +18,10 @@ pub(crate) type Place = [f64; 2];
 /// Corners of a footprint.
 const CORNERS: usize = 72;
 
-/// Decimals of a degree that maps are written with: a decimetre.
+/// Decimals of a degree in maps: a decimetre.
 const DECIMALS: usize = 6;
 
-/// The circle of ground points that see a satellite at the mask, counterclockwise,
+/// The circle of ground points from which a satellite is at the mask, counterclockwise,
 /// not closed ([M-38](crate::models#m-38)).
 pub(crate) fn footprint(
     surface: Surface,
@@ -29,7 +29,7 @@ pub(crate) fn footprint(
     mask_rad: f64,
 ) -> Vec<Place> {
     let centre = satellite_km.km().normalize();
-    // A horizontal direction: away from the axis that is farthest from the centre.
+    // A horizontal direction, from an axis that is not close to the vertical.
     let axis = if centre.z.abs() < 0.9 {
         Vector3::z()
     } else {
@@ -61,7 +61,7 @@ impl Arc {
     }
 }
 
-/// Where the elevation of the satellite comes down to the mask, from below it into a direction.
+/// The point in a direction from the sub-satellite point at which the elevation equals the mask.
 fn edge(surface: Surface, satellite_km: Position<EarthFixed>, arc: Arc, mask_rad: f64) -> Place {
     let at = |angle: f64| surface.below_rad(foot(surface, arc.direction(angle)));
     let (mut seen, mut hidden) = (0.0, FRAC_PI_2);
@@ -112,8 +112,8 @@ pub(crate) fn cell_rings([[west, south], [east, north]]: [Place; 2]) -> Vec<Vec<
     cut(&[[west, south], [east, south], [east, north], [west, north]])
 }
 
-/// The rings of an area around which the corners go counterclockwise in steps of less than half
-/// a turn of longitude. Around a pole the area is closed along its parallel of 90°.
+/// The rings of an area with counterclockwise corners less than half a turn of longitude apart. An
+/// area around a pole is closed along the edge of the map at 90°.
 pub(crate) fn rings(corners: &[Place]) -> Vec<Vec<Place>> {
     let Some(&first) = corners.first() else {
         return Vec::new();
@@ -132,12 +132,12 @@ pub(crate) fn rings(corners: &[Place]) -> Vec<Vec<Place>> {
     cut(&around_pole(&unwrapped, turns))
 }
 
-/// A line once around a pole, its last corner the first a turn later, as an area that begins and ends at
-/// the antimeridian: so it is one ring on the map.
+/// An area around a pole, from a line that closes after one turn of longitude: starting and ending at
+/// the antimeridian, it is one ring on the map.
 fn around_pole(line: &[Place], turns: f64) -> Vec<Place> {
     let turn = |place: &Place| ((place[0] + 180.0) / 360.0).floor();
     let crosses = |pair: &[Place]| turn(&pair[0]) != turn(&pair[1]);
-    // A whole turn of longitude crosses it somewhere.
+    // A full turn of longitude crosses the antimeridian somewhere.
     let before = line.windows(2).position(crosses).unwrap_or(0);
     let (from, to) = (line[before], line[before + 1]);
     let meridian = 360.0 * turn(&from).max(turn(&to)) - 180.0;
@@ -189,7 +189,7 @@ fn half_plane(corners: &[Place], meridian: f64, side: f64) -> Vec<Place> {
     kept
 }
 
-/// The rounded ring without corners that repeat; none if no area is left.
+/// The rounded ring without repeated corners; `None` if no area is left.
 fn closed(corners: &[Place], shift: f64) -> Option<Vec<Place>> {
     let round = |x: f64| round_decimal(x, DECIMALS);
     let mut ring: Vec<Place> = Vec::with_capacity(corners.len() + 1);
@@ -215,7 +215,7 @@ fn signed_area(ring: &[Place]) -> f64 {
     pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
 }
 
-/// A line whose steps are less than half a turn, cut where it crosses the antimeridian (RFC 7946,
+/// A line with steps of less than half a turn, split where it crosses the antimeridian (RFC 7946,
 /// 3.1.9).
 pub(crate) fn lines(places: &[Place]) -> Vec<Vec<Place>> {
     let round = |[longitude, latitude]: Place| {

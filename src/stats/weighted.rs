@@ -1,7 +1,7 @@
-//! The same statistics of a sample whose values have weights.
+//! The same statistics of a weighted sample.
 //!
-//! A value of weight k counts as k values of weight one: with equal weights every function
-//! gives what its counterpart without weights gives, to the last bit.
+//! A value of weight k counts as k values of weight one. With equal weights every function is
+//! bit-identical to its unweighted counterpart.
 
 use super::{Level, Summary};
 
@@ -22,7 +22,7 @@ struct Sorted<'a> {
 
 impl<'a> Sorted<'a> {
     fn new(sample: &'a mut [Weighted]) -> Self {
-        // By weight among equal values, so that no sum depends on the order of arrival.
+        // Equal values by weight, so that no sum depends on the order of the samples.
         sample.sort_unstable_by(|a, b| {
             let by_value = a.value.total_cmp(&b.value);
             by_value.then_with(|| a.weight.total_cmp(&b.weight))
@@ -31,8 +31,8 @@ impl<'a> Sorted<'a> {
         Self { sample, total }
     }
 
-    /// The smallest value at which the weights add up to `q` of their sum, less 1e-9 of the mean
-    /// weight ([M-28](crate::models#m-28) with weights), and the index behind it.
+    /// The smallest value at which the weights add up to `q` of their sum, minus 1e-9 of the mean
+    /// weight ([M-28](crate::models#m-28) with weights), and the index after it.
     fn quantile(&self, q: f64) -> Option<(f64, usize)> {
         let slack = 1e-9 * self.total / self.sample.len() as f64;
         let wanted = q * self.total - slack;
@@ -43,7 +43,7 @@ impl<'a> Sorted<'a> {
                 return Some((x.value, n + 1));
             }
         }
-        // Rounding may leave the sum short of a level next to one.
+        // Rounding may leave the sum short of a level close to 1.
         let last = self.sample.last()?;
         Some((last.value, self.sample.len()))
     }
@@ -58,7 +58,7 @@ impl<'a> Sorted<'a> {
     }
 }
 
-/// The values, when all weights are the same.
+/// The values, if all weights are equal.
 fn of_equal_weights(sample: &[Weighted]) -> Option<Vec<f64>> {
     let first = sample.first()?.weight;
     let equal = sample.iter().all(|x| x.weight == first);
@@ -76,7 +76,7 @@ pub fn weighted_mean(sample: &[Weighted]) -> Option<f64> {
     (!sample.is_empty()).then(|| sum / total)
 }
 
-/// The quantile of level `q`: the smallest value that has at least the share `q` of the weights at
+/// The quantile of level `q`: the smallest value with at least the fraction `q` of the weight at
 /// or below it ([M-28](crate::models#m-28)); `None` for an empty sample. Reorders `sample`.
 #[must_use]
 pub fn weighted_quantile(sample: &mut [Weighted], q: Level) -> Option<f64> {
@@ -88,7 +88,7 @@ pub fn weighted_quantile(sample: &mut [Weighted], q: Level) -> Option<f64> {
         .map(|(value, _)| value)
 }
 
-/// Conditional value-at-risk: the mean of the worst (1 - α) share of the weights (Rockafellar and
+/// Conditional value-at-risk: the mean of the worst 1 - α of the weight (Rockafellar and
 /// Uryasev, *J. Banking & Finance* 26 (2002), proposition 8; [M-29](crate::models#m-29)). `None`
 /// for an empty sample. Reorders `sample`.
 #[must_use]
@@ -99,7 +99,7 @@ pub fn weighted_cvar(sample: &mut [Weighted], level: Level) -> Option<f64> {
     Sorted::new(sample).cvar(level)
 }
 
-/// All the statistics of one sample; `None` when it is empty. Reorders `sample`.
+/// All statistics of one sample; `None` if it is empty. Reorders `sample`.
 #[must_use]
 pub fn summarize_weighted(sample: &mut [Weighted], level: Level) -> Option<Summary> {
     if let Some(mut values) = of_equal_weights(sample) {

@@ -1,21 +1,21 @@
-//! Elevation masks that depend on azimuth: the skyline around a receiver.
+//! Elevation masks by azimuth: the skyline around a receiver.
 
 use super::MaskError;
 use crate::frames::LocalFrame;
 use nalgebra::Vector3;
 use thiserror::Error;
 
-/// Why vertices make no mask around the whole horizon.
+/// Why vertices do not define a mask around the whole horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum MaskTableError {
     /// No vertex.
-    #[error("the mask table has no vertex; azimuths 0 to 360 degrees have no mask")]
+    #[error("the mask table is empty; it must cover azimuths 0 to 360 degrees")]
     Empty,
     /// The first azimuth is not 0.
-    #[error("the mask table starts at azimuth {0} degrees; from 0 to there is no mask")]
+    #[error("the mask table starts at azimuth {0} degrees; it must start at 0")]
     Start(f64),
     /// The last azimuth is not 360.
-    #[error("the mask table ends at azimuth {0} degrees; from there to 360 is no mask")]
+    #[error("the mask table ends at azimuth {0} degrees; it must end at 360")]
     End(f64),
     /// Azimuths that do not increase.
     #[error("azimuth {after} degrees follows {before} in the mask table; azimuths must increase")]
@@ -25,7 +25,7 @@ pub enum MaskTableError {
         /// Azimuth that is not larger, degrees.
         after: f64,
     },
-    /// The masks at 0° and at 360°, which are one direction, differ.
+    /// The masks at 0° and 360°, the same direction, differ.
     #[error("the mask is {at_0} degrees at azimuth 0 and {at_360} at 360, which are both north")]
     Seam {
         /// Mask at azimuth 0, degrees.
@@ -43,7 +43,7 @@ pub enum MaskTableError {
     },
 }
 
-/// An elevation mask by azimuth: straight lines between vertices from 0° to 360°
+/// An elevation mask by azimuth, linear between vertices from 0° to 360°
 /// ([M-23](crate::models#m-23)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaskTable {
@@ -55,7 +55,7 @@ impl MaskTable {
     /// The mask through vertices (azimuth from north through east, elevation mask), degrees.
     ///
     /// # Errors
-    /// Names the gap when the azimuths do not run from 0 to 360, or the vertex that is wrong.
+    /// If the azimuths do not cover 0 to 360, with the gap, or a vertex is invalid.
     pub fn new(vertices: Vec<(f64, f64)>) -> Result<Self, MaskTableError> {
         let (Some(&first), Some(&last)) = (vertices.first(), vertices.last()) else {
             return Err(MaskTableError::Empty);
@@ -88,7 +88,7 @@ impl MaskTable {
         Ok(Self { vertices })
     }
 
-    /// The mask at an azimuth of [0, 360] degrees, degrees.
+    /// The mask at an azimuth from 0 to 360 degrees, degrees.
     #[must_use]
     pub fn degrees_at(&self, azimuth_deg: f64) -> f64 {
         let behind = self
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(error(&[]), MaskTableError::Empty);
         assert_eq!(
             error(&[(10.0, 5.0), (360.0, 5.0)]).to_string(),
-            "the mask table starts at azimuth 10 degrees; from 0 to there is no mask"
+            "the mask table starts at azimuth 10 degrees; it must start at 0"
         );
         assert_eq!(
             error(&[(0.0, 5.0), (350.0, 5.0)]),

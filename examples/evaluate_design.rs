@@ -1,0 +1,57 @@
+//! Evaluates one design over a region and with a GNSS defined in code, without a scenario file.
+//!
+//! `cargo run --release --example evaluate_design`
+
+use navwalker::constellation::Design;
+use navwalker::constellation::gnss::{Preset, System};
+use navwalker::dop::{Clocks, ObservationWeights};
+use navwalker::earth::Surface;
+use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
+use navwalker::ground::{Grid, PointWeights};
+use navwalker::orbit::Model;
+use navwalker::stats::Level;
+use navwalker::time::{Epoch, TimeGrid};
+use navwalker::visibility::Mask;
+use std::error::Error;
+use std::io::{self, Write};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let iberia = Grid {
+        latitude_deg: [36.0, 44.0],
+        longitude_deg: [-10.0, 4.0],
+        step_deg: [2.0, 2.0],
+        weights: PointWeights::CosLatitude,
+    };
+    let epoch = Epoch::from_utc("2025-06-01T00:00:00Z".parse()?);
+    let setup = Setup {
+        grid: TimeGrid::new(epoch, 86_400.0, 60.0)?,
+        sites: iberia.sites(Surface::Wgs84)?,
+        mask: Mask::from_degrees(10.0)?,
+        gnss_mask: Mask::from_degrees(5.0)?,
+        skyline: None,
+        gnss: vec![System::from(Preset::Gps), System::from(Preset::Galileo)],
+        clocks: Clocks::PerSystem,
+        observation_weights: ObservationWeights::Unit,
+        pdop_cap: 100.0,
+        model: Model::J2,
+        metrics: MetricOptions {
+            cvar_weight: 0.5,
+            cvar_level: Level::new(0.95)?,
+            availability_pdop: 2.0,
+        },
+    };
+    let evaluator = Evaluator::new(setup)?;
+    let design: Design = "delta:55:60/6/1@1000".parse()?;
+    let metrics = evaluator.design(&design)?;
+
+    let mut out = io::stdout().lock();
+    writeln!(out, "{design}")?;
+    writeln!(out, "mean visible  {:.3}", metrics.mean_visible)?;
+    // Statistics of PDOP have no value when no sample is solved.
+    if let (Some(mean), Some(max)) = (metrics.mean_pdop, metrics.max_pdop) {
+        writeln!(out, "mean PDOP     {mean:.3}")?;
+        writeln!(out, "maximum PDOP  {max:.3}")?;
+    }
+    writeln!(out, "availability  {:.4}", metrics.availability)?;
+    Ok(())
+}
