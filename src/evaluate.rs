@@ -12,7 +12,7 @@ mod plain;
 mod series;
 
 pub use dops::{ClockDop, DopStatistics};
-pub use kernel::{InstructionSet, Retakes};
+pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use series::{EpochMetrics, PointMetrics, Series};
 
@@ -26,10 +26,10 @@ use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
 use fixed::FixedGeometry;
-use kernel::Kernel;
+use kernel::{Kernel, Source};
 use metrics::Evaluated;
 use nalgebra::Vector3;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Everything that an evaluation depends on, but for the design.
 ///
@@ -201,8 +201,8 @@ impl Setup {
 
 /// Computes the metrics of designs under one [`Setup`].
 pub struct Evaluator {
-    setup: Setup,
-    rotations: Vec<EarthRotation>,
+    setup: Arc<Setup>,
+    rotations: Arc<[EarthRotation]>,
     /// For the setups that it suits.
     kernel: Option<Kernel>,
     /// For the plain path, made when it is first asked for.
@@ -228,14 +228,15 @@ impl Evaluator {
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
-        let rotations: Vec<_> = setup
+        let setup = Arc::new(setup);
+        let rotations: Arc<[_]> = setup
             .grid
             .iter()
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
         let kernel = setup
             .suits_kernel()
-            .then(|| Kernel::new(&setup, &rotations, instructions))
+            .then(|| Kernel::new(Arc::clone(&setup), Arc::clone(&rotations), instructions))
             .transpose()?;
         let fixed = OnceLock::new();
         Ok(Self {
@@ -252,7 +253,7 @@ impl Evaluator {
         &self.setup
     }
 
-    /// The metrics of a design, flown by the model of the setup.
+    /// The metrics of a design under the model of the setup.
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
@@ -264,9 +265,9 @@ impl Evaluator {
     ///
     /// # Errors
     /// When the model cannot fly a satellite of the design.
-    pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Retakes), EphemerisError> {
+    pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
-        self.counted(&ephemeris, Some(design))
+        self.counted(Source::Design(design, &ephemeris))
     }
 
     /// The metrics of any satellites, on the grid of the setup.
@@ -274,19 +275,16 @@ impl Evaluator {
     /// # Errors
     /// When a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        Ok(self.counted(ephemeris, None)?.0)
+        Ok(self.counted(Source::Ephemeris(ephemeris))?.0)
     }
 
-    fn counted(
-        &self,
-        ephemeris: &Ephemeris,
-        design: Option<&Design>,
-    ) -> Result<(Metrics, Retakes), EphemerisError> {
+    fn counted(&self, source: Source<'_>) -> Result<(Metrics, Rechecks), EphemerisError> {
+        let (Source::Design(_, ephemeris) | Source::Ephemeris(ephemeris)) = source;
         let Some(kernel) = &self.kernel else {
-            return Ok((self.evaluate_plain(ephemeris)?, Retakes::default()));
+            return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
         };
-        let (evaluated, retakes) = kernel.evaluate(self, ephemeris, design)?;
-        Ok((self.metrics(&evaluated, ephemeris), retakes))
+        let (evaluated, rechecks) = kernel.evaluate(source)?;
+        Ok((self.metrics(&evaluated, ephemeris), rechecks))
     }
 
     /// The metrics of any satellites by the plain path, which the kernel is tested against: one

@@ -50,6 +50,19 @@ pub struct DesignSpace {
     pub arg_perigee_deg: [f64; 2],
 }
 
+/// Distances between the designs of a sweep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SweepSteps {
+    /// Step of the inclination, degrees.
+    pub inclination_deg: f64,
+    /// Step of the altitude, km.
+    pub altitude_km: f64,
+    /// Step of the eccentricity.
+    pub eccentricity: f64,
+    /// Step of the argument of perigee, degrees.
+    pub arg_perigee_deg: f64,
+}
+
 impl DesignSpace {
     /// The space of the vectors (P, S, i, h, F[, e][, ω]); e and ω only where they vary, so that
     /// circular searches draw the same random numbers with and without them.
@@ -87,10 +100,10 @@ impl DesignSpace {
     /// The steps of a sweep, in the order of the vectors: inclination and altitude, eccentricity and
     /// argument of perigee as given, 1 for what is counted.
     #[must_use]
-    pub fn steps(&self, [inclination, altitude, eccentricity, perigee]: [f64; 4]) -> Vec<f64> {
-        let mut steps = vec![1.0, 1.0, inclination, altitude, 1.0];
-        steps.extend(varies(self.eccentricity).then_some(eccentricity));
-        steps.extend(varies(self.arg_perigee_deg).then_some(perigee));
+    pub fn steps(&self, sweep: SweepSteps) -> Vec<f64> {
+        let mut steps = vec![1.0, 1.0, sweep.inclination_deg, sweep.altitude_km, 1.0];
+        steps.extend(varies(self.eccentricity).then_some(sweep.eccentricity));
+        steps.extend(varies(self.arg_perigee_deg).then_some(sweep.arg_perigee_deg));
         steps
     }
 
@@ -378,7 +391,12 @@ mod tests {
         assert_eq!(space().vectors().unwrap().variables().len(), 5);
         assert_eq!(free.vectors().unwrap().variables().len(), 6);
         assert_eq!(
-            free.steps([0.5, 50.0, 0.1, 30.0]),
+            free.steps(SweepSteps {
+                inclination_deg: 0.5,
+                altitude_km: 50.0,
+                eccentricity: 0.1,
+                arg_perigee_deg: 30.0,
+            }),
             [1.0, 1.0, 0.5, 50.0, 1.0, 30.0]
         );
         let mut genome = vec![13.0, 14.0, 55.0, 925.0, 5.0, 270.000_04];

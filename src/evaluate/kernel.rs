@@ -12,7 +12,7 @@
 //!
 //! # In what order
 //!
-//! Sample by sample in time. At each: positions of all satellites ([`flight`]); for each group of
+//! Sample by sample in time. At each: positions of all satellites ([`propagation`]); for each group of
 //! tiles of ground points the satellites that it may see ([`tiles`], [`candidates`]); for each tile
 //! of sixteen points ([`lanes`]) the loop over those that the tile may see, with the ten sums in
 //! registers. Work grows with the pairs that see each other, about twice their number, and not
@@ -24,44 +24,45 @@
 //! left to it ([`sample`]):
 //!
 //! - a decision so close to the mask that rounding might turn it is taken again with the positions
-//!   and the comparison of the plain path ([`retake`]), so that visible satellites are counted
+//!   and the comparison of the plain path ([`near_mask`]), so that visible satellites are counted
 //!   exactly;
 //! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
 //!   around each order statistic ([`refine`]).
 //!
-//! Both are counted in [`Retakes`].
+//! Both are counted in [`Rechecks`].
 //!
 //! # Statistics
 //!
-//! Values are never sorted, and beyond a number of them not even kept ([`tally`]).
+//! Values are never sorted, and beyond a number of them not even kept ([`order_statistics`]).
 
 mod candidates;
 mod fixed;
-mod flight;
 mod instructions;
 mod lanes;
+mod near_mask;
+mod order_statistics;
+mod propagation;
 mod refine;
-mod retake;
 mod sample;
-mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
 
+use super::Setup;
 use super::metrics::Evaluated;
-use super::{Evaluator, Setup};
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use fixed::{Fixed, FixedTiles};
-use flight::PatternFlight;
+use fixed::{Fixed, FixedTiles, Instant};
 use lanes::{LANES, Lanes, MaskTerms};
+use order_statistics::{Count, Counts, Find, Found, Merge, Places, Search};
+use propagation::PatternPropagator;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
 use sample::{Limits, Outcome, Sample, Scene, Workspace};
 use std::ops::Range;
-use tally::{Count, Counts, Find, Found, Merge, Places, Search};
+use std::sync::Arc;
 use tiles::Tiles;
 
 /// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
@@ -103,15 +104,26 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
 
 /// Samples that were taken again in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Retakes {
+pub struct Rechecks {
     /// A satellite was too close to the mask.
     pub near_mask: u64,
     /// PDOP was large or close to a threshold.
     pub large_pdop: u64,
 }
 
+/// Where the satellites of an evaluation come from.
+#[derive(Clone, Copy)]
+pub(super) enum Source<'a> {
+    /// A design, and its satellites under the model of the setup.
+    Design(&'a Design, &'a Ephemeris),
+    /// Any satellites.
+    Ephemeris(&'a Ephemeris),
+}
+
 /// Everything of the kernel that no design changes.
 pub(super) struct Kernel {
+    setup: Arc<Setup>,
+    rotations: Arc<[EarthRotation]>,
     scene: Scene,
     fixed: Fixed,
     instructions: InstructionSet,
@@ -123,7 +135,7 @@ pub(super) struct Kernel {
 #[derive(Clone, Copy)]
 struct Flight<'a> {
     ephemeris: &'a Ephemeris,
-    pattern: Option<&'a PatternFlight>,
+    pattern: Option<&'a PatternPropagator>,
 }
 
 /// Counts of one piece of work.
@@ -131,7 +143,7 @@ struct Flight<'a> {
 struct Tallies {
     visible: u64,
     available: u64,
-    retakes: Retakes,
+    rechecks: Rechecks,
 }
 
 impl Tallies {
@@ -139,9 +151,9 @@ impl Tallies {
         Self {
             visible: self.visible + other.visible,
             available: self.available + other.available,
-            retakes: Retakes {
-                near_mask: self.retakes.near_mask + other.retakes.near_mask,
-                large_pdop: self.retakes.large_pdop + other.retakes.large_pdop,
+            rechecks: Rechecks {
+                near_mask: self.rechecks.near_mask + other.rechecks.near_mask,
+                large_pdop: self.rechecks.large_pdop + other.rechecks.large_pdop,
             },
         }
     }
@@ -149,8 +161,8 @@ impl Tallies {
 
 impl Kernel {
     pub(super) fn new(
-        setup: &Setup,
-        rotations: &[EarthRotation],
+        setup: Arc<Setup>,
+        rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
         Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
@@ -158,12 +170,12 @@ impl Kernel {
 
     fn keeping_at_most(
         keep: Keep,
-        setup: &Setup,
-        rotations: &[EarthRotation],
+        setup: Arc<Setup>,
+        rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
-        let fixed = Fixed::new(setup, &tiles, rotations, (instructions, keep.fixed_bytes))?;
+        let fixed = Fixed::new(&setup, &tiles, &rotations, instructions, keep.fixed_bytes)?;
         let scene = Scene {
             tiles,
             single: MaskTerms::new(setup.mask),
@@ -179,67 +191,66 @@ impl Kernel {
             fixed,
             instructions,
             places: Places::new(setup.pdop_cap),
+            setup,
+            rotations,
             kept_values: keep.values,
         })
     }
 
-    /// Evaluates satellites; `design` is what they are if they are the satellites of a design
-    /// under the model of the setup.
+    /// Evaluates satellites.
     pub(super) fn evaluate(
         &self,
-        evaluator: &Evaluator,
-        ephemeris: &Ephemeris,
-        design: Option<&Design>,
-    ) -> Result<(Evaluated, Retakes), EphemerisError> {
-        let pattern = design.and_then(|design| PatternFlight::new(design, evaluator.setup().model));
+        source: Source<'_>,
+    ) -> Result<(Evaluated, Rechecks), EphemerisError> {
+        let (ephemeris, pattern) = match source {
+            Source::Design(design, ephemeris) => {
+                (ephemeris, PatternPropagator::new(design, self.setup.model))
+            }
+            Source::Ephemeris(ephemeris) => (ephemeris, None),
+        };
         let flight = Flight {
             ephemeris,
             pattern: pattern.as_ref(),
         };
-        if self.scene.tiles.slots() * evaluator.setup().grid.len() <= self.kept_values {
-            self.keeping(evaluator, flight)
+        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+            self.keeping(flight)
         } else {
-            self.streaming(evaluator, flight)
+            self.streaming(flight)
         }
     }
 
     /// One pass over the samples; the statistics pass over the values twice.
-    fn keeping(
-        &self,
-        evaluator: &Evaluator,
-        flight: Flight<'_>,
-    ) -> Result<(Evaluated, Retakes), EphemerisError> {
-        let samples = evaluator.setup().grid.len();
+    fn keeping(&self, flight: Flight<'_>) -> Result<(Evaluated, Rechecks), EphemerisError> {
+        let samples = self.setup.grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(evaluator, flight, chunk, self.scene.limits, |tiles| {
+            let part = self.run(flight, chunk, self.scene.limits, |tiles| {
                 values.extend_from_slice(tiles);
             })?;
             tallies = tallies.merged(part);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+        let summary = match Search::new(&counts, self.setup.metrics.cvar_level) {
             Some(search) => {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
                 let mut summary = search.summary(&found, sum, tail);
-                self.refine(evaluator, flight, &values, &search, &mut summary)?;
+                self.refine(flight, &values, &search, &mut summary)?;
                 Some(summary)
             }
             None => None,
         };
-        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
-        Ok((evaluated, tallies.retakes))
+        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
+        Ok((evaluated, tallies.rechecks))
     }
 
     /// Takes the order statistics again in f64.
     fn refine(
         &self,
-        evaluator: &Evaluator,
         flight: Flight<'_>,
         values: &[Lanes<f32>],
         search: &Search,
@@ -251,12 +262,11 @@ impl Kernel {
             &mut summary.p99,
             &mut summary.max,
         ];
-        let mut numbers = 0..;
-        let ranked = statistics.each_ref().map(|value| Ranked {
-            rank: search.rank(numbers.next().unwrap_or(0)),
-            value: **value,
+        let ranked = std::array::from_fn(|number| Ranked {
+            rank: search.rank(number),
+            value: *statistics[number],
         });
-        let windows = self.instructions.run(Surround {
+        let windows: [_; 4] = self.instructions.run(Surround {
             tiles: values,
             ranked,
         });
@@ -269,7 +279,7 @@ impl Kernel {
             let mut again = Vec::with_capacity(window.places.len());
             for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
                 let k = together[0].0 / tiles;
-                self.run(evaluator, flight, k..k + 1, exact, |sample| {
+                self.run(flight, k..k + 1, exact, |sample| {
                     again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
                 })?;
             }
@@ -281,14 +291,9 @@ impl Kernel {
     }
 
     /// Two passes over the samples, each on all threads; nothing is kept but counts.
-    fn streaming(
-        &self,
-        evaluator: &Evaluator,
-        flight: Flight<'_>,
-    ) -> Result<(Evaluated, Retakes), EphemerisError> {
-        let chunks = self.chunks(evaluator.setup().grid.len());
+    fn streaming(&self, flight: Flight<'_>) -> Result<(Evaluated, Rechecks), EphemerisError> {
+        let chunks = self.chunks(self.setup.grid.len());
         let (counts, parts) = self.pass(
-            evaluator,
             flight,
             &chunks,
             || Counts::new(self.places),
@@ -299,26 +304,24 @@ impl Kernel {
             .iter()
             .fold(Tallies::default(), |all, part| all.merged(part.0));
         let sum = parts.iter().map(|part| part.1).sum();
-        let summary = match Search::new(&counts, evaluator.setup().metrics.cvar_level) {
+        let summary = match Search::new(&counts, self.setup.metrics.cvar_level) {
             Some(search) => {
-                let (found, parts) =
-                    self.pass(evaluator, flight, &chunks, Found::new, |tiles, found| {
-                        self.find(tiles, &search, found)
-                    })?;
+                let (found, parts) = self.pass(flight, &chunks, Found::new, |tiles, found| {
+                    self.find(tiles, &search, found)
+                })?;
                 let tail = parts.iter().map(|part| part.1).sum();
                 Some(search.summary(&found, sum, tail))
             }
             None => None,
         };
-        let evaluated = evaluated(evaluator.setup(), tallies, &counts, summary);
-        Ok((evaluated, tallies.retakes))
+        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
+        Ok((evaluated, tallies.rechecks))
     }
 
     /// One pass over the samples on all threads. `note` takes the values of a sample into an
     /// accumulator of integers, in any order, and returns a sum, which is kept for each chunk.
     fn pass<A: Merge + Send>(
         &self,
-        evaluator: &Evaluator,
         flight: Flight<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
@@ -330,15 +333,9 @@ impl Kernel {
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
                     let mut sum = 0.0;
-                    let tallies = self.run(
-                        evaluator,
-                        flight,
-                        chunk.clone(),
-                        self.scene.limits,
-                        |tiles| {
-                            sum += note(tiles, &mut all);
-                        },
-                    )?;
+                    let tallies = self.run(flight, chunk.clone(), self.scene.limits, |tiles| {
+                        sum += note(tiles, &mut all);
+                    })?;
                     parts.push((tallies, sum));
                     Ok((all, parts))
                 },
@@ -376,7 +373,6 @@ impl Kernel {
     /// Evaluates some samples and hands the values of each to `take`.
     fn run(
         &self,
-        evaluator: &Evaluator,
         flight: Flight<'_>,
         chunk: Range<usize>,
         limits: Limits,
@@ -384,15 +380,20 @@ impl Kernel {
     ) -> Result<Tallies, EphemerisError> {
         let mut work = Workspace::new(flight.ephemeris.satellites().len());
         let mut outcome = Outcome::new(self.scene.tiles.tiles.len());
-        let mut room = FixedTiles::default();
+        let mut scratch = FixedTiles::default();
         let mut tallies = Tallies::default();
         for k in chunk {
-            let elapsed_s = evaluator.setup().grid.elapsed_s(k);
-            let rotation = evaluator.rotations[k];
-            let instant = (k, elapsed_s, rotation);
-            let fixed = self.fixed.at(&self.scene.tiles, instant, &mut room)?;
+            let elapsed_s = self.setup.grid.elapsed_s(k);
+            let rotation = self.rotations[k];
+            let instant = Instant {
+                number: k,
+                elapsed_s,
+                rotation,
+            };
+            let fixed = self.fixed.at(&self.scene.tiles, instant, &mut scratch)?;
             if flight.pattern.is_none() {
-                work.positions.ask(flight.ephemeris, elapsed_s, rotation)?;
+                work.positions
+                    .propagate(flight.ephemeris, elapsed_s, rotation)?;
             }
             let pattern = flight
                 .pattern
@@ -405,14 +406,14 @@ impl Kernel {
                 work: &mut work,
                 outcome: &mut outcome,
             });
-            tallies.retakes.near_mask += outcome.doubts.len() as u64;
-            tallies.retakes.large_pdop += outcome.doubled;
-            let sky = retake::Sky {
+            tallies.rechecks.near_mask += outcome.doubts.len() as u64;
+            tallies.rechecks.large_pdop += outcome.doubled;
+            let satellites = near_mask::Satellites {
                 ephemeris: flight.ephemeris,
                 elapsed_s,
                 rotation,
             };
-            retake::settle(evaluator.setup(), &self.scene, &sky, fixed, &mut outcome)?;
+            near_mask::settle(&self.setup, &self.scene, &satellites, fixed, &mut outcome)?;
             tallies.visible += outcome.visible;
             tallies.available += outcome.available;
             take(&outcome.pdop);

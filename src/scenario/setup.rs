@@ -7,7 +7,7 @@ use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{Fleet, ReadFleetError};
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::Goals;
+use crate::search::{Goals, SweepSteps};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
@@ -265,12 +265,12 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: self.search.designs.steps([
-                    self.search.inclination_step_deg,
-                    self.search.altitude_step_km,
-                    self.search.eccentricity_step,
-                    self.search.arg_perigee_step_deg,
-                ]),
+                steps: self.search.designs.steps(SweepSteps {
+                    inclination_deg: self.search.inclination_step_deg,
+                    altitude_km: self.search.altitude_step_km,
+                    eccentricity: self.search.eccentricity_step,
+                    arg_perigee_deg: self.search.arg_perigee_step_deg,
+                }),
                 batch: SWEEP_BATCH,
                 hypervolume_reference,
             }),

@@ -1,6 +1,6 @@
 //! Satellites that a cap of ground points may see.
 
-use super::flight::{BLOCK, PositionBlock, Positions};
+use super::propagation::{BLOCK, PositionBlock, Positions};
 use super::tiles::{Cap, Horizon};
 
 /// Satellites in f32, which are tested together, one for each bit of a word.

@@ -2,11 +2,11 @@
 
 use super::super::Setup;
 use super::candidates::{Candidates, bits};
-use super::flight::Positions;
 use super::instructions::{InstructionSet, Work};
 use super::lanes::{
     FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, nearest, remainder,
 };
+use super::propagation::Positions;
 use super::tiles::{Horizon, Tile, Tiles};
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -68,6 +68,15 @@ impl FixedTiles {
     }
 }
 
+/// One sample in time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Instant {
+    /// Index into the grid.
+    pub(super) number: usize,
+    pub(super) elapsed_s: f64,
+    pub(super) rotation: EarthRotation,
+}
+
 /// The GNSS part of one sample.
 #[derive(Clone, Copy)]
 pub(super) struct FixedSample<'a> {
@@ -88,7 +97,8 @@ impl Fixed {
         setup: &Setup,
         tiles: &Tiles,
         rotations: &[EarthRotation],
-        (instructions, kept_bytes): (InstructionSet, usize),
+        instructions: InstructionSet,
+        kept_bytes: usize,
     ) -> Result<Self, EphemerisError> {
         let epoch = setup.grid.epoch();
         let mut fixed = Self {
@@ -114,20 +124,20 @@ impl Fixed {
         Ok(fixed)
     }
 
-    /// The tiles of sample `k`: kept ones, or made in `room`.
+    /// The tiles of a sample: kept ones, or made in `scratch`.
     pub(super) fn at<'a>(
         &'a self,
         tiles: &Tiles,
-        (k, elapsed_s, rotation): (usize, f64, EarthRotation),
-        room: &'a mut FixedTiles,
+        instant: Instant,
+        scratch: &'a mut FixedTiles,
     ) -> Result<FixedSample<'a>, EphemerisError> {
         if self.systems.is_empty() || !self.kept.normals.is_empty() {
-            let (tiles, first) = (&self.kept, k * tiles.tiles.len());
+            let (tiles, first) = (&self.kept, instant.number * tiles.tiles.len());
             return Ok(FixedSample { tiles, first });
         }
-        room.clear();
-        self.make(tiles, elapsed_s, rotation, room)?;
-        let (tiles, first) = (room, 0);
+        scratch.clear();
+        self.make(tiles, instant.elapsed_s, instant.rotation, scratch)?;
+        let (tiles, first) = (scratch, 0);
         Ok(FixedSample { tiles, first })
     }
 
@@ -141,7 +151,7 @@ impl Fixed {
         let mut systems = Vec::with_capacity(self.systems.len());
         for system in &self.systems {
             let mut positions = Positions::new(system.satellites().len());
-            positions.ask(system, elapsed_s, rotation)?;
+            positions.propagate(system, elapsed_s, rotation)?;
             systems.push(System::new(positions, &tiles.fixed_horizon));
         }
         self.instructions.run(Make {

@@ -2,9 +2,9 @@
 
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
-use super::flight::{BLOCK, PatternFlight, Positions, Turn};
 use super::instructions::Work;
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, SiteLanes, Solution, Sums};
+use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
 
 /// Stands for an unsolved sample among the values of PDOP.
@@ -79,7 +79,7 @@ impl Workspace {
 /// A decision that f32 cannot take: the point in a lane of a tile, and the satellites that it may
 /// see.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Doubt {
+pub(super) struct Undecided {
     pub(super) tile: usize,
     pub(super) lane: usize,
     pub(super) satellites: Vec<u32>,
@@ -97,7 +97,7 @@ pub(super) struct Outcome {
     /// Points whose PDOP was computed again in f64.
     pub(super) doubled: u64,
     /// Points to look at again.
-    pub(super) doubts: Vec<Doubt>,
+    pub(super) doubts: Vec<Undecided>,
 }
 
 impl Outcome {
@@ -118,7 +118,7 @@ pub(super) struct Sample<'a> {
     /// Those of the scene, or narrower ones.
     pub(super) limits: Limits,
     /// The pattern to fly; without one the positions are there already.
-    pub(super) pattern: Option<(&'a PatternFlight, Turn)>,
+    pub(super) pattern: Option<(&'a PatternPropagator, Turn)>,
     /// The GNSS part.
     pub(super) fixed: FixedSample<'a>,
     pub(super) work: &'a mut Workspace,
@@ -131,7 +131,7 @@ impl Work for Sample<'_> {
     #[inline(always)]
     fn run(self) {
         if let Some((pattern, turn)) = &self.pattern {
-            pattern.fly(turn, &mut self.work.positions);
+            pattern.place_at(turn, &mut self.work.positions);
         }
         evaluate(
             self.scene,
@@ -171,12 +171,12 @@ fn evaluate(
         for number in group.tiles.clone() {
             let place = number - group.tiles.start;
             let words = &work.words[place * work.blocks..(place + 1) * work.blocks];
-            let looked = Looked {
+            let candidates = TileCandidates {
                 blocks: work.near.blocks(),
                 words,
             };
             let fixed = fixed.tile(number);
-            let sums = looked.sums(&scene.tiles.tiles[number].single, &mask);
+            let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
             let verdict = Verdict::new(&sums, &fixed, &limits);
             for l in 0..LANES {
                 visible[l] += verdict.visible.0[l];
@@ -184,7 +184,7 @@ fn evaluate(
             }
             out.pdop[number] = verdict.pdop;
             if any(&verdict.doubtful) {
-                doubt(number, &verdict, looked, out);
+                doubt(number, &verdict, candidates, out);
             }
             if any(&verdict.coarse) {
                 available[0] += compute_again(
@@ -193,7 +193,7 @@ fn evaluate(
                     &fixed,
                     &verdict,
                     &work.positions,
-                    looked,
+                    candidates,
                     out,
                 );
             }
@@ -210,13 +210,13 @@ fn any(lanes: &Lanes<u32>) -> bool {
 
 /// The satellites that a tile may see.
 #[derive(Clone, Copy)]
-struct Looked<'a> {
+struct TileCandidates<'a> {
     blocks: &'a [Block],
     /// A bit for each satellite of the block.
     words: &'a [u64],
 }
 
-impl<'a> Looked<'a> {
+impl<'a> TileCandidates<'a> {
     #[inline(always)]
     fn sums(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
         let mut all = Sums::zero();
@@ -280,13 +280,13 @@ impl Verdict {
     }
 }
 
-/// Leaves the doubtful points of a tile to be looked at again.
+/// Leaves the doubtful points of a tile to be candidates at again.
 #[inline(never)]
-fn doubt(number: usize, verdict: &Verdict, looked: Looked<'_>, out: &mut Outcome) {
-    let satellites: Vec<u32> = looked.satellites().map(|n| n as u32).collect();
+fn doubt(number: usize, verdict: &Verdict, candidates: TileCandidates<'_>, out: &mut Outcome) {
+    let satellites: Vec<u32> = candidates.satellites().map(|n| n as u32).collect();
     for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
         out.pdop[number].0[lane] = UNSOLVED;
-        out.doubts.push(Doubt {
+        out.doubts.push(Undecided {
             tile: number,
             lane,
             satellites: satellites.clone(),
@@ -303,12 +303,12 @@ fn compute_again(
     fixed: &FixedTile<'_>,
     verdict: &Verdict,
     positions: &Positions,
-    looked: Looked<'_>,
+    candidates: TileCandidates<'_>,
     out: &mut Outcome,
 ) -> u32 {
     let mut sums = Sums::<f64>::zero();
     let sites = &scene.tiles.tiles[number].double;
-    for (block, &word) in looked.blocks.iter().zip(looked.words) {
+    for (block, &word) in candidates.blocks.iter().zip(candidates.words) {
         for n in bits(word) {
             sums.add(sites, positions.at(block.index(n)), &scene.double);
         }

@@ -1,5 +1,5 @@
 use super::candidates::Candidates;
-use super::flight::{PatternFlight, Positions};
+use super::propagation::{PatternPropagator, Positions};
 use super::tiles::{Horizon, Tiles};
 use super::*;
 use crate::constellation::gnss::Preset;
@@ -8,7 +8,7 @@ use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::Flown;
 use crate::evaluate::tests::setup;
-use crate::evaluate::{MetricOptions, Metrics};
+use crate::evaluate::{Evaluator, MetricOptions, Metrics};
 use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
 use crate::orbit::{Model, PropagationError, Propagator};
@@ -176,12 +176,12 @@ fn whole_days_equal_the_plain_path() {
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
-        let (fast, retakes) = evaluator.evaluate_counted(&design).unwrap();
+        let (fast, rechecks) = evaluator.evaluate_counted(&design).unwrap();
         compare(&fast, &plain).unwrap();
         // Means do better than single values: roundings cancel.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
-        assert!(retakes.near_mask > 0, "{text}");
-        assert!(retakes.large_pdop > 0, "{text}");
+        assert!(rechecks.near_mask > 0, "{text}");
+        assert!(rechecks.large_pdop > 0, "{text}");
     }
 }
 
@@ -228,8 +228,8 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::new(setup.grid, satellites);
     let evaluator = Evaluator::new(setup).unwrap();
     let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, retakes) = kernel.evaluate(&evaluator, &ephemeris, None).unwrap();
-    assert!(retakes.near_mask >= 143 * 10, "{retakes:?}");
+    let (_, rechecks) = kernel.evaluate(Source::Ephemeris(&ephemeris)).unwrap();
+    assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
 }
@@ -266,9 +266,9 @@ fn streaming_equals_keeping() {
             values: 0,
             fixed_bytes: 0,
         };
-        let rotations = &kept.rotations;
+        let (setup, rotations) = (Arc::clone(&kept.setup), Arc::clone(&kept.rotations));
         streamed.kernel =
-            Kernel::keeping_at_most(nothing, &setup, rotations, InstructionSet::detect()).ok();
+            Kernel::keeping_at_most(nothing, setup, rotations, InstructionSet::detect()).ok();
         let expected = kept.evaluate(&design).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -295,7 +295,7 @@ fn streaming_equals_keeping() {
 fn regress_culling_looks_at_twice_what_is_seen() {
     let setup = setup([3.0, 54.0], Surface::Sphere);
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
-    let flight = PatternFlight::new(&design, setup.model).unwrap();
+    let flight = PatternPropagator::new(&design, setup.model).unwrap();
     let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
     assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
     let count = design.satellite_count();
@@ -304,7 +304,7 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let mut looked_at = 0;
     for elapsed_s in setup.grid.iter() {
         let rotation = EarthRotation::from_gmst(setup.grid.epoch().gmst_rad(elapsed_s));
-        flight.fly(&flight.turn(elapsed_s, rotation), &mut positions);
+        flight.place_at(&flight.turn(elapsed_s, rotation), &mut positions);
         all.fill(&positions, &tiles.horizon);
         let slack_km = Horizon::cap_slack_km(&positions);
         for (tile, block) in tiles
@@ -385,13 +385,13 @@ fn patterns_fly_as_their_propagators_do() {
         let base = setup([3.0, 54.0], Surface::Sphere);
         let grid = TimeGrid::new(base.grid.epoch(), 7.0 * 86_400.0, 5000.0).unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        let flight = PatternFlight::new(&design, Model::J2).unwrap();
+        let flight = PatternPropagator::new(&design, Model::J2).unwrap();
         let mut flown = Positions::new(design.satellite_count());
         let mut asked = flown.clone();
         for elapsed_s in grid.iter() {
             let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
-            flight.fly(&flight.turn(elapsed_s, rotation), &mut flown);
-            asked.ask(&ephemeris, elapsed_s, rotation).unwrap();
+            flight.place_at(&flight.turn(elapsed_s, rotation), &mut flown);
+            asked.propagate(&ephemeris, elapsed_s, rotation).unwrap();
             for n in 0..design.satellite_count() {
                 let apart = Vector3::from(flown.at(n)) - Vector3::from(asked.at(n));
                 // An angle of 700 rad in doubles is good to 1e-13 rad: 1e-9 km.
@@ -417,7 +417,7 @@ fn single_values_hold_six_digits() {
             ..setup([3.0, 54.0], Surface::Wgs84)
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-        let pattern = PatternFlight::new(&design, setup.model).unwrap();
+        let pattern = PatternPropagator::new(&design, setup.model).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let kernel = evaluator.kernel.as_ref().unwrap();
         let values = |single_below: f32| {
@@ -431,9 +431,7 @@ fn single_values_hold_six_digits() {
             };
             let mut all = Vec::new();
             let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
-            kernel
-                .run(&evaluator, flight, 0..200, limits, take)
-                .unwrap();
+            kernel.run(flight, 0..200, limits, take).unwrap();
             all
         };
         let (single, double) = (values(SINGLE_BELOW), values(0.0));

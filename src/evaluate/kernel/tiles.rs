@@ -18,8 +18,8 @@
 //! the radius, makes this hold for points of an ellipsoid too; it never leaves out a satellite
 //! that is visible.
 
-use super::flight::Positions;
 use super::lanes::{LANES, Lanes, SiteLanes};
+use super::propagation::Positions;
 use crate::ground::Site;
 use crate::visibility::Mask;
 use nalgebra::Vector3;

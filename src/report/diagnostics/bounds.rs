@@ -22,7 +22,7 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
     }
     let whole = |[lo, hi]: [u32; 2]| [f64::from(lo), f64::from(hi)];
     type Value = fn(&FrontMember) -> f64;
-    let variables: [(&str, &str, [f64; 2], Value); 4] = [
+    let variables: [(&str, &str, [f64; 2], Value); 7] = [
         ("planes", "", whole(space.planes), |m| {
             m.design.planes as f64
         }),
@@ -37,6 +37,15 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
         }),
         ("altitude-km", " km", space.altitude_km, |m| {
             m.design.altitude_km
+        }),
+        ("phasing", "", open_phasing(space), |m| {
+            m.design.phasing as f64
+        }),
+        ("eccentricity", "", space.eccentricity, |m| {
+            m.design.eccentricity
+        }),
+        ("arg-perigee-deg", "°", open_perigee(space), |m| {
+            m.design.arg_perigee_deg
         }),
     ];
     let mut found = Vec::new();
@@ -60,6 +69,22 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
         }
     }
     found
+}
+
+/// The limits of the phasing; equal where they leave all phasings of every number of planes, which
+/// repeat after P and so have no ends.
+fn open_phasing(space: &DesignSpace) -> [f64; 2] {
+    let [lo, hi] = space.phasing;
+    let hi = hi.min(space.planes[1].saturating_sub(1));
+    let closed = lo == 0 && hi + 1 >= space.planes[1];
+    let lo = if closed { hi } else { lo };
+    [f64::from(lo), f64::from(hi)]
+}
+
+/// The limits of the argument of perigee, degrees; equal where they leave the whole circle.
+fn open_perigee(space: &DesignSpace) -> [f64; 2] {
+    let [lo, hi] = space.arg_perigee_deg;
+    if hi - lo >= 360.0 { [lo, lo] } else { [lo, hi] }
 }
 
 #[cfg(test)]
@@ -92,5 +117,44 @@ mod tests {
             .collect();
         assert_eq!(codes, ["at-bound:planes", "at-bound:altitude-km"]);
         assert_eq!(at_bounds(&[], &space)[0].code, "no-feasible-design");
+    }
+
+    #[test]
+    fn every_variable_of_the_search_is_looked_at() {
+        let space = DesignSpace {
+            pattern: Pattern::Lattice,
+            planes: [11, 15],
+            satellites_per_plane: [11, 15],
+            inclination_deg: [40.0, 60.0],
+            altitude_km: [400.0, 1000.0],
+            phasing: [1, 5],
+            eccentricity: [0.0, 0.02],
+            arg_perigee_deg: [90.0, 270.0],
+        };
+        let front = [
+            "lattice:45:169/13/5@900,e=0.02,w=270",
+            "lattice:47:168/12/5@800,e=0.02,w=270",
+        ]
+        .map(|design| testing::member(1, design));
+        let codes = |space: &DesignSpace| {
+            let found = at_bounds(&front, space).into_iter();
+            found.map(|d| d.code).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            codes(&space),
+            [
+                "at-bound:phasing",
+                "at-bound:eccentricity",
+                "at-bound:arg-perigee-deg"
+            ]
+        );
+        // A whole circle has no ends.
+        let round = DesignSpace {
+            planes: [11, 13],
+            phasing: [0, 12],
+            arg_perigee_deg: [-90.0, 270.0],
+            ..space
+        };
+        assert_eq!(codes(&round), ["at-bound:planes", "at-bound:eccentricity"]);
     }
 }

@@ -3,14 +3,14 @@
 use super::super::Setup;
 use super::fixed::FixedSample;
 use super::lanes::FixedTile;
-use super::sample::{Doubt, Outcome, POSITION_STATES, Scene, UNSOLVED};
+use super::sample::{Outcome, POSITION_STATES, Scene, UNSOLVED, Undecided};
 use crate::dop::Symmetric3;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use nalgebra::Vector3;
 
-/// Who flies, and when.
-pub(super) struct Sky<'a> {
+/// All satellites, and when.
+pub(super) struct Satellites<'a> {
     pub(super) ephemeris: &'a Ephemeris,
     pub(super) elapsed_s: f64,
     pub(super) rotation: EarthRotation,
@@ -20,14 +20,14 @@ pub(super) struct Sky<'a> {
 pub(super) fn settle(
     setup: &Setup,
     scene: &Scene,
-    sky: &Sky<'_>,
+    satellites: &Satellites<'_>,
     fixed: FixedSample<'_>,
     outcome: &mut Outcome,
 ) -> Result<(), EphemerisError> {
     for doubt in std::mem::take(&mut outcome.doubts) {
         let site = scene.tiles.tiles[doubt.tile].members[doubt.lane];
         let fixed = fixed.tile(doubt.tile);
-        let (visible, pdop) = sample(setup, site as usize, sky, &fixed, &doubt)?;
+        let (visible, pdop) = sample(setup, site as usize, satellites, &fixed, &doubt)?;
         outcome.visible += visible;
         let pdop = pdop.filter(|&pdop| pdop <= setup.pdop_cap);
         let available = pdop.is_some_and(|pdop| pdop <= setup.metrics.availability_pdop);
@@ -42,9 +42,9 @@ pub(super) fn settle(
 fn sample(
     setup: &Setup,
     site: usize,
-    sky: &Sky<'_>,
+    satellites: &Satellites<'_>,
     fixed: &FixedTile<'_>,
-    doubt: &Doubt,
+    doubt: &Undecided,
 ) -> Result<(u64, Option<f64>), EphemerisError> {
     let local = &setup.sites[site].local;
     let [xx, yy, zz, xy, xz, yz] =
@@ -67,9 +67,11 @@ fn sample(
     }
     let mut visible = 0_u32;
     for &n in &doubt.satellites {
-        let satellite = &sky.ephemeris.satellites()[n as usize];
-        let state = sky.ephemeris.state(satellite, sky.elapsed_s)?;
-        let position = sky.rotation.to_earth_fixed(state.position_km);
+        let satellite = &satellites.ephemeris.satellites()[n as usize];
+        let state = satellites
+            .ephemeris
+            .state(satellite, satellites.elapsed_s)?;
+        let position = satellites.rotation.to_earth_fixed(state.position_km);
         if let Some(unit) = setup.mask.line_of_sight(local, position) {
             normal += Symmetric3::outer(unit, 1.0);
             sum += unit;

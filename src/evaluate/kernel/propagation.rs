@@ -60,7 +60,7 @@ impl Positions {
     }
 
     /// Positions from the propagators, one after the other.
-    pub(super) fn ask(
+    pub(super) fn propagate(
         &mut self,
         ephemeris: &Ephemeris,
         elapsed_s: f64,
@@ -83,7 +83,7 @@ impl Positions {
 
 /// A pattern under a secular model.
 #[derive(Debug, Clone)]
-pub(super) struct PatternFlight {
+pub(super) struct PatternPropagator {
     semi_major_axis_km: f64,
     eccentricity: f64,
     sin_i: f64,
@@ -127,7 +127,13 @@ impl PatternBlock {
 
     /// Positions of the satellites on an orbit of some shape.
     #[inline(always)]
-    fn fly(&self, orbit: &PatternFlight, turn: &Turn, shape: &impl Shape, to: &mut PositionBlock) {
+    fn place_at(
+        &self,
+        orbit: &PatternPropagator,
+        turn: &Turn,
+        shape: &impl Shape,
+        to: &mut PositionBlock,
+    ) {
         let (sin_i, cos_i) = (orbit.sin_i, orbit.cos_i);
         for n in 0..BLOCK {
             let (cos_o, sin_o) = (self.cos_node[n], self.sin_node[n]);
@@ -146,7 +152,7 @@ impl PatternBlock {
     }
 }
 
-impl PatternFlight {
+impl PatternPropagator {
     /// The flight of a design; `None` when its model is not secular or its ellipse too long for
     /// the lanes.
     pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
@@ -197,15 +203,15 @@ impl PatternFlight {
     }
 
     #[inline(always)]
-    fn fly_on(&self, shape: &impl Shape, turn: &Turn, positions: &mut Positions) {
+    fn place_all(&self, shape: &impl Shape, turn: &Turn, positions: &mut Positions) {
         for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
-            from.fly(self, turn, shape, to);
+            from.place_at(self, turn, shape, to);
         }
     }
 
     /// Positions at a sample.
     #[inline(always)]
-    pub(super) fn fly(&self, turn: &Turn, positions: &mut Positions) {
+    pub(super) fn place_at(&self, turn: &Turn, positions: &mut Positions) {
         let (a, e) = (self.semi_major_axis_km, self.eccentricity);
         if e > 0.0 {
             let ellipse = Ellipse {
@@ -215,9 +221,9 @@ impl PatternFlight {
                 cos_perigee: turn.cos_perigee,
                 sin_perigee: turn.sin_perigee,
             };
-            self.fly_on(&ellipse, turn, positions);
+            self.place_all(&ellipse, turn, positions);
         } else {
-            self.fly_on(&Circle { radius_km: a }, turn, positions);
+            self.place_all(&Circle { radius_km: a }, turn, positions);
         }
         positions.nearest_km = a * (1.0 - e);
         positions.farthest_km = a * (1.0 + e);
