@@ -4,12 +4,9 @@
 
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::{Preset, System};
-use navwalker::dop::{Clocks, ObservationWeights};
 use navwalker::earth::Surface;
 use navwalker::evaluate::{Evaluator, MetricOptions, Setup};
 use navwalker::ground::{Grid, PointWeights};
-use navwalker::orbit::Model;
-use navwalker::stats::Level;
 use navwalker::time::{Epoch, TimeGrid};
 use navwalker::visibility::Mask;
 use std::error::Error;
@@ -23,26 +20,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         weights: PointWeights::CosLatitude,
     };
     let epoch = Epoch::from_utc("2025-06-01T00:00:00Z".parse()?);
-    let setup = Setup {
-        grid: TimeGrid::new(epoch, 86_400.0, 60.0)?,
-        sites: iberia.sites(Surface::Wgs84)?,
-        mask: Mask::from_degrees(10.0)?,
-        gnss_mask: Mask::from_degrees(5.0)?,
-        skyline: None,
-        gnss: vec![System::from(Preset::Gps), System::from(Preset::Galileo)],
-        clocks: Clocks::PerSystem,
-        observation_weights: ObservationWeights::Unit,
-        pdop_cap: 100.0,
-        model: Model::J2,
-        metrics: MetricOptions {
-            cvar_weight: 0.5,
-            cvar_level: Level::new(0.95)?,
+    let grid = TimeGrid::new(epoch, 86_400.0, 60.0)?;
+    let setup = Setup::new(grid, iberia.sites(Surface::Wgs84)?)
+        .with_mask(Mask::from_degrees(10.0)?)
+        .with_gnss_mask(Mask::from_degrees(5.0)?)
+        .with_gnss(vec![
+            System::from(Preset::Gps),
+            System::from(Preset::Galileo),
+        ])
+        .with_metrics(MetricOptions {
             availability_pdop: 2.0,
-        },
-    };
+            ..MetricOptions::default()
+        });
     let evaluator = Evaluator::new(setup)?;
     let design: Design = "delta:55:60/6/1@1000".parse()?;
-    let metrics = evaluator.design(&design)?;
+    let metrics = evaluator.evaluate(&design)?;
 
     let mut out = io::stdout().lock();
     writeln!(out, "{design}")?;

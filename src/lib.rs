@@ -16,7 +16,7 @@
 //! let small = ["time.step-s=900", "region.step-deg=20", "optimizer.population=8", "optimizer.generations=2"];
 //! let scenario = Scenario::parse("paper", builtin("paper")?.as_bytes(), &small)?;
 //! let evaluator = Evaluator::new(scenario.setup(&|path| Err(std::io::Error::other(path)))?)?;
-//! let reference = evaluator.design(&"delta:55:182/13/1@925".parse()?)?;
+//! let reference = evaluator.evaluate(&"delta:55:182/13/1@925".parse()?)?;
 //! println!("mean visible {:.2}, mean PDOP {:?}", reference.mean_visible, reference.mean_pdop);
 //!
 //! // Search for the Pareto set and pick one design from it.
