@@ -5,9 +5,9 @@
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use navwalker::exchange::export::{Choices, Product, Subject, export};
+use navwalker::exchange::export::{Choices, ExportSubject, Product, export};
 use navwalker::exchange::import::Fleet;
-use navwalker::exchange::manifest::Study;
+use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
 use navwalker::orbit::Model;
 use navwalker::time::{Epoch, TimeGrid};
@@ -23,53 +23,78 @@ const SATELLITES: usize = 24;
 const SAMPLES: usize = 360;
 
 /// A product and its notation.
-const CASES: [(&str, Product, omm::Notation, oem::Notation); 12] = [
-    ("tle", Product::Tle, omm::Notation::Kvn, oem::Notation::Kvn),
+const CASES: [(&str, Product, omm::OmmSyntax, oem::OemSyntax); 12] = [
+    (
+        "tle",
+        Product::Tle,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
+    ),
     (
         "omm-kvn",
         Product::Omm,
-        omm::Notation::Kvn,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
     ),
     (
         "omm-xml",
         Product::Omm,
-        omm::Notation::Xml,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Xml,
+        oem::OemSyntax::Kvn,
     ),
     (
         "omm-json",
         Product::Omm,
-        omm::Notation::Json,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Json,
+        oem::OemSyntax::Kvn,
     ),
     (
         "omm-csv",
         Product::Omm,
-        omm::Notation::Csv,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Csv,
+        oem::OemSyntax::Kvn,
     ),
     (
         "oem-kvn",
         Product::Oem,
-        omm::Notation::Kvn,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
     ),
     (
         "oem-xml",
         Product::Oem,
-        omm::Notation::Kvn,
-        oem::Notation::Xml,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Xml,
     ),
-    ("opm", Product::Opm, omm::Notation::Kvn, oem::Notation::Kvn),
-    ("sp3", Product::Sp3, omm::Notation::Kvn, oem::Notation::Kvn),
-    ("stk", Product::Stk, omm::Notation::Kvn, oem::Notation::Kvn),
-    ("csv", Product::Csv, omm::Notation::Kvn, oem::Notation::Kvn),
+    (
+        "opm",
+        Product::Opm,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
+    ),
+    (
+        "sp3",
+        Product::Sp3,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
+    ),
+    (
+        "stk",
+        Product::Stk,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
+    ),
+    (
+        "csv",
+        Product::Csv,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
+    ),
     (
         "tle-states",
         Product::TleStates,
-        omm::Notation::Kvn,
-        oem::Notation::Kvn,
+        omm::OmmSyntax::Kvn,
+        oem::OemSyntax::Kvn,
     ),
 ];
 
@@ -77,15 +102,15 @@ fn names() -> impl Iterator<Item = &'static str> {
     CASES.iter().map(|(name, ..)| *name)
 }
 
-fn subject() -> Subject {
+fn subject() -> ExportSubject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
-    Subject {
+    ExportSubject {
         design: format!("delta:55:{SATELLITES}/6/1@925")
             .parse()
             .expect(SOUND),
         model: Model::J2,
         grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
-        study: Study {
+        study: ExportedStudy {
             name: "bench".to_owned(),
             hash: String::new(),
         },

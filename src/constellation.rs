@@ -1,4 +1,4 @@
-//! Who flies where: LEO designs and GNSS constellations, with the identity of each slot.
+//! Who propagates where: LEO designs and GNSS constellations, with the identity of each slot.
 
 pub mod gnss;
 mod notation;

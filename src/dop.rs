@@ -11,11 +11,11 @@ mod family;
 
 pub use family::{DopFamily, ObservationWeights};
 
-use crate::keyword::words;
+use crate::keyword::keywords;
 use nalgebra::Vector3;
 use std::ops::AddAssign;
 
-words! {
+keywords! {
     /// Which systems share a clock state.
     Clocks {
         /// One for each system in view.

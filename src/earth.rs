@@ -1,6 +1,6 @@
 //! The one set of physical constants, and the surface on which ground points lie.
 
-use crate::keyword::words;
+use crate::keyword::keywords;
 use nalgebra::Vector3;
 
 /// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).
@@ -34,7 +34,7 @@ pub const GPS_MU_M3_S2: f64 = 3.986_005e14;
 /// Rotation rate of the Earth prescribed with it, rad/s (same section).
 pub const GPS_EARTH_RATE_RAD_S: f64 = 7.292_115_146_7e-5;
 
-words! {
+keywords! {
     /// Reference surface of ground points, heights and verticals.
     Surface {
         /// The WGS 84 ellipsoid: latitudes are geodetic, the vertical is its normal.

@@ -12,7 +12,7 @@ use crate::time::TimeGrid;
 use thiserror::Error;
 
 /// A satellite that can be asked for its state.
-pub struct Flown {
+pub struct EphemerisSatellite {
     /// Name, unique in the ephemeris.
     pub name: String,
     /// Place in the pattern, for a design.
@@ -36,17 +36,17 @@ pub struct EphemerisError {
 /// States are computed when asked for, so that a product can stream ten thousand satellites.
 pub struct Ephemeris {
     grid: TimeGrid,
-    satellites: Vec<Flown>,
+    satellites: Vec<EphemerisSatellite>,
 }
 
 impl Ephemeris {
     /// Any satellites on a grid.
     #[must_use]
-    pub fn new(grid: TimeGrid, satellites: Vec<Flown>) -> Self {
+    pub fn new(grid: TimeGrid, satellites: Vec<EphemerisSatellite>) -> Self {
         Self { grid, satellites }
     }
 
-    /// A design flown by `model` from the epoch of the grid.
+    /// A design propagated by `model` from the epoch of the grid.
     ///
     /// # Errors
     /// When the model refuses the orbit of a satellite.
@@ -55,10 +55,10 @@ impl Ephemeris {
         model: Model,
         grid: TimeGrid,
     ) -> Result<Self, EphemerisError> {
-        let fly = |satellite: &crate::constellation::Satellite| {
+        let propagate = |satellite: &crate::constellation::Satellite| {
             let name = object_name(satellite.slot);
             match model.propagator(&satellite.elements, grid.epoch()) {
-                Ok(propagator) => Ok(Flown {
+                Ok(propagator) => Ok(EphemerisSatellite {
                     name,
                     slot: Some(satellite.slot),
                     propagator,
@@ -69,7 +69,7 @@ impl Ephemeris {
         let satellites = design
             .satellites()
             .iter()
-            .map(fly)
+            .map(propagate)
             .collect::<Result<_, _>>()?;
         Ok(Self::new(grid, satellites))
     }
@@ -77,12 +77,12 @@ impl Ephemeris {
     /// The satellites of a GNSS constellation.
     #[must_use]
     pub fn of_gnss(satellites: Vec<GnssSatellite>, grid: TimeGrid) -> Self {
-        let fly = |satellite: GnssSatellite| Flown {
+        let propagate = |satellite: GnssSatellite| EphemerisSatellite {
             name: satellite.name,
             slot: None,
             propagator: Box::new(satellite.orbit),
         };
-        Self::new(grid, satellites.into_iter().map(fly).collect())
+        Self::new(grid, satellites.into_iter().map(propagate).collect())
     }
 
     /// The instants.
@@ -93,13 +93,13 @@ impl Ephemeris {
 
     /// The satellites.
     #[must_use]
-    pub fn satellites(&self) -> &[Flown] {
+    pub fn satellites(&self) -> &[EphemerisSatellite] {
         &self.satellites
     }
 
     /// The satellites, without the grid.
     #[must_use]
-    pub fn into_satellites(self) -> Vec<Flown> {
+    pub fn into_satellites(self) -> Vec<EphemerisSatellite> {
         self.satellites
     }
 
@@ -107,7 +107,11 @@ impl Ephemeris {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State<Teme>, EphemerisError> {
+    pub fn state(
+        &self,
+        satellite: &EphemerisSatellite,
+        elapsed_s: f64,
+    ) -> Result<State<Teme>, EphemerisError> {
         satellite
             .propagator
             .state_at(elapsed_s)
@@ -120,7 +124,7 @@ impl Ephemeris {
     /// The states of one satellite at every instant of the grid, with the seconds since its epoch.
     pub fn states<'a>(
         &'a self,
-        satellite: &'a Flown,
+        satellite: &'a EphemerisSatellite,
     ) -> impl ExactSizeIterator<Item = Result<(f64, State<Teme>), EphemerisError>> + use<'a> {
         self.grid
             .iter()
@@ -140,7 +144,7 @@ mod tests {
     use crate::time::Epoch;
 
     #[test]
-    fn a_design_flies_on_the_grid() {
+    fn a_design_propagates_on_the_grid() {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         let design: Design = "delta:55:4/2/1@925".parse().unwrap();

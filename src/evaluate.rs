@@ -26,7 +26,7 @@ use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
 use fixed::FixedGeometry;
-use kernel::{Kernel, Source};
+use kernel::{Kernel, StateSource};
 use metrics::Evaluated;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
@@ -165,7 +165,7 @@ impl Setup {
             return kernel::memory_bytes(self, threads) as u64;
         }
         let samples = self.sample_count() as u64;
-        let fixed = samples * size_of::<fixed::FixedSample>() as u64;
+        let fixed = samples * size_of::<fixed::PlainGnssSample>() as u64;
         let per_thread = samples * size_of::<crate::stats::Weighted>() as u64;
         fixed + per_thread * threads as u64
     }
@@ -256,7 +256,7 @@ impl Evaluator {
     /// The metrics of a design under the model of the setup.
     ///
     /// # Errors
-    /// When the model cannot fly a satellite of the design.
+    /// When the model cannot propagate a satellite of the design.
     pub fn evaluate(&self, design: &Design) -> Result<Metrics, EphemerisError> {
         Ok(self.evaluate_counted(design)?.0)
     }
@@ -264,10 +264,10 @@ impl Evaluator {
     /// The metrics of a design, and how many samples f32 could not hold.
     ///
     /// # Errors
-    /// When the model cannot fly a satellite of the design.
+    /// When the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
-        self.counted(Source::Design(design, &ephemeris))
+        self.counted(StateSource::Design(design, &ephemeris))
     }
 
     /// The metrics of any satellites, on the grid of the setup.
@@ -275,11 +275,11 @@ impl Evaluator {
     /// # Errors
     /// When a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        Ok(self.counted(Source::Ephemeris(ephemeris))?.0)
+        Ok(self.counted(StateSource::Ephemeris(ephemeris))?.0)
     }
 
-    fn counted(&self, source: Source<'_>) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let (Source::Design(_, ephemeris) | Source::Ephemeris(ephemeris)) = source;
+    fn counted(&self, source: StateSource<'_>) -> Result<(Metrics, Rechecks), EphemerisError> {
+        let (StateSource::Design(_, ephemeris) | StateSource::Ephemeris(ephemeris)) = source;
         let Some(kernel) = &self.kernel else {
             return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
         };

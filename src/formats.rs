@@ -27,7 +27,7 @@ use thiserror::Error;
 /// Why a file is not written.
 #[derive(Debug, Error)]
 pub enum WriteError {
-    /// The destination does not take the bytes.
+    /// Writing failed.
     #[error(transparent)]
     Io(#[from] io::Error),
     /// A satellite has no state at an instant of the file.
@@ -54,7 +54,7 @@ pub enum WriteError {
     },
     /// More ground points than a viewer loads.
     #[error(
-        "{points} ground points are more than a viewer loads ({} for {product}); use a coarser \
+        "{points} ground points are too many for a viewer ({} for {product}); use a coarser \
          region.step-deg, or --as geojson for a GIS",
         maps::scene::MAX_SHOWN_POINTS
     )]
@@ -72,7 +72,7 @@ pub enum WriteError {
 /// Why a file is not read.
 #[derive(Debug, Error)]
 pub enum ReadError {
-    /// The source does not give the bytes.
+    /// Reading failed.
     #[error(transparent)]
     Io(#[from] io::Error),
     /// The text breaks a rule of its format.

@@ -10,7 +10,7 @@
 //! without polar motion. In low orbit it lies within 30 m of an ITRF.
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::time::Epoch;
 use nalgebra::{Matrix3, Vector3};
 use std::marker::PhantomData;
@@ -19,12 +19,12 @@ mod state;
 
 pub use state::{EarthFixed, Eme2000, Gcrf, Position, ReferenceFrame, State, Teme};
 
-words! {
+keywords! {
     /// The frames in which trajectories are written.
     Frame {
         /// Mean equator and equinox of J2000.0 (IAU 1976/1980, no corrections).
         Eme2000 = "EME2000",
-        /// Geocentric celestial reference frame: EME2000 less the frame bias.
+        /// Geocentric celestial reference frame: EME2000 minus the frame bias.
         Gcrf = "GCRF",
         /// Pseudo-Earth-fixed, named ITRF in files.
         EarthFixed = "ITRF",

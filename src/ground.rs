@@ -4,7 +4,7 @@ pub(crate) mod shapes;
 
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::units::wrap_360;
 use std::io::Read;
 use thiserror::Error;
@@ -56,7 +56,7 @@ pub enum GroundError {
 /// Maximum number of points of a region: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
 
-words! {
+keywords! {
     /// How grid points are weighted in means and tails.
     PointWeights {
         /// Equally.
@@ -225,7 +225,7 @@ fn steps(start: f64, span: f64, step: f64) -> Result<Vec<f64>, GroundError> {
 pub fn sites_from_csv(source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
     #[derive(serde::Deserialize)]
     #[serde(deny_unknown_fields)]
-    struct Row {
+    struct PointRow {
         latitude_deg: f64,
         longitude_deg: f64,
         weight: Option<f64>,
@@ -234,7 +234,7 @@ pub fn sites_from_csv(source: impl Read, surface: Surface) -> Result<Vec<Site>, 
         .trim(csv::Trim::All)
         .from_reader(source);
     let mut sites = Vec::new();
-    for row in reader.deserialize::<Row>() {
+    for row in reader.deserialize::<PointRow>() {
         let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
         let row = row.map_err(|error| GroundError::Line {
             line: line_of(error.position()),

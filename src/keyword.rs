@@ -1,38 +1,38 @@
 //! Enums spelled by fixed keywords, in files, notation and results.
 //!
-//! The macro `words!` declares one: `Display` writes the keyword that `FromStr` reads, and an unknown
+//! The macro `keywords!` declares one: `Display` writes the keyword that `FromStr` reads, and an unknown
 //! keyword is reported with the nearest valid one.
 
 use std::fmt;
 
 /// A type whose values are spelled by fixed keywords.
-pub trait Word: Copy + Eq + 'static {
+pub trait Keyword: Copy + Eq + 'static {
     /// Every value, in the order in which they are listed as choices.
     const ALL: &'static [Self];
 
     /// The spelling in a file.
-    fn word(self) -> &'static str;
+    fn keyword(self) -> &'static str;
 
     /// The value spelled `text`.
     ///
     /// # Errors
-    /// [`UnknownWord`], with the choices and the nearest of them.
-    fn from_word(text: &str) -> Result<Self, UnknownWord> {
-        let known = Self::ALL.iter().find(|value| value.word() == text);
+    /// [`UnknownKeyword`], with the choices and the nearest of them.
+    fn from_keyword(text: &str) -> Result<Self, UnknownKeyword> {
+        let known = Self::ALL.iter().find(|value| value.keyword() == text);
         known
             .copied()
-            .ok_or_else(|| UnknownWord::new(text, &Self::choices()))
+            .ok_or_else(|| UnknownKeyword::new(text, &Self::choices()))
     }
 
-    /// Every spelling, in the order of [`Word::ALL`].
+    /// Every spelling, in the order of [`Keyword::ALL`].
     fn choices() -> Vec<&'static str> {
-        Self::ALL.iter().map(|value| value.word()).collect()
+        Self::ALL.iter().map(|value| value.keyword()).collect()
     }
 }
 
 /// A keyword that is not one of the choices.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct UnknownWord {
+pub struct UnknownKeyword {
     /// The keyword as written.
     pub found: String,
     /// The valid keywords.
@@ -41,7 +41,7 @@ pub struct UnknownWord {
     pub nearest: Option<&'static str>,
 }
 
-impl UnknownWord {
+impl UnknownKeyword {
     pub(crate) fn new(found: &str, choices: &[&'static str]) -> Self {
         Self {
             found: found.to_owned(),
@@ -51,7 +51,7 @@ impl UnknownWord {
     }
 }
 
-impl fmt::Display for UnknownWord {
+impl fmt::Display for UnknownKeyword {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "unknown word {:?}", self.found)?;
         if let Some(nearest) = self.nearest {
@@ -61,39 +61,39 @@ impl fmt::Display for UnknownWord {
     }
 }
 
-impl std::error::Error for UnknownWord {}
+impl std::error::Error for UnknownKeyword {}
 
-macro_rules! words {
+macro_rules! keywords {
     ($(#[$doc:meta])* $name:ident { $($(#[$value_doc:meta])* $value:ident = $word:literal,)+ }) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
         pub enum $name { $($(#[$value_doc])* $value,)+ }
 
-        impl $crate::keyword::Word for $name {
+        impl $crate::keyword::Keyword for $name {
             const ALL: &'static [Self] = &[$(Self::$value,)+];
 
-            fn word(self) -> &'static str {
+            fn keyword(self) -> &'static str {
                 match self { $(Self::$value => $word,)+ }
             }
         }
 
         impl std::fmt::Display for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad($crate::keyword::Word::word(*self))
+                f.pad($crate::keyword::Keyword::keyword(*self))
             }
         }
 
         impl std::str::FromStr for $name {
-            type Err = $crate::keyword::UnknownWord;
+            type Err = $crate::keyword::UnknownKeyword;
 
             fn from_str(text: &str) -> Result<Self, Self::Err> {
-                $crate::keyword::Word::from_word(text)
+                $crate::keyword::Keyword::from_keyword(text)
             }
         }
     };
 }
 
-pub(crate) use words;
+pub(crate) use keywords;
 
 /// Below this Jaro-Winkler similarity (0 to 1) a name is not worth suggesting:
 /// short unrelated keys such as `epoch` and `points` reach about 0.6.

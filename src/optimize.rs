@@ -6,7 +6,7 @@
 //!
 //! ```
 //! use navwalker::optimize::{
-//!     Evaluation, Kind, Method, Nsga2Config, OptimizeError, Problem, Space, Strategy, Variable,
+//!     Evaluation, VariableKind, Method, Nsga2Config, OptimizeError, Problem, Space, Strategy, Variable,
 //! };
 //!
 //! struct TwoGoals(Space, [String; 2]);
@@ -27,7 +27,7 @@
 //!     }
 //! }
 //!
-//! let x = Variable { name: "x".to_owned(), kind: Kind::Real { lo: -9.0, hi: 9.0 } };
+//! let x = Variable { name: "x".to_owned(), kind: VariableKind::Real { lo: -9.0, hi: 9.0 } };
 //! let goals = ["near 0".to_owned(), "near 2".to_owned()];
 //! let problem = TwoGoals(Space::new(vec![x])?, goals);
 //! let mut search = Method::Nsga2(Nsga2Config::default()).start(&problem, 1)?;
@@ -64,7 +64,7 @@ pub use method::{Method, Search};
 pub use mopso::{Mopso, MopsoConfig};
 pub use nsga2::{Nsga2, Nsga2Config};
 pub use pick::{Pick, Picked, UnknownPick};
-pub use problem::{Evaluation, Individual, Kind, Problem, Space, Variable};
+pub use problem::{Evaluation, Individual, Problem, Space, Variable, VariableKind};
 pub use random::{RandomConfig, RandomSearch};
 pub use sorting::{
     constraint_dominates, crowding_distance, dominates, feasible_front, non_dominated_sort,

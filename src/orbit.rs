@@ -9,10 +9,10 @@ pub mod sgp4;
 mod spread;
 
 pub use elements::{ElementsError, MeanElements};
-pub use spread::Spread;
+pub use spread::PropagatorDistance;
 
 use crate::frames::{State, Teme};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::time::Epoch;
 use thiserror::Error;
 
@@ -29,13 +29,13 @@ pub trait Propagator: Send + Sync {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PropagationError {
     /// SGP4 refuses the elements at their epoch.
-    #[error("SGP4 does not take these elements: {reason}")]
+    #[error("SGP4 rejects these elements: {reason}")]
     Sgp4Elements {
         /// What SGP4 says.
         reason: String,
     },
     /// SGP4 gives up at a later time, as when drag drives the eccentricity out of its range.
-    #[error("SGP4 stops {elapsed_s} s after the epoch: {reason}")]
+    #[error("SGP4 fails {elapsed_s} s after the epoch: {reason}")]
     Sgp4State {
         /// Seconds since the epoch of the elements.
         elapsed_s: f64,
@@ -44,7 +44,7 @@ pub enum PropagationError {
     },
     /// SGP4 puts the satellite under the ground.
     #[error(
-        "the orbit has decayed {elapsed_s} s after the epoch: SGP4 puts it at a radius of {radius_km:.3} km, and the Earth has {least_km} km"
+        "the orbit has decayed {elapsed_s} s after the epoch: SGP4 gives a radius of {radius_km:.3} km, below the {least_km} km of the Earth"
     )]
     Decayed {
         /// Seconds since the epoch.
@@ -62,8 +62,8 @@ pub enum PropagationError {
     },
 }
 
-words! {
-    /// The theories that a scenario can fly its LEO design with.
+keywords! {
+    /// The theories that a scenario can propagate its LEO design with.
     Model {
         /// Secular J2 on the node, the perigee and the mean anomaly.
         J2 = "j2",

@@ -164,7 +164,7 @@ impl Run {
             Ok(bytes) => match Scenario::parse::<&str>(SCENARIO, bytes, &[]) {
                 Ok(scenario) => self.scenario = Some(scenario),
                 Err(problems) => self.gaps.push(format!(
-                    "{SCENARIO} is no scenario of this version, so that nothing can be computed \
+                    "{SCENARIO} is not a scenario of this version, so that nothing can be computed \
                      anew: {}",
                     first_line(&problems.to_string())
                 )),

@@ -37,13 +37,13 @@ pub use crate::constellation::gnss::Preset;
 pub use crate::dop::{Clocks, ObservationWeights};
 pub use crate::earth::Surface;
 pub use crate::ground::PointWeights;
-pub use crate::keyword::{UnknownWord, Word};
+pub use crate::keyword::{Keyword, UnknownKeyword};
 pub use crate::orbit::Model;
 pub use crate::search::{Constraint, ConstraintError, LaunchCost, Quantity, Relation};
 pub use algorithm::Algorithm;
 pub use builtin::{builtin, builtin_names};
 pub use keys::{KeyDescription, describe_keys};
-pub use problem::{Fault, Problem, Problems};
+pub use problem::{Fault, Problems, ScenarioProblem};
 pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
@@ -53,7 +53,7 @@ pub use values::{
 };
 
 use document::Document;
-use problem::Report;
+use problem::ProblemList;
 use source::Source;
 
 impl Scenario {
@@ -71,7 +71,7 @@ impl Scenario {
         bytes: &[u8],
         overrides: &[S],
     ) -> Result<Self, Problems> {
-        let mut report = Report::default();
+        let mut report = ProblemList::default();
         let scenario = decode(label, bytes, &mut report)
             .and_then(|text| Document::read(label, text, &mut report))
             .and_then(|mut document| {
@@ -87,7 +87,7 @@ impl Scenario {
     }
 }
 
-fn decode<'a>(label: &str, bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
+fn decode<'a>(label: &str, bytes: &'a [u8], report: &mut ProblemList) -> Option<&'a str> {
     let error = match std::str::from_utf8(bytes) {
         Ok(text) => return Some(text),
         Err(error) => error,

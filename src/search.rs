@@ -9,7 +9,7 @@ pub use quantity::{LaunchCost, Quantity};
 
 use crate::constellation::{Design, DesignError, DesignParameters, Pattern};
 use crate::evaluate::{Evaluator, Metrics};
-use crate::optimize::{Evaluation, Kind, OptimizeError, Problem, Space, Variable};
+use crate::optimize::{Evaluation, OptimizeError, Problem, Space, Variable, VariableKind};
 use crate::units::round_decimal;
 use rayon::prelude::*;
 
@@ -72,14 +72,14 @@ impl DesignSpace {
     pub fn vectors(&self) -> Result<Space, OptimizeError> {
         let integer = |name: &str, [lo, hi]: [u32; 2]| Variable {
             name: name.to_owned(),
-            kind: Kind::Integer {
+            kind: VariableKind::Integer {
                 lo: lo.into(),
                 hi: hi.into(),
             },
         };
         let real = |name: &str, [lo, hi]: [f64; 2]| Variable {
             name: name.to_owned(),
-            kind: Kind::Real { lo, hi },
+            kind: VariableKind::Real { lo, hi },
         };
         let mut variables = vec![
             integer("planes", self.planes),
@@ -148,7 +148,7 @@ impl DesignSpace {
     /// The design of a vector.
     ///
     /// # Errors
-    /// When the vector is no design: an ellipse whose perigee is not above ground.
+    /// When the vector is not a design: an ellipse whose perigee is not above ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
         Design::new(DesignParameters {
@@ -224,7 +224,7 @@ impl<'a> DesignProblem<'a> {
         &self.designs
     }
 
-    /// A design and its metrics, for a vector of the space; `None` when it cannot be flown.
+    /// A design and its metrics, for a vector of the space; `None` when it cannot be propagated.
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
         let design = self.designs.design(genome).ok()?;

@@ -1,7 +1,7 @@
 //! Checks against standards that this library did not write: residuals, budgets and gates.
 //!
 //! What is on trial are the [`Parts`] of the library; a [`Subject`] is a design in a study, with
-//! the parts that fly and see it. A target (a standard) takes a subject and gives [`Findings`].
+//! the parts that propagate and see it. A target (a standard) takes a subject and gives [`Findings`].
 
 pub mod analytic;
 mod decisions;
@@ -18,10 +18,10 @@ use self::sgp4::SweepCell;
 use crate::constellation::{Design, Satellite, Slot};
 use crate::dop::Clocks;
 use crate::earth::Surface;
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::frames::{EarthFixed, LocalFrame, Position};
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
@@ -57,7 +57,7 @@ pub struct Check {
 
 /// What the number of a [`Check`] is.
 #[derive(Debug, Clone, Copy)]
-pub struct Measure<'a> {
+pub struct CheckedQuantity<'a> {
     /// What was measured.
     pub quantity: &'a str,
     /// Its unit.
@@ -71,7 +71,7 @@ impl Check {
     #[must_use]
     pub fn new(
         name: &str,
-        measure: Measure<'_>,
+        measure: CheckedQuantity<'_>,
         value: f64,
         gate: Option<f64>,
         reason: &str,
@@ -170,7 +170,7 @@ impl Findings {
 /// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
 #[derive(Debug, Clone, Copy)]
 pub struct Parts {
-    /// Who flies where.
+    /// Who propagates where.
     pub satellites: fn(&Design) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,
@@ -203,7 +203,7 @@ impl Default for Parts {
     }
 }
 
-words! {
+keywords! {
     /// What a design can be held against.
     Target {
         /// SGP4: an error budget by cause.
@@ -253,7 +253,7 @@ impl Target {
     }
 }
 
-/// A design in a study, and what flies and sees it.
+/// A design in a study, and what propagates and sees it.
 pub struct Subject<'a> {
     /// The design.
     pub design: Design,
@@ -299,16 +299,16 @@ impl<'a> Subject<'a> {
         (self.parts.satellites)(&self.design)
     }
 
-    /// The design flown by a theory over the study.
-    fn fly<P: Propagator + 'static>(
+    /// The design propagated by a theory over the study.
+    fn propagate<P: Propagator + 'static>(
         &self,
         theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
     ) -> Result<Ephemeris, EphemerisError> {
-        self.fly_on(self.grid(), theory)
+        self.propagate_on(self.grid(), theory)
     }
 
-    /// The design flown by a theory over a grid.
-    fn fly_on<P: Propagator + 'static>(
+    /// The design propagated by a theory over a grid.
+    fn propagate_on<P: Propagator + 'static>(
         &self,
         grid: TimeGrid,
         theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
@@ -316,10 +316,10 @@ impl<'a> Subject<'a> {
         let one = |satellite: &Satellite| {
             let name = object_name(satellite.slot);
             match theory(&satellite.elements) {
-                Ok(flown) => Ok(Flown {
+                Ok(propagated) => Ok(EphemerisSatellite {
                     name,
                     slot: Some(satellite.slot),
-                    propagator: Box::new(flown),
+                    propagator: Box::new(propagated),
                 }),
                 Err(source) => Err(EphemerisError { name, source }),
             }
@@ -328,17 +328,17 @@ impl<'a> Subject<'a> {
         Ok(Ephemeris::new(grid, satellites?))
     }
 
-    /// The design flown by the model of the study.
-    fn fly_model(&self) -> Result<Ephemeris, EphemerisError> {
+    /// The design propagated by the model of the study.
+    fn propagate_model(&self) -> Result<Ephemeris, EphemerisError> {
         match self.setup().model {
-            Model::J2 => self.fly_mean_j2(),
+            Model::J2 => self.propagate_mean_j2(),
             model => Ephemeris::of_design(&self.design, model, self.grid()),
         }
     }
 
-    /// The design flown by mean J2.
-    fn fly_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
-        self.fly(|elements| Ok((self.parts.mean_j2)(elements)))
+    /// The design propagated by mean J2.
+    fn propagate_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
+        self.propagate(|elements| Ok((self.parts.mean_j2)(elements)))
     }
 }
 
@@ -363,7 +363,7 @@ pub enum ValidateError {
     /// A design of a sweep is none.
     #[error(transparent)]
     Design(#[from] crate::constellation::DesignError),
-    /// A span is no grid of time.
+    /// A span is not a grid of time.
     #[error(transparent)]
     Time(#[from] crate::time::TimeError),
     /// There is no identity for a satellite.
@@ -385,7 +385,7 @@ mod tests {
         let check = |value, gate| {
             Check::new(
                 "a/b",
-                Measure {
+                CheckedQuantity {
                     quantity: "q",
                     unit: "km",
                     statistic: "max",

@@ -18,7 +18,7 @@ use navwalker::formats::maps::czml;
 use navwalker::formats::ccsds::{oem, opm};
 use navwalker::formats::{stk, tle};
 use navwalker::frames::{Frame, State};
-use navwalker::keyword::Word;
+use navwalker::keyword::Keyword;
 use std::fmt::Debug;
 
 pub use sampled::sp3;

@@ -1,6 +1,6 @@
-//! Formats whose writers take satellites on a grid: what is read is flown, written and read back.
+//! Formats whose writers take satellites on a grid: what is read is propagated, written and read back.
 
-use navwalker::ephemeris::{Ephemeris, Flown};
+use navwalker::ephemeris::{Ephemeris, EphemerisSatellite};
 use navwalker::formats::csv;
 use navwalker::exchange::import::Fleet;
 use navwalker::exchange::lint::Format;
@@ -14,7 +14,7 @@ use navwalker::orbit::Model;
 use navwalker::time::TimeGrid;
 
 /// The grid that the samples of the first satellite show, if the others have no more.
-fn flown(trajectories: &[Trajectory]) -> Option<Ephemeris> {
+fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
     let states = &trajectories.first()?.states;
     let (first, last) = (states.first()?.0, states.last()?.0);
     let step_s = match states.get(1) {
@@ -35,7 +35,7 @@ fn flown(trajectories: &[Trajectory]) -> Option<Ephemeris> {
         return None;
     }
     Fleet::Sampled(trajectories.to_vec())
-        .fly(grid, Model::J2)
+        .propagate(grid, Model::J2)
         .ok()
 }
 
@@ -56,7 +56,7 @@ fn same(one: &[Trajectory], other: &[Trajectory], (km, km_s): (f64, f64)) {
 
 /// A table of states.
 pub(crate) fn states(trajectories: &[Trajectory]) {
-    let Some(ephemeris) = flown(trajectories) else {
+    let Some(ephemeris) = propagated(trajectories) else {
         return;
     };
     let mut out = Vec::new();
@@ -77,7 +77,7 @@ pub fn sp3(bytes: &[u8]) {
     let Ok((_, Fleet::Sampled(trajectories))) = Fleet::read(bytes, Some(Format::Sp3), None) else {
         return;
     };
-    let Some(ephemeris) = flown(&trajectories) else {
+    let Some(ephemeris) = propagated(&trajectories) else {
         return;
     };
     let epoch = ephemeris.grid().epoch();
@@ -89,11 +89,11 @@ pub fn sp3(bytes: &[u8]) {
         creation: epoch,
         frame: Frame::EarthFixed,
         time_system: TimeSystem::Gps,
-        theory: Theory::Flown(Model::J2),
+        theory: Theory::EphemerisSatellite(Model::J2),
         subject: Vec::new(),
     };
     let sampled = Sampled::new(&ephemeris, EarthFixed);
-    let pairs: Vec<(&Flown, &Object)> = ephemeris.satellites().iter().zip(&objects).collect();
+    let pairs: Vec<(&EphemerisSatellite, &Object)> = ephemeris.satellites().iter().zip(&objects).collect();
     let mut out = Vec::new();
     // What its columns do not hold is refused with a reason.
     if format::write(&mut out, Version::D, 'L', &metadata, &sampled, &pairs).is_err() {

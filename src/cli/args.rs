@@ -12,7 +12,7 @@ use crate::constellation::gnss::Preset;
 use crate::exchange::export::Product;
 use crate::formats::ccsds::{CcsdsVersion, oem, omm};
 use crate::formats::metadata::ElementChoice;
-use crate::formats::sp3::Version as Sp3Version;
+use crate::formats::sp3::Sp3Version;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::Frame;
@@ -179,7 +179,7 @@ impl StudyArgs {
 
 /// Output format on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
+pub(crate) enum OutputFormat {
     /// Tables to read.
     Text,
     /// One JSON object.
@@ -229,7 +229,7 @@ pub(crate) struct OptimizeArgs {
 
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
-    pub(crate) format: Format,
+    pub(crate) format: OutputFormat,
 }
 
 #[derive(Debug, Args)]
@@ -264,7 +264,7 @@ pub(crate) struct EvaluateArgs {
 
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
-    pub(crate) format: Format,
+    pub(crate) format: OutputFormat,
 }
 
 /// Output format of a study on stdout.
@@ -354,11 +354,11 @@ pub(crate) struct ExportArgs {
 
     /// Syntax of OMM files: kvn, xml, json or csv.
     #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
-    pub(crate) omm_syntax: omm::Notation,
+    pub(crate) omm_syntax: omm::OmmSyntax,
 
     /// Syntax of OEM files: kvn or xml.
     #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
-    pub(crate) oem_syntax: oem::Notation,
+    pub(crate) oem_syntax: oem::OemSyntax,
 
     /// Combine the OEMs of all satellites in one XML file; needs `--oem-syntax xml`.
     #[arg(long)]
@@ -456,5 +456,5 @@ pub(crate) struct LintArgs {
 
     /// Output format.
     #[arg(long = "format", value_enum, default_value = "text")]
-    pub(crate) output: Format,
+    pub(crate) output: OutputFormat,
 }

@@ -12,7 +12,7 @@ pub(crate) fn set_quiet(quiet: bool) {
 }
 
 /// Turns colours off where `--no-color` stands on the command line, before that is parsed, so that
-/// errors of parsing heed it too. `NO_COLOR` and a stream that is no terminal do the same.
+/// errors of parsing heed it too. `NO_COLOR` and a stream that is not a terminal do the same.
 pub(crate) fn choose_colors() {
     let mut options = std::env::args_os().take_while(|argument| argument != "--");
     if options.any(|argument| argument == "--no-color") {
@@ -41,7 +41,7 @@ pub(crate) fn result(text: &str) -> Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Prints what helps but is no result.
+/// Prints what helps but is not a result.
 pub(crate) fn hint(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
         to_stderr(text);

@@ -5,9 +5,9 @@ use crate::optimize::Strategy;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar, or nothing where nobody would see it.
-pub(crate) struct Progress(Option<ProgressBar>);
+pub(crate) struct SearchBar(Option<ProgressBar>);
 
-impl Progress {
+impl SearchBar {
     /// A bar for a search that may have been resumed.
     pub(crate) fn new(search: &impl Strategy) -> Self {
         if !output::shows_progress() {

@@ -29,7 +29,7 @@ pub(crate) fn read(paths: &[PathBuf]) -> Result<(Format, Fleet)> {
     }
     match whole {
         Some(whole) => Ok(whole),
-        None => bail!("there is no file to read"),
+        None => bail!("no file to read"),
     }
 }
 

@@ -80,7 +80,7 @@ impl RunDirectory {
             }
             Some(_) => "a run of another scenario".to_owned(),
             None if self.path.join(CHECKPOINT).exists() => {
-                "a run whose checkpoint is damaged, and no earlier one is whole".to_owned()
+                "a run whose checkpoint is damaged, and no earlier one is intact".to_owned()
             }
             None => "something else than a run of this scenario, seed and version".to_owned(),
         }
@@ -132,7 +132,7 @@ impl RunDirectory {
                     return Ok(Some(search));
                 }
                 Ok(_) => bail!(
-                    "{} is of another scenario, seed or version; start anew with --force",
+                    "{} is of another scenario, seed or version; start over with --force",
                     path.display()
                 ),
                 Err(reason) => damaged.push(format!("{} is damaged: {reason}", path.display())),
@@ -140,7 +140,7 @@ impl RunDirectory {
         }
         match damaged.first() {
             Some(reason) => {
-                bail!("{reason}, and no earlier one is whole; start anew without --resume")
+                bail!("{reason}, and no earlier one is intact; start over without --resume")
             }
             None => Ok(None),
         }
@@ -182,14 +182,10 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
         )
     })?;
     let found = OptimizeResult::read(&bytes)
-        .with_context(|| format!("{} is no front of a run", path.display()))?;
+        .with_context(|| format!("{} is not the front of a run", path.display()))?;
     let points: Vec<Vec<f64>> = found.front.iter().map(FrontMember::minimised).collect();
     let Some(picked) = pick.apply(&points) else {
-        bail!(
-            "{} has {} members and not that one",
-            path.display(),
-            points.len()
-        );
+        bail!("no such member: {} has {}", path.display(), points.len());
     };
     let design = found.front[picked.place].design.notation.parse()?;
     Ok((design, picked.reason))

@@ -71,7 +71,7 @@ impl RunView {
         let members = &self.run.front;
         let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
         let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| format!("the front has {} members and not that one", members.len()))
+        found.with_context(|| format!("no such member: the front has {}", members.len()))
     }
 }
 
@@ -86,14 +86,14 @@ fn read(args: &RunArgs) -> Result<RunFiles> {
     };
     if files.scenario.is_err() && files.front.is_err() && files.history.is_err() {
         bail!(
-            "{} is no run directory: it has no scenario, front or history",
+            "{} is not a run directory: it has no scenario, front or history",
             directory.display()
         );
     }
     Ok(files)
 }
 
-/// Why a file is not there, without its path, which is no part of a result.
+/// Why a file is not there, without its path, which is not part of a result.
 fn reason(error: io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".to_owned(),
@@ -153,7 +153,7 @@ fn front(directory: &Path) -> Result<NamedFront> {
     let path = directory.join(FRONT_JSON);
     let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let found = OptimizeResult::read(&bytes)
-        .with_context(|| format!("{} is no front of a run", path.display()))?;
+        .with_context(|| format!("{} is not the front of a run", path.display()))?;
     Ok(NamedFront {
         name: format!("front of {}", found.search.algorithm),
         front: found.front,

@@ -36,7 +36,7 @@ impl Study {
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
         let path = directory.join("scenario.toml");
         let bytes = files::read_whole(&path)
-            .with_context(|| format!("{} is no run directory", directory.display()))
+            .with_context(|| format!("{} is not a run directory", directory.display()))
             .with_context(|| format!("cannot read {}", path.display()))?;
         let scenario = Scenario::parse(&path.to_string_lossy(), &bytes, overrides)?;
         Ok(Self {

@@ -7,14 +7,14 @@ pub use sets::{ElementSetError, ElementSets, StaleElements};
 
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S};
 use crate::frames::{EarthRotation, OrbitPlane, State, Teme};
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
 use nalgebra::Vector3;
 
-words! {
+keywords! {
     /// A named GNSS constellation that is part of the library.
     Preset {
         /// BeiDou-3: 24 MEO, 3 IGSO, 3 GEO.
@@ -62,7 +62,7 @@ impl System {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Preset(preset) => preset.word(),
+            Self::Preset(preset) => preset.keyword(),
             Self::Sets(sets) => sets.name(),
             Self::Listed { name, .. } => name,
         }
@@ -96,11 +96,11 @@ impl From<ElementSets> for System {
 pub struct GnssSatellite {
     /// Name, unique in the constellation.
     pub name: String,
-    /// How it flies.
+    /// How it propagates.
     pub orbit: GnssOrbit,
 }
 
-/// The ways in which GNSS satellites fly.
+/// The ways in which GNSS satellites propagate.
 #[derive(Debug, Clone)]
 pub enum GnssOrbit {
     /// Mean elements under secular J2.

@@ -1,7 +1,7 @@
 //! Walker's notation with pattern and altitude: `delta:55:182/13/1@925[,e=0.01,w=270]`.
 
 use super::{Design, DesignError, DesignParameters};
-use crate::keyword::UnknownWord;
+use crate::keyword::UnknownKeyword;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -9,7 +9,7 @@ use thiserror::Error;
 /// The form that a notation has, for error messages.
 const FORM: &str = "pattern:inclination:T/P/F@altitude[,e=E][,w=DEG], e.g. delta:55:182/13/1@925";
 
-/// Why a text is no design.
+/// Why a text is not a design.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NotationError {
     /// The separators are not where they belong.
@@ -34,7 +34,7 @@ pub enum NotationError {
     SeveralShells,
     /// A pattern that does not exist.
     #[error("pattern: {0}")]
-    Pattern(#[from] UnknownWord),
+    Pattern(#[from] UnknownKeyword),
     /// Numbers that describe no design.
     #[error(transparent)]
     Design(#[from] DesignError),
@@ -136,7 +136,7 @@ impl fmt::Display for Design {
 mod tests {
     use super::*;
     use crate::constellation::Pattern;
-    use crate::keyword::Word;
+    use crate::keyword::Keyword;
     use proptest::prelude::*;
 
     fn error(text: &str) -> String {
@@ -184,7 +184,7 @@ mod tests {
     proptest! {
         #[test]
         fn any_design_round_trips(
-            pattern in prop::sample::select(<Pattern as Word>::ALL.to_vec()),
+            pattern in prop::sample::select(<Pattern as Keyword>::ALL.to_vec()),
             planes in 1_usize..40, satellites_per_plane in 1_usize..40, f in 0_usize..40,
             inclination_deg in 0.0..180.0_f64, altitude_km in 200.0..30_000.0_f64,
             e in 0.0..0.02_f64, w in 0.0..360.0_f64,

@@ -2,12 +2,12 @@
 
 use super::{Satellite, Slot};
 use crate::earth::RADIUS_KM;
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::orbit::{ElementsError, MeanElements};
 use crate::units::{wrap_360, wrap_two_pi};
 use thiserror::Error;
 
-words! {
+keywords! {
     /// How planes and phases are laid out.
     Pattern {
         /// Walker delta: nodes over 360°, phase step 360° F/T between planes.
@@ -20,7 +20,7 @@ words! {
     }
 }
 
-/// Why a set of numbers is no design.
+/// Why a set of numbers is not a design.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DesignError {
     /// No plane.
@@ -62,7 +62,7 @@ pub enum DesignError {
     /// Altitude not a positive number below [`Design::MAX_ALTITUDE_KM`].
     #[error("altitude {0} km is outside 0 to {max} km", max = Design::MAX_ALTITUDE_KM)]
     Altitude(f64),
-    /// An orbit that cannot be flown.
+    /// An orbit that cannot be propagated.
     #[error(transparent)]
     Orbit(#[from] ElementsError),
 }

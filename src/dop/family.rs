@@ -6,9 +6,9 @@
 
 use super::{ClockGroup, Symmetric3};
 use crate::frames::LocalFrame;
-use crate::keyword::words;
+use crate::keyword::keywords;
 
-words! {
+keywords! {
     /// How observations are weighted in least squares.
     ObservationWeights {
         /// Equally.
@@ -94,7 +94,7 @@ mod tests {
     use super::super::Geometry;
     use super::*;
     use crate::earth::Surface;
-    use crate::keyword::Word;
+    use crate::keyword::Keyword;
     use nalgebra::{DMatrix, Vector3};
     use proptest::prelude::*;
 

@@ -4,7 +4,7 @@
 //! names its degree; here is measured which degree the step of the study needs.
 
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{EphemerisError, Flown};
+use crate::ephemeris::{EphemerisError, EphemerisSatellite};
 use crate::frames::{Position, ReferenceFrame, State};
 use nalgebra::Vector3;
 
@@ -35,7 +35,7 @@ impl Hermite {
     /// When the satellite cannot be propagated.
     pub fn measured<F: ReferenceFrame>(
         sampled: &Sampled<'_, F>,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
     ) -> Result<Option<Self>, EphemerisError> {
         let samples = sampled.grid().len();
         if samples < 2 {
@@ -61,7 +61,7 @@ impl Hermite {
 /// Largest distance between the interpolated and the true position, halfway between samples.
 fn max_error_km<F: ReferenceFrame>(
     sampled: &Sampled<'_, F>,
-    satellite: &Flown,
+    satellite: &EphemerisSatellite,
     nodes: usize,
 ) -> Result<f64, EphemerisError> {
     let grid = sampled.grid();

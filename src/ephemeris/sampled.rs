@@ -1,6 +1,6 @@
 //! The states of an ephemeris in the frame of a file.
 
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::frames::{FromTeme, ReferenceFrame, State, Teme};
 use crate::time::{Epoch, TimeGrid};
 
@@ -41,7 +41,7 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
 
     /// The satellites.
     #[must_use]
-    pub fn satellites(&self) -> &'a [Flown] {
+    pub fn satellites(&self) -> &'a [EphemerisSatellite] {
         self.ephemeris.satellites()
     }
 
@@ -55,7 +55,11 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state(&self, satellite: &Flown, elapsed_s: f64) -> Result<State<F>, EphemerisError> {
+    pub fn state(
+        &self,
+        satellite: &EphemerisSatellite,
+        elapsed_s: f64,
+    ) -> Result<State<F>, EphemerisError> {
         let teme = self.ephemeris.state(satellite, elapsed_s)?;
         Ok(FromTeme::to(self.frame, self.grid().epoch(), elapsed_s).apply(teme))
     }
@@ -73,7 +77,11 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
     ///
     /// # Errors
     /// Names the satellite whose propagation fails.
-    pub fn state_at(&self, satellite: &Flown, k: usize) -> Result<State<F>, EphemerisError> {
+    pub fn state_at(
+        &self,
+        satellite: &EphemerisSatellite,
+        k: usize,
+    ) -> Result<State<F>, EphemerisError> {
         let teme = self.ephemeris.state(satellite, self.grid().elapsed_s(k))?;
         Ok(self.rotated(k, teme))
     }
@@ -81,7 +89,7 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
     /// The states of a satellite at every instant of the grid.
     pub fn states(
         &self,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
     ) -> impl ExactSizeIterator<Item = Result<(Epoch, State<F>), EphemerisError>> {
         let grid = self.grid();
         (0..grid.len()).map(move |k| {

@@ -7,7 +7,7 @@ use crate::frames::EarthRotation;
 
 /// What the GNSS contribute at one point and time.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct FixedSample {
+pub(super) struct PlainGnssSample {
     /// Systems with clocks of their own.
     pub(super) own_clocks: Geometry,
     /// Satellites that share their clock with the LEO design.
@@ -16,13 +16,13 @@ pub(super) struct FixedSample {
 
 /// The GNSS geometry of every sample, time by time.
 pub(super) struct FixedGeometry {
-    samples: Vec<FixedSample>,
+    samples: Vec<PlainGnssSample>,
     sites: usize,
 }
 
 impl FixedGeometry {
     pub(super) fn new(setup: &Setup, rotations: &[EarthRotation]) -> Result<Self, EphemerisError> {
-        let mut samples = vec![FixedSample::default(); setup.sample_count()];
+        let mut samples = vec![PlainGnssSample::default(); setup.sample_count()];
         for system in &setup.gnss {
             let ephemeris = Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid);
             add_system(setup, rotations, &ephemeris, &mut samples)?;
@@ -34,7 +34,7 @@ impl FixedGeometry {
     }
 
     /// The samples of all points at time `k`.
-    pub(super) fn at(&self, k: usize) -> &[FixedSample] {
+    pub(super) fn at(&self, k: usize) -> &[PlainGnssSample] {
         &self.samples[k * self.sites..(k + 1) * self.sites]
     }
 }
@@ -43,7 +43,7 @@ fn add_system(
     setup: &Setup,
     rotations: &[EarthRotation],
     system: &Ephemeris,
-    samples: &mut [FixedSample],
+    samples: &mut [PlainGnssSample],
 ) -> Result<(), EphemerisError> {
     let rows = samples.chunks_exact_mut(setup.sites.len());
     for ((elapsed_s, rotation), row) in setup.grid.iter().zip(rotations).zip(rows) {

@@ -54,13 +54,13 @@ use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use fixed::{Fixed, FixedTiles, Instant};
+use fixed::{Fixed, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
-use order_statistics::{Count, Counts, Find, Found, Merge, Places, Search};
+use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::PatternPropagator;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
-use sample::{Limits, Outcome, Sample, Scene, Workspace};
+use sample::{Limits, Outcome, Sample, SampleContext, Workspace};
 use std::ops::Range;
 use std::sync::Arc;
 use tiles::Tiles;
@@ -113,7 +113,7 @@ pub struct Rechecks {
 
 /// Where the satellites of an evaluation come from.
 #[derive(Clone, Copy)]
-pub(super) enum Source<'a> {
+pub(super) enum StateSource<'a> {
     /// A design, and its satellites under the model of the setup.
     Design(&'a Design, &'a Ephemeris),
     /// Any satellites.
@@ -124,16 +124,16 @@ pub(super) enum Source<'a> {
 pub(super) struct Kernel {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
-    scene: Scene,
+    scene: SampleContext,
     fixed: Fixed,
     instructions: InstructionSet,
     places: Places,
     kept_values: usize,
 }
 
-/// Satellites, and the pattern behind them if there is a fast way to fly it.
+/// Satellites, and the pattern behind them if there is a fast way to propagate it.
 #[derive(Clone, Copy)]
-struct Flight<'a> {
+struct PropagationSource<'a> {
     ephemeris: &'a Ephemeris,
     pattern: Option<&'a PatternPropagator>,
 }
@@ -176,7 +176,7 @@ impl Kernel {
     ) -> Result<Self, EphemerisError> {
         let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
         let fixed = Fixed::new(&setup, &tiles, &rotations, instructions, keep.fixed_bytes)?;
-        let scene = Scene {
+        let scene = SampleContext {
             tiles,
             single: MaskTerms::new(setup.mask),
             double: MaskTerms::new(setup.mask),
@@ -200,27 +200,30 @@ impl Kernel {
     /// Evaluates satellites.
     pub(super) fn evaluate(
         &self,
-        source: Source<'_>,
+        source: StateSource<'_>,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let (ephemeris, pattern) = match source {
-            Source::Design(design, ephemeris) => {
+            StateSource::Design(design, ephemeris) => {
                 (ephemeris, PatternPropagator::new(design, self.setup.model))
             }
-            Source::Ephemeris(ephemeris) => (ephemeris, None),
+            StateSource::Ephemeris(ephemeris) => (ephemeris, None),
         };
-        let flight = Flight {
+        let propagation = PropagationSource {
             ephemeris,
             pattern: pattern.as_ref(),
         };
         if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
-            self.keeping(flight)
+            self.keeping(propagation)
         } else {
-            self.streaming(flight)
+            self.streaming(propagation)
         }
     }
 
     /// One pass over the samples; the statistics pass over the values twice.
-    fn keeping(&self, flight: Flight<'_>) -> Result<(Evaluated, Rechecks), EphemerisError> {
+    fn keeping(
+        &self,
+        propagation: PropagationSource<'_>,
+    ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let samples = self.setup.grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
@@ -228,18 +231,18 @@ impl Kernel {
         let mut tallies = Tallies::default();
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(flight, chunk, self.scene.limits, |tiles| {
+            let part = self.run(propagation, chunk, self.scene.limits, |tiles| {
                 values.extend_from_slice(tiles);
             })?;
             tallies = tallies.merged(part);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = match Search::new(&counts, self.setup.metrics.cvar_level) {
+        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
             Some(search) => {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
                 let mut summary = search.summary(&found, sum, tail);
-                self.refine(flight, &values, &search, &mut summary)?;
+                self.refine(propagation, &values, &search, &mut summary)?;
                 Some(summary)
             }
             None => None,
@@ -251,9 +254,9 @@ impl Kernel {
     /// Takes the order statistics again in f64.
     fn refine(
         &self,
-        flight: Flight<'_>,
+        propagation: PropagationSource<'_>,
         values: &[Lanes<f32>],
-        search: &Search,
+        search: &RankSearch,
         summary: &mut Summary,
     ) -> Result<(), EphemerisError> {
         let statistics = [
@@ -279,7 +282,7 @@ impl Kernel {
             let mut again = Vec::with_capacity(window.places.len());
             for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
                 let k = together[0].0 / tiles;
-                self.run(flight, k..k + 1, exact, |sample| {
+                self.run(propagation, k..k + 1, exact, |sample| {
                     again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
                 })?;
             }
@@ -291,10 +294,13 @@ impl Kernel {
     }
 
     /// Two passes over the samples, each on all threads; nothing is kept but counts.
-    fn streaming(&self, flight: Flight<'_>) -> Result<(Evaluated, Rechecks), EphemerisError> {
+    fn streaming(
+        &self,
+        propagation: PropagationSource<'_>,
+    ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
         let (counts, parts) = self.pass(
-            flight,
+            propagation,
             &chunks,
             || Counts::new(self.places),
             |tiles, counts| self.count(tiles, counts),
@@ -304,11 +310,12 @@ impl Kernel {
             .iter()
             .fold(Tallies::default(), |all, part| all.merged(part.0));
         let sum = parts.iter().map(|part| part.1).sum();
-        let summary = match Search::new(&counts, self.setup.metrics.cvar_level) {
+        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
             Some(search) => {
-                let (found, parts) = self.pass(flight, &chunks, Found::new, |tiles, found| {
-                    self.find(tiles, &search, found)
-                })?;
+                let (found, parts) =
+                    self.pass(propagation, &chunks, Found::new, |tiles, found| {
+                        self.find(tiles, &search, found)
+                    })?;
                 let tail = parts.iter().map(|part| part.1).sum();
                 Some(search.summary(&found, sum, tail))
             }
@@ -322,7 +329,7 @@ impl Kernel {
     /// accumulator of integers, in any order, and returns a sum, which is kept for each chunk.
     fn pass<A: Merge + Send>(
         &self,
-        flight: Flight<'_>,
+        propagation: PropagationSource<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
         note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
@@ -333,9 +340,10 @@ impl Kernel {
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
                     let mut sum = 0.0;
-                    let tallies = self.run(flight, chunk.clone(), self.scene.limits, |tiles| {
-                        sum += note(tiles, &mut all);
-                    })?;
+                    let tallies =
+                        self.run(propagation, chunk.clone(), self.scene.limits, |tiles| {
+                            sum += note(tiles, &mut all);
+                        })?;
                     parts.push((tallies, sum));
                     Ok((all, parts))
                 },
@@ -353,7 +361,7 @@ impl Kernel {
         self.instructions.run(Count { tiles, counts })
     }
 
-    fn find(&self, tiles: &[Lanes<f32>], search: &Search, found: &mut Found) -> f64 {
+    fn find(&self, tiles: &[Lanes<f32>], search: &RankSearch, found: &mut Found) -> f64 {
         self.instructions.run(Find {
             tiles,
             search,
@@ -373,29 +381,29 @@ impl Kernel {
     /// Evaluates some samples and hands the values of each to `take`.
     fn run(
         &self,
-        flight: Flight<'_>,
+        propagation: PropagationSource<'_>,
         chunk: Range<usize>,
         limits: Limits,
         mut take: impl FnMut(&[Lanes<f32>]),
     ) -> Result<Tallies, EphemerisError> {
-        let mut work = Workspace::new(flight.ephemeris.satellites().len());
+        let mut work = Workspace::new(propagation.ephemeris.satellites().len());
         let mut outcome = Outcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
         let mut tallies = Tallies::default();
         for k in chunk {
             let elapsed_s = self.setup.grid.elapsed_s(k);
             let rotation = self.rotations[k];
-            let instant = Instant {
+            let instant = SampleInstant {
                 number: k,
                 elapsed_s,
                 rotation,
             };
             let fixed = self.fixed.at(&self.scene.tiles, instant, &mut scratch)?;
-            if flight.pattern.is_none() {
+            if propagation.pattern.is_none() {
                 work.positions
-                    .propagate(flight.ephemeris, elapsed_s, rotation)?;
+                    .propagate(propagation.ephemeris, elapsed_s, rotation)?;
             }
-            let pattern = flight
+            let pattern = propagation
                 .pattern
                 .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
             self.instructions.run(Sample {
@@ -409,7 +417,7 @@ impl Kernel {
             tallies.rechecks.near_mask += outcome.doubts.len() as u64;
             tallies.rechecks.large_pdop += outcome.doubled;
             let satellites = near_mask::Satellites {
-                ephemeris: flight.ephemeris,
+                ephemeris: propagation.ephemeris,
                 elapsed_s,
                 rotation,
             };

@@ -46,7 +46,7 @@ pub struct Metrics {
     pub p95_pdop: Option<f64>,
     /// 99 % quantile of PDOP.
     pub p99_pdop: Option<f64>,
-    /// Largest PDOP.
+    /// Maximum PDOP.
     pub max_pdop: Option<f64>,
     /// Share of samples that are solved.
     pub solved_fraction: f64,

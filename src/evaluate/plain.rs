@@ -9,7 +9,7 @@ use crate::frames::{EarthFixed, Position};
 use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
 
 /// One point at one time.
-pub(super) struct Sample {
+pub(super) struct PlainSample {
     /// Index into the instants of the grid.
     pub(super) time: usize,
     /// Index into the points.
@@ -61,7 +61,7 @@ fn summary(setup: &Setup, mut pdop: Vec<Weighted>) -> Option<Summary> {
 pub(super) fn visit(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-    mut see: impl FnMut(Sample),
+    mut see: impl FnMut(PlainSample),
 ) -> Result<(), EphemerisError> {
     let setup = evaluator.setup();
     let fixed = evaluator.fixed()?;
@@ -81,7 +81,7 @@ pub(super) fn visit(
             leo += fixed.shared_clock;
             let mut geometry = fixed.own_clocks;
             geometry.add(&leo);
-            see(Sample {
+            see(PlainSample {
                 time,
                 site,
                 visible,

@@ -1,7 +1,7 @@
 //! Metrics per instant and per point: what figures and maps are drawn from.
 
 use super::Evaluator;
-use super::plain::{self, Sample};
+use super::plain::{self, PlainSample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::stats::{Level, Weighted, quantile};
 use serde::Serialize;
@@ -15,7 +15,7 @@ pub struct EpochMetrics {
     pub mean_visible: f64,
     /// Mean PDOP over the solved points, equation (24); `None` when no point is solved.
     pub mean_pdop: Option<f64>,
-    /// Largest PDOP of a solved point: its maximum over time is equation (23).
+    /// Maximum PDOP of a solved point: its maximum over time is equation (23).
     pub max_pdop: Option<f64>,
     /// Share of the points that are solved.
     pub solved_fraction: f64,
@@ -34,7 +34,7 @@ pub struct PointMetrics {
     pub mean_pdop: Option<f64>,
     /// 95 % quantile of PDOP over the solved instants.
     pub p95_pdop: Option<f64>,
-    /// Largest PDOP of a solved instant.
+    /// Maximum PDOP of a solved instant.
     pub max_pdop: Option<f64>,
     /// Share of the instants that are solved.
     pub solved_fraction: f64,
@@ -112,7 +112,7 @@ impl Evaluator {
 }
 
 impl EpochSums {
-    fn add(&mut self, sample: &Sample, weight: f64) {
+    fn add(&mut self, sample: &PlainSample, weight: f64) {
         self.weight += weight;
         self.visible += weight * f64::from(sample.visible);
         if let Some(pdop) = sample.pdop {

@@ -7,7 +7,9 @@ mod source;
 
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
-use crate::exchange::manifest::{FILE_NAME, FileEntry, HashingWriter, Loss, Manifest, Study};
+use crate::exchange::manifest::{
+    ExportedStudy, FILE_NAME, FileEntry, HashingWriter, Loss, Manifest,
+};
 use crate::formats::WriteError;
 use crate::formats::ccsds::CcsdsVersion;
 use crate::formats::ccsds::{oem, omm};
@@ -16,13 +18,13 @@ use crate::formats::metadata::{ElementChoice, Metadata};
 use crate::formats::sp3;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
-use source::Source;
+use source::ExportSource;
 use std::io::{self, BufWriter, Write};
 
-words! {
+keywords! {
     /// What can be asked of an export.
     Product {
         /// Two-line element sets with names, one file.
@@ -49,7 +51,7 @@ words! {
         Geojson = "geojson",
         /// KML: the same for Google Earth.
         Kml = "kml",
-        /// GMAT: a script that flies the design under J2 alone.
+        /// GMAT: a script that propagates the design under J2 alone.
         Gmat = "gmat",
         /// YUMA almanacs of the nominal GNSS.
         Yuma = "yuma",
@@ -80,15 +82,15 @@ impl<W: Write, F: Fn(&str) -> io::Result<W> + Sync> Sink for F {
 
 /// The study that is exported.
 #[derive(Debug, Clone)]
-pub struct Subject {
+pub struct ExportSubject {
     /// The design.
     pub design: Design,
-    /// What it flies by.
+    /// What it propagates by.
     pub model: Model,
     /// The instants of sampled products; its epoch is that of the elements.
     pub grid: TimeGrid,
     /// The scenario.
-    pub study: Study,
+    pub study: ExportedStudy,
     /// Who makes the files.
     pub originator: String,
     /// When the files say that they were made.
@@ -105,15 +107,15 @@ pub struct Choices {
     /// Version of the CCSDS messages.
     pub ccsds_version: CcsdsVersion,
     /// Notation of the OMM.
-    pub omm: omm::Notation,
+    pub omm: omm::OmmSyntax,
     /// Notation of the OEM.
-    pub oem: oem::Notation,
+    pub oem: oem::OemSyntax,
     /// Whether the OEM of all satellites make one file, which XML allows.
     pub oem_combined: bool,
     /// How element sets are made from the design.
     pub elements: ElementChoice,
     /// Version of SP3.
-    pub sp3_version: sp3::Version,
+    pub sp3_version: sp3::Sp3Version,
     /// Letter of the SP3 ids.
     pub sp3_letter: char,
     /// For each of [`Preset::ALL`], whether SP3 gets a file of that constellation too.
@@ -126,11 +128,11 @@ impl Default for Choices {
             frame: Frame::Eme2000,
             time_system: TimeSystem::Utc,
             ccsds_version: CcsdsVersion::V2,
-            omm: omm::Notation::Kvn,
-            oem: oem::Notation::Kvn,
+            omm: omm::OmmSyntax::Kvn,
+            oem: oem::OemSyntax::Kvn,
             oem_combined: false,
             elements: ElementChoice::Kozai,
-            sp3_version: sp3::Version::D,
+            sp3_version: sp3::Sp3Version::D,
             sp3_letter: 'L',
             sp3_gnss: [false; Preset::ALL.len()],
         }
@@ -140,10 +142,10 @@ impl Default for Choices {
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// When a satellite cannot be flown or named, an element does not fit its format, a file
+/// When a satellite cannot be propagated or named, an element does not fit its format, a file
 /// cannot be written, or a product needs the scenario.
 pub fn export(
-    subject: &Subject,
+    subject: &ExportSubject,
     products: &[Product],
     choices: Choices,
     sink: &impl Sink,
@@ -156,16 +158,16 @@ pub fn export(
 /// # Errors
 /// As [`export`], and when the scenario does not fit a format.
 pub fn export_scene(
-    subject: &Subject,
+    subject: &ExportSubject,
     scene: Option<&Scene<'_>>,
     (products, choices): (&[Product], Choices),
     sink: &impl Sink,
 ) -> Result<Manifest, WriteError> {
-    let source = Source::new(subject, choices)?;
+    let source = ExportSource::new(subject, choices)?;
     let files = Files { sink };
     let mut entries = Vec::new();
     for product in products {
-        let lacking = || WriteError::NoScene(product.word());
+        let lacking = || WriteError::NoScene(product.keyword());
         entries.extend(match product {
             Product::Tle => source.tle(&files)?,
             Product::Omm => source.omm(&files)?,
@@ -211,7 +213,7 @@ impl<S: Sink> Files<'_, S> {
         let loss = write(&mut out)?;
         let hashing = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         let sha256 = hashing.finish()?;
-        let format = (product.word(), version);
+        let format = (product.keyword(), version);
         Ok(FileEntry::new(
             path, format, objects, metadata, loss, sha256,
         ))

@@ -1,15 +1,15 @@
-//! Satellites read from a file of any format, flown by the theory that the file implies.
+//! Satellites read from a file of any format, propagated by the theory that the file implies.
 //!
-//! Element sets (TLE, OMM) fly by SGP4; tables of mean elements, and parameter messages that hold
+//! Element sets (TLE, OMM) propagate by SGP4; tables of mean elements, and parameter messages that hold
 //! them, by the model of the study; sampled states stand as they are, at their samples.
 
-mod flight;
+mod propagation;
 
-pub use flight::FleetError;
+pub use propagation::FleetError;
 
 use crate::ephemeris::derivative::velocities;
 use crate::exchange::lint::Format;
-use crate::formats::ccsds::omm::Notation;
+use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv::ElementsRow;
 use crate::formats::maps::czml;
@@ -17,7 +17,7 @@ use crate::formats::trajectory::{TrajectoryError, frame_of_name, time_system_of_
 use crate::formats::{ReadError, csv};
 use crate::formats::{sp3, stk, tle};
 use crate::frames::{Frame, Position, State};
-use crate::keyword::UnknownWord;
+use crate::keyword::UnknownKeyword;
 use crate::time::Epoch;
 use std::io::BufRead;
 use thiserror::Error;
@@ -32,7 +32,7 @@ pub enum Fleet {
     /// States.
     Sampled(Vec<crate::formats::trajectory::Trajectory>),
     /// Positions with the polynomials between them.
-    Tracks(Vec<crate::formats::maps::czml::Track>),
+    Tracks(Vec<crate::formats::maps::czml::CzmlTrack>),
 }
 
 /// Why a file gives no satellites.
@@ -44,13 +44,13 @@ pub enum ReadFleetError {
     /// Its states cannot be brought to a frame of ours.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// A parameter message of another program: one state, and no theory to fly it by.
-    #[error("{name}: the message has a state at one instant and no mean elements to fly")]
+    /// A parameter message of another program: one state, and no theory to propagate it by.
+    #[error("{name}: the message has a state at one instant and no mean elements to propagate")]
     NoTheory {
         /// The satellite.
         name: String,
     },
-    /// Files of one constellation that fly by different theories.
+    /// Files of one constellation that propagate by different theories.
     #[error("one file holds {first} and another {second}; give files of one kind")]
     Mixed {
         /// What the first holds.
@@ -59,7 +59,7 @@ pub enum ReadFleetError {
         second: &'static str,
     },
     /// A satellite whose file has a single sample without a velocity, or two at one instant.
-    #[error("{name}: its positions have no velocities and are too few to derive them")]
+    #[error("{name}: it has no velocities, and too few positions to derive them from")]
     NoVelocity {
         /// The satellite.
         name: String,
@@ -82,10 +82,10 @@ impl Fleet {
         };
         let fleet = match format {
             Format::Tle => Self::Sets(tle::read(input)?),
-            Format::Omm => Self::of_omm(omm::read(input, Notation::Kvn)?),
-            Format::OmmXml => Self::of_omm(omm::read(input, Notation::Xml)?),
-            Format::OmmJson => Self::of_omm(omm::read(input, Notation::Json)?),
-            Format::OmmCsv => Self::of_omm(omm::read(input, Notation::Csv)?),
+            Format::Omm => Self::of_omm(omm::read(input, OmmSyntax::Kvn)?),
+            Format::OmmXml => Self::of_omm(omm::read(input, OmmSyntax::Xml)?),
+            Format::OmmJson => Self::of_omm(omm::read(input, OmmSyntax::Json)?),
+            Format::OmmCsv => Self::of_omm(omm::read(input, OmmSyntax::Csv)?),
             Format::Oem => Self::of_oem(vec![oem::read(input)?])?,
             Format::OemXml => Self::of_oem(oem::read_xml(input)?)?,
             Format::Opm => Self::of_opm(opm::read(input)?)?,
@@ -194,7 +194,7 @@ impl Fleet {
     /// Adds the satellites of another file.
     ///
     /// # Errors
-    /// When they fly by another theory.
+    /// When they propagate by another theory.
     pub fn append(&mut self, other: Self) -> Result<(), ReadFleetError> {
         match (&mut *self, other) {
             (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),
@@ -233,7 +233,7 @@ impl Fleet {
         }
     }
 
-    /// Whether there is no satellite.
+    /// Whether no satellites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -253,7 +253,7 @@ fn join(before: &mut Vec<(Epoch, State<Frame>)>, next: Vec<(Epoch, State<Frame>)
 
 /// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,
 /// `ITR08`; positions are Earth-fixed also where the name is left out.
-fn frame_of_sp3(name: &str) -> Result<Frame, UnknownWord> {
+fn frame_of_sp3(name: &str) -> Result<Frame, UnknownKeyword> {
     let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ", "SLR", "UNDEF"];
     let upper = name.to_ascii_uppercase();
     if upper.is_empty() || earth_fixed.iter().any(|start| upper.starts_with(start)) {

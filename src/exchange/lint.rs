@@ -1,17 +1,17 @@
 //! Checks a file against its format: what a reader refuses, and what it lets pass although the
 //! standard forbids it.
 
-use crate::formats::ccsds::omm::Notation;
+use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv;
 use crate::formats::maps::czml;
-use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::{sp3, stk, tle};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use std::collections::HashSet;
 use std::io::{self, BufRead};
 
-words! {
+keywords! {
     /// A format that can be checked.
     Format {
         /// Two-line element sets.
@@ -95,7 +95,7 @@ impl Format {
 
 /// What a check of a file says.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Report {
+pub struct LintReport {
     /// The format that it was checked against.
     pub format: Format,
     /// What it breaks, in the order of the file as far as it goes.
@@ -112,20 +112,20 @@ pub fn lint(
     format: Option<Format>,
     file_name: Option<&str>,
     limit: usize,
-) -> io::Result<Report> {
+) -> io::Result<LintReport> {
     let format = match format {
         Some(format) => format,
         None => Format::of(input.fill_buf()?, file_name),
     };
-    let mut findings = Findings::of_linter(limit);
+    let mut findings = FindingList::of_linter(limit);
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
         Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
         Format::OemXml => oem::parse_xml(input, &mut findings, |_| ())?,
-        Format::Omm => omm::parse(input, Notation::Kvn, &mut findings, |_| ())?,
-        Format::OmmXml => omm::parse(input, Notation::Xml, &mut findings, |_| ())?,
-        Format::OmmJson => omm::parse(input, Notation::Json, &mut findings, |_| ())?,
-        Format::OmmCsv => omm::parse(input, Notation::Csv, &mut findings, |_| ())?,
+        Format::Omm => omm::parse(input, OmmSyntax::Kvn, &mut findings, |_| ())?,
+        Format::OmmXml => omm::parse(input, OmmSyntax::Xml, &mut findings, |_| ())?,
+        Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
+        Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
         Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
         Format::Czml => czml::parse(input, &mut findings, |_| ())?,
         Format::Stk => stk::parse(input, &mut findings).map(drop)?,
@@ -134,11 +134,11 @@ pub fn lint(
         Format::StatesCsv => csv::parse_states(input, &mut findings).map(drop)?,
     }
     let findings = findings.into_vec();
-    Ok(Report { format, findings })
+    Ok(LintReport { format, findings })
 }
 
 /// Element sets, none of which may stand twice.
-fn lint_tle(input: impl BufRead, findings: &mut Findings) -> io::Result<()> {
+fn lint_tle(input: impl BufRead, findings: &mut FindingList) -> io::Result<()> {
     let mut known = HashSet::new();
     let mut repeated = Vec::new();
     tle::parse(input, findings, |record| {
@@ -159,7 +159,7 @@ mod tests {
     use crate::exchange::export::testing::{in_memory, is_read, subject};
     use crate::exchange::export::{Choices, Product};
 
-    use crate::keyword::Word;
+    use crate::keyword::Keyword;
     use crate::time::{Epoch, TimeGrid};
     use std::collections::BTreeMap;
 
@@ -171,7 +171,7 @@ mod tests {
             TimeGrid::new(epoch, 1_200.0, 60.0).unwrap(),
         );
         let mut files = BTreeMap::new();
-        for notation in Notation::ALL {
+        for notation in OmmSyntax::ALL {
             let choices = Choices {
                 omm: *notation,
                 ..Choices::default()
@@ -180,7 +180,7 @@ mod tests {
         }
         for oem_combined in [false, true] {
             let choices = Choices {
-                oem: oem::Notation::Xml,
+                oem: oem::OemSyntax::Xml,
                 oem_combined,
                 ..Choices::default()
             };

@@ -22,7 +22,7 @@ pub struct Manifest {
     /// Its version.
     pub version: String,
     /// The study.
-    pub scenario: Study,
+    pub scenario: ExportedStudy,
     /// The design, in Walker's notation.
     pub design: String,
     /// First instant, UTC.
@@ -39,7 +39,7 @@ pub struct Manifest {
 
 /// The study that an export belongs to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Study {
+pub struct ExportedStudy {
     /// Name of the scenario.
     pub name: String,
     /// Hash of the resolved scenario.
@@ -103,14 +103,14 @@ pub struct FileEntry {
     pub sha256: String,
 }
 
-/// What a format costs against the model that the study flies; what is not measured is null.
+/// What a format costs against the model that the study propagates; what is not measured is null.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Loss {
     /// By rounding to the digits of the file, largest distance, km.
     pub quantisation_max_km: Option<f64>,
     /// The same, root mean square of the worst satellite, km.
     pub quantisation_rms_km: Option<f64>,
-    /// SGP4 of the element sets against the model that is flown, largest distance, km.
+    /// SGP4 of the element sets against the model that is propagated, largest distance, km.
     pub theory_max_km: Option<f64>,
     /// The same, root mean square of the worst satellite, km.
     pub theory_rms_km: Option<f64>,
@@ -165,7 +165,7 @@ impl Manifest {
     /// Writes the manifest as JSON, with a line end behind it.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> Result<(), WriteError> {
         serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
         writeln!(out)?;
@@ -175,7 +175,7 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// When the text is no manifest; the error names line and column.
+    /// When the text is not a manifest; the error names line and column.
     pub fn read(input: impl io::Read) -> Result<Self, serde_json::Error> {
         serde_json::from_reader(input)
     }

@@ -1,7 +1,7 @@
 //! Products of an export, read back and evaluated again: what the scenario makes of each file.
 //!
 //! A file is held against what its theory makes of the design: states and mean elements against
-//! the flown design, element sets against SGP4 of the unrounded sets. So the digits of a format
+//! the propagated design, element sets against SGP4 of the unrounded sets. So the digits of a format
 //! alone explain a difference, and gates follow from them; what SGP4 and the model of the study
 //! are apart is told beside. A satellite that is d km from its place moves the circle that sees it
 //! by as much; at 400 km the circle's radius is 1600 km and its area changes by less than d/500 km
@@ -10,7 +10,7 @@
 
 use crate::constellation::{Design, Satellite};
 use crate::earth::RADIUS_KM;
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::lint::Format;
@@ -52,7 +52,7 @@ const FLIPS: f64 = 5.0;
 /// Why a product cannot be checked.
 #[derive(Debug, Error)]
 pub enum RecheckError {
-    /// The satellites of the file do not fly the study.
+    /// The satellites of the file do not propagate the study.
     #[error(transparent)]
     Fleet(#[from] FleetError),
     /// A satellite has no state.
@@ -93,7 +93,7 @@ impl Difference {
 pub struct Recheck {
     /// Largest distance of a satellite from where the theory of the file has it, km.
     pub position_km: Difference,
-    /// Largest distance between the theory of the file and the flown design, km; none where they
+    /// Largest distance between the theory of the file and the propagated design, km; none where they
     /// are the same.
     pub theory_km: Option<f64>,
     /// Mean number of visible satellites.
@@ -116,13 +116,13 @@ impl Recheck {
 pub struct Original<'a> {
     evaluator: &'a Evaluator,
     design: Design,
-    flown: Seen,
+    propagated: Rescored,
     semi_major_axis_km: f64,
     eccentricity: f64,
 }
 
 /// Satellites and what the scenario makes of them.
-struct Seen {
+struct Rescored {
     ephemeris: Ephemeris,
     metrics: Metrics,
 }
@@ -131,13 +131,13 @@ impl<'a> Original<'a> {
     /// Evaluates the design.
     ///
     /// # Errors
-    /// When a satellite cannot be flown.
+    /// When a satellite cannot be propagated.
     pub fn new(evaluator: &'a Evaluator, design: &Design) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
         Ok(Self {
             evaluator,
             design: *design,
-            flown: Seen {
+            propagated: Rescored {
                 ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
                 metrics: evaluator.evaluate(design)?,
             },
@@ -146,38 +146,43 @@ impl<'a> Original<'a> {
         })
     }
 
-    /// The design flown by SGP4 from its unrounded element sets at `epoch`.
-    fn by_sgp4(&self, epoch: Epoch) -> Result<Seen, RecheckError> {
+    /// The design propagated by SGP4 from its unrounded element sets at `epoch`.
+    fn by_sgp4(&self, epoch: Epoch) -> Result<Rescored, RecheckError> {
         let grid = self.evaluator.setup().grid;
         let since_s = epoch.seconds_since(grid.epoch());
-        let satellites = self.flown.ephemeris.satellites();
+        let satellites = self.propagated.ephemeris.satellites();
         let objects = Object::all(satellites, grid.epoch())?;
-        let fly = |((satellite, object), flown): ((&Satellite, &Object), &Flown)| {
-            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
-            let set = element_set(&elements, object, epoch, MeanMotionSlot::Kozai);
-            let orbit = Sgp4Orbit::from_element_set(&set, grid.epoch());
-            Ok(Flown {
-                name: flown.name.clone(),
-                slot: flown.slot,
-                propagator: Box::new(orbit.map_err(|source| EphemerisError {
-                    name: flown.name.clone(),
-                    source,
-                })?),
-            })
-        };
+        let propagate =
+            |((satellite, object), propagated): ((&Satellite, &Object), &EphemerisSatellite)| {
+                let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
+                let set = element_set(&elements, object, epoch, MeanMotionSlot::Kozai);
+                let orbit = Sgp4Orbit::from_element_set(&set, grid.epoch());
+                Ok(EphemerisSatellite {
+                    name: propagated.name.clone(),
+                    slot: propagated.slot,
+                    propagator: Box::new(orbit.map_err(|source| EphemerisError {
+                        name: propagated.name.clone(),
+                        source,
+                    })?),
+                })
+            };
         let of_design = self.design.satellites();
-        let flown = of_design.iter().zip(&objects).zip(satellites).map(fly);
-        let ephemeris = Ephemeris::new(grid, flown.collect::<Result<_, EphemerisError>>()?);
+        let propagated = of_design
+            .iter()
+            .zip(&objects)
+            .zip(satellites)
+            .map(propagate);
+        let ephemeris = Ephemeris::new(grid, propagated.collect::<Result<_, EphemerisError>>()?);
         let metrics = self.evaluator.evaluate_ephemeris(&ephemeris)?;
-        Ok(Seen { ephemeris, metrics })
+        Ok(Rescored { ephemeris, metrics })
     }
 
-    /// Flies what was read back and compares it; satellites stand in the order of the design.
+    /// Propagates what was read back and compares it; satellites stand in the order of the design.
     /// `format` is the one whose digits and theory the file has, `sets` how its element sets are
     /// made, if it has any.
     ///
     /// # Errors
-    /// When the satellites do not fly the study, or are not those of the design.
+    /// When the satellites do not propagate the study, or are not those of the design.
     pub fn check(
         &self,
         format: Format,
@@ -185,12 +190,12 @@ impl<'a> Original<'a> {
         fleet: &Fleet,
     ) -> Result<Recheck, RecheckError> {
         let setup = self.evaluator.setup();
-        let (found, expected) = (fleet.len(), self.flown.ephemeris.satellites().len());
+        let (found, expected) = (fleet.len(), self.propagated.ephemeris.satellites().len());
         if found != expected {
             return Err(RecheckError::Satellites { found, expected });
         }
         let epoch = match format {
-            // A fitted set follows the flown design, not the one that it started from.
+            // A fitted set follows the propagated design, not the one that it started from.
             _ if sets == ElementChoice::Fit => None,
             Format::Tle => Some(tle::rounded_epoch(setup.grid.epoch())),
             Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
@@ -199,8 +204,8 @@ impl<'a> Original<'a> {
             _ => None,
         };
         let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
-        let reference = by_sgp4.as_ref().unwrap_or(&self.flown);
-        let read_back = fleet.fly(setup.grid, setup.model)?;
+        let reference = by_sgp4.as_ref().unwrap_or(&self.propagated);
+        let read_back = fleet.propagate(setup.grid, setup.model)?;
         let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
         let gate_km = self.position_gate_km(format, sets);
         let relative = gate_km.map(|km| km / SCALE_KM);
@@ -215,7 +220,7 @@ impl<'a> Original<'a> {
                 gate: gate_km,
             },
             theory_km: theory
-                .map(|theory| apart_km(theory, &self.flown.ephemeris))
+                .map(|theory| apart_km(theory, &self.propagated.ephemeris))
                 .transpose()?,
             mean_visible: Difference {
                 value: metrics.mean_visible - visible,

@@ -7,7 +7,7 @@ use crate::exchange::export::testing::{in_memory, is_read, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::exchange::lint::Format;
 use crate::formats::ccsds::{oem, omm};
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::time::{Epoch, TimeGrid};
 
 /// A small valid file of every format, by our own writers.
@@ -18,14 +18,14 @@ fn samples() -> Vec<(Format, String)> {
         TimeGrid::new(epoch, 360.0, 90.0).unwrap(),
     );
     let mut found: Vec<(Format, String)> = Vec::new();
-    for (notation, oem) in omm::Notation::ALL
+    for (notation, oem) in omm::OmmSyntax::ALL
         .iter()
-        .zip(oem::Notation::ALL.iter().cycle())
+        .zip(oem::OemSyntax::ALL.iter().cycle())
     {
         let choices = Choices {
             omm: *notation,
             oem: *oem,
-            oem_combined: *oem == oem::Notation::Xml,
+            oem_combined: *oem == oem::OemSyntax::Xml,
             ..Choices::default()
         };
         for (path, bytes) in in_memory(&subject, Product::ALL, choices).1 {

@@ -6,4 +6,4 @@ pub mod omm;
 pub mod opm;
 pub(crate) mod xml;
 
-pub use kvn::{Header as CcsdsHeader, Version as CcsdsVersion};
+pub use kvn::{CcsdsHeader, CcsdsVersion};

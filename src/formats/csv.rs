@@ -7,7 +7,7 @@ mod read;
 mod table;
 
 pub use read::{ElementsRow, parse_elements, parse_states, read_elements, read_states};
-pub(super) use table::Table;
+pub(super) use table::CsvTable;
 
 use crate::constellation::Satellite;
 use crate::ephemeris::Ephemeris;
@@ -73,7 +73,7 @@ const STATES: [&str; 15] = [
 /// Writes the mean elements of a design, all digits.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_elements<'a>(
     out: &mut impl Write,
     satellites: impl Iterator<Item = (&'a Satellite, &'a Object)>,
@@ -113,7 +113,7 @@ pub fn write_elements<'a>(
 /// Writes the states of an ephemeris, satellite by satellite.
 ///
 /// # Errors
-/// When a satellite has no state, or the output does not take the bytes.
+/// When a satellite has no state, or the output fails.
 pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), WriteError> {
     let mut table = ::csv::Writer::from_writer(out);
     table.write_record(STATES).map_err(io_error)?;

@@ -1,4 +1,4 @@
-//! GMAT: a script that flies the satellites of a design under J2 alone, and the field it flies in.
+//! GMAT: a script that propagates the satellites of a design under J2 alone, and the field it propagates in.
 //!
 //! Source: *GMAT User Guide* R2022a and later: "Spacecraft Orbit State", "ForceModel"
 //! (`PotentialFile`, `Degree`, `Order`), "Propagator", "ReportFile", "Report", "For". One assignment
@@ -60,7 +60,7 @@ pub fn calendar(epoch: Epoch) -> Option<String> {
 /// its JGM2.cof), normalised: C̄₂₀ = -J2/√5.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_field(out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "COMMENT   1")?;
     writeln!(out, "CCCCC  J2 alone, with the constants of the design")?;
@@ -99,7 +99,7 @@ pub fn start(satellite: &Satellite, model: Model, epoch: Epoch) -> State<Eme2000
 /// Writes the script; `start_text` is the epoch as [`calendar`] gives it.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_script(
     out: &mut impl Write,
     comments: &[String],
@@ -113,7 +113,7 @@ pub fn write_script(
         let state = start(satellite, model, grid.epoch());
         spacecraft(out, name, start_text, &state)?;
     }
-    write_flight(out, model)?;
+    write_propagation(out, model)?;
     writeln!(out, "\nCreate ReportFile Report1")?;
     writeln!(out, "Report1.Filename = './{REPORT_NAME}'")?;
     writeln!(out, "Report1.Precision = 16")?;
@@ -129,7 +129,7 @@ pub fn write_script(
         if let Some(first) = all.first() {
             writeln!(
                 out,
-                "Propagate Flight({}) {{{first}.ElapsedSecs = {step_s}}}",
+                "Propagate J2Prop({}) {{{first}.ElapsedSecs = {step_s}}}",
                 all.join(", ")
             )?;
         }
@@ -168,7 +168,7 @@ fn spacecraft(
     Ok(())
 }
 
-fn write_flight(out: &mut impl Write, model: Model) -> io::Result<()> {
+fn write_propagation(out: &mut impl Write, model: Model) -> io::Result<()> {
     let degree = if model == Model::TwoBody { 0 } else { 2 };
     writeln!(out, "\nCreate ForceModel Forces")?;
     for (key, value) in [
@@ -187,7 +187,7 @@ fn write_flight(out: &mut impl Write, model: Model) -> io::Result<()> {
         out,
         "Forces.GravityField.Earth.PotentialFile = '{FIELD_NAME}'"
     )?;
-    writeln!(out, "\nCreate Propagator Flight")?;
+    writeln!(out, "\nCreate Propagator J2Prop")?;
     for (key, value) in [
         ("FM", "Forces"),
         ("Type", "PrinceDormand78"),
@@ -196,7 +196,7 @@ fn write_flight(out: &mut impl Write, model: Model) -> io::Result<()> {
         ("MinStep", "0.001"),
         ("MaxStep", "300"),
     ] {
-        writeln!(out, "Flight.{key} = {value}")?;
+        writeln!(out, "J2Prop.{key} = {value}")?;
     }
     Ok(())
 }
@@ -242,20 +242,20 @@ mod tests {
     }
 
     #[test]
-    fn the_script_flies_all_satellites() {
+    fn the_script_propagates_all_satellites() {
         let design: Design = "delta:55:4/2/1@925".parse().unwrap();
         let name = |one: Satellite| (script_name(&format!("NW-{}", one.slot)), one);
         let satellites: Vec<_> = design.satellites().into_iter().map(name).collect();
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         let mut bytes = Vec::new();
-        let flight = (Model::J2, grid, "01 Jan 2025 00:00:00.000");
-        write_script(&mut bytes, &["study".to_owned()], &satellites, flight).unwrap();
+        let propagation = (Model::J2, grid, "01 Jan 2025 00:00:00.000");
+        write_script(&mut bytes, &["study".to_owned()], &satellites, propagation).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         assert_eq!(text.matches("Create Spacecraft").count(), 4);
         assert!(text.contains("For Sample = 1:1:9"));
         let fleet =
-            "Flight(NW_P01_S01, NW_P01_S02, NW_P02_S01, NW_P02_S02) {NW_P01_S01.ElapsedSecs = 60}";
+            "J2Prop(NW_P01_S01, NW_P01_S02, NW_P02_S01, NW_P02_S02) {NW_P01_S01.ElapsedSecs = 60}";
         assert!(text.contains(fleet));
         // An assignment a line: GMAT takes no second one.
         assert!(text.lines().all(|line| line.matches(" = ").count() <= 1));

@@ -2,10 +2,10 @@
 //! conventions.
 
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
-use crate::ephemeris::Flown;
+use crate::ephemeris::EphemerisSatellite;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::orbit::Model;
 use crate::time::Epoch;
 use chrono::Datelike;
@@ -25,13 +25,16 @@ pub enum IdentityError {
         /// The number.
         number: u32,
     },
-    /// Text that is no catalogue number.
+    /// Text that is not a catalogue number.
     #[error(
-        "'{0}' is no catalogue number; Alpha-5 has a digit or a letter (not I or O) and four digits"
+        "'{0}' is not a catalogue number; Alpha-5 is a digit or a letter (not I or O) and four digits"
     )]
     Alpha5(String),
     /// More satellites than synthetic designators.
-    #[error("satellite {index} has no designator; there are {}", Object::MOST)]
+    #[error(
+        "no designator is left for satellite {index}; there are {}",
+        Object::MOST
+    )]
     Designator {
         /// Place of the satellite in its constellation, from 0.
         index: usize,
@@ -152,7 +155,10 @@ impl Object {
     ///
     /// # Errors
     /// When the formats cannot tell so many satellites apart.
-    pub fn all(satellites: &[Flown], epoch: Epoch) -> Result<Vec<Self>, IdentityError> {
+    pub fn all(
+        satellites: &[EphemerisSatellite],
+        epoch: Epoch,
+    ) -> Result<Vec<Self>, IdentityError> {
         satellites
             .iter()
             .enumerate()
@@ -182,14 +188,14 @@ fn piece_letters(index: usize) -> String {
     letters.iter().rev().collect()
 }
 
-words! {
+keywords! {
     /// How SGP4 element sets are made from a design.
     ElementChoice {
         /// The J2 mean elements with dM/dt of secular J2 in the mean motion slot.
         Kozai = "kozai",
         /// The same with sqrt(mu/a^3) there, which drifts by up to 400 km a day.
         Kepler = "kepler",
-        /// Fitted to the flown trajectory over the span of the study.
+        /// Fitted to the propagated trajectory over the span of the study.
         Fit = "fit",
     }
 }
@@ -197,8 +203,8 @@ words! {
 /// What the numbers of a file were computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Theory {
-    /// States of the model that the scenario flies.
-    Flown(Model),
+    /// States of the model that the scenario propagates.
+    EphemerisSatellite(Model),
     /// An SGP4 element set made from the design.
     Sgp4Elements(ElementChoice),
 }
@@ -206,7 +212,7 @@ pub enum Theory {
 impl fmt::Display for Theory {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Flown(model) => model.fmt(formatter),
+            Self::EphemerisSatellite(model) => model.fmt(formatter),
             Self::Sgp4Elements(ElementChoice::Kozai) => {
                 formatter.pad("SGP4 elements, Kozai mean motion dM/dt of secular J2")
             }
@@ -214,7 +220,7 @@ impl fmt::Display for Theory {
                 formatter.pad("SGP4 elements, Kepler mean motion sqrt(mu/a^3) in the Kozai slot")
             }
             Self::Sgp4Elements(ElementChoice::Fit) => {
-                formatter.pad("SGP4 elements fitted to the flown trajectory")
+                formatter.pad("SGP4 elements fitted to the propagated trajectory")
             }
         }
     }

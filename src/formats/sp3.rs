@@ -10,21 +10,21 @@ mod read;
 pub use read::{parse, read};
 
 use crate::constellation::gnss::Preset;
-use crate::ephemeris::Flown;
+use crate::ephemeris::EphemerisSatellite;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::{EarthFixed, Frame, Position, State};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::time::Epoch;
 use chrono::{Datelike, NaiveDate, NaiveDateTime, TimeDelta, Timelike};
 use std::io::{self, Write};
 use thiserror::Error;
 
-words! {
+keywords! {
     /// A version of the format.
-    Version {
+    Sp3Version {
         /// SP3-d, 2016: up to 999 satellites and any number of comments.
         D = "d",
         /// SP3-c, 2010: up to 85 satellites, four comments of 57 characters.
@@ -32,7 +32,7 @@ words! {
     }
 }
 
-impl Version {
+impl Sp3Version {
     /// Most satellites of a file: what a letter and two digits tell apart, and 85 in SP3-c.
     #[must_use]
     pub fn most_satellites(self) -> usize {
@@ -55,24 +55,24 @@ impl Version {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum Sp3Error {
     /// More satellites than a file holds, or none.
-    #[error("{found} satellites do not fit an SP3-{version} file; 1 to {most} do", most = version.most_satellites())]
+    #[error("SP3-{version} holds 1 to {most} satellites, not {found}", most = version.most_satellites())]
     Satellites {
         /// Their number.
         found: usize,
         /// The version.
-        version: Version,
+        version: Sp3Version,
     },
     /// More epochs than seven digits tell.
-    #[error("{0} epochs do not fit an SP3 file; 9999999 do")]
+    #[error("SP3 holds at most 9999999 epochs, not {0}")]
     Epochs(usize),
     /// An instant outside the weeks that a file can count.
     #[error("SP3 counts weeks from 1980-01-06, 9999 at most; {0} in GPS time is outside them")]
     Instant(NaiveDateTime),
     /// A letter that is none.
-    #[error("'{0}' is no capital letter, as an SP3 id begins with")]
+    #[error("'{0}' is not a capital letter, with which SP3 identifiers begin")]
     Letter(char),
     /// A coordinate or a velocity that is too large.
-    #[error("{letter}{number:02}: {value} km or dm/s does not fit the 14 columns of an SP3 number")]
+    #[error("{letter}{number:02}: {value} km or dm/s exceeds the 14 columns of an SP3 number")]
     Columns {
         /// Letter of the satellite.
         letter: char,
@@ -114,19 +114,19 @@ const IDS: usize = 17;
 /// Fewest lines of ids in the header of either version.
 const ID_LINES: usize = 5;
 
-/// Writes one file of satellites that fly on one grid, epoch by epoch.
+/// Writes one file of satellites that propagate on one grid, epoch by epoch.
 ///
 /// `satellites` are named `letter` 01, 02 … in their order.
 ///
 /// # Errors
-/// When they do not fit a file, a satellite has no state, or the output does not take the bytes.
+/// When they do not fit a file, a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
-    version: Version,
+    version: Sp3Version,
     letter: char,
     metadata: &Metadata,
     sampled: &Sampled<'_, EarthFixed>,
-    satellites: &[(&Flown, &Object)],
+    satellites: &[(&EphemerisSatellite, &Object)],
 ) -> Result<(), WriteError> {
     let grid = sampled.grid();
     if satellites.is_empty() || satellites.len() > version.most_satellites() {
@@ -166,7 +166,7 @@ pub fn write(
 /// Lines 1 and 2: epoch, number and spacing of the samples, GPS week, modified Julian day.
 fn write_first_lines(
     out: &mut impl Write,
-    version: Version,
+    version: Sp3Version,
     start: NaiveDateTime,
     (epochs, step_s): (usize, f64),
 ) -> io::Result<()> {
@@ -216,7 +216,7 @@ fn epoch_fields(stamp: NaiveDateTime) -> String {
 }
 
 /// The lines of ids and those of accuracies, at least five each.
-fn write_ids(out: &mut impl Write, version: Version, ids: &[String]) -> io::Result<()> {
+fn write_ids(out: &mut impl Write, version: Sp3Version, ids: &[String]) -> io::Result<()> {
     let lines = ids.len().div_ceil(IDS).max(ID_LINES);
     for line in 0..lines {
         let count = match (line, version) {
@@ -259,17 +259,19 @@ fn write_fixed_lines(out: &mut impl Write, letter: char) -> io::Result<()> {
 /// The comments: SP3-d names every satellite, SP3-c has room for the first and the last.
 fn write_comments(
     out: &mut impl Write,
-    version: Version,
+    version: Sp3Version,
     metadata: &Metadata,
     ids: &[String],
-    satellites: &[(&Flown, &Object)],
+    satellites: &[(&EphemerisSatellite, &Object)],
 ) -> io::Result<()> {
     let width = version.columns() - 3;
-    let name = |(id, (_, object)): (&String, &(&Flown, &Object))| format!("{id} = {}", object.name);
+    let name = |(id, (_, object)): (&String, &(&EphemerisSatellite, &Object))| {
+        format!("{id} = {}", object.name)
+    };
     let names: Vec<String> = ids.iter().zip(satellites).map(name).collect();
     let lines = match version {
-        Version::D => metadata.comments().into_iter().chain(names).collect(),
-        Version::C => vec![
+        Sp3Version::D => metadata.comments().into_iter().chain(names).collect(),
+        Sp3Version::C => vec![
             metadata.subject.first().cloned().unwrap_or_default(),
             format!("Theory: {}; pseudo-Earth-fixed, UT1 = UTC", metadata.theory),
             names.first().cloned().unwrap_or_default(),
@@ -279,7 +281,7 @@ fn write_comments(
     for line in lines {
         for part in wrapped(&line, width) {
             writeln!(out, "/* {part}")?;
-            if version == Version::C {
+            if version == Sp3Version::C {
                 break;
             }
         }
@@ -347,7 +349,7 @@ pub struct Sp3 {
     /// Comments.
     pub comments: Vec<String>,
     /// For each satellite its states in the order of time; a missing velocity is none.
-    pub states: Vec<Vec<Sample>>,
+    pub states: Vec<Vec<Sp3Sample>>,
 }
 
 impl Sp3 {
@@ -364,7 +366,7 @@ impl Sp3 {
 
 /// A state of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
+pub struct Sp3Sample {
     /// Instant.
     pub at: Epoch,
     /// Position in the frame of the file.

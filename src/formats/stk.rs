@@ -10,7 +10,7 @@ mod read;
 
 pub use read::{parse, read};
 
-use crate::ephemeris::Flown;
+use crate::ephemeris::EphemerisSatellite;
 use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
@@ -34,7 +34,7 @@ pub struct StkEphemeris {
     pub comments: Vec<String>,
     /// Origin of the times, UTC.
     pub scenario_epoch: NaiveDateTime,
-    /// Number of samples of the interpolation less one.
+    /// Number of samples of the interpolation minus one.
     pub interpolation_samples_m1: Option<usize>,
     /// Frame of the states.
     pub frame: Frame,
@@ -46,7 +46,7 @@ impl StkEphemeris {
     /// Writes the file.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         write_head(
             out,
@@ -65,12 +65,12 @@ impl StkEphemeris {
 /// Writes the states of one satellite on the grid of its ephemeris, line by line.
 ///
 /// # Errors
-/// When the satellite has no state, or the output does not take the bytes.
+/// When the satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     name: &str,
     metadata: &Metadata,
-    (sampled, satellite): (&Sampled<'_, Frame>, &Flown),
+    (sampled, satellite): (&Sampled<'_, Frame>, &EphemerisSatellite),
     hermite: Option<Hermite>,
 ) -> Result<(), WriteError> {
     let grid = sampled.grid();

@@ -7,7 +7,7 @@
 
 mod read;
 
-pub use read::{Record, parse, read};
+pub use read::{TleRecord, parse, read};
 
 use crate::formats::WriteError;
 use crate::formats::metadata::{CatalogNumber, IdentityError};
@@ -29,7 +29,7 @@ const EPOCH_STEP_NS: i64 = 864_000;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TleFieldError {
     /// A number out of the range of its columns.
-    #[error("{field} {value} does not fit a TLE; {bound}")]
+    #[error("a TLE cannot hold {field} {value}; {bound}")]
     Number {
         /// The element.
         field: &'static str,
@@ -39,7 +39,7 @@ pub enum TleFieldError {
         bound: &'static str,
     },
     /// A text that does not fit its columns.
-    #[error("{field} '{value}' does not fit a TLE; {bound}")]
+    #[error("a TLE cannot hold {field} '{value}'; {bound}")]
     Text {
         /// The element.
         field: &'static str,
@@ -49,7 +49,7 @@ pub enum TleFieldError {
         bound: &'static str,
     },
     /// An epoch outside 1957 to 2056, or between two steps of 1e-8 day.
-    #[error("epoch {0} does not fit a TLE; it steps by 1e-8 day from 1957 to 2056")]
+    #[error("a TLE cannot hold the epoch {0}; it covers 1957 to 2056 in steps of 1e-8 day")]
     Epoch(NaiveDateTime),
     /// A catalogue number past Alpha-5.
     #[error(transparent)]
@@ -79,7 +79,7 @@ fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
 /// Writes one element set: its name, if it has one, and its two lines.
 ///
 /// # Errors
-/// When an element does not fit its columns, or the output does not take the bytes.
+/// When an element does not fit its columns, or the output fails.
 pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteError> {
     if let Some(name) = &set.object_name {
         writeln!(out, "{}", name_field(name)?)?;

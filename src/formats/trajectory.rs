@@ -2,7 +2,7 @@
 
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::{Frame, State};
-use crate::keyword::{UnknownWord, Word};
+use crate::keyword::{Keyword, UnknownKeyword};
 use crate::time::Epoch;
 use thiserror::Error;
 
@@ -33,7 +33,7 @@ pub enum TrajectoryError {
     /// A frame that the library has no rotation to, or a time system that it cannot turn
     /// into UTC.
     #[error(transparent)]
-    Name(#[from] UnknownWord),
+    Name(#[from] UnknownKeyword),
 }
 
 /// The frame that a name in a file means.
@@ -43,12 +43,12 @@ pub enum TrajectoryError {
 ///
 /// # Errors
 /// When the library has no such frame.
-pub fn frame_of_name(name: &str) -> Result<Frame, UnknownWord> {
+pub fn frame_of_name(name: &str) -> Result<Frame, UnknownKeyword> {
     match name.to_ascii_uppercase().as_str() {
         "J2000" => Ok(Frame::Eme2000),
         "ICRF" => Ok(Frame::Gcrf),
         upper if upper.starts_with("ITRF") => Ok(Frame::EarthFixed),
-        upper => Frame::from_word(upper),
+        upper => Frame::from_keyword(upper),
     }
 }
 
@@ -56,6 +56,6 @@ pub fn frame_of_name(name: &str) -> Result<Frame, UnknownWord> {
 ///
 /// # Errors
 /// When the library cannot turn it into UTC.
-pub fn time_system_of_name(name: &str) -> Result<TimeSystem, UnknownWord> {
-    TimeSystem::from_word(&name.to_ascii_uppercase())
+pub fn time_system_of_name(name: &str) -> Result<TimeSystem, UnknownKeyword> {
+    TimeSystem::from_keyword(&name.to_ascii_uppercase())
 }

@@ -62,7 +62,7 @@ pub struct Almanac {
 /// Why a satellite has no almanac.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoAlmanac {
-    /// It flies by SGP4.
+    /// It propagates by SGP4.
     Sgp4,
     /// Its perigee moves, which an almanac has no rate for.
     Eccentric,
@@ -109,7 +109,7 @@ fn gps_origin() -> NaiveDateTime {
 }
 
 /// Angles at an instant and their rates: node, argument of latitude.
-struct Circle {
+struct CircularAngles {
     inclination_rad: f64,
     raan_rad: f64,
     raan_rate_rad_s: f64,
@@ -165,7 +165,7 @@ impl Almanac {
     /// Writes the satellite's block.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let Self { prn, week, .. } = self;
         writeln!(
@@ -206,7 +206,7 @@ fn field(out: &mut impl Write, key: &str, value: f64) -> io::Result<()> {
     writeln!(out, "{key:<27}{digits:>13}E{sign}{:03}", exponent.abs())
 }
 
-fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<Circle, NoAlmanac> {
+fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngles, NoAlmanac> {
     match orbit {
         GnssOrbit::Secular(secular) => {
             let elements = secular.elements_at(since_s);
@@ -214,7 +214,7 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<Circle, NoAl
                 return Err(NoAlmanac::Eccentric);
             }
             let rates = secular.rates();
-            Ok(Circle {
+            Ok(CircularAngles {
                 inclination_rad: elements.inclination_rad,
                 raan_rad: elements.raan_rad,
                 raan_rate_rad_s: rates.raan_rad_s,
@@ -222,7 +222,7 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<Circle, NoAl
                 latitude_argument_rate_rad_s: rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
             })
         }
-        GnssOrbit::Geosynchronous(orbit) => Ok(Circle {
+        GnssOrbit::Geosynchronous(orbit) => Ok(CircularAngles {
             inclination_rad: orbit.inclination_rad,
             raan_rad: orbit.raan_rad,
             raan_rate_rad_s: 0.0,
@@ -230,7 +230,7 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<Circle, NoAl
             latitude_argument_rate_rad_s: GMST_RATE_RAD_S,
         }),
         // Any node will do on the equator: that of the longitude it is held over.
-        GnssOrbit::Geostationary { longitude_rad, .. } => Ok(Circle {
+        GnssOrbit::Geostationary { longitude_rad, .. } => Ok(CircularAngles {
             inclination_rad: 0.0,
             raan_rad: gmst_rad + longitude_rad,
             raan_rate_rad_s: 0.0,

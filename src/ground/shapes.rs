@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A place on the map: longitude and latitude, degrees.
-pub(crate) type Place = [f64; 2];
+pub(crate) type LonLat = [f64; 2];
 
 /// Corners of a footprint.
 const CORNERS: usize = 72;
@@ -27,7 +27,7 @@ pub(crate) fn footprint(
     surface: Surface,
     satellite_km: Position<EarthFixed>,
     mask_rad: f64,
-) -> Vec<Place> {
+) -> Vec<LonLat> {
     let centre = satellite_km.km().normalize();
     // A horizontal direction, from an axis that is not close to the vertical.
     let axis = if centre.z.abs() < 0.9 {
@@ -62,7 +62,7 @@ impl Arc {
 }
 
 /// The point in a direction from the sub-satellite point at which the elevation equals the mask.
-fn edge(surface: Surface, satellite_km: Position<EarthFixed>, arc: Arc, mask_rad: f64) -> Place {
+fn edge(surface: Surface, satellite_km: Position<EarthFixed>, arc: Arc, mask_rad: f64) -> LonLat {
     let at = |angle: f64| surface.below_rad(foot(surface, arc.direction(angle)));
     let (mut seen, mut hidden) = (0.0, FRAC_PI_2);
     // 2⁻⁴⁰ of a quarter of the Earth is 10 micrometres.
@@ -88,17 +88,17 @@ fn foot(surface: Surface, direction: Vector3<f64>) -> Vector3<f64> {
 }
 
 /// The place below a position, degrees.
-pub(crate) fn place_below(surface: Surface, position_km: Position<EarthFixed>) -> Place {
+pub(crate) fn place_below(surface: Surface, position_km: Position<EarthFixed>) -> LonLat {
     degrees(surface.below_rad(position_km.km()))
 }
 
-fn degrees((latitude_rad, longitude_rad): (f64, f64)) -> Place {
+fn degrees((latitude_rad, longitude_rad): (f64, f64)) -> LonLat {
     [longitude_rad.to_degrees(), latitude_rad.to_degrees()]
 }
 
 /// South-west and north-east corner of the cell around a grid point: half a step to each side, not past
 /// the poles, and at most a full turn.
-pub(crate) fn cell(grid: &Grid, [longitude, latitude]: Place) -> [Place; 2] {
+pub(crate) fn cell(grid: &Grid, [longitude, latitude]: LonLat) -> [LonLat; 2] {
     let half = grid.step_deg.map(|step| 0.5 * step);
     let half_width = half[1].min(180.0);
     [
@@ -108,17 +108,17 @@ pub(crate) fn cell(grid: &Grid, [longitude, latitude]: Place) -> [Place; 2] {
 }
 
 /// The rings of a cell.
-pub(crate) fn cell_rings([[west, south], [east, north]]: [Place; 2]) -> Vec<Vec<Place>> {
+pub(crate) fn cell_rings([[west, south], [east, north]]: [LonLat; 2]) -> Vec<Vec<LonLat>> {
     cut(&[[west, south], [east, south], [east, north], [west, north]])
 }
 
 /// The rings of an area with counterclockwise corners less than half a turn of longitude apart. An
 /// area around a pole is closed along the edge of the map at 90°.
-pub(crate) fn rings(corners: &[Place]) -> Vec<Vec<Place>> {
+pub(crate) fn rings(corners: &[LonLat]) -> Vec<Vec<LonLat>> {
     let Some(&first) = corners.first() else {
         return Vec::new();
     };
-    let mut unwrapped: Vec<Place> = Vec::with_capacity(corners.len() + 3);
+    let mut unwrapped: Vec<LonLat> = Vec::with_capacity(corners.len() + 3);
     let mut longitude = first[0];
     for &[next, latitude] in corners.iter().chain([&first]) {
         longitude = next + 360.0 * ((longitude - next) / 360.0).round();
@@ -134,9 +134,9 @@ pub(crate) fn rings(corners: &[Place]) -> Vec<Vec<Place>> {
 
 /// An area around a pole, from a line that closes after one turn of longitude: starting and ending at
 /// the antimeridian, it is one ring on the map.
-fn around_pole(line: &[Place], turns: f64) -> Vec<Place> {
-    let turn = |place: &Place| ((place[0] + 180.0) / 360.0).floor();
-    let crosses = |pair: &[Place]| turn(&pair[0]) != turn(&pair[1]);
+fn around_pole(line: &[LonLat], turns: f64) -> Vec<LonLat> {
+    let turn = |place: &LonLat| ((place[0] + 180.0) / 360.0).floor();
+    let crosses = |pair: &[LonLat]| turn(&pair[0]) != turn(&pair[1]);
     // A full turn of longitude crosses the antimeridian somewhere.
     let before = line.windows(2).position(crosses).unwrap_or(0);
     let (from, to) = (line[before], line[before + 1]);
@@ -144,7 +144,7 @@ fn around_pole(line: &[Place], turns: f64) -> Vec<Place> {
     let latitude = from[1] + (to[1] - from[1]) * (meridian - from[0]) / (to[0] - from[0]);
     let mut area = vec![[meridian, latitude]];
     area.extend(&line[before + 1..line.len() - 1]);
-    let later = |place: &Place| [place[0] + 360.0 * turns, place[1]];
+    let later = |place: &LonLat| [place[0] + 360.0 * turns, place[1]];
     area.extend(line[..=before].iter().map(later));
     area.push(later(&[meridian, latitude]));
     // Counterclockwise around the north pole is eastwards, around the south pole westwards.
@@ -154,7 +154,7 @@ fn around_pole(line: &[Place], turns: f64) -> Vec<Place> {
 }
 
 /// An area with continuous longitudes, cut into closed rings within ±180°.
-fn cut(corners: &[Place]) -> Vec<Vec<Place>> {
+fn cut(corners: &[LonLat]) -> Vec<Vec<LonLat>> {
     let longitudes = || corners.iter().map(|corner| corner[0]);
     let low = longitudes().fold(f64::INFINITY, f64::min);
     let high = longitudes().fold(f64::NEG_INFINITY, f64::max);
@@ -172,9 +172,9 @@ fn cut(corners: &[Place]) -> Vec<Vec<Place>> {
 
 /// The part of an area to one side of a meridian (Sutherland and Hodgman, *Commun. ACM* 17 (1974)
 /// 32): to the east for `side` = 1, to the west for -1.
-fn half_plane(corners: &[Place], meridian: f64, side: f64) -> Vec<Place> {
+fn half_plane(corners: &[LonLat], meridian: f64, side: f64) -> Vec<LonLat> {
     let mut kept = Vec::with_capacity(corners.len() + 2);
-    let beyond = |corner: Place| side * (corner[0] - meridian);
+    let beyond = |corner: LonLat| side * (corner[0] - meridian);
     for (n, &to) in corners.iter().enumerate() {
         let from = corners[(n + corners.len() - 1) % corners.len()];
         let (a, b) = (beyond(from), beyond(to));
@@ -190,9 +190,9 @@ fn half_plane(corners: &[Place], meridian: f64, side: f64) -> Vec<Place> {
 }
 
 /// The rounded ring without repeated corners; `None` if no area is left.
-fn closed(corners: &[Place], shift: f64) -> Option<Vec<Place>> {
+fn closed(corners: &[LonLat], shift: f64) -> Option<Vec<LonLat>> {
     let round = |x: f64| round_decimal(x, DECIMALS);
-    let mut ring: Vec<Place> = Vec::with_capacity(corners.len() + 1);
+    let mut ring: Vec<LonLat> = Vec::with_capacity(corners.len() + 1);
     for &[longitude, latitude] in corners {
         let place = [round(longitude - shift), round(latitude)];
         if ring.last() != Some(&place) {
@@ -210,22 +210,22 @@ fn closed(corners: &[Place], shift: f64) -> Option<Vec<Place>> {
 }
 
 /// Area of a ring on the map, square degrees: positive counterclockwise.
-fn signed_area(ring: &[Place]) -> f64 {
+fn signed_area(ring: &[LonLat]) -> f64 {
     let pairs = ring.iter().zip(ring.iter().cycle().skip(1));
     pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0
 }
 
 /// A line with steps of less than half a turn, split where it crosses the antimeridian (RFC 7946,
 /// 3.1.9).
-pub(crate) fn lines(places: &[Place]) -> Vec<Vec<Place>> {
-    let round = |[longitude, latitude]: Place| {
+pub(crate) fn lines(places: &[LonLat]) -> Vec<Vec<LonLat>> {
+    let round = |[longitude, latitude]: LonLat| {
         [
             round_decimal(longitude, DECIMALS),
             round_decimal(latitude, DECIMALS),
         ]
     };
     let mut lines = Vec::new();
-    let mut line: Vec<Place> = Vec::new();
+    let mut line: Vec<LonLat> = Vec::new();
     for (n, &place) in places.iter().enumerate() {
         if let Some(&before) = n.checked_sub(1).and_then(|n| places.get(n)) {
             let apart = place[0] - before[0];

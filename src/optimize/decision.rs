@@ -12,7 +12,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum DecisionError {
     /// There is nothing to choose from.
-    #[error("there is no point to choose from")]
+    #[error("no point to choose from")]
     NoPoint,
     /// Points have to agree in the number of objectives, at least one.
     #[error("point {index} has {found} objectives instead of {expected}")]

@@ -129,7 +129,7 @@ pub enum OptimizeError {
         expected: usize,
     },
     /// A checkpoint contradicts its own settings or the problem.
-    #[error("the checkpoint does not fit: {quantity} is {found}, expected {expected}")]
+    #[error("the checkpoint does not match: {quantity} is {found}, expected {expected}")]
     Checkpoint {
         /// What was compared.
         quantity: &'static str,

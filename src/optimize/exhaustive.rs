@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::archive::offer;
 use super::error::OptimizeError;
-use super::problem::{Individual, Kind, Problem, Variable, admit, evaluate};
+use super::problem::{Individual, Problem, Variable, VariableKind, admit, evaluate};
 use super::sorting::feasible_front;
 use super::strategy::{
     Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
@@ -40,7 +40,7 @@ impl ExhaustiveConfig {
         for (&step, variable) in self.steps.iter().zip(variables) {
             let positive = step.is_finite() && step > 0.0;
             check_setting(positive, "grid step", step, "finite and greater than 0")?;
-            let whole = matches!(variable.kind, Kind::Real { .. }) || step.fract() == 0.0;
+            let whole = matches!(variable.kind, VariableKind::Real { .. }) || step.fract() == 0.0;
             check_setting(whole, "grid step", step, "whole for an integer variable")?;
         }
         check_count("batch", self.batch)?;
@@ -80,9 +80,9 @@ impl Axis {
 }
 
 /// The points of a grid, the last variable changing fastest.
-struct Grid(Vec<Axis>);
+struct GridPoints(Vec<Axis>);
 
-impl Grid {
+impl GridPoints {
     fn new(problem: &dyn Problem, steps: &[f64]) -> Self {
         let variables = problem.space().variables().iter();
         Self(
@@ -142,7 +142,7 @@ impl Exhaustive {
     pub fn start(problem: &dyn Problem, config: ExhaustiveConfig) -> Result<Self, OptimizeError> {
         config.check(problem)?;
         Ok(Self {
-            points: Grid::new(problem, &config.steps).points()?,
+            points: GridPoints::new(problem, &config.steps).points()?,
             config,
             step: 0,
             evaluations: 0,
@@ -153,7 +153,7 @@ impl Exhaustive {
 
     fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
-        let points = Grid::new(problem, &self.config.steps).points()?;
+        let points = GridPoints::new(problem, &self.config.steps).points()?;
         check_equal("grid points", self.points, points)?;
         check_equal("history", self.history.len() as u64, self.step)?;
         check_at_most("archive", self.archive.len() as u64, self.evaluations)?;
@@ -170,7 +170,7 @@ impl Exhaustive {
     /// The points of the next step. One that a repair turns into another point of
     /// the grid is left out: that one has its own turn.
     fn batch(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
-        let grid = Grid::new(problem, &self.config.steps);
+        let grid = GridPoints::new(problem, &self.config.steps);
         let mut batch = Vec::new();
         for index in self.passed(self.step)..self.passed(self.step + 1) {
             let point = grid.genome(index);
@@ -242,8 +242,8 @@ mod tests {
     #[test]
     fn every_point_is_visited_once_in_order() {
         let kinds = [
-            Kind::Integer { lo: -1, hi: 1 },
-            Kind::Real { lo: 0.0, hi: 0.3 },
+            VariableKind::Integer { lo: -1, hi: 1 },
+            VariableKind::Real { lo: 0.0, hi: 0.3 },
         ];
         let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
         // 0.3 is not three times 0.1 in binary: the upper end is still a point, exactly.
@@ -275,8 +275,8 @@ mod tests {
     #[test]
     fn a_point_repaired_into_another_is_not_evaluated_twice() {
         let kinds = [
-            Kind::Integer { lo: 2, hi: 4 },
-            Kind::Integer { lo: 0, hi: 3 },
+            VariableKind::Integer { lo: 2, hi: 4 },
+            VariableKind::Integer { lo: 0, hi: 3 },
         ];
         let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0))
             .with_repair(|v| v[1] = v[1].min(v[0] - 1.0));
@@ -315,7 +315,7 @@ mod tests {
 
     #[test]
     fn grids_that_make_no_sense_are_refused() {
-        let kinds = [Kind::Integer { lo: 0, hi: 9 }, UNIT];
+        let kinds = [VariableKind::Integer { lo: 0, hi: 9 }, UNIT];
         let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
         let refused = |steps: &[f64], batch| {
             let refused = Exhaustive::start(&problem, config(steps, batch));

@@ -1,6 +1,6 @@
 //! Multi-objective particle swarm optimisation.
 //!
-//! Particles fly between their own best design and a leader from an archive of
+//! Particles propagate between their own best design and a leader from an archive of
 //! non-dominated ones (C. A. Coello Coello, G. T. Pulido, M. S. Lechuga, "Handling
 //! multiple objectives with particle swarm optimization", IEEE Transactions on
 //! Evolutionary Computation 8(3), 2004) in the form of A. J. Nebro, J. J. Durillo,
@@ -98,7 +98,7 @@ impl Particle {
 
     /// The new position and velocity, drawn to the particle's own best and to a
     /// leader, stopped and turned round at a bound.
-    fn fly(
+    fn propagate(
         &self,
         space: &Space,
         leader: &Individual,
@@ -108,7 +108,7 @@ impl Particle {
         let (own, shared) = (generator.between(lo, hi), generator.between(lo, hi));
         let constriction = constriction(own + shared);
         let (own, shared) = (own * generator.unit(), shared * generator.unit());
-        let mut flight = (self.position.clone(), self.velocity.clone());
+        let mut propagation = (self.position.clone(), self.velocity.clone());
         for (k, variable) in space.variables().iter().enumerate() {
             let (lo, hi) = variable.kind.bounds();
             let limit = 0.5 * (hi - lo);
@@ -119,14 +119,14 @@ impl Particle {
             let velocity = velocity.clamp(-limit, limit);
             let target = position + velocity;
             let inside = target.clamp(lo, hi);
-            flight.0[k] = inside;
-            flight.1[k] = if inside == target {
+            propagation.0[k] = inside;
+            propagation.1[k] = if inside == target {
                 velocity
             } else {
                 REBOUND * velocity
             };
         }
-        flight
+        propagation
     }
 }
 
@@ -201,16 +201,16 @@ impl Mopso {
         let everyone: Vec<usize> = (0..self.archive.len()).collect();
         let crowding = crowding_distance(&self.archive, &everyone);
         let share = 1.0 / space.variables().len() as f64;
-        let fly = |(number, particle): (usize, &Particle)| {
+        let propagate = |(number, particle): (usize, &Particle)| {
             let leader = &self.archive[roomier(&crowding, generator)];
-            let mut flight = particle.fly(space, leader, generator);
+            let mut propagation = particle.propagate(space, leader, generator);
             if number % MUTATED == 0 {
-                mutate(space, &mut flight.0, share, MUTATION_INDEX, generator);
-                space.confine(&mut flight.0);
+                mutate(space, &mut propagation.0, share, MUTATION_INDEX, generator);
+                space.confine(&mut propagation.0);
             }
-            flight
+            propagation
         };
-        self.swarm.iter().enumerate().map(fly).collect()
+        self.swarm.iter().enumerate().map(propagate).collect()
     }
 }
 
@@ -374,7 +374,7 @@ mod tests {
         };
         let mut generator = Generator::new(1, 1);
         let (position, velocity) =
-            particle.fly(problem.space(), &at([12.0, 1.0, 0.5, 0.0]), &mut generator);
+            particle.propagate(problem.space(), &at([12.0, 1.0, 0.5, 0.0]), &mut generator);
         // No pull: a tenth of the velocity is left, less where it is constricted.
         assert_eq!(position, [12.0, 1.0, 0.5, 0.0]);
         assert!((-6.0..-0.6).contains(&velocity[0]), "{velocity:?}");

@@ -43,7 +43,7 @@ const DRAWS_PER_INDIVIDUAL: usize = 100;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nsga2Config {
     /// Individuals kept from one generation to the next, at least 1. An odd
-    /// number is no problem: of the last pair, one child is left out.
+    /// number is not a problem: of the last pair, one child is left out.
     pub population: usize,
     /// Generations, at least 1. The random initial population is the first, so
     /// that evaluations never exceed `population * generations`.

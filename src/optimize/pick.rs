@@ -6,7 +6,7 @@ use thiserror::Error;
 /// A method that picks, or the member itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pick {
-    /// The fuzzy decision: the largest least membership.
+    /// The fuzzy decision: the best worst-case membership.
     Fuzzy,
     /// The largest normalised sum of memberships.
     Sum,
@@ -55,7 +55,7 @@ impl Pick {
 
     /// The word that reads back to the pick.
     #[must_use]
-    pub fn word(self) -> String {
+    pub fn keyword(self) -> String {
         match self {
             Self::Fuzzy => "fuzzy".to_owned(),
             Self::Sum => "sum".to_owned(),
@@ -68,7 +68,7 @@ impl Pick {
     /// What the score of a pick means.
     fn reason(self) -> &'static str {
         match self {
-            Self::Fuzzy => "the fuzzy decision: the largest least membership over the objectives",
+            Self::Fuzzy => "the fuzzy decision: the best worst-case membership over the objectives",
             Self::Sum => "the largest share of the memberships, summed over the objectives",
             Self::Topsis => {
                 "TOPSIS, equal weights: far from the worst and near the best of every objective"
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn words_are_read_back() {
         for pick in Pick::METHODS.into_iter().chain([Pick::Index(7)]) {
-            assert_eq!(pick.word().parse(), Ok(pick));
+            assert_eq!(pick.keyword().parse(), Ok(pick));
         }
         assert!("0".parse::<Pick>().is_err() && "best".parse::<Pick>().is_err());
     }

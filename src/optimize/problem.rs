@@ -11,7 +11,7 @@ const LARGEST_INTEGER: i64 = 1 << 53;
 
 /// The values that a variable can take, both bounds included.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum VariableKind {
     /// Whole numbers, stored in a genome as whole `f64`s.
     Integer {
         /// The least value.
@@ -28,7 +28,7 @@ pub enum Kind {
     },
 }
 
-impl Kind {
+impl VariableKind {
     /// The bounds as `f64`, exact for a variable of a [`Space`].
     #[must_use]
     pub fn bounds(&self) -> (f64, f64) {
@@ -57,12 +57,12 @@ pub struct Variable {
     /// The name used in errors and tables.
     pub name: String,
     /// The values that it can take.
-    pub kind: Kind,
+    pub kind: VariableKind,
 }
 
 impl Variable {
     fn check(&self) -> Result<(), OptimizeError> {
-        if let Kind::Integer { lo, hi } = self.kind
+        if let VariableKind::Integer { lo, hi } = self.kind
             && let Some(value) = [lo, hi]
                 .into_iter()
                 .find(|bound| bound.unsigned_abs() > LARGEST_INTEGER as u64)
@@ -173,11 +173,11 @@ impl Space {
     /// A genome drawn uniformly, every integer with the same probability.
     pub(super) fn draw(&self, generator: &mut Generator) -> Vec<f64> {
         let draw = |variable: &Variable| match variable.kind {
-            Kind::Integer { lo, hi } => {
+            VariableKind::Integer { lo, hi } => {
                 let (lo, hi) = (lo as f64, hi as f64);
                 generator.between(lo, hi + 1.0).floor().min(hi)
             }
-            Kind::Real { lo, hi } => variable.kind.nearest(generator.between(lo, hi)),
+            VariableKind::Real { lo, hi } => variable.kind.nearest(generator.between(lo, hi)),
         };
         self.variables.iter().map(draw).collect()
     }

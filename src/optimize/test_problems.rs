@@ -1,6 +1,6 @@
 //! Problems with known fronts, for the tests of every strategy.
 
-use super::problem::{Evaluation, Kind, Problem, Space, Variable};
+use super::problem::{Evaluation, Problem, Space, Variable, VariableKind};
 
 type Function = fn(&[f64]) -> (Vec<f64>, f64);
 
@@ -13,8 +13,8 @@ pub(super) struct TestProblem {
 }
 
 impl TestProblem {
-    pub(super) fn new(kinds: &[Kind], objectives: usize, function: Function) -> Self {
-        let variable = |(k, &kind): (usize, &Kind)| Variable {
+    pub(super) fn new(kinds: &[VariableKind], objectives: usize, function: Function) -> Self {
+        let variable = |(k, &kind): (usize, &VariableKind)| Variable {
             name: format!("x{k}"),
             kind,
         };
@@ -55,7 +55,7 @@ impl Problem for TestProblem {
     }
 }
 
-pub(super) const UNIT: Kind = Kind::Real { lo: 0.0, hi: 1.0 };
+pub(super) const UNIT: VariableKind = VariableKind::Real { lo: 0.0, hi: 1.0 };
 
 /// The g of the ZDT problems (E. Zitzler, K. Deb, L. Thiele, "Comparison of
 /// multiobjective evolutionary algorithms: empirical results", Evolutionary
@@ -91,8 +91,8 @@ pub(super) fn zdt3() -> TestProblem {
 /// front is x = y in 0..=3, then y = 3 with x in 3..=5.
 pub(super) fn binh_korn() -> TestProblem {
     let kinds = [
-        Kind::Real { lo: 0.0, hi: 5.0 },
-        Kind::Real { lo: 0.0, hi: 3.0 },
+        VariableKind::Real { lo: 0.0, hi: 5.0 },
+        VariableKind::Real { lo: 0.0, hi: 3.0 },
     ];
     TestProblem::new(&kinds, 2, |v| {
         let (x, y) = (v[0], v[1]);
@@ -110,8 +110,8 @@ pub(super) fn binh_korn() -> TestProblem {
 /// -y + 9 x >= 1. Its front is y = 6 - 9 x up to x = 2/3, then y = 0.
 pub(super) fn constr() -> TestProblem {
     let kinds = [
-        Kind::Real { lo: 0.1, hi: 1.0 },
-        Kind::Real { lo: 0.0, hi: 5.0 },
+        VariableKind::Real { lo: 0.1, hi: 1.0 },
+        VariableKind::Real { lo: 0.0, hi: 5.0 },
     ];
     TestProblem::new(&kinds, 2, |v| {
         let (x, y) = (v[0], v[1]);
@@ -125,8 +125,8 @@ pub(super) fn constr() -> TestProblem {
 /// bounds and a real inside. The front is every n in 0..=12 without loss.
 pub(super) fn mixed() -> TestProblem {
     let kinds = [
-        Kind::Integer { lo: 0, hi: 12 },
-        Kind::Integer { lo: 0, hi: 4 },
+        VariableKind::Integer { lo: 0, hi: 12 },
+        VariableKind::Integer { lo: 0, hi: 4 },
         UNIT,
         UNIT,
     ];

@@ -15,7 +15,7 @@
 //!   values would change nothing.
 
 use super::generator::Generator;
-use super::problem::{Kind, Space};
+use super::problem::{Space, VariableKind};
 
 /// The chance that a variable takes part in a crossover, and that its values then
 /// change places.
@@ -84,8 +84,8 @@ pub(super) fn mutate(
         let (lo, hi) = variable.kind.bounds();
         let size = (hi - lo) * step_size(generator.unit(), index);
         let size = match variable.kind {
-            Kind::Integer { .. } => size.ceil().max(1.0),
-            Kind::Real { .. } => size,
+            VariableKind::Integer { .. } => size.ceil().max(1.0),
+            VariableKind::Real { .. } => size,
         };
         *value += if generator.chance(EVEN) { -size } else { size };
     }
@@ -107,8 +107,8 @@ mod tests {
     /// Five standard deviations of a share of all draws, at most 1/2/sqrt(draws).
     const SHARE_ERROR: f64 = 0.0125;
 
-    fn space(kinds: &[Kind]) -> Space {
-        let variable = |(k, &kind): (usize, &Kind)| Variable {
+    fn space(kinds: &[VariableKind]) -> Space {
+        let variable = |(k, &kind): (usize, &VariableKind)| Variable {
             name: format!("x{k}"),
             kind,
         };
@@ -156,7 +156,7 @@ mod tests {
 
     #[test]
     fn children_lie_around_the_mean_of_their_parents() {
-        let space = space(&[Kind::Real { lo: -1e6, hi: 1e6 }; 2]);
+        let space = space(&[VariableKind::Real { lo: -1e6, hi: 1e6 }; 2]);
         let parents = [[3.0, 7.0], [4.0, 7.0]];
         let mut generator = Generator::new(1, 2);
         let (mut changed, mut swapped) = (0, 0);
@@ -175,7 +175,7 @@ mod tests {
 
     #[test]
     fn a_bound_is_hit_exactly() {
-        let space = space(&[Kind::Real { lo: 0.0, hi: 1.0 }]);
+        let space = space(&[VariableKind::Real { lo: 0.0, hi: 1.0 }]);
         let mut generator = Generator::new(1, 3);
         let crossed = share(|_| {
             let [a, b] = cross(&space, [&[0.5], &[0.9]], 5.0, &mut generator);
@@ -195,8 +195,8 @@ mod tests {
     #[test]
     fn mutation_moves_an_integer_whenever_it_is_said_to() {
         let space = space(&[
-            Kind::Integer { lo: 11, hi: 15 },
-            Kind::Integer { lo: 4, hi: 4 },
+            VariableKind::Integer { lo: 11, hi: 15 },
+            VariableKind::Integer { lo: 4, hi: 4 },
         ]);
         let mut generator = Generator::new(1, 4);
         let mut distances = [0_u32; 3];
@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn integer_children_are_integers_between_the_bounds() {
-        let space = space(&[Kind::Integer { lo: 0, hi: 9 }]);
+        let space = space(&[VariableKind::Integer { lo: 0, hi: 9 }]);
         let mut generator = Generator::new(1, 5);
         let mut seen = [false; 10];
         for _ in 0..DRAWS {

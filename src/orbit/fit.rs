@@ -47,7 +47,7 @@ pub fn fit(
     positions: &[(f64, Position<Teme>)],
     origin: Epoch,
 ) -> Result<Fit, PropagationError> {
-    let problem = Problem {
+    let problem = FitProblem {
         template: start,
         positions,
         origin,
@@ -98,13 +98,13 @@ fn unknowns_of(set: &sgp4::Elements) -> Unknowns {
     )
 }
 
-struct Problem<'a> {
+struct FitProblem<'a> {
     template: &'a sgp4::Elements,
     positions: &'a [(f64, Position<Teme>)],
     origin: Epoch,
 }
 
-impl Problem<'_> {
+impl FitProblem<'_> {
     fn set(&self, unknowns: &Unknowns) -> sgp4::Elements {
         let perigee_deg = unknowns[2].atan2(unknowns[1]).to_degrees();
         sgp4::Elements {
@@ -207,7 +207,7 @@ mod tests {
             ("star:90:6/3/1@925", 8.0),
         ] {
             let (start, positions, epoch) = case(design, Model::J2);
-            let problem = Problem {
+            let problem = FitProblem {
                 template: &start,
                 positions: &positions,
                 origin: epoch,

@@ -62,7 +62,7 @@ pub struct SecularOrbit {
 }
 
 impl SecularOrbit {
-    /// Flies `elements` at the given rates.
+    /// Propagates `elements` at the given rates.
     #[must_use]
     pub fn new(elements: &MeanElements, rates: SecularRates) -> Self {
         Self {
@@ -71,13 +71,13 @@ impl SecularOrbit {
         }
     }
 
-    /// Flies `elements` around a point mass.
+    /// Propagates `elements` around a point mass.
     #[must_use]
     pub fn two_body(elements: &MeanElements) -> Self {
         Self::new(elements, SecularRates::two_body(elements))
     }
 
-    /// Flies `elements` under secular J2.
+    /// Propagates `elements` under secular J2.
     #[must_use]
     pub fn j2(elements: &MeanElements) -> Self {
         Self::new(elements, SecularRates::j2(elements))
@@ -214,13 +214,14 @@ mod tests {
     #[test]
     fn velocity_is_the_derivative() {
         for orbit in [elements(925.0, 0.0, 55.0), elements(2000.0, 0.2, 100.0)] {
-            let flown = SecularOrbit::j2(&orbit);
+            let propagated = SecularOrbit::j2(&orbit);
             for t in [0.0, 1234.5, 86_000.0] {
                 let h = 0.5;
-                let slope =
-                    (flown.state(t + h).position_km - flown.state(t - h).position_km) / (2.0 * h);
+                let slope = (propagated.state(t + h).position_km
+                    - propagated.state(t - h).position_km)
+                    / (2.0 * h);
                 // Central difference: r n³ h²/6 = 4e-7 km/s in low orbit.
-                assert!((slope - flown.state(t).velocity_km_s).norm() < 5e-7);
+                assert!((slope - propagated.state(t).velocity_km_s).norm() < 5e-7);
             }
         }
     }

@@ -32,7 +32,7 @@ pub struct OsculatingOrbit {
 }
 
 impl OsculatingOrbit {
-    /// Flies mean `elements` under J2.
+    /// Propagates mean `elements` under J2.
     #[must_use]
     pub fn new(elements: &MeanElements) -> Self {
         Self {
@@ -48,7 +48,7 @@ impl OsculatingOrbit {
     pub fn state(&self, elapsed_s: f64) -> State<Teme> {
         let mean = self.secular.elements_at(elapsed_s);
         let rates = self.secular.rates();
-        let place = Place::new(&mean, &rates, self.terms.eta);
+        let place = EllipsePosition::new(&mean, &rates, self.terms.eta);
         let polar = self.terms.osculating(&mean, &rates, &place);
         polar.state()
     }
@@ -88,7 +88,7 @@ pub fn frozen_eccentricity(elements: &MeanElements) -> f64 {
 }
 
 /// Where the satellite is on its mean ellipse, with rates per second.
-struct Place {
+struct EllipsePosition {
     /// e cos f.
     kappa: f64,
     /// e sin f.
@@ -105,7 +105,7 @@ struct Place {
     argument_rate: f64,
 }
 
-impl Place {
+impl EllipsePosition {
     fn new(mean: &MeanElements, rates: &SecularRates, eta: f64) -> Self {
         let e = mean.eccentricity;
         let (sin_e, cos_e) = eccentric_anomaly(mean.mean_anomaly_rad, e).sin_cos();
@@ -185,7 +185,12 @@ impl ShortPeriod {
         }
     }
 
-    fn osculating(&self, mean: &MeanElements, rates: &SecularRates, place: &Place) -> Polar {
+    fn osculating(
+        &self,
+        mean: &MeanElements,
+        rates: &SecularRates,
+        place: &EllipsePosition,
+    ) -> Polar {
         let double = DoubleArgument::new(place);
         let argument = self.argument(place, &double);
         let node = self.node(place, &double);
@@ -204,7 +209,7 @@ impl ShortPeriod {
     }
 
     /// r + Δr ([M-12](crate::models#m-12)), Δr = ∂W/∂ṙ.
-    fn radius_km(&self, place: &Place, double: &DoubleArgument) -> Moving {
+    fn radius_km(&self, place: &EllipsePosition, double: &DoubleArgument) -> Moving {
         let (eta, s2) = (self.eta, self.sin_i * self.sin_i);
         let zonal = 1.5 * s2 - 1.0;
         let conic = 1.0 + place.kappa;
@@ -220,7 +225,7 @@ impl ShortPeriod {
     }
 
     /// Δθ = ∂W/∂G ([M-13](crate::models#m-13)).
-    fn argument(&self, place: &Place, double: &DoubleArgument) -> Moving {
+    fn argument(&self, place: &EllipsePosition, double: &DoubleArgument) -> Moving {
         let (s2, c2) = (self.sin_i * self.sin_i, self.cos_i * self.cos_i);
         let one_eta = 1.0 + self.eta;
         let zonal = 1.5 * s2 - 1.0;
@@ -248,7 +253,7 @@ impl ShortPeriod {
     }
 
     /// ΔΩ = ∂W/∂H, H = G cos i ([M-14](crate::models#m-14)).
-    fn node(&self, place: &Place, double: &DoubleArgument) -> Moving {
+    fn node(&self, place: &EllipsePosition, double: &DoubleArgument) -> Moving {
         // ΔΩ = -ε c {3 (f - M + σ) - (3/2 + 2κ) sin 2θ + σ cos 2θ}
         let sine = 1.5 + 2.0 * place.kappa;
         let value =
@@ -265,7 +270,7 @@ impl ShortPeriod {
     }
 
     /// i from G + ΔG, ΔG = -∂W/∂θ, and G cos i, which stays ([M-14](crate::models#m-14)).
-    fn inclination(&self, place: &Place, double: &DoubleArgument) -> Moving {
+    fn inclination(&self, place: &EllipsePosition, double: &DoubleArgument) -> Moving {
         let s2 = self.sin_i * self.sin_i;
         // ΔG/G = s² y, y = ε {(3/2 + 2κ) cos 2θ + σ sin 2θ}
         let cosine = 1.5 + 2.0 * place.kappa;
@@ -300,7 +305,7 @@ struct DoubleArgument {
 }
 
 impl DoubleArgument {
-    fn new(place: &Place) -> Self {
+    fn new(place: &EllipsePosition) -> Self {
         let (sin, cos) = (2.0 * place.argument).sin_cos();
         Self {
             sin,

@@ -19,7 +19,7 @@ pub enum MeanMotionSlot {
     Kepler,
 }
 
-/// Which zonal harmonics SGP4 flies.
+/// Which zonal harmonics SGP4 propagates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ZonalHarmonics {
     /// J2, J3 and J4 of WGS-72.
@@ -122,7 +122,7 @@ impl MeanMotionSlot {
     }
 }
 
-/// A satellite flown by SGP4.
+/// A satellite propagated by SGP4.
 #[derive(Debug, Clone)]
 pub struct Sgp4Orbit {
     constants: ::sgp4::Constants,

@@ -5,14 +5,14 @@ use crate::time::TimeGrid;
 
 /// Distances over a span.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Spread {
+pub struct PropagatorDistance {
     /// Largest distance, km.
     pub max_km: f64,
     /// Root mean square distance, km.
     pub rms_km: f64,
 }
 
-impl Spread {
+impl PropagatorDistance {
     /// The distances between two propagators over the samples of `grid`.
     ///
     /// # Errors

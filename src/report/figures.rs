@@ -11,7 +11,7 @@ mod map;
 mod table;
 
 pub use bars::budget;
-pub use curves::{Named, cdf, convergence, series};
+pub use curves::{NamedProfile, cdf, convergence, series};
 pub use front::{Baseline, NamedFront, pareto};
 pub use map::map;
 
@@ -19,11 +19,11 @@ pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
 pub(in crate::report) use map::at_point;
 
-use crate::keyword::words;
-use crate::scenario::{Quantity, Word};
+use crate::keyword::keywords;
+use crate::scenario::{Keyword, Quantity};
 use thiserror::Error;
 
-words! {
+keywords! {
     /// A figure of a run.
     Figure {
         /// The front in the plane of two objectives (figure 2 of the paper).
@@ -41,7 +41,7 @@ words! {
     }
 }
 
-words! {
+keywords! {
     /// What a map, a distribution or a series shows.
     Measure {
         /// Visible LEO satellites: of a point over time, or of an instant over the points.
@@ -50,7 +50,7 @@ words! {
         MeanPdop = "mean-pdop",
         /// 95 % quantile of PDOP of a point.
         P95Pdop = "p95-pdop",
-        /// Largest PDOP of a point, or of an instant.
+        /// Maximum PDOP of a point, or of an instant.
         MaxPdop = "max-pdop",
         /// Share of the time that a point is available.
         Availability = "availability",
@@ -67,7 +67,7 @@ impl Measure {
             Self::MeanVisible => "mean number of visible LEO satellites",
             Self::MeanPdop => "mean PDOP",
             Self::P95Pdop => "95 % quantile of PDOP",
-            Self::MaxPdop => "largest PDOP",
+            Self::MaxPdop => "maximum PDOP",
             Self::Availability => "availability (share of the time)",
             Self::Pdop => "PDOP",
         }
@@ -77,7 +77,7 @@ impl Measure {
 /// The label of a quantity's axis.
 #[must_use]
 pub fn quantity_label(name: &str) -> String {
-    let Ok(quantity) = Quantity::from_word(name) else {
+    let Ok(quantity) = Quantity::from_keyword(name) else {
         return name.to_owned();
     };
     let label = match quantity {
@@ -85,7 +85,7 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::JCost => "J_cost = satellites per visible satellite",
         Quantity::MeanPdop => "mean PDOP",
         Quantity::CvarPdop => "CVaR of PDOP",
-        Quantity::MaxPdop => "largest PDOP",
+        Quantity::MaxPdop => "maximum PDOP",
         Quantity::Satellites => "satellites",
         Quantity::Planes => "planes",
         Quantity::MeanVisible => "mean number of visible LEO satellites",
@@ -117,13 +117,13 @@ pub enum FigureError {
         choices: String,
     },
     /// The table cannot be written; one in memory always can.
-    #[error("the table behind the figure: {0}")]
+    #[error("the figure's data: {0}")]
     Table(#[from] ::csv::Error),
 }
 
 impl FigureError {
     fn measure(figure: Figure, measure: Measure, choices: &[Measure]) -> Self {
-        let words: Vec<_> = choices.iter().map(|choice| choice.word()).collect();
+        let words: Vec<_> = choices.iter().map(|choice| choice.keyword()).collect();
         Self::Measure {
             figure,
             measure,

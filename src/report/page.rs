@@ -18,7 +18,7 @@ use askama::Template;
 use payload::Payload;
 use std::io::Write;
 use thiserror::Error;
-use words::{Best, CheckRow, Member, Summary};
+use words::{Best, CheckRow, MemberRow, PageSummary};
 
 /// Why a page cannot be written.
 #[derive(Debug, Error)]
@@ -66,9 +66,9 @@ struct Html<'a> {
     plotly: &'a str,
     data: String,
     scripts: String,
-    summary: Summary,
+    summary: PageSummary,
     best: Vec<Best>,
-    members: Vec<Member>,
+    members: Vec<MemberRow>,
     members_left_out: usize,
     objectives: Vec<String>,
     checks: Vec<CheckRow>,
@@ -108,7 +108,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
             include_str!("page/main.js"),
         ]
         .concat(),
-        summary: Summary::new(page, &places),
+        summary: PageSummary::new(page, &places),
         best: words::best(page.run),
         members: words::members(page.run, MOST_ROWS),
         members_left_out: members.len().saturating_sub(MOST_ROWS),
@@ -128,15 +128,20 @@ fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let Some(evaluator) = page.evaluator else {
         return Vec::new();
     };
-    let flown: Vec<usize> = (0..members.len())
+    let propagated: Vec<usize> = (0..members.len())
         .filter(|&n| members[n].design.design().is_some())
         .collect();
     let setup = evaluator.setup();
     let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
-    let count = (CUTS_BYTES / each).clamp(1, MOST_CUTS).min(flown.len());
-    let at = |k: usize| flown[k * (flown.len() - 1) / (count - 1).max(1)];
+    let count = (CUTS_BYTES / each)
+        .clamp(1, MOST_CUTS)
+        .min(propagated.len());
+    let at = |k: usize| propagated[k * (propagated.len() - 1) / (count - 1).max(1)];
     let mut places: Vec<usize> = (0..count).map(at).collect();
-    if let Some(chosen) = page.run.chosen().filter(|chosen| flown.contains(chosen))
+    if let Some(chosen) = page
+        .run
+        .chosen()
+        .filter(|chosen| propagated.contains(chosen))
         && !places.contains(&chosen)
     {
         places.push(chosen);

@@ -70,7 +70,7 @@ impl Profile {
     }
 
     /// Evaluates several designs, in parallel and in their order; `None` for one that cannot be
-    /// flown.
+    /// propagated.
     #[must_use]
     pub fn of_all(evaluator: &Evaluator, designs: &[Design]) -> Vec<Option<Self>> {
         let one = |design: &Design| Self::new(evaluator, design).ok();

@@ -5,10 +5,10 @@ mod files;
 pub use files::{reproduction_csv, reproduction_files};
 
 use super::{Align, Table};
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::run::{ScenarioStamp, VERSION};
 use crate::scenario::Scenario;
-use crate::study::paper::{Expected, Line, Reproduction, Verdict};
+use crate::study::paper::{Expected, Reproduction, Statement, Verdict};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -182,7 +182,7 @@ fn searches_table(study: &Reproduction) -> Table {
     table
 }
 
-fn expected(line: &Line) -> String {
+fn expected(line: &Statement) -> String {
     match line.expected {
         Expected::Value { value, tolerance } => {
             format!("{} ± {}", round(value), round(tolerance))
@@ -231,7 +231,7 @@ fn notes(result: &ReproduceResult) -> Vec<String> {
     let mut notes = Vec::new();
     if let Some(median) = fit.median_deg {
         notes.push(format!(
-            "The paper states no elevation mask. Asked row by row, its visibility implies {median:.2}° (median); \
+            "The paper states no elevation mask. Fitted row by row, its visibility implies {median:.2}° (median); \
              {} of {} rows agree with that within 0.1°, and the scenario has {}°.",
             fit.agreeing,
             fit.rows.len(),
@@ -275,9 +275,9 @@ fn summary(result: &ReproduceResult) -> String {
     )
 }
 
-type Section = (&'static str, &'static str, fn(&Reproduction) -> Table);
+type ReportSection = (&'static str, &'static str, fn(&Reproduction) -> Table);
 
-const SECTIONS: [Section; 5] = [
+const SECTIONS: [ReportSection; 5] = [
     (
         "Statements, judged",
         "Met: within the tolerance under the scenario. Under another assumption: within it with the one change that is named, of those below.",
@@ -330,7 +330,7 @@ pub fn reproduction_text(result: &ReproduceResult) -> String {
 #[must_use]
 pub fn reproduction_markdown(result: &ReproduceResult) -> String {
     let mut text = format!(
-        "# The paper's study, repeated\n\nScenario {} (`{}`), seed {}, navwalker {}.\n\n**{}.**\n\n",
+        "# Reproduction of the paper\n\nScenario {} (`{}`), seed {}, navwalker {}.\n\n**{}.**\n\n",
         result.scenario.name,
         result.scenario.hash,
         result.seed,

@@ -32,14 +32,14 @@ impl Identity {
     /// The identity that a checkpoint states; its second line may be damaged.
     #[must_use]
     pub fn read(checkpoint: &str) -> Option<Self> {
-        let header: Header = serde_json::from_str(checkpoint.lines().next()?).ok()?;
+        let header: CheckpointHeader = serde_json::from_str(checkpoint.lines().next()?).ok()?;
         Some(header.identity)
     }
 }
 
 /// The first line; the second is the state of the search as JSON.
 #[derive(Debug, Serialize, Deserialize)]
-struct Header {
+struct CheckpointHeader {
     #[serde(flatten)]
     identity: Identity,
     /// SHA-256 of the second line, hex.
@@ -50,19 +50,19 @@ struct Header {
 #[derive(Debug, Error)]
 pub enum CheckpointError {
     /// Not UTF-8.
-    #[error("it is no text")]
+    #[error("not UTF-8")]
     Text(#[source] std::str::Utf8Error),
     /// No second line.
-    #[error("it is cut short")]
+    #[error("truncated")]
     Short,
     /// The first line.
-    #[error("its header cannot be read")]
+    #[error("unreadable header")]
     Header(#[source] serde_json::Error),
     /// The second line is not the one that was written.
-    #[error("its checksum does not fit")]
+    #[error("checksum mismatch")]
     Checksum,
     /// The second line.
-    #[error("its state cannot be read")]
+    #[error("unreadable state")]
     State(#[source] serde_json::Error),
 }
 
@@ -72,7 +72,7 @@ pub enum CheckpointError {
 /// Never for a search in memory.
 pub fn write(identity: &Identity, search: &Search) -> serde_json::Result<String> {
     let state = serde_json::to_string(search)?;
-    let header = Header {
+    let header = CheckpointHeader {
         identity: identity.clone(),
         sha256: hex_sha256(state.as_bytes()),
     };
@@ -86,7 +86,7 @@ pub fn write(identity: &Identity, search: &Search) -> serde_json::Result<String>
 pub fn read(bytes: &[u8]) -> Result<(Identity, Search), CheckpointError> {
     let text = str::from_utf8(bytes).map_err(CheckpointError::Text)?;
     let (header, state) = text.split_once('\n').ok_or(CheckpointError::Short)?;
-    let header: Header = serde_json::from_str(header).map_err(CheckpointError::Header)?;
+    let header: CheckpointHeader = serde_json::from_str(header).map_err(CheckpointError::Header)?;
     let state = state.trim_end();
     if hex_sha256(state.as_bytes()) != header.sha256 {
         return Err(CheckpointError::Checksum);
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn a_spoiled_checkpoint_is_noticed() {
-        let header = Header {
+        let header = CheckpointHeader {
             identity: Identity {
                 scenario_hash: "h".to_owned(),
                 seed: 1,
@@ -116,9 +116,9 @@ mod tests {
         };
         let text = format!("{}\n{{}}\n", serde_json::to_string(&header).unwrap());
         let error = read(text.as_bytes()).unwrap_err().to_string();
-        assert_eq!(error, "its checksum does not fit");
+        assert_eq!(error, "checksum mismatch");
         assert!(read(b"").is_err());
         let error = read(b"\xff\n{}").unwrap_err().to_string();
-        assert_eq!(error, "it is no text");
+        assert_eq!(error, "not UTF-8");
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::optimize::Record;
 use crate::search::Quantity;
 use serde::{Deserialize, Serialize};
@@ -98,7 +98,7 @@ impl FrontMember {
     #[must_use]
     pub fn minimised(&self) -> Vec<f64> {
         let value = |(name, value): &(String, f64)| {
-            Quantity::from_word(name).map_or(*value, |quantity| quantity.minimised(*value))
+            Quantity::from_keyword(name).map_or(*value, |quantity| quantity.minimised(*value))
         };
         self.objectives.iter().map(value).collect()
     }

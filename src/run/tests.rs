@@ -2,7 +2,7 @@ use super::*;
 
 const SCENARIO: &str = include_str!("../../data/scenarios/paper.toml");
 
-/// `front.json` with one member that is no design, one that lacks an objective and one that is
+/// `front.json` with one member that is not a design, one that lacks an objective and one that is
 /// damaged.
 fn front_json() -> Value {
     let named = |objectives: &[(&str, f64)]| {

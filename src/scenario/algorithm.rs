@@ -1,8 +1,8 @@
 //! The strategies of the search, as a scenario names them.
 
-use crate::keyword::words;
+use crate::keyword::keywords;
 
-words! {
+keywords! {
     /// The strategy of the search.
     Algorithm {
         /// NSGA-II.

@@ -1,6 +1,6 @@
 //! The scenarios that are built in.
 
-use crate::keyword::UnknownWord;
+use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in scenario.
 const BUILTINS: [(&str, &str); 2] = [
@@ -20,10 +20,10 @@ pub fn builtin_names() -> Vec<&'static str> {
 /// The text of a built-in scenario.
 ///
 /// # Errors
-/// [`UnknownWord`] with the names that there are and the nearest of them.
-pub fn builtin(name: &str) -> Result<&'static str, UnknownWord> {
+/// [`UnknownKeyword`] with the names that there are and the nearest of them.
+pub fn builtin(name: &str) -> Result<&'static str, UnknownKeyword> {
     let known = BUILTINS.iter().find(|(known, _)| *known == name);
     known
         .map(|(_, text)| *text)
-        .ok_or_else(|| UnknownWord::new(name, &builtin_names()))
+        .ok_or_else(|| UnknownKeyword::new(name, &builtin_names()))
 }

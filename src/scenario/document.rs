@@ -10,7 +10,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::Scenario;
 use super::keys::{KeyPath, all, key, names, path, paths, sections};
-use super::problem::{Fault, Report};
+use super::problem::{Fault, ProblemList};
 use super::reader::{Given, Reader};
 use super::rule::Node;
 use super::source::Source;
@@ -30,7 +30,7 @@ struct Entry<'a> {
 }
 
 /// Where a key is written, while it is being looked up.
-struct Site<'s, 'a> {
+struct KeySite<'s, 'a> {
     source: &'s Rc<Source<'a>>,
     span: Range<usize>,
 }
@@ -38,7 +38,7 @@ struct Site<'s, 'a> {
 impl<'a> Document<'a> {
     /// Reads a file. `None` where it is not TOML; unknown keys are left out, so that the rest can
     /// still be checked.
-    pub(super) fn read(label: &'a str, text: &'a str, report: &mut Report) -> Option<Self> {
+    pub(super) fn read(label: &'a str, text: &'a str, report: &mut ProblemList) -> Option<Self> {
         let file = Rc::new(Source::file(label, text));
         let (table, errors) = DeTable::parse_recoverable(text);
         for error in &errors {
@@ -54,7 +54,7 @@ impl<'a> Document<'a> {
             entries: BTreeMap::new(),
         };
         for (key, value) in table.into_inner() {
-            let site = Site {
+            let site = KeySite {
                 source: &file,
                 span: key.span(),
             };
@@ -64,7 +64,13 @@ impl<'a> Document<'a> {
     }
 
     /// Enters a key at the top of the file, which may be a section.
-    fn enter_top(&mut self, name: &str, value: Node<'a>, site: &Site<'_, 'a>, report: &mut Report) {
+    fn enter_top(
+        &mut self,
+        name: &str,
+        value: Node<'a>,
+        site: &KeySite<'_, 'a>,
+        report: &mut ProblemList,
+    ) {
         let Some(section) = sections().into_iter().find(|section| *section == name) else {
             return self.enter(("", name), value, site, report);
         };
@@ -73,7 +79,7 @@ impl<'a> Document<'a> {
             return site.report(report, name, Fault::NotASection { section, known });
         };
         for (key, value) in keys {
-            let site = Site {
+            let site = KeySite {
                 source: site.source,
                 span: key.span(),
             };
@@ -85,8 +91,8 @@ impl<'a> Document<'a> {
         &mut self,
         (section, name): (&str, &str),
         value: Node<'a>,
-        site: &Site<'_, 'a>,
-        report: &mut Report,
+        site: &KeySite<'_, 'a>,
+        report: &mut ProblemList,
     ) {
         let Some(key) = find(section, name) else {
             return site.report(report, &path(section, name), unknown(section, name));
@@ -104,11 +110,16 @@ impl<'a> Document<'a> {
     }
 
     /// Enters the `index`-th `--set` argument over what is there.
-    pub(super) fn override_with(&mut self, index: usize, argument: &'a str, report: &mut Report) {
+    pub(super) fn override_with(
+        &mut self,
+        index: usize,
+        argument: &'a str,
+        report: &mut ProblemList,
+    ) {
         let (key, text) = argument.split_once('=').unwrap_or((argument, ""));
         let text = text.trim();
         let source = Rc::new(Source::argument(index, argument, text));
-        let site = Site {
+        let site = KeySite {
             source: &source,
             span: 0..text.len(),
         };
@@ -129,7 +140,7 @@ impl<'a> Document<'a> {
     /// Checks everything that was written, and adds what is wrong to `report`.
     ///
     /// `None` only if something is wrong.
-    pub(super) fn read_scenario(&self, report: &mut Report) -> Option<Scenario> {
+    pub(super) fn read_scenario(&self, report: &mut ProblemList) -> Option<Scenario> {
         let given = self.entries.iter();
         let given = given.map(|(path, entry)| (*path, entry.given())).collect();
         Reader::new(given, &self.file, report).read()
@@ -145,8 +156,8 @@ impl Entry<'_> {
     }
 }
 
-impl Site<'_, '_> {
-    fn report(&self, report: &mut Report, key: &str, fault: Fault) {
+impl KeySite<'_, '_> {
+    fn report(&self, report: &mut ProblemList, key: &str, fault: Fault) {
         report.add(self.source, self.span.clone(), key, fault);
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::source::{Place, Source, printable};
-use crate::keyword::UnknownWord;
+use crate::keyword::UnknownKeyword;
 use crate::search::ConstraintError;
 
 /// Characters of an unknown key repeated in a message.
@@ -12,11 +12,11 @@ const LONGEST_KEY: usize = 60;
 
 /// Everything that is wrong with a scenario, in the order of the file and then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problems(Vec<Problem>);
+pub struct Problems(Vec<ScenarioProblem>);
 
 /// One thing that is wrong with a scenario.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Problem {
+pub struct ScenarioProblem {
     /// Where.
     pub place: Place,
     /// The key as `section.key`; empty where the text is not even TOML.
@@ -67,7 +67,7 @@ pub enum Fault {
     },
     /// The word is not one of the choices.
     #[error(transparent)]
-    UnknownWord(#[from] UnknownWord),
+    UnknownKeyword(#[from] UnknownKeyword),
     /// The text is not a constraint.
     #[error(transparent)]
     Constraint(#[from] ConstraintError),
@@ -78,7 +78,7 @@ pub enum Fault {
         found: String,
     },
     /// An interval's limits are in the wrong order.
-    #[error("found {found}, but the low limit is above the high one")]
+    #[error("found {found}, but the low limit is above the high limit")]
     Reversed {
         /// The interval as written.
         found: String,
@@ -109,7 +109,7 @@ pub enum Fault {
         most: u64,
     },
     /// A list that must be as long as another.
-    #[error("{found} numbers for {expected} objectives, expected one for each")]
+    #[error("found {found} numbers for {expected} objectives, expected one for each")]
     Length {
         /// Numbers given.
         found: usize,
@@ -117,7 +117,7 @@ pub enum Fault {
         expected: usize,
     },
     /// Two bounds of one quantity that leave nothing between them.
-    #[error("{lower} and {upper} leave no design")]
+    #[error("{lower} and {upper} exclude every design")]
     Contradiction {
         /// The bound below, as written.
         lower: String,
@@ -126,7 +126,7 @@ pub enum Fault {
     },
     /// Ellipses of which none stays above ground.
     #[error(
-        "at {eccentricity} and {altitude_km} km the perigee is {perigee_km:.1} km over the Earth's radius, and no other design of the search is higher"
+        "at {eccentricity} and {altitude_km} km the perigee height is {perigee_km:.1} km, and no other design of the search space is higher"
     )]
     Underground {
         /// The least eccentricity.
@@ -145,7 +145,7 @@ pub enum Fault {
         planes: u32,
     },
     /// A grid of poles alone, of which each weighs nothing.
-    #[error("every point is a pole and weighs nothing with \"cos-latitude\"")]
+    #[error("every point is a pole and has zero weight with \"cos-latitude\"")]
     Weightless,
 }
 
@@ -158,9 +158,9 @@ const MAX_PROBLEMS: usize = 1000;
 
 /// The problems met so far.
 #[derive(Debug, Default)]
-pub(super) struct Report(Vec<Problem>);
+pub(super) struct ProblemList(Vec<ScenarioProblem>);
 
-impl Report {
+impl ProblemList {
     pub(super) fn add(
         &mut self,
         source: &Source<'_>,
@@ -169,7 +169,7 @@ impl Report {
         fault: impl Into<Fault>,
     ) {
         if self.0.len() < MAX_PROBLEMS {
-            self.0.push(Problem {
+            self.0.push(ScenarioProblem {
                 place: source.place(span),
                 key: printable(key).take(LONGEST_KEY).collect(),
                 fault: fault.into(),
@@ -182,8 +182,8 @@ impl Report {
     }
 }
 
-impl From<Report> for Problems {
-    fn from(Report(mut problems): Report) -> Self {
+impl From<ProblemList> for Problems {
+    fn from(ProblemList(mut problems): ProblemList) -> Self {
         problems.sort_by(|a, b| a.place.cmp(&b.place));
         Self(problems)
     }
@@ -192,12 +192,12 @@ impl From<Report> for Problems {
 impl Problems {
     /// The problems, at least one.
     #[must_use]
-    pub fn as_slice(&self) -> &[Problem] {
+    pub fn as_slice(&self) -> &[ScenarioProblem] {
         &self.0
     }
 }
 
-impl fmt::Display for Problem {
+impl fmt::Display for ScenarioProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.place)?;
         if !self.key.is_empty() {
@@ -231,5 +231,5 @@ impl fmt::Display for Problems {
     }
 }
 
-impl std::error::Error for Problem {}
+impl std::error::Error for ScenarioProblem {}
 impl std::error::Error for Problems {}

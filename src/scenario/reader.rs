@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::keys::{Key, KeyPath, Section, Walk};
-use super::problem::{Fault, Report};
+use super::problem::{Fault, ProblemList};
 use super::rule::{Node, Reading, Rule};
 use super::source::Source;
 
@@ -22,14 +22,14 @@ pub(super) struct Reader<'r> {
     /// The keys whose values were refused; they hold their defaults.
     wrong: BTreeSet<KeyPath>,
     is_sound: bool,
-    report: &'r mut Report,
+    report: &'r mut ProblemList,
 }
 
 impl<'r> Reader<'r> {
     pub(super) fn new(
         given: BTreeMap<KeyPath, Given<'r>>,
         file: &'r Source<'r>,
-        report: &'r mut Report,
+        report: &'r mut ProblemList,
     ) -> Self {
         Self {
             given,

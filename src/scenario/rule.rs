@@ -6,7 +6,7 @@ mod text;
 
 pub(super) use list::{Constraints, Numbers, OneOf, Paths, Skyline, SomeOf};
 pub(super) use number::{Eastward, Integer, Interval, Number, Steps};
-pub(super) use text::{Instant, Text};
+pub(super) use text::{Text, UtcInstant};
 
 use std::ops::Range;
 
@@ -14,7 +14,7 @@ use serde_json::Value as Json;
 use toml::Spanned;
 use toml::de::DeValue;
 
-use super::problem::{Fault, Report};
+use super::problem::{Fault, ProblemList};
 use super::source::Source;
 
 /// A value with its span in its source.
@@ -77,7 +77,7 @@ pub(super) struct Reading<'r> {
     pub(super) source: &'r Source<'r>,
     pub(super) key: String,
     pub(super) accepted: String,
-    pub(super) report: &'r mut Report,
+    pub(super) report: &'r mut ProblemList,
 }
 
 impl Reading<'_> {

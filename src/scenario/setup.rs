@@ -37,7 +37,7 @@ pub enum SetupError {
         /// What the system says.
         source: io::Error,
     },
-    /// The points file is no list of points.
+    /// The points file is not a list of points.
     #[error("region.points: {file}")]
     Points {
         /// The path as written.
@@ -60,7 +60,7 @@ pub enum SetupError {
     /// A tail level out of range.
     #[error("objectives.cvar-level: {0}")]
     Level(#[from] LevelError),
-    /// The reference design is no design.
+    /// The reference design is not a design.
     #[error("reference-design: {0}")]
     ReferenceDesign(#[from] NotationError),
 }
@@ -74,7 +74,7 @@ pub enum GnssFileError {
     /// A line of it is wrong.
     #[error(transparent)]
     Format(#[from] ReadFleetError),
-    /// It is no file of element sets.
+    /// It is not a file of element sets.
     #[error("the file holds {content}; TLE or OMM element sets are needed")]
     NoSets {
         /// What it holds.

@@ -9,7 +9,7 @@ mod random;
 mod search;
 mod setting;
 
-use super::{Problem, Problems, Scenario};
+use super::{Problems, Scenario, ScenarioProblem};
 
 /// Parses `text` under the label `study.toml`.
 fn parse(text: &str, overrides: &[&str]) -> Result<Scenario, Problems> {
@@ -21,7 +21,7 @@ fn defaults() -> Scenario {
 }
 
 /// The only problem of `text`.
-fn problem(text: &str) -> Problem {
+fn problem(text: &str) -> ScenarioProblem {
     let problems = parse(text, &[]).unwrap_err();
     let [problem] = problems.as_slice() else {
         panic!("{text}\nhas not one problem but\n{problems}");

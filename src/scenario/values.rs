@@ -20,7 +20,7 @@ use chrono::{DateTime, Utc};
 use super::Algorithm;
 use super::keys::{key, section};
 use super::reader::Reader;
-use super::rule::{Instant, Text};
+use super::rule::{Text, UtcInstant};
 use crate::search::DesignSpace;
 
 /// Lets a duration that is a whole number of steps up to rounding end before
@@ -76,7 +76,7 @@ section! {
         pub originator: String = Text::Ascii, default "NAVWALKER".to_owned();
         /// When an exported file was made (CCSDS CREATION_DATE); never the wall clock, so that the
         /// same run gives the same bytes.
-        pub creation_date: DateTime<Utc> = Instant, follows "time.epoch", example JANUARY_2025;
+        pub creation_date: DateTime<Utc> = UtcInstant, follows "time.epoch", example JANUARY_2025;
     }
 }
 

@@ -4,9 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use super::Quantity;
-use crate::keyword::{UnknownWord, Word, words};
+use crate::keyword::{Keyword, UnknownKeyword, keywords};
 
-words! {
+keywords! {
     /// The side of its bound on which a constrained quantity must stay.
     Relation {
         /// The quantity is at most the bound.
@@ -40,7 +40,7 @@ pub enum ConstraintError {
     },
     /// The quantity is not known.
     #[error(transparent)]
-    UnknownQuantity(#[from] UnknownWord),
+    UnknownQuantity(#[from] UnknownKeyword),
     /// The bound is not a finite number.
     #[error("found the bound {found:?}, expected a finite number")]
     Bound {
@@ -67,7 +67,7 @@ impl FromStr for Constraint {
     type Err = ConstraintError;
 
     fn from_str(text: &str) -> Result<Self, ConstraintError> {
-        let split = |relation: &Relation| Some((*relation, text.split_once(relation.word())?));
+        let split = |relation: &Relation| Some((*relation, text.split_once(relation.keyword())?));
         let (relation, (quantity, bound)) =
             Relation::ALL
                 .iter()

@@ -2,9 +2,9 @@
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
-use crate::keyword::words;
+use crate::keyword::keywords;
 
-words! {
+keywords! {
     /// A number that a design has.
     Quantity {
         /// Mean PDOP + λ CVaR; without unit, minimised (equation 8 of the paper).
@@ -15,7 +15,7 @@ words! {
         MeanPdop = "mean-pdop",
         /// Mean of the worst share of PDOP; without unit, minimised.
         CvarPdop = "cvar-pdop",
-        /// Largest PDOP; without unit, minimised.
+        /// Maximum PDOP; without unit, minimised.
         MaxPdop = "max-pdop",
         /// Satellites T; minimised.
         Satellites = "satellites",
@@ -34,7 +34,7 @@ words! {
 /// any one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
-    /// c_T, cost of one satellite brought up to a vanishing altitude.
+    /// c_T, cost of one satellite brought up to zero altitude.
     pub per_satellite: f64,
     /// c_P, cost of opening one plane.
     pub per_plane: f64,

@@ -12,18 +12,18 @@ mod lines;
 mod searches;
 mod table;
 
-pub use figures::{Curve, Figures, Place};
+pub use figures::{Curve, Figures, PlacedDesign};
 pub use fit::{MaskFit, RowMask};
-pub use judge::{Expected, Line, Verdict};
+pub use judge::{Expected, Statement, Verdict};
 pub use lines::{PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
 pub use searches::{FoundMember, FoundSet};
-pub use table::{PERCENTAGES, Percentage, Printable, Row, Scheme, TABLE1, table2};
+pub use table::{PERCENTAGES, Percentage, Printable, Scheme, TABLE1, TableRow, table2};
 
 use crate::constellation::{Design, DesignError, DesignParameters, NotationError};
 use crate::ephemeris::EphemerisError;
 use crate::evaluate::{Evaluator, Metrics, Setup};
 use crate::ground::GroundError;
-use crate::keyword::UnknownWord;
+use crate::keyword::UnknownKeyword;
 use crate::optimize::{DecisionError, Nsga2Config, OptimizeError};
 use crate::search::DesignSpace;
 use crate::time::TimeError;
@@ -40,7 +40,7 @@ pub enum PaperError {
     Table(#[from] csv::Error),
     /// A scheme of Table II has no name.
     #[error("the paper's Table II: {0}")]
-    Scheme(#[from] UnknownWord),
+    Scheme(#[from] UnknownKeyword),
     /// A design of Table II is none.
     #[error("the paper's Table II: {0}")]
     Notation(#[from] NotationError),
@@ -85,7 +85,7 @@ pub struct PaperStudy {
 
 /// One design under one set of assumptions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Value {
+pub struct RowValue {
     /// N̄.
     pub mean_visible: f64,
     /// Mean PDOP.
@@ -96,7 +96,7 @@ pub struct Value {
     pub j_cost: Option<f64>,
 }
 
-impl From<Metrics> for Value {
+impl From<Metrics> for RowValue {
     fn from(metrics: Metrics) -> Self {
         Self {
             mean_visible: metrics.mean_visible,
@@ -113,7 +113,7 @@ pub struct Measured {
     /// What is assumed, in words.
     pub assumption: String,
     /// Row by row.
-    pub values: Vec<Value>,
+    pub values: Vec<RowValue>,
 }
 
 /// A row of Table II, the paper's and ours.
@@ -130,12 +130,12 @@ pub struct RowResult {
     /// E(PDOP) of the paper.
     pub paper_mean_pdop: f64,
     /// Ours as printed.
-    pub as_printed: Value,
+    pub as_printed: RowValue,
     /// Where the printed inclination does not give the paper's N̄: the nearest that does, degrees, if
     /// there is one.
     pub fitting_inclination_deg: Option<f64>,
     /// Ours at that inclination, or as printed where there is none.
-    pub at_fitting: Value,
+    pub at_fitting: RowValue,
 }
 
 /// What the paper's second objective does with the number of satellites.
@@ -166,13 +166,13 @@ pub struct Reproduction {
     /// Cost against size.
     pub cost_of_size: CostOfSize,
     /// Every statement of the paper that has a number or a direction, judged.
-    pub lines: Vec<Line>,
+    pub lines: Vec<Statement>,
 }
 
 /// Repeats the study.
 ///
 /// # Errors
-/// When a design cannot be flown or a search cannot run under the given setup.
+/// When a design cannot be propagated or a search cannot run under the given setup.
 pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     let setup = &study.setup;
     let rows = table2()?;
@@ -216,7 +216,7 @@ pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     })
 }
 
-fn designs(rows: &[Row]) -> Vec<Design> {
+fn designs(rows: &[TableRow]) -> Vec<Design> {
     rows.iter().map(|row| row.design).collect()
 }
 
@@ -225,9 +225,9 @@ fn designs(rows: &[Row]) -> Vec<Design> {
 ///
 /// # Errors
 /// When a design cannot be propagated under the given setup.
-pub fn fitted_table(setup: &Setup) -> Result<Vec<(Row, Value)>, PaperError> {
+pub fn fitted_table(setup: &Setup) -> Result<Vec<(TableRow, RowValue)>, PaperError> {
     let rows = table2()?;
-    let design = |row: &Row| match row.fitting_inclination_deg {
+    let design = |row: &TableRow| match row.fitting_inclination_deg {
         Some(inclination_deg) => fit::inclined(&row.design, inclination_deg),
         None => Ok(row.design),
     };
@@ -241,7 +241,7 @@ fn measure(
     assumption: &str,
     designs: Vec<Design>,
 ) -> Result<Measured, PaperError> {
-    let value = |design: &Design| Ok::<Value, PaperError>(evaluator.evaluate(design)?.into());
+    let value = |design: &Design| Ok::<RowValue, PaperError>(evaluator.evaluate(design)?.into());
     Ok(Measured {
         assumption: assumption.to_owned(),
         values: designs.par_iter().map(value).collect::<Result<_, _>>()?,
@@ -249,9 +249,9 @@ fn measure(
 }
 
 /// The inclination that fits each row, where the printed one does not give its N̄.
-fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperError> {
+fn fitted_rows(setup: &Setup, rows: &[TableRow]) -> Result<Vec<Option<f64>>, PaperError> {
     let sky = Evaluator::new(fit::sky(setup))?;
-    let fit = |row: &Row| {
+    let fit = |row: &TableRow| {
         let printed = sky.evaluate(&row.design)?.mean_visible;
         if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
             return Ok(None);
@@ -262,13 +262,16 @@ fn fitted_rows(setup: &Setup, rows: &[Row]) -> Result<Vec<Option<f64>>, PaperErr
 }
 
 fn row_results(
-    rows: &[Row],
+    rows: &[TableRow],
     printed: &Measured,
     fitted: &[Option<f64>],
     at_fitting: &Measured,
 ) -> Vec<RowResult> {
     let ours = printed.values.iter().zip(&at_fitting.values);
-    let row = |((row, fit), (as_printed, at_fitting)): ((&Row, &Option<f64>), (&Value, &Value))| {
+    let row = |((row, fit), (as_printed, at_fitting)): (
+        (&TableRow, &Option<f64>),
+        (&RowValue, &RowValue),
+    )| {
         RowResult {
             name: row.name(),
             design: row.design.to_string(),

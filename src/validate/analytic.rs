@@ -15,7 +15,7 @@ use super::{Findings, Subject, ValidateError};
 /// Everything that closed forms and symmetries say about a design.
 ///
 /// # Errors
-/// When the design cannot be flown.
+/// When the design cannot be propagated.
 pub fn against_closed_forms(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = Findings::default();
     findings.checks.extend(averaging::checks(subject));

@@ -1,8 +1,8 @@
 //! What a difference of two trajectories does to visibility decisions, passes and metrics.
 
 use super::distribution::{Distribution, Residual};
-use super::{Check, Findings, Measure};
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use super::{Check, CheckedQuantity, Findings};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::frames::{EarthFixed, EarthRotation, Position};
 use crate::ground::Site;
@@ -27,21 +27,21 @@ pub(super) struct DecisionGates {
     pub(super) satellites: f64,
 }
 
-/// Two flights of the same satellites, seen from the points of a study.
-pub(super) struct Seen<'a> {
+/// Two propagations of the same satellites, seen from the points of a study.
+pub(super) struct TrajectoryPair<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) first: &'a Ephemeris,
     pub(super) second: &'a Ephemeris,
 }
 
-/// Counts of decisions.
+/// FlipCounts of decisions.
 #[derive(Debug, Clone, Copy, Default)]
-struct Counts {
+struct FlipCounts {
     decisions: u64,
     flips: u64,
 }
 
-impl Seen<'_> {
+impl TrajectoryPair<'_> {
     /// Compares decisions, passes and metrics. `name` is the beginning of the names of the checks.
     pub(super) fn compare(
         &self,
@@ -53,7 +53,7 @@ impl Seen<'_> {
         let mut findings = Findings::default();
         findings.checks.push(Check::new(
             &format!("{name}/flipped-decisions"),
-            Measure {
+            CheckedQuantity {
                 quantity: "visibility decisions that flip",
                 unit: "1",
                 statistic: "share",
@@ -76,12 +76,12 @@ impl Seen<'_> {
         EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s))
     }
 
-    fn count(&self) -> Result<Counts, EphemerisError> {
+    fn count(&self) -> Result<FlipCounts, EphemerisError> {
         let setup = self.evaluator.setup();
         let times: Vec<f64> = setup.grid.iter().collect();
         let one = |&elapsed_s: &f64| {
             let rotation = self.rotation(elapsed_s);
-            let mut counts = Counts::default();
+            let mut counts = FlipCounts::default();
             let pairs = self.first.satellites().iter().zip(self.second.satellites());
             for (a, b) in pairs {
                 let a = rotation.to_earth_fixed(self.first.state(a, elapsed_s)?.position_km);
@@ -98,17 +98,19 @@ impl Seen<'_> {
             }
             Ok(counts)
         };
-        let instants: Vec<Counts> = times.par_iter().map(one).collect::<Result<_, _>>()?;
-        Ok(instants.iter().fold(Counts::default(), |sum, at| Counts {
-            decisions: sum.decisions + at.decisions,
-            flips: sum.flips + at.flips,
-        }))
+        let instants: Vec<FlipCounts> = times.par_iter().map(one).collect::<Result<_, _>>()?;
+        Ok(instants
+            .iter()
+            .fold(FlipCounts::default(), |sum, at| FlipCounts {
+                decisions: sum.decisions + at.decisions,
+                flips: sum.flips + at.flips,
+            }))
     }
 
     /// Shifts of rise and set and of the duration of passes.
     fn passes(&self, name: &str, findings: &mut Findings) -> Result<(), EphemerisError> {
         let sites = thinned(&self.evaluator.setup().sites, PASS_SITES);
-        let pairs: Vec<(&Flown, &Flown)> = self
+        let pairs: Vec<(&EphemerisSatellite, &EphemerisSatellite)> = self
             .first
             .satellites()
             .iter()
@@ -148,16 +150,16 @@ impl Seen<'_> {
     fn pass_shifts(
         &self,
         sites: &[Site],
-        a: &Flown,
-        b: &Flown,
+        a: &EphemerisSatellite,
+        b: &EphemerisSatellite,
     ) -> Result<Vec<Shift>, EphemerisError> {
         let mut shifts = Vec::new();
-        let flights = [
-            Flight::new(self, self.first, a)?,
-            Flight::new(self, self.second, b)?,
+        let propagations = [
+            SampledSatellite::new(self, self.first, a)?,
+            SampledSatellite::new(self, self.second, b)?,
         ];
         for site in sites {
-            let [first, second] = [flights[0].passes(site)?, flights[1].passes(site)?];
+            let [first, second] = [propagations[0].passes(site)?, propagations[1].passes(site)?];
             for pass in &first {
                 // The same pass is the one in the middle of which the other is under way.
                 let middle = 0.5 * (pass.0 + pass.1);
@@ -211,31 +213,31 @@ impl std::fmt::Display for Shift {
 }
 
 /// One satellite along one ephemeris, Earth-fixed.
-struct Flight<'a> {
-    seen: &'a Seen<'a>,
+struct SampledSatellite<'a> {
+    seen: &'a TrajectoryPair<'a>,
     ephemeris: &'a Ephemeris,
-    satellite: &'a Flown,
+    satellite: &'a EphemerisSatellite,
     sampled_km: Vec<Position<EarthFixed>>,
 }
 
-impl<'a> Flight<'a> {
+impl<'a> SampledSatellite<'a> {
     fn new(
-        seen: &'a Seen<'a>,
+        seen: &'a TrajectoryPair<'a>,
         ephemeris: &'a Ephemeris,
-        satellite: &'a Flown,
+        satellite: &'a EphemerisSatellite,
     ) -> Result<Self, EphemerisError> {
-        let mut flight = Self {
+        let mut propagation = Self {
             seen,
             ephemeris,
             satellite,
             sampled_km: Vec::new(),
         };
         let grid = seen.evaluator.setup().grid;
-        flight.sampled_km = grid
+        propagation.sampled_km = grid
             .iter()
-            .map(|elapsed_s| flight.position_km(elapsed_s))
+            .map(|elapsed_s| propagation.position_km(elapsed_s))
             .collect::<Result<_, _>>()?;
-        Ok(flight)
+        Ok(propagation)
     }
 
     fn position_km(&self, elapsed_s: f64) -> Result<Position<EarthFixed>, EphemerisError> {
@@ -305,7 +307,7 @@ fn metric_checks(
     let relative = gates.map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
     let mut checks = vec![Check::new(
         &format!("{name}/mean-visible"),
-        Measure {
+        CheckedQuantity {
             quantity: "change of mean visible satellites",
             unit: "1",
             statistic: "mean",
@@ -328,7 +330,7 @@ fn metric_checks(
             let gate = relative.zip(factor);
             checks.push(Check::new(
                 &format!("{name}/{quantity}"),
-                Measure {
+                CheckedQuantity {
                     quantity: &format!("change of {quantity}"),
                     unit: "1",
                     statistic: "difference",

@@ -14,10 +14,10 @@ mod tracks;
 pub use conventions::Explanation;
 pub use read::{Comparand, FileError, read};
 
-use super::decisions::Seen;
+use super::decisions::TrajectoryPair;
 use super::distribution::{Distribution, Residual};
 use super::residuals::Ric;
-use super::{Check, Findings, Measure, Subject, ValidateError};
+use super::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use crate::ephemeris::Ephemeris;
 use crate::frames::ric_basis;
 use crate::orbit::Propagator;
@@ -89,7 +89,7 @@ pub fn against_file(
     comparands: &[Comparand],
 ) -> Result<Findings, ValidateError> {
     let tracks = tracks(subject, comparands)?;
-    let ours = subject.fly_model()?;
+    let ours = subject.propagate_model()?;
     let matching = Matching::of(subject, &ours, &tracks);
     let pairs = matching.pairs(&tracks);
     let satellites = pairs
@@ -191,7 +191,7 @@ fn coverage_checks(
     let count = |name: &str, quantity: &str, value: f64, reason: &str| {
         Check::new(
             &format!("file/{source}/{name}"),
-            Measure {
+            CheckedQuantity {
                 quantity,
                 unit: "1",
                 statistic: "count",
@@ -220,7 +220,7 @@ fn coverage_checks(
         ),
         Check::new(
             &format!("file/{source}/uncovered-span"),
-            Measure {
+            CheckedQuantity {
                 quantity: "share of the span of the study that an object leaves out at most",
                 unit: "1",
                 statistic: "max",
@@ -235,7 +235,7 @@ fn coverage_checks(
 fn misplaced_check(source: &str, misplaced: usize) -> Check {
     Check::new(
         &format!("file/{source}/misplaced-objects"),
-        Measure {
+        CheckedQuantity {
             quantity: "objects far from the slot of their name",
             unit: "1",
             statistic: "count",
@@ -279,7 +279,7 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
         .map(|(name, unit, statistic, value)| {
             Check::new(
                 &format!("file/{source}/{name}"),
-                Measure {
+                CheckedQuantity {
                     quantity: &format!("{name} of the file from the design"),
                     unit,
                     statistic,
@@ -317,20 +317,22 @@ fn distances(
     ))
 }
 
-/// Decisions, passes and metrics when the file flies in place of the design.
+/// Decisions, passes and metrics when the file propagates in place of the design.
 fn metrics(
     subject: &Subject<'_>,
     source: &str,
     ours: &Ephemeris,
     pairs: &[(usize, &Track)],
 ) -> Result<Findings, ValidateError> {
-    let theirs = pairs.iter().map(|&(slot, track)| crate::ephemeris::Flown {
-        name: ours.satellites()[slot].name.clone(),
-        slot: ours.satellites()[slot].slot,
-        propagator: Box::new(track.clone()) as Box<dyn Propagator>,
-    });
+    let theirs = pairs
+        .iter()
+        .map(|&(slot, track)| crate::ephemeris::EphemerisSatellite {
+            name: ours.satellites()[slot].name.clone(),
+            slot: ours.satellites()[slot].slot,
+            propagator: Box::new(track.clone()) as Box<dyn Propagator>,
+        });
     let theirs = Ephemeris::new(subject.grid(), theirs.collect());
-    let seen = Seen {
+    let seen = TrajectoryPair {
         evaluator: subject.evaluator,
         first: ours,
         second: &theirs,

@@ -10,7 +10,7 @@ mod footprint;
 mod surfaces;
 
 use super::distribution::{Distribution, Residual};
-use super::{Check, Findings, Measure, Subject, ValidateError};
+use super::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use crate::earth::{FLATTENING, RADIUS_KM, Surface};
 use crate::frames::{EarthFixed, Position};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
@@ -111,14 +111,14 @@ fn pairs<'a>(a: &'a [f64], b: &'a [f64]) -> impl Iterator<Item = (f64, f64)> + '
 }
 
 /// The horizon of a station from geodesics.
-struct Horizon {
+struct GeodesicHorizon {
     origin_km: Position<EarthFixed>,
     east: Vector3<f64>,
     north: Vector3<f64>,
     up: Vector3<f64>,
 }
 
-impl Horizon {
+impl GeodesicHorizon {
     fn new(earth: &Geodesic, [latitude, longitude]: [f64; 2]) -> Self {
         let point = |bearing: f64| {
             let (lat, lon): (f64, f64) = earth.direct(latitude, longitude, bearing, ARM_M);
@@ -166,7 +166,7 @@ fn taught_elevation_deg(earth: &Geodesic, case: &Case) -> f64 {
 /// Everything that geodesics say about the stations and the footprint of a design.
 ///
 /// # Errors
-/// When the design cannot be flown.
+/// When the design cannot be propagated.
 pub fn against_geodesics(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = look_angles(subject);
     findings.checks.extend(footprint::checks(subject));
@@ -182,7 +182,7 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
     for station_deg in stations() {
         let [latitude, longitude] = station_deg.map(f64::to_radians);
         let ours = (subject.parts.local_frame)(Surface::Wgs84, latitude, longitude);
-        let horizon = Horizon::new(&earth, station_deg);
+        let horizon = GeodesicHorizon::new(&earth, station_deg);
         for case in cases_of(&earth, station_deg) {
             let target = geodetic_position_km(case.below_deg, case.height_km);
             let (elevation, azimuth) = (subject.parts.look_angles)(&ours, target);
@@ -261,7 +261,7 @@ impl Findings {
     ) {
         let found = Distribution::of(name, [quantity, unit], residuals, I::to_string);
         if let Some(found) = found {
-            let measure = Measure {
+            let measure = CheckedQuantity {
                 quantity,
                 unit,
                 statistic: "max",

@@ -2,7 +2,7 @@
 //!
 //! The integration starts from the osculating state of the mean elements. First-order theory gives
 //! that state to O(J2²), some metres of semi-major axis, which alone drifts by kilometres a day. That
-//! is no error of the secular rates; so the drift is fitted and reported as what it is, a mean a per
+//! is not an error of the secular rates; so the drift is fitted and reported as what it is, a mean a per
 //! satellite, and the gates are on what is left over 1, 7 and 30 days.
 
 pub mod integrator;
@@ -10,7 +10,7 @@ pub mod integrator;
 use super::eccentricity::eccentricity_vector;
 use super::sgp4::causes::Causes;
 use super::sgp4::rates::{angles, closed_form};
-use super::{Check, Findings, Measure, Subject, ValidateError};
+use super::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use crate::earth::{J2, J3};
 use crate::frames::{State, Teme, ric_basis};
 use crate::orbit::MeanElements;
@@ -35,7 +35,7 @@ const PER_REVOLUTION: usize = 24;
 const FROZEN_DAYS: f64 = 7.0;
 
 /// The revolutions of one satellite, each as its means.
-struct Track {
+struct RevolutionMeans {
     /// Middle of each revolution, days.
     days: Vec<f64>,
     /// In-track difference of the integration from mean J2, km.
@@ -50,7 +50,7 @@ struct Track {
     conserved: [f64; 2],
 }
 
-fn track(subject: &Subject<'_>, elements: &MeanElements) -> Result<Track, ValidateError> {
+fn track(subject: &Subject<'_>, elements: &MeanElements) -> Result<RevolutionMeans, ValidateError> {
     let period_s = TAU / elements.kepler_mean_motion_rad_s();
     let step_s = period_s / PER_REVOLUTION as f64;
     let revolutions = (SPANS_DAYS[2] * SECONDS_PER_DAY / period_s).floor() as usize;
@@ -67,7 +67,7 @@ fn track(subject: &Subject<'_>, elements: &MeanElements) -> Result<Track, Valida
             basis * (to.position_km - from.position_km)
         })
     };
-    let mut track = Track {
+    let mut track = RevolutionMeans {
         days: Vec::new(),
         in_track_km: Vec::new(),
         node_deg: Vec::new(),
@@ -116,11 +116,11 @@ fn conserved(zonals: Zonals, states: &[State<Teme>]) -> [f64; 2] {
 /// Everything that the integration says about a design.
 ///
 /// # Errors
-/// When a satellite cannot be flown or the integration fails.
+/// When a satellite cannot be propagated or the integration fails.
 pub fn against_integration(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let satellites = subject.satellites();
     let stride = satellites.len().div_ceil(SATELLITES);
-    let tracks: Vec<Track> = satellites
+    let tracks: Vec<RevolutionMeans> = satellites
         .par_iter()
         .step_by(stride)
         .map(|satellite| track(subject, &satellite.elements))
@@ -134,13 +134,13 @@ pub fn against_integration(subject: &Subject<'_>) -> Result<Findings, ValidateEr
     Ok(findings)
 }
 
-fn conservation_checks(tracks: &[Track]) -> Vec<Check> {
+fn conservation_checks(tracks: &[RevolutionMeans]) -> Vec<Check> {
     let largest = |n: usize| tracks.iter().map(|t| t.conserved[n]).fold(0.0, f64::max);
     [("energy", 0), ("polar-momentum", 1)]
         .map(|(name, n)| {
             Check::new(
                 &format!("numerical/conserved/{name}"),
-                Measure {
+                CheckedQuantity {
                     quantity: &format!("relative change of the {name} over 30 days"),
                     unit: "1",
                     statistic: "max",
@@ -154,12 +154,12 @@ fn conservation_checks(tracks: &[Track]) -> Vec<Check> {
 }
 
 /// Slope of the means over the first days, per day.
-fn slope(track: &Track, values: &[f64], days: f64) -> f64 {
+fn slope(track: &RevolutionMeans, values: &[f64], days: f64) -> f64 {
     let within = track.days.iter().take_while(|&&day| day <= days).count();
     line_fit(&track.days[..within], &values[..within]).map_or(0.0, |(_, slope)| slope)
 }
 
-fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check> {
+fn span_checks(subject: &Subject<'_>, tracks: &[RevolutionMeans], days: f64) -> Vec<Check> {
     let orbit = subject.orbit();
     let causes = Causes::of(&orbit);
     let a = orbit.semi_major_axis_km;
@@ -182,7 +182,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
     vec![
         Check::new(
             &name("in-track-drift"),
-            Measure {
+            CheckedQuantity {
                 quantity: "in-track drift of the integration from mean J2",
                 unit: "km/day",
                 statistic: "mean slope",
@@ -194,7 +194,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("fitted-mean-a"),
-            Measure {
+            CheckedQuantity {
                 quantity: "mean semi-major axis of the integration less that of the elements",
                 unit: "m",
                 statistic: "mean",
@@ -205,7 +205,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("node-rate"),
-            Measure {
+            CheckedQuantity {
                 quantity: "node rate less its closed form",
                 unit: "deg/day",
                 statistic: "mean slope",
@@ -216,7 +216,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("in-track-after-fit"),
-            Measure {
+            CheckedQuantity {
                 quantity: "in-track difference from J2 with short-period terms, mean a fitted",
                 unit: "km",
                 statistic: "rms",
@@ -227,7 +227,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[Track], days: f64) -> Vec<Check>
         ),
         Check::new(
             &name("cross-track-after-fit"),
-            Measure {
+            CheckedQuantity {
                 quantity: "cross-track difference from J2 with short-period terms",
                 unit: "km",
                 statistic: "rms",
@@ -247,7 +247,7 @@ fn gate_after_fit_km(causes: &Causes, orbit: &MeanElements, days: f64) -> f64 {
 }
 
 /// RMS of the residuals over a span, the line through each satellite's in-track residual taken out.
-fn rms_after_fit(tracks: &[Track], days: f64) -> [f64; 3] {
+fn rms_after_fit(tracks: &[RevolutionMeans], days: f64) -> [f64; 3] {
     let mut squares = Vector3::zeros();
     let mut samples = 0.0;
     for track in tracks {
@@ -303,7 +303,7 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
     Ok(both.map(|(first, last)| {
         Check::new(
             "numerical/j3/frozen-eccentricity",
-            Measure {
+            CheckedQuantity {
                 quantity: "change of the frozen eccentricity vector in a week, over its size",
                 unit: "1",
                 statistic: "difference",

@@ -1,24 +1,24 @@
 //! The paper's Table II as checks with gates.
 
-use super::{Check, Findings, Measure};
+use super::{Check, CheckedQuantity, Findings};
 use crate::evaluate::Setup;
 use crate::study::paper::{self, PaperError, Scheme};
 
 /// Table II against the paper: what a validation gates.
 ///
-/// Each row is flown at its printed inclination, or where the table's file names one that fits,
+/// Each row is propagated at its printed inclination, or where the table's file names one that fits,
 /// at that. Visibility is gated for all rows and mean PDOP for the paper's own designs; that of
 /// its baselines does not come out under any assumption that was tried, and is reported only.
 ///
 /// # Errors
-/// When a design cannot be flown under the given setup.
+/// When a design cannot be propagated under the given setup.
 pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
     let mut checks = Vec::new();
     for (row, value) in paper::fitted_table(setup)? {
         let name = format!("paper/{}/mean-visible", row.name());
         checks.push(Check::new(
             &name,
-            Measure {
+            CheckedQuantity {
                 quantity: "mean-visible",
                 unit: "",
                 statistic: "difference",
@@ -39,7 +39,7 @@ pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
         };
         checks.push(Check::new(
             &name,
-            Measure {
+            CheckedQuantity {
                 quantity: "mean-pdop",
                 unit: "%",
                 statistic: "relative difference",

@@ -72,7 +72,7 @@ pub struct BudgetLine {
 const KEPT: usize = 1_000_000;
 
 /// The sums of one instant, over the satellites.
-struct Instant {
+struct InstantSums {
     elapsed_s: f64,
     sum: Vector3<f64>,
     squares: Vector3<f64>,
@@ -85,8 +85,8 @@ fn instant(
     first: &Ephemeris,
     second: &Ephemeris,
     elapsed_s: f64,
-) -> Result<Instant, EphemerisError> {
-    let mut sums = Instant {
+) -> Result<InstantSums, EphemerisError> {
+    let mut sums = InstantSums {
         elapsed_s,
         sum: Vector3::zeros(),
         squares: Vector3::zeros(),
@@ -133,7 +133,7 @@ pub fn compare(
         .collect::<Result<Vec<_>, _>>()?;
     let satellites = first.satellites().len().min(second.satellites().len()) as f64;
     let samples = satellites * instants.len() as f64;
-    let total = |add: fn(Vector3<f64>, &Instant) -> Vector3<f64>| {
+    let total = |add: fn(Vector3<f64>, &InstantSums) -> Vector3<f64>| {
         instants.iter().fold(Vector3::zeros(), add)
     };
     let mean = total(|sum, at| sum + at.sum) / samples;
@@ -163,7 +163,7 @@ pub fn compare(
     })
 }
 
-fn worst(first: &Ephemeris, instants: &[Instant]) -> Worst {
+fn worst(first: &Ephemeris, instants: &[InstantSums]) -> Worst {
     let (mut distance_km, mut satellite, mut elapsed_s) = (-1.0, 0, 0.0);
     for at in instants {
         if at.worst.0 > distance_km {
@@ -178,7 +178,7 @@ fn worst(first: &Ephemeris, instants: &[Instant]) -> Worst {
     }
 }
 
-fn distances(case: &str, first: &Ephemeris, instants: &[Instant]) -> Option<Distribution> {
+fn distances(case: &str, first: &Ephemeris, instants: &[InstantSums]) -> Option<Distribution> {
     let total = instants.len() * first.satellites().len();
     let stride = total.div_ceil(KEPT).max(1);
     let kept = instants.iter().step_by(stride);
@@ -200,7 +200,7 @@ fn distances(case: &str, first: &Ephemeris, instants: &[Instant]) -> Option<Dist
 mod tests {
     use super::*;
     use crate::constellation::Design;
-    use crate::ephemeris::Flown;
+    use crate::ephemeris::EphemerisSatellite;
     use crate::orbit::j2::{SecularOrbit, SecularRates};
     use crate::time::{Epoch, TimeGrid};
 
@@ -214,11 +214,11 @@ mod tests {
     fn validate_a_known_drift() {
         let design: Design = "delta:55:6/3/1@925".parse().unwrap();
         let drift_km_per_day = 2.0;
-        let fly = |extra_rad_s: f64| {
+        let propagate = |extra_rad_s: f64| {
             let satellites = design.satellites().into_iter().map(|satellite| {
                 let mut rates = SecularRates::j2(&satellite.elements);
                 rates.mean_anomaly_rad_s += extra_rad_s;
-                Flown {
+                EphemerisSatellite {
                     name: satellite.slot.to_string(),
                     slot: Some(satellite.slot),
                     propagator: Box::new(SecularOrbit::new(&satellite.elements, rates)),
@@ -227,7 +227,7 @@ mod tests {
             Ephemeris::new(grid(), satellites.collect())
         };
         let extra = drift_km_per_day / SECONDS_PER_DAY / (crate::earth::RADIUS_KM + 925.0);
-        let line = compare(("a/b", "ramp"), &fly(0.0), &fly(extra)).unwrap();
+        let line = compare(("a/b", "ramp"), &propagate(0.0), &propagate(extra)).unwrap();
         // The chord is shorter than the arc by 2³/(24 a²) = 6e-9 km.
         assert!((line.growth_km_per_day.in_track - drift_km_per_day).abs() < 1e-6);
         let last_day = 143.0 / 144.0;

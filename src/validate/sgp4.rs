@@ -12,9 +12,9 @@ pub(super) mod rates;
 mod sweep;
 mod verification;
 
-use super::decisions::{DecisionGates, Seen, flip_gate};
+use super::decisions::{DecisionGates, TrajectoryPair, flip_gate};
 use super::residuals::{BudgetLine, compare};
-use super::{Check, Findings, Measure, Subject, ValidateError};
+use super::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::orbit::osculating::OsculatingOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Mode, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
@@ -24,8 +24,8 @@ use causes::{Causes, is_deep_space};
 pub use sweep::{SweepCell, SweepLine};
 pub use verification::against_the_verification_set;
 
-/// The design flown by SGP4 and by J2, each once.
-struct Flights {
+/// The design propagated by SGP4 and by J2, each once.
+struct Propagations {
     mean_j2: Ephemeris,
     osculating_j2: Ephemeris,
     sgp4: Ephemeris,
@@ -36,10 +36,10 @@ struct Flights {
     improved: Ephemeris,
 }
 
-impl Flights {
+impl Propagations {
     fn new(subject: &Subject<'_>, grid: TimeGrid) -> Result<Self, EphemerisError> {
         let by = |slot: MeanMotionSlot, theory: Sgp4Theory| {
-            subject.fly_on(grid, |elements| {
+            subject.propagate_on(grid, |elements| {
                 Sgp4Orbit::from_mean_elements_with(elements, subject.epoch(), slot, theory)
             })
         };
@@ -49,8 +49,10 @@ impl Flights {
         };
         let slot = subject.parts.slot;
         Ok(Self {
-            mean_j2: subject.fly_on(grid, |elements| Ok((subject.parts.mean_j2)(elements)))?,
-            osculating_j2: subject.fly_on(grid, |elements| Ok(OsculatingOrbit::new(elements)))?,
+            mean_j2: subject
+                .propagate_on(grid, |elements| Ok((subject.parts.mean_j2)(elements)))?,
+            osculating_j2: subject
+                .propagate_on(grid, |elements| Ok(OsculatingOrbit::new(elements)))?,
             sgp4: by(slot, Sgp4Theory::STANDARD)?,
             no_j3j4: by(slot, zonals(ZonalHarmonics::J2Only))?,
             no_j3: by(slot, zonals(ZonalHarmonics::WithoutJ3))?,
@@ -96,7 +98,7 @@ impl Flights {
             ),
             (
                 "kepler-slot",
-                "sqrt(mu/a^3) in the Kozai slot: what the common mistake would cost",
+                "sqrt(mu/a^3) in the Kozai slot: the effect of a common mistake",
                 &self.mean_j2,
                 &self.kepler_slot,
             ),
@@ -132,23 +134,23 @@ impl Flights {
 /// When SGP4 refuses a satellite, as for an orbit that decays.
 pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = against_the_verification_set();
-    let flights = Flights::new(subject, subject.grid())?;
-    let budget = flights.budget(usize::MAX)?;
-    let scale = Scale::of(subject);
+    let propagations = Propagations::new(subject, subject.grid())?;
+    let budget = propagations.budget(usize::MAX)?;
+    let scale = GateScale::of(subject);
     findings.checks.extend(scale.budget_checks(&budget));
     findings.append(sweep::over_inclination_and_altitude(subject)?);
     findings.checks.extend(rates::checks(subject, &scale)?);
     findings.checks.extend(frozen::checks(subject, &scale)?);
-    let written = element_sets::Written::new(subject)?;
-    findings.append(written.findings(subject, &flights.sgp4)?);
+    let written = element_sets::WrittenSets::new(subject)?;
+    findings.append(written.findings(subject, &propagations.sgp4)?);
     let gates = scale.decision_gates(subject);
     for (name, second) in [
-        ("sgp4/decisions", &flights.sgp4),
-        ("sgp4/tle/decisions", &written.flown),
+        ("sgp4/decisions", &propagations.sgp4),
+        ("sgp4/tle/decisions", &written.propagated),
     ] {
-        let seen = Seen {
+        let seen = TrajectoryPair {
             evaluator: subject.evaluator,
-            first: &flights.mean_j2,
+            first: &propagations.mean_j2,
             second,
         };
         findings.append(seen.compare(name, gates)?);
@@ -158,13 +160,13 @@ pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
 }
 
 /// The closed forms for the orbit and the span at hand.
-struct Scale {
+struct GateScale {
     causes: Causes,
     days: f64,
     deep_space: bool,
 }
 
-impl Scale {
+impl GateScale {
     fn of(subject: &Subject<'_>) -> Self {
         let orbit = subject.orbit();
         Self {
@@ -240,7 +242,7 @@ impl Scale {
             .map(|((axis, value), bound)| {
                 Check::new(
                     &format!("sgp4/{}/{axis}-rms", line.case),
-                    Measure {
+                    CheckedQuantity {
                         quantity: &format!("{axis} difference"),
                         unit: "km",
                         statistic: "rms",
@@ -253,14 +255,14 @@ impl Scale {
             .collect();
         checks.push(Check::new(
             &format!("sgp4/{}/in-track-growth", line.case),
-            Measure {
+            CheckedQuantity {
                 quantity: "in-track growth",
                 unit: "km/day",
                 statistic: "slope",
             },
             line.growth_km_per_day.in_track,
             self.gate(self.causes.growth_gate_km_per_day(self.days)),
-            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and what a part of a revolution leaves"),
+            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and residual from an incomplete revolution"),
         ));
         checks
     }
@@ -273,7 +275,7 @@ impl Scale {
             + (causes.eccentric_factor - 1.0) * causes.short_period_km[0];
         Check::new(
             "sgp4/radius-shift/closed-form",
-            Measure {
+            CheckedQuantity {
                 quantity: "mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)",
                 unit: "km",
                 statistic: "mean",
@@ -289,7 +291,7 @@ impl Scale {
         [
             Check::new(
                 "sgp4/kepler-slot/in-track-growth",
-                Measure {
+                CheckedQuantity {
                     quantity: "in-track growth",
                     unit: "km/day",
                     statistic: "slope",
@@ -300,7 +302,7 @@ impl Scale {
             ),
             Check::new(
                 "sgp4/kepler-slot/closed-form",
-                Measure {
+                CheckedQuantity {
                     quantity: "in-track growth less -dM/dt(J2) a",
                     unit: "km/day",
                     statistic: "slope",

@@ -26,7 +26,7 @@ pub enum MaskTableError {
         after: f64,
     },
     /// The masks at 0° and 360°, the same direction, differ.
-    #[error("the mask is {at_0} degrees at azimuth 0 and {at_360} at 360, which are both north")]
+    #[error("the mask is {at_0} degrees at azimuth 0 but {at_360} at 360; both are north")]
     Seam {
         /// Mask at azimuth 0, degrees.
         at_0: f64,

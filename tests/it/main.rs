@@ -7,6 +7,7 @@ mod evidence;
 mod gallery;
 mod interchange;
 mod look;
+mod names;
 mod reference;
 mod scenes;
 mod study;

@@ -90,14 +90,15 @@ fn every_type_has_a_name_of_its_own() {
     assert!(places.len() > 300, "only {} types were found", places.len());
     let shared: Vec<_> = places
         .iter()
-        .filter(|(name, files)| {
-            files.len() > 1 && !SHARED.iter().any(|(known, _)| known == name)
-        })
+        .filter(|(name, files)| files.len() > 1 && !SHARED.iter().any(|(known, _)| known == name))
         .collect();
     assert!(shared.is_empty(), "one name, several types: {shared:#?}");
     for (name, reason) in SHARED {
         let count = places.get(*name).map_or(0, Vec::len);
-        assert!(count > 1 && !reason.is_empty(), "{name} is no exception any more");
+        assert!(
+            count > 1 && !reason.is_empty(),
+            "{name} is no exception any more"
+        );
     }
 }
 

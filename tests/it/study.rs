@@ -53,7 +53,7 @@ fn several_seeds_are_several_runs() {
     assert!(
         ran(place, &optimize(&other))
             .stderr
-            .contains("which is no run of a seed")
+            .contains("which is not the run of a seed")
     );
 }
 
@@ -227,7 +227,7 @@ fn the_paper_is_repeated_into_a_directory() {
     ] {
         assert_eq!(read(name).lines().count(), rows + 1, "{name}");
     }
-    assert!(read("report.md").starts_with("# The paper's study, repeated"));
+    assert!(read("report.md").starts_with("# Reproduction of the paper"));
     // The same again replaces it with the same bytes; another study needs --force.
     let before = read("report.json");
     assert_eq!(with(&["--threads", "2"]).status, 0);

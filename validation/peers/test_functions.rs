@@ -4,8 +4,8 @@
 //! `cargo run --release --example test_functions`
 
 use navwalker::optimize::{
-    Evaluation, Kind, Method, MopsoConfig, Nsga2Config, OptimizeError, Problem, Space, Strategy,
-    Variable, hypervolume,
+    Evaluation, Method, MopsoConfig, Nsga2Config, OptimizeError, Problem, Space, Strategy,
+    Variable, VariableKind, hypervolume,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::io::{self, Write};
@@ -32,8 +32,8 @@ impl TestFunction {
         function: Function,
     ) -> Result<Self, OptimizeError> {
         let kind = |k| match wide && k > 0 {
-            true => Kind::Real { lo: -5.0, hi: 5.0 },
-            false => Kind::Real { lo: 0.0, hi: 1.0 },
+            true => VariableKind::Real { lo: -5.0, hi: 5.0 },
+            false => VariableKind::Real { lo: 0.0, hi: 1.0 },
         };
         let variable = |k| Variable {
             name: format!("x{k}"),

@@ -19,7 +19,7 @@ Products:
   metrics     tables of the metrics by ground point and by instant
   tle-states  table of what SGP4 makes of the element sets as written
 
-What another program must be told stands in manifest.json under assumptions.
+Settings the other program needs are listed in manifest.json under assumptions.
 
 Examples:
   navwalker export --design delta:55:182/13/1@925 --as czml,geojson,kml --out shown

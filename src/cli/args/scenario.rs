@@ -1,6 +1,6 @@
 //! Arguments of `navwalker scenario`.
 
-use super::{Format, StudyArgs};
+use super::{OutputFormat, StudyArgs};
 use clap::{Args, Subcommand};
 
 #[derive(Debug, Args)]
@@ -15,7 +15,7 @@ pub(crate) enum ScenarioAction {
     List {
         /// Output format.
         #[arg(long, value_enum, default_value = "text")]
-        format: Format,
+        format: OutputFormat,
     },
     /// Print a scenario with every default filled in.
     ///

@@ -1,6 +1,6 @@
 //! `navwalker evaluate`.
 
-use crate::cli::args::{EvaluateArgs, Format};
+use crate::cli::args::{EvaluateArgs, OutputFormat};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
@@ -56,7 +56,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     let (format, fleet) = read_constellation::read(&args.constellation)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
-    let ephemeris = fleet.fly(setup.grid, setup.model)?;
+    let ephemeris = fleet.propagate(setup.grid, setup.model)?;
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let name = |path: &PathBuf| {
@@ -107,9 +107,9 @@ fn print(
     csv: impl Fn() -> std::io::Result<String>,
 ) -> Result<()> {
     match args.format {
-        Format::Text => output::result(&text(study, title, metrics, dops)),
-        Format::Json => output::result(&serde_json::to_string_pretty(result)?),
-        Format::Csv => {
+        OutputFormat::Text => output::result(&text(study, title, metrics, dops)),
+        OutputFormat::Json => output::result(&serde_json::to_string_pretty(result)?),
+        OutputFormat::Csv => {
             output::result(&csv()?)?;
             match dops {
                 Some(dops) => output::result(&format!("\n{}", dops_csv(dops)?)),

@@ -6,15 +6,15 @@ use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
-use crate::exchange::export::{Choices, Product, Subject, export_scene};
+use crate::exchange::export::{Choices, ExportSubject, Product, export_scene};
 use crate::exchange::lint::Format as LintFormat;
-use crate::exchange::manifest::{FileEntry, Manifest, Study as StudyStamp};
+use crate::exchange::manifest::{ExportedStudy, FileEntry, Manifest};
 use crate::exchange::read_back::{Difference, Original};
 use crate::formats::ccsds::oem;
 use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::ElementChoice;
 use crate::frames::Frame;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::report::{Align, Table};
 use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
@@ -41,11 +41,11 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     }
     let (study, design) = study_and_design(&asked, &args.design)?;
     let scenario = &study.scenario;
-    let subject = Subject {
+    let subject = ExportSubject {
         design,
         model: scenario.propagation.model,
         grid: scenario.time_grid()?,
-        study: StudyStamp {
+        study: ExportedStudy {
             name: scenario.name.clone(),
             hash: study.hash()?,
         },
@@ -98,12 +98,12 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
 fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(
-            "the mean motion slot holds sqrt(mu/a^3): SGP4 flies the design away from its J2 \
+            "the mean motion slot holds sqrt(mu/a^3): SGP4 carries the design away from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
         );
     }
     if args.frame == Some(Frame::Teme) {
-        output::warning("TEME is no frame of CCSDS ephemerides; not every reader takes it");
+        output::warning("TEME is not a frame of CCSDS ephemerides; not every reader takes it");
     }
 }
 
@@ -129,7 +129,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
             fleet.name_by_place();
         }
         // States of SGP4 have the theory and the digits of the element sets.
-        let format = if name == Product::TleStates.word() {
+        let format = if name == Product::TleStates.keyword() {
             LintFormat::Tle
         } else {
             format
@@ -166,7 +166,7 @@ fn is_read_back(file: &FileEntry) -> bool {
         Product::Yuma,
         Product::Metrics,
     ];
-    let is = |product: &Product| file.format == product.word();
+    let is = |product: &Product| file.format == product.keyword();
     file.is_of_design() && !unread.iter().any(is) && !file.path.starts_with("stk-scenario/")
 }
 
@@ -174,7 +174,7 @@ fn is_read_back(file: &FileEntry) -> bool {
 fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
     let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
     for file in manifest.files.iter().filter(|file| is_read_back(file)) {
-        let name = if file.format == Product::Csv.word() {
+        let name = if file.format == Product::Csv.keyword() {
             file.path.clone()
         } else {
             file.format.clone()
@@ -191,7 +191,7 @@ fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)>
 /// Refuses choices that no product of the export can keep.
 fn check_choices(args: &ExportArgs) -> Result<()> {
     let asked = |product| args.products.contains(&product);
-    if args.oem_combined && args.oem_syntax != oem::Notation::Xml {
+    if args.oem_combined && args.oem_syntax != oem::OemSyntax::Xml {
         bail!("--oem-combined needs --oem-syntax xml: a KVN file holds one satellite");
     }
     if !args.gnss.is_empty() && !asked(Product::Sp3) {
@@ -225,7 +225,7 @@ fn text(args: &ExportArgs, manifest: &Manifest) -> String {
     let mut table = Table::new(&[
         ("format", Align::Left),
         ("files", Align::Right),
-        ("objects in all", Align::Right),
+        ("objects", Align::Right),
         ("frame", Align::Left),
         ("time", Align::Left),
         ("rounding (m)", Align::Right),

@@ -1,8 +1,8 @@
 //! `navwalker lint`.
 
-use crate::cli::args::{Format, LintArgs};
+use crate::cli::args::{LintArgs, OutputFormat};
 use crate::cli::{Status, output};
-use crate::exchange::lint::{Report, lint};
+use crate::exchange::lint::{LintReport, lint};
 use crate::formats::text::finding::Severity;
 use anyhow::{Context, Result};
 use serde::Serialize;
@@ -15,7 +15,7 @@ const MOST_FINDINGS: usize = 100;
 
 /// One finding, as JSON and CSV tell it.
 #[derive(Serialize)]
-struct Row {
+struct FindingRow {
     file: String,
     format: String,
     line: usize,
@@ -36,9 +36,9 @@ pub(crate) fn run(args: &LintArgs) -> Result<Status> {
         rows.extend(rows_of(path, report));
     }
     match args.output {
-        Format::Text => output::result(&(text(&rows) + &clean))?,
-        Format::Json => output::result(&serde_json::to_string_pretty(&rows)?)?,
-        Format::Csv => output::result(&crate::report::records_csv(&rows)?)?,
+        OutputFormat::Text => output::result(&(text(&rows) + &clean))?,
+        OutputFormat::Json => output::result(&serde_json::to_string_pretty(&rows)?)?,
+        OutputFormat::Csv => output::result(&crate::report::records_csv(&rows)?)?,
     }
     Ok(if rows.is_empty() {
         Status::Done
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<Status> {
     })
 }
 
-fn check(path: &Path, args: &LintArgs) -> Result<Report> {
+fn check(path: &Path, args: &LintArgs) -> Result<LintReport> {
     let read = || {
         let input = BufReader::new(File::open(path)?);
         let name = path.file_name().map(|name| name.to_string_lossy());
@@ -56,9 +56,9 @@ fn check(path: &Path, args: &LintArgs) -> Result<Report> {
     read().with_context(|| format!("cannot read {}", path.display()))
 }
 
-fn rows_of(path: &Path, report: Report) -> impl Iterator<Item = Row> {
+fn rows_of(path: &Path, report: LintReport) -> impl Iterator<Item = FindingRow> {
     let file = path.display().to_string();
-    report.findings.into_iter().map(move |finding| Row {
+    report.findings.into_iter().map(move |finding| FindingRow {
         file: file.clone(),
         format: report.format.to_string(),
         line: finding.line,
@@ -72,9 +72,9 @@ fn rows_of(path: &Path, report: Report) -> impl Iterator<Item = Row> {
     })
 }
 
-fn text(rows: &[Row]) -> String {
-    let line = |row: &Row| {
-        let Row {
+fn text(rows: &[FindingRow]) -> String {
+    let line = |row: &FindingRow| {
+        let FindingRow {
             file,
             line,
             column,

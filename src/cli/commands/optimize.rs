@@ -2,8 +2,8 @@
 
 mod seeds;
 
-use crate::cli::args::{Format, OptimizeArgs};
-use crate::cli::progress::Progress;
+use crate::cli::args::{OptimizeArgs, OutputFormat};
+use crate::cli::progress::SearchBar;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
 use crate::cli::{Status, chart, output};
@@ -55,9 +55,9 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     )?;
     let result = &ended.result;
     output::result(&match args.format {
-        Format::Text => text(result, &scenario.name),
-        Format::Json => serde_json::to_string_pretty(result)?,
-        Format::Csv => front_csv(result)?,
+        OutputFormat::Text => text(result, &scenario.name),
+        OutputFormat::Json => serde_json::to_string_pretty(result)?,
+        OutputFormat::Csv => front_csv(result)?,
     })?;
     let shown = out.display().to_string();
     if args.report {
@@ -125,7 +125,7 @@ pub(super) fn search(
     let scenario = &study.scenario;
     let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals())?;
     let mut search = start(args, directory, study, &problem)?;
-    let progress = Progress::new(&search);
+    let progress = SearchBar::new(&search);
     while !search.is_done() && !interrupted.load(Ordering::Relaxed) {
         search.step(&problem)?;
         directory.save(&search)?;
@@ -155,8 +155,8 @@ pub(super) fn status(result: &OptimizeResult) -> Status {
 pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
     let [done, of] = result.search.generations;
     output::hint(&format!(
-        "\ninterrupted after generation {done} of {of}; the results so far are in {shown}\n\
-         go on with the same command and --resume"
+        "\ninterrupted after generation {done} of {of}; results so far: {shown}\n\
+         continue with the same command and --resume"
     ));
 }
 
@@ -189,7 +189,7 @@ fn start(
         return Ok(search);
     }
     if args.resume && !args.certify {
-        output::hint("no checkpoint to resume from; starting anew");
+        output::hint("no checkpoint to resume from; starting over");
     }
     Ok(study
         .scenario
@@ -252,7 +252,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     }
     if let Some(chosen) = result.chosen() {
         text += &format!(
-            "* chosen by fuzzy decision: {}, the largest least membership ({:.3}) over the objectives\n",
+            "* chosen by fuzzy decision: {}, the best worst-case membership ({:.3}) over the objectives\n",
             chosen.design.notation, chosen.membership
         );
     }
@@ -278,7 +278,7 @@ fn other_picks(result: &OptimizeResult) -> String {
             let member = &result.front[picked.place];
             text += &format!(
                 "  --pick {}: {} {}, {}\n",
-                pick.word(),
+                pick.keyword(),
                 member.index,
                 member.design.notation,
                 picked.reason

@@ -5,9 +5,9 @@ use crate::cli::run_view::RunView;
 use crate::cli::{Status, files, output};
 use crate::constellation::Design;
 use crate::report::figures::draw::{Form, png, svg};
-use crate::report::figures::{self, Figure, Measure, Named, Plate};
+use crate::report::figures::{self, Figure, Measure, NamedProfile, Plate};
 use crate::report::profile::Profile;
-use crate::scenario::{Region, Word};
+use crate::scenario::{Keyword, Region};
 use anyhow::{Context, Result, bail};
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -19,7 +19,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let bytes = render(&plate, form)?;
     let Some(out) = &args.out else {
         if form == Form::Png && io::stdout().is_terminal() {
-            bail!("a PNG is nothing for a terminal; name a file with --out");
+            bail!("a PNG cannot be shown in a terminal; name a file with --out");
         }
         io::stdout().lock().write_all(&bytes)?;
         return Ok(Status::Done);
@@ -43,8 +43,8 @@ fn form(args: &PlotArgs) -> Result<Form> {
     let extension = args.out.as_deref().and_then(Path::extension);
     match extension {
         None => Ok(Form::Svg),
-        Some(extension) => Form::from_word(&extension.to_string_lossy().to_lowercase())
-            .context("the name of --out does not tell the form; say it with --as"),
+        Some(extension) => Form::from_keyword(&extension.to_string_lossy().to_lowercase())
+            .context("cannot infer the format from --out; use --as"),
     }
 }
 
@@ -104,10 +104,10 @@ fn profiles(args: &PlotArgs, view: &RunView, with_others: bool) -> Result<Vec<(S
     wanted.into_iter().map(one).collect()
 }
 
-fn named(profiles: &[(String, Profile)]) -> Vec<Named<'_>> {
+fn named(profiles: &[(String, Profile)]) -> Vec<NamedProfile<'_>> {
     let pairs = profiles.iter();
     pairs
-        .map(|(name, profile)| Named {
+        .map(|(name, profile)| NamedProfile {
             name: name.clone(),
             profile,
         })

@@ -23,13 +23,13 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     let stamp = study.stamp()?;
     if !args.force && !may_replace(&args.out, &stamp.hash)? {
         bail!(
-            "{} holds something else than this study by this version; choose another --out, or \
+            "{} holds something other than this study by this version; choose another --out, or \
              replace it with --force",
             args.out.display()
         );
     }
     let staged = files::StagedDirectory::new(&args.out)?;
-    output::hint("repeating the paper's study; this takes some seconds to minutes");
+    output::hint("reproducing the paper's study; this takes seconds to minutes");
     let repeated = reproduce(&PaperStudy {
         setup: study.setup()?,
         designs: scenario.search.designs,

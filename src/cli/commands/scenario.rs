@@ -1,6 +1,6 @@
 //! `navwalker scenario`.
 
-use crate::cli::args::{Format, ScenarioAction, ScenarioArgs};
+use crate::cli::args::{OutputFormat, ScenarioAction, ScenarioArgs};
 use crate::cli::study::Study;
 use crate::cli::{Status, output};
 use crate::report::{Align, Table};
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &ScenarioArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn list(format: Format) -> Result<()> {
+fn list(format: OutputFormat) -> Result<()> {
     let mut rows = Vec::new();
     for name in builtin_names() {
         let scenario = Scenario::parse::<&str>(name, builtin(name)?.as_bytes(), &[])?;
@@ -42,7 +42,7 @@ fn list(format: Format) -> Result<()> {
         ]);
     }
     match format {
-        Format::Text => {
+        OutputFormat::Text => {
             let mut table = Table::new(&[
                 ("name", Align::Left),
                 ("surface", Align::Left),
@@ -56,11 +56,11 @@ fn list(format: Format) -> Result<()> {
             );
             Ok(())
         }
-        Format::Json => {
+        OutputFormat::Json => {
             let names: Vec<_> = rows.iter().map(|row| &row[0]).collect();
             output::result(&serde_json::to_string_pretty(&names)?)
         }
-        Format::Csv => {
+        OutputFormat::Csv => {
             let mut writer = csv::Writer::from_writer(Vec::new());
             writer.write_record(["name", "surface", "mask_deg", "region"])?;
             rows.iter().try_for_each(|row| writer.write_record(row))?;

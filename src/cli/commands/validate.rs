@@ -116,7 +116,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let bytes =
         fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
     let manifest = Manifest::read(bytes.as_slice())
-        .with_context(|| format!("{} is no manifest of an export", manifest.display()))?;
+        .with_context(|| format!("{} is not an export manifest", manifest.display()))?;
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
         if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
@@ -126,7 +126,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     }
     if by_format.is_empty() {
         bail!(
-            "{} has no file in a format that is compared: {}",
+            "{} has no file in a format that can be compared: {}",
             path.display(),
             COMPARED.join(", ")
         );

@@ -1,7 +1,7 @@
 //! The nominal constellations, from the documents that define them.
 //!
 //! All are referred to the epoch of the study: the angles of a table, or Ω = M = 0 of the first
-//! satellite, are mean elements in TEME at that instant, and the satellites fly on under secular
+//! satellite, are mean elements in TEME at that instant, and the satellites propagate on under secular
 //! J2. So a study sees the nominal geometry whatever its date; where the ground tracks lie
 //! follows from the sidereal time of its epoch. For satellites where they really are, take
 //! element sets.

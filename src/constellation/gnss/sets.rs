@@ -17,7 +17,7 @@ pub enum ElementSetError {
         /// The system.
         system: String,
     },
-    /// A satellite with more than one set, which would be flown twice.
+    /// A satellite with more than one set, which would be propagated twice.
     #[error("{system}: satellite {satellite} has more than one element set; keep one")]
     Duplicate {
         /// The system.
@@ -39,17 +39,17 @@ pub enum ElementSetError {
 
 /// A satellite and its set, with the epoch of the set as time origin.
 #[derive(Debug, Clone)]
-struct Member {
+struct ElementSetMember {
     name: String,
     epoch: Epoch,
     orbit: Sgp4Orbit,
 }
 
-/// The satellites of one navigation system, each from one element set, flown by SGP4.
+/// The satellites of one navigation system, each from one element set, propagated by SGP4.
 #[derive(Debug, Clone)]
 pub struct ElementSets {
     name: String,
-    members: Vec<Member>,
+    members: Vec<ElementSetMember>,
 }
 
 /// Element sets that are old, or not yet valid, for a study: a warning, not an error.
@@ -100,7 +100,7 @@ impl ElementSets {
             }
             let epoch = Epoch::from_utc(set.datetime.and_utc());
             match Sgp4Orbit::from_element_set(set, epoch) {
-                Ok(orbit) => members.push(Member {
+                Ok(orbit) => members.push(ElementSetMember {
                     name: satellite,
                     epoch,
                     orbit,
@@ -129,14 +129,14 @@ impl ElementSets {
     /// The satellites, with time from `origin`.
     #[must_use]
     pub fn satellites(&self, origin: Epoch) -> Vec<GnssSatellite> {
-        let fly = |member: &Member| {
+        let propagate = |member: &ElementSetMember| {
             let ahead_s = origin.seconds_since(member.epoch);
             GnssSatellite {
                 name: member.name.clone(),
                 orbit: GnssOrbit::Sgp4(Box::new(member.orbit.with_origin_moved(ahead_s))),
             }
         };
-        self.members.iter().map(fly).collect()
+        self.members.iter().map(propagate).collect()
     }
 
     /// The set that is farthest from an instant of `grid`, when that is more than
@@ -144,7 +144,7 @@ impl ElementSets {
     #[must_use]
     pub fn stale(&self, grid: TimeGrid) -> Option<StaleElements> {
         let last_s = grid.elapsed_s(grid.len() - 1);
-        let age_days = |member: &Member| {
+        let age_days = |member: &ElementSetMember| {
             let to_first_s = grid.epoch().seconds_since(member.epoch);
             to_first_s.abs().max((to_first_s + last_s).abs()) / SECONDS_PER_DAY
         };

@@ -55,7 +55,7 @@ fn velocities_are_derivatives() {
     }
 }
 
-/// The elements at the epoch, for constellations that fly under secular J2.
+/// The elements at the epoch, for constellations that propagate under secular J2.
 fn elements(preset: Preset) -> Vec<crate::orbit::MeanElements> {
     let elements = |satellite: &GnssSatellite| match &satellite.orbit {
         GnssOrbit::Secular(orbit) => Some(orbit.elements_at(0.0)),
@@ -159,7 +159,7 @@ fn validate_slots() {
 #[test]
 fn names_are_unique_and_round_trip() {
     for &preset in Preset::ALL {
-        assert_eq!(preset.word().parse(), Ok(preset));
+        assert_eq!(preset.keyword().parse(), Ok(preset));
         let satellites = preset.satellites(epoch());
         let mut names: Vec<_> = satellites.iter().map(|s| s.name.clone()).collect();
         names.sort();

@@ -70,7 +70,7 @@ impl FixedTiles {
 
 /// One sample in time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Instant {
+pub(super) struct SampleInstant {
     /// Index into the grid.
     pub(super) number: usize,
     pub(super) elapsed_s: f64,
@@ -128,7 +128,7 @@ impl Fixed {
     pub(super) fn at<'a>(
         &'a self,
         tiles: &Tiles,
-        instant: Instant,
+        instant: SampleInstant,
         scratch: &'a mut FixedTiles,
     ) -> Result<FixedSample<'a>, EphemerisError> {
         if self.systems.is_empty() || !self.kept.normals.is_empty() {
@@ -152,7 +152,7 @@ impl Fixed {
         for system in &self.systems {
             let mut positions = Positions::new(system.satellites().len());
             positions.propagate(system, elapsed_s, rotation)?;
-            systems.push(System::new(positions, &tiles.fixed_horizon));
+            systems.push(FixedSystem::new(positions, &tiles.fixed_horizon));
         }
         self.instructions.run(Make {
             fixed: self,
@@ -164,7 +164,7 @@ impl Fixed {
     }
 
     #[inline(always)]
-    fn push_tile(&self, tile: &Tile, systems: &[System], to: &mut FixedTiles) {
+    fn push_tile(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
         let mut surplus = [0_u8; LANES];
         let together = match self.clocks {
@@ -196,13 +196,13 @@ impl Fixed {
 }
 
 /// One system at one sample.
-struct System {
+struct FixedSystem {
     positions: Positions,
     candidates: Candidates,
     slack_km: f32,
 }
 
-impl System {
+impl FixedSystem {
     fn new(positions: Positions, horizon: &Horizon) -> Self {
         let mut candidates = Candidates::with_capacity(positions.count);
         candidates.fill(&positions, horizon);
@@ -228,7 +228,7 @@ impl System {
 struct Make<'a> {
     fixed: &'a Fixed,
     tiles: &'a [Tile],
-    systems: &'a [System],
+    systems: &'a [FixedSystem],
     to: &'a mut FixedTiles,
 }
 

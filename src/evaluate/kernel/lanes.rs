@@ -335,7 +335,7 @@ impl<R: Real> Solution<R> {
 struct NormalLanes<R> {
     /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
     matrix: [Lanes<R>; 6],
-    /// Satellites less clock states.
+    /// Satellites minus clock states.
     surplus: Lanes<u32>,
 }
 

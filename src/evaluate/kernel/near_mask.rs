@@ -3,7 +3,7 @@
 use super::super::Setup;
 use super::fixed::FixedSample;
 use super::lanes::FixedTile;
-use super::sample::{Outcome, POSITION_STATES, Scene, UNSOLVED, Undecided};
+use super::sample::{Outcome, POSITION_STATES, SampleContext, UNSOLVED, Undecided};
 use crate::dop::Symmetric3;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -19,7 +19,7 @@ pub(super) struct Satellites<'a> {
 /// Settles all doubts of one sample.
 pub(super) fn settle(
     setup: &Setup,
-    scene: &Scene,
+    scene: &SampleContext,
     satellites: &Satellites<'_>,
     fixed: FixedSample<'_>,
     outcome: &mut Outcome,

@@ -23,7 +23,7 @@ const FIRST: u32 = (127 - 7) << (23 - TRAILING_BITS);
 /// The places of the first pass, by leading bits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
-    /// The place behind that of the largest PDOP: what is unsolved.
+    /// The place behind that of the maximum PDOP: what is unsolved.
     unsolved: u32,
 }
 
@@ -161,7 +161,7 @@ const VALUE_AT_RISK: usize = 4;
 
 /// What the second pass looks for.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Search {
+pub(super) struct RankSearch {
     places: Places,
     level: Level,
     solved: u64,
@@ -193,7 +193,7 @@ impl Merge for Found {
 /// that of the value-at-risk.
 pub(super) struct Find<'a> {
     pub(super) tiles: &'a [Lanes<f32>],
-    pub(super) search: &'a Search,
+    pub(super) search: &'a RankSearch,
     pub(super) found: &'a mut Found,
 }
 
@@ -232,7 +232,7 @@ fn note(tile: &Lanes<f32>, places: Places, wanted: &[u32; WANTED], found: &mut F
     }
 }
 
-impl Search {
+impl RankSearch {
     /// `None` when no value is solved.
     pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
         let solved = counts.solved();

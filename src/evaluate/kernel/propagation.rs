@@ -153,7 +153,7 @@ impl PatternBlock {
 }
 
 impl PatternPropagator {
-    /// The flight of a design; `None` when its model is not secular or its ellipse too long for
+    /// The propagation of a design; `None` when its model is not secular or its ellipse too long for
     /// the lanes.
     pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
         let satellites = design.satellites();
@@ -223,7 +223,7 @@ impl PatternPropagator {
             };
             self.place_all(&ellipse, turn, positions);
         } else {
-            self.place_all(&Circle { radius_km: a }, turn, positions);
+            self.place_all(&CircularShape { radius_km: a }, turn, positions);
         }
         positions.nearest_km = a * (1.0 - e);
         positions.farthest_km = a * (1.0 + e);
@@ -237,11 +237,11 @@ trait Shape {
     fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64);
 }
 
-struct Circle {
+struct CircularShape {
     radius_km: f64,
 }
 
-impl Shape for Circle {
+impl Shape for CircularShape {
     #[inline(always)]
     fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64) {
         (self.radius_km * cos_phase, self.radius_km * sin_phase)

@@ -44,7 +44,7 @@ impl Limits {
 }
 
 /// What all samples share.
-pub(super) struct Scene {
+pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
     pub(super) double: MaskTerms<f64>,
@@ -114,10 +114,10 @@ impl Outcome {
 
 /// One sample to be evaluated.
 pub(super) struct Sample<'a> {
-    pub(super) scene: &'a Scene,
+    pub(super) scene: &'a SampleContext,
     /// Those of the scene, or narrower ones.
     pub(super) limits: Limits,
-    /// The pattern to fly; without one the positions are there already.
+    /// The pattern to propagate; without one the positions are there already.
     pub(super) pattern: Option<(&'a PatternPropagator, Turn)>,
     /// The GNSS part.
     pub(super) fixed: FixedSample<'a>,
@@ -145,7 +145,7 @@ impl Work for Sample<'_> {
 
 #[inline(always)]
 fn evaluate(
-    scene: &Scene,
+    scene: &SampleContext,
     limits: Limits,
     fixed: &FixedSample<'_>,
     work: &mut Workspace,
@@ -177,7 +177,7 @@ fn evaluate(
             };
             let fixed = fixed.tile(number);
             let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
-            let verdict = Verdict::new(&sums, &fixed, &limits);
+            let verdict = LaneVerdict::new(&sums, &fixed, &limits);
             for l in 0..LANES {
                 visible[l] += verdict.visible.0[l];
                 available[l] += verdict.available.0[l];
@@ -240,7 +240,7 @@ impl<'a> TileCandidates<'a> {
 }
 
 /// What f32 says about the points of a tile; 0 or 1 where it is yes or no.
-struct Verdict {
+struct LaneVerdict {
     pdop: Lanes<f32>,
     /// Too close to the mask for f32.
     doubtful: Lanes<u32>,
@@ -252,7 +252,7 @@ struct Verdict {
     available: Lanes<u32>,
 }
 
-impl Verdict {
+impl LaneVerdict {
     #[inline(always)]
     fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
         let solution = Solution::new(sums, fixed);
@@ -282,7 +282,7 @@ impl Verdict {
 
 /// Leaves the doubtful points of a tile to be candidates at again.
 #[inline(never)]
-fn doubt(number: usize, verdict: &Verdict, candidates: TileCandidates<'_>, out: &mut Outcome) {
+fn doubt(number: usize, verdict: &LaneVerdict, candidates: TileCandidates<'_>, out: &mut Outcome) {
     let satellites: Vec<u32> = candidates.satellites().map(|n| n as u32).collect();
     for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
         out.pdop[number].0[lane] = UNSOLVED;
@@ -298,10 +298,10 @@ fn doubt(number: usize, verdict: &Verdict, candidates: TileCandidates<'_>, out: 
 /// them are available.
 #[inline(always)]
 fn compute_again(
-    scene: &Scene,
+    scene: &SampleContext,
     number: usize,
     fixed: &FixedTile<'_>,
-    verdict: &Verdict,
+    verdict: &LaneVerdict,
     positions: &Positions,
     candidates: TileCandidates<'_>,
     out: &mut Outcome,

@@ -6,7 +6,7 @@ use crate::constellation::gnss::Preset;
 use crate::constellation::{DesignParameters, Pattern};
 use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
-use crate::ephemeris::Flown;
+use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
 use crate::evaluate::{Evaluator, MetricOptions, Metrics};
 use crate::frames::{EarthFixed, Position, State, Teme};
@@ -48,7 +48,7 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
 }
 
 fn designs() -> impl Strategy<Value = Design> {
-    let pattern = prop::sample::select(<Pattern as crate::keyword::Word>::ALL.to_vec());
+    let pattern = prop::sample::select(<Pattern as crate::keyword::Keyword>::ALL.to_vec());
     let shape = (1..9_usize, 1..12_usize, 0..9_usize);
     // As a share of what brings the perigee to the ground.
     let ellipse = prop_oneof![
@@ -216,7 +216,7 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
         let elevation = (7.0 + if n % 2 == 0 { 1e-9 } else { -1e-9_f64 }).to_radians();
         let level = site.local.east * azimuth.sin() + site.local.north * azimuth.cos();
         let line = site.local.up * elevation.sin() + level * elevation.cos();
-        satellites.push(Flown {
+        satellites.push(EphemerisSatellite {
             name: n.to_string(),
             slot: None,
             propagator: Box::new(Hovering {
@@ -228,7 +228,7 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::new(setup.grid, satellites);
     let evaluator = Evaluator::new(setup).unwrap();
     let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, rechecks) = kernel.evaluate(Source::Ephemeris(&ephemeris)).unwrap();
+    let (_, rechecks) = kernel.evaluate(StateSource::Ephemeris(&ephemeris)).unwrap();
     assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
@@ -295,7 +295,7 @@ fn streaming_equals_keeping() {
 fn regress_culling_looks_at_twice_what_is_seen() {
     let setup = setup([3.0, 54.0], Surface::Sphere);
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
-    let flight = PatternPropagator::new(&design, setup.model).unwrap();
+    let propagation = PatternPropagator::new(&design, setup.model).unwrap();
     let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
     assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
     let count = design.satellite_count();
@@ -304,7 +304,7 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let mut looked_at = 0;
     for elapsed_s in setup.grid.iter() {
         let rotation = EarthRotation::from_gmst(setup.grid.epoch().gmst_rad(elapsed_s));
-        flight.place_at(&flight.turn(elapsed_s, rotation), &mut positions);
+        propagation.place_at(&propagation.turn(elapsed_s, rotation), &mut positions);
         all.fill(&positions, &tiles.horizon);
         let slack_km = Horizon::cap_slack_km(&positions);
         for (tile, block) in tiles
@@ -373,7 +373,7 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
 
 /// Positions of a pattern against those of its propagators, over a week.
 #[test]
-fn patterns_fly_as_their_propagators_do() {
+fn patterns_propagate_as_their_propagators_do() {
     for text in [
         "delta:55:182/13/1@925",
         "star:97.5:70/7/2@500",
@@ -385,15 +385,15 @@ fn patterns_fly_as_their_propagators_do() {
         let base = setup([3.0, 54.0], Surface::Sphere);
         let grid = TimeGrid::new(base.grid.epoch(), 7.0 * 86_400.0, 5000.0).unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        let flight = PatternPropagator::new(&design, Model::J2).unwrap();
-        let mut flown = Positions::new(design.satellite_count());
-        let mut asked = flown.clone();
+        let propagation = PatternPropagator::new(&design, Model::J2).unwrap();
+        let mut propagated = Positions::new(design.satellite_count());
+        let mut asked = propagated.clone();
         for elapsed_s in grid.iter() {
             let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
-            flight.place_at(&flight.turn(elapsed_s, rotation), &mut flown);
+            propagation.place_at(&propagation.turn(elapsed_s, rotation), &mut propagated);
             asked.propagate(&ephemeris, elapsed_s, rotation).unwrap();
             for n in 0..design.satellite_count() {
-                let apart = Vector3::from(flown.at(n)) - Vector3::from(asked.at(n));
+                let apart = Vector3::from(propagated.at(n)) - Vector3::from(asked.at(n));
                 // An angle of 700 rad in doubles is good to 1e-13 rad: 1e-9 km.
                 assert!(apart.norm() < 2e-9, "{text} {n} {apart}");
             }
@@ -425,13 +425,13 @@ fn single_values_hold_six_digits() {
                 single_below,
                 ..kernel.scene.limits
             };
-            let flight = Flight {
+            let propagation = PropagationSource {
                 ephemeris: &ephemeris,
                 pattern: Some(&pattern),
             };
             let mut all = Vec::new();
             let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
-            kernel.run(flight, 0..200, limits, take).unwrap();
+            kernel.run(propagation, 0..200, limits, take).unwrap();
             all
         };
         let (single, double) = (values(SINGLE_BELOW), values(0.0));

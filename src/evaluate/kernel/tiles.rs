@@ -133,7 +133,7 @@ impl Horizon {
         positions.farthest_km as f32 * (16.0 * f32::EPSILON)
     }
 
-    fn cap(&self, circle: Option<Circle>) -> Cap {
+    fn cap(&self, circle: Option<EnclosingCircle>) -> Cap {
         // Caps near a hemisphere and beyond are not worth a test.
         let Some(circle) = circle.filter(|circle| circle.radius_rad < 1.2) else {
             return Cap::EVERYTHING;
@@ -157,12 +157,12 @@ fn rounding_km(positions: &Positions) -> f64 {
 
 /// A circle on the sphere around some points.
 #[derive(Debug, Clone, Copy)]
-struct Circle {
+struct EnclosingCircle {
     centre: Vector3<f64>,
     radius_rad: f64,
 }
 
-impl Circle {
+impl EnclosingCircle {
     /// Nearly the smallest: the centre is moved towards the farthest point by smaller and smaller
     /// steps (Bădoiu and Clarkson, *SODA* 2003, p. 801). `None` for points all around the Earth.
     fn around(sites: &[Site], members: &[u32]) -> Option<Self> {
@@ -232,7 +232,7 @@ impl Tiles {
         self.split_group(sites, members);
         self.groups.push(Group {
             tiles: first..self.tiles.len(),
-            cap: self.horizon.cap(Circle::around(sites, members)),
+            cap: self.horizon.cap(EnclosingCircle::around(sites, members)),
         });
     }
 
@@ -244,7 +244,7 @@ impl Tiles {
             self.split_group(sites, right);
             return;
         }
-        let circle = Circle::around(sites, members);
+        let circle = EnclosingCircle::around(sites, members);
         self.tiles.push(Tile {
             single: site_lanes(sites, members, |x| x as f32, f32::NAN),
             double: site_lanes(sites, members, |x| x, f64::NAN),
@@ -299,8 +299,8 @@ fn cut_well(sites: &[Site], members: &mut [u32]) {
     let cut = middle(members.len());
     let cost = |members: &[u32]| {
         let (left, right) = members.split_at(cut);
-        left.len() as f64 * Circle::cost(Circle::around(sites, left))
-            + right.len() as f64 * Circle::cost(Circle::around(sites, right))
+        left.len() as f64 * EnclosingCircle::cost(EnclosingCircle::around(sites, left))
+            + right.len() as f64 * EnclosingCircle::cost(EnclosingCircle::around(sites, right))
     };
     let orders = keys(sites, members).map(|key| {
         let mut order = members.to_vec();

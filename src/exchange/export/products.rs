@@ -1,14 +1,14 @@
 //! The files of each product.
 
-use super::source::{Source, failed};
+use super::source::{ExportSource, failed};
 use super::{Files, Product, Sink};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{Ephemeris, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
-use crate::formats::ccsds::omm::Notation;
+use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::opm::Opm;
 use crate::formats::ccsds::{oem, omm};
 use crate::formats::metadata::{Metadata, Object, Theory};
@@ -17,21 +17,21 @@ use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::{WriteError, csv};
 use crate::formats::{sp3, stk, tle};
 use crate::frames::{EarthFixed, Frame, from_teme};
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::orbit::sgp4::Sgp4Orbit;
 use rayon::prelude::*;
 
 /// The files of a product, or why one is not written.
-pub(super) type Written = Result<Vec<FileEntry>, WriteError>;
+pub(super) type ProductFiles = Result<Vec<FileEntry>, WriteError>;
 
-impl Source<'_> {
+impl ExportSource<'_> {
     fn sgp4_metadata(&self) -> Metadata {
         self.metadata(Frame::Teme, Theory::Sgp4Elements(self.choices.elements))
     }
 
-    pub(super) fn flown_metadata(&self, frame: Frame) -> Metadata {
-        self.metadata(frame, Theory::Flown(self.subject.model))
+    pub(super) fn propagated_metadata(&self, frame: Frame) -> Metadata {
+        self.metadata(frame, Theory::EphemerisSatellite(self.subject.model))
     }
 
     /// Version of a CCSDS message and its notation: `2.0 KVN`.
@@ -43,8 +43,8 @@ impl Source<'_> {
     /// One file for each satellite, by several threads at once.
     fn each(
         &self,
-        write: impl Fn(&Flown, &Object) -> Result<FileEntry, WriteError> + Sync,
-    ) -> Written {
+        write: impl Fn(&EphemerisSatellite, &Object) -> Result<FileEntry, WriteError> + Sync,
+    ) -> ProductFiles {
         let satellites = self.ephemeris.satellites().par_iter();
         satellites
             .zip(&self.objects)
@@ -52,7 +52,7 @@ impl Source<'_> {
             .collect()
     }
 
-    pub(super) fn tle(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn tle(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
         let about = (self.objects.len(), &metadata);
         let sets = self.tle_sets()?;
@@ -63,15 +63,15 @@ impl Source<'_> {
         Ok(vec![entry])
     }
 
-    pub(super) fn omm(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn omm(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let notation = self.choices.omm;
         let metadata = self.sgp4_metadata();
         let header = omm::header(self.choices.ccsds_version, &metadata);
-        let version = self.ccsds_version(notation.word());
+        let version = self.ccsds_version(notation.keyword());
         let format = (Product::Omm, version.as_str());
         let sets = self.element_sets(self.subject.grid.epoch())?;
         let loss = self.loss_of_sets(&sets, false)?;
-        if notation == Notation::Kvn {
+        if notation == OmmSyntax::Kvn {
             let one = |(set, object): (&sgp4::Elements, &Object)| {
                 let path = format!("omm/{}.omm", object.name);
                 files.add(&path, format, (1, &metadata), |out| {
@@ -84,28 +84,28 @@ impl Source<'_> {
         let path = format!("omm.{notation}");
         let entry = files.add(&path, format, (sets.len(), &metadata), |out| {
             match notation {
-                Notation::Xml | Notation::Kvn => omm::write_xml(out, &header, &sets)?,
-                Notation::Json => omm::write_json(out, &sets)?,
-                Notation::Csv => omm::write_csv(out, &sets)?,
+                OmmSyntax::Xml | OmmSyntax::Kvn => omm::write_xml(out, &header, &sets)?,
+                OmmSyntax::Json => omm::write_json(out, &sets)?,
+                OmmSyntax::Csv => omm::write_csv(out, &sets)?,
             }
             Ok(loss.clone())
         })?;
         Ok(vec![entry])
     }
 
-    pub(super) fn tle_states(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn tle_states(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
         let about = (self.objects.len(), &metadata);
         let format = (Product::TleStates, "1");
         let grid = self.subject.grid;
         let entry = files.add("tle-states.csv", format, about, |out| {
             let mut satellites = Vec::new();
-            for (set, flown) in self.tle_sets()?.iter().zip(self.ephemeris.satellites()) {
+            for (set, propagated) in self.tle_sets()?.iter().zip(self.ephemeris.satellites()) {
                 let orbit = Sgp4Orbit::from_element_set(&tle::as_written(set)?, grid.epoch())
-                    .map_err(|source| failed(flown, source))?;
-                satellites.push(Flown {
-                    name: flown.name.clone(),
-                    slot: flown.slot,
+                    .map_err(|source| failed(propagated, source))?;
+                satellites.push(EphemerisSatellite {
+                    name: propagated.name.clone(),
+                    slot: propagated.slot,
                     propagator: Box::new(orbit),
                 });
             }
@@ -115,7 +115,7 @@ impl Source<'_> {
         Ok(vec![entry])
     }
 
-    /// The satellites of a design fly alike, so that the first tells of all.
+    /// The satellites of a design propagate alike, so that the first tells of all.
     fn hermite(&self, sampled: &Sampled<'_, Frame>) -> Result<Option<Hermite>, WriteError> {
         Ok(match self.ephemeris.satellites() {
             [first, ..] => Hermite::measured(sampled, first)?,
@@ -123,9 +123,9 @@ impl Source<'_> {
         })
     }
 
-    pub(super) fn oem(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn oem(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let choices = self.choices;
-        let mut metadata = self.flown_metadata(choices.frame);
+        let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
         let sampled = Sampled::new(&self.ephemeris, choices.frame);
         let hermite = self.hermite(&sampled)?;
@@ -134,15 +134,15 @@ impl Source<'_> {
             note: (choices.frame == Frame::Teme).then(|| oem::TEME_NOTE.to_owned()),
             ..Loss::default()
         };
-        let version = self.ccsds_version(choices.oem.word());
+        let version = self.ccsds_version(choices.oem.keyword());
         let format = (Product::Oem, version.as_str());
-        let writer = oem::Writer {
+        let writer = oem::OemWriter {
             version: choices.ccsds_version,
             metadata: &metadata,
             sampled: &sampled,
             hermite,
         };
-        if choices.oem == oem::Notation::Xml && choices.oem_combined {
+        if choices.oem == oem::OemSyntax::Xml && choices.oem_combined {
             let about = (self.objects.len(), &metadata);
             let entry = files.add("oem.xml", format, about, |out| {
                 let satellites = self.ephemeris.satellites().iter();
@@ -153,38 +153,39 @@ impl Source<'_> {
         }
         self.each(|satellite, object| {
             let extension = match choices.oem {
-                oem::Notation::Kvn => "oem",
-                oem::Notation::Xml => "xml",
+                oem::OemSyntax::Kvn => "oem",
+                oem::OemSyntax::Xml => "xml",
             };
             let path = format!("oem/{}.{extension}", satellite.name);
             files.add(&path, format, (1, &metadata), |out| {
                 match choices.oem {
-                    oem::Notation::Kvn => writer.kvn(out, satellite, object)?,
-                    oem::Notation::Xml => writer.xml(out, satellite, object)?,
+                    oem::OemSyntax::Kvn => writer.kvn(out, satellite, object)?,
+                    oem::OemSyntax::Xml => writer.xml(out, satellite, object)?,
                 }
                 Ok(loss.clone())
             })
         })
     }
 
-    pub(super) fn opm(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn opm(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let choices = self.choices;
-        let mut metadata = self.flown_metadata(choices.frame);
+        let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
         let version = self.ccsds_version("kvn");
         let epoch = self.subject.grid.epoch();
         let satellites = self.ephemeris.satellites();
-        let one = |((flown, satellite), object): ((&Flown, &Satellite), &Object)| {
-            let path = format!("opm/{}.opm", object.name);
-            let format = (Product::Opm, version.as_str());
-            files.add(&path, format, (1, &metadata), |out| {
-                let teme = self.ephemeris.state(flown, 0.0)?;
-                let state = from_teme(teme, choices.frame, epoch, 0.0);
-                let (elements, at) = (&satellite.elements, (epoch, state));
-                Opm::new(choices.ccsds_version, &metadata, object, elements, at).write(out)?;
-                Ok(Loss::default())
-            })
-        };
+        let one =
+            |((propagated, satellite), object): ((&EphemerisSatellite, &Satellite), &Object)| {
+                let path = format!("opm/{}.opm", object.name);
+                let format = (Product::Opm, version.as_str());
+                files.add(&path, format, (1, &metadata), |out| {
+                    let teme = self.ephemeris.state(propagated, 0.0)?;
+                    let state = from_teme(teme, choices.frame, epoch, 0.0);
+                    let (elements, at) = (&satellite.elements, (epoch, state));
+                    Opm::new(choices.ccsds_version, &metadata, object, elements, at).write(out)?;
+                    Ok(Loss::default())
+                })
+            };
         satellites
             .par_iter()
             .zip(&self.satellites)
@@ -193,9 +194,9 @@ impl Source<'_> {
             .collect()
     }
 
-    pub(super) fn stk(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn stk(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let frame = self.choices.frame;
-        let metadata = self.flown_metadata(frame);
+        let metadata = self.propagated_metadata(frame);
         let sampled = Sampled::new(&self.ephemeris, frame);
         let hermite = self.hermite(&sampled)?;
         let loss = Loss {
@@ -213,9 +214,9 @@ impl Source<'_> {
         })
     }
 
-    pub(super) fn sp3(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn sp3(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let (version, letter) = (self.choices.sp3_version, self.choices.sp3_letter);
-        let mut metadata = self.flown_metadata(Frame::EarthFixed);
+        let mut metadata = self.propagated_metadata(Frame::EarthFixed);
         metadata.time_system = TimeSystem::Gps;
         let sampled = Sampled::new(&self.ephemeris, EarthFixed);
         let satellites: Vec<_> = self
@@ -224,7 +225,7 @@ impl Source<'_> {
             .iter()
             .zip(&self.objects)
             .collect();
-        let note = |part: &[(&Flown, &Object)]| {
+        let note = |part: &[(&EphemerisSatellite, &Object)]| {
             let ((_, first), (_, last)) = part.first().zip(part.last())?;
             let count = part.len();
             Some(format!(
@@ -232,10 +233,10 @@ impl Source<'_> {
                 first.name, last.name
             ))
         };
-        let one = |(index, part): (usize, &[(&Flown, &Object)])| {
+        let one = |(index, part): (usize, &[(&EphemerisSatellite, &Object)])| {
             let path = format!("sp3/part-{:02}.sp3", index + 1);
             let about = (part.len(), &metadata);
-            files.add(&path, (Product::Sp3, version.word()), about, |out| {
+            files.add(&path, (Product::Sp3, version.keyword()), about, |out| {
                 sp3::write(out, version, letter, &metadata, &sampled, part)?;
                 Ok(Loss {
                     note: note(part),
@@ -271,13 +272,13 @@ impl Source<'_> {
         let objects = Object::all(ephemeris.satellites(), grid.epoch())?;
         let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
         let sampled = Sampled::new(&ephemeris, EarthFixed);
-        let mut metadata = self.metadata(Frame::EarthFixed, Theory::Flown(Model::J2));
+        let mut metadata = self.metadata(Frame::EarthFixed, Theory::EphemerisSatellite(Model::J2));
         metadata.time_system = TimeSystem::Gps;
         let note = format!("nominal {preset}: slots, not the satellites in orbit");
         metadata.subject.insert(0, note.clone());
         let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
         let about = (satellites.len(), &metadata);
-        files.add(&path, (Product::Sp3, version.word()), about, |out| {
+        files.add(&path, (Product::Sp3, version.keyword()), about, |out| {
             sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
             Ok(Loss {
                 note: Some(note),
@@ -286,8 +287,8 @@ impl Source<'_> {
         })
     }
 
-    pub(super) fn csv(&self, files: &Files<'_, impl Sink>) -> Written {
-        let metadata = self.flown_metadata(Frame::Teme);
+    pub(super) fn csv(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+        let metadata = self.propagated_metadata(Frame::Teme);
         let about = (self.objects.len(), &metadata);
         let elements = files.add("elements.csv", (Product::Csv, "1"), about, |out| {
             let rows = self.satellites.iter().zip(&self.objects);

@@ -1,19 +1,19 @@
 //! The products from which another program rebuilds the study: STK, GMAT, almanacs.
 
-use super::products::Written;
-use super::source::Source;
+use super::products::ProductFiles;
+use super::source::ExportSource;
 use super::{Files, Product, Sink};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{Ephemeris, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, Loss};
 use crate::formats::maps::scene::Scene;
-use crate::formats::stk::connect::{Scenario, Setting, by_hand};
+use crate::formats::stk::connect::{ConnectScenario, Setting, by_hand};
 use crate::formats::yuma::{self, Almanac, Applicability, NoAlmanac, radius_shift_km};
 use crate::formats::{WriteError, gmat, stk};
 use crate::frames::Frame;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use std::io::Write;
 
@@ -21,16 +21,16 @@ use std::io::Write;
 struct InStk {
     name: String,
     setting: Setting,
-    flown: Option<Flown>,
+    propagated: Option<EphemerisSatellite>,
 }
 
-impl Source<'_> {
+impl ExportSource<'_> {
     /// The ephemerides, and with a scenario the commands that build it.
     pub(super) fn stk_with(
         &self,
         files: &Files<'_, impl Sink>,
         scene: Option<&Scene<'_>>,
-    ) -> Written {
+    ) -> ProductFiles {
         let mut entries = self.stk(files)?;
         if let Some(scene) = scene {
             entries.extend(self.stk_scenario(files, scene)?);
@@ -38,7 +38,7 @@ impl Source<'_> {
         Ok(entries)
     }
 
-    fn stk_scenario(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    fn stk_scenario(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
         let setup = scene.setup();
         let mut gnss = Vec::new();
         for (system, satellites) in scene.systems() {
@@ -53,14 +53,14 @@ impl Source<'_> {
             gnss.iter()
                 .map(|one| (one.name.clone(), one.setting.clone())),
         );
-        let scenario = Scenario {
+        let scenario = ConnectScenario {
             grid: self.subject.grid,
             satellites: &satellites,
             sites: &setup.sites,
             step_deg: scene.grid().map(|grid| grid.step_deg),
             mask_deg: setup.mask.degrees(),
         };
-        let metadata = self.flown_metadata(Frame::Teme);
+        let metadata = self.propagated_metadata(Frame::Teme);
         let format = (Product::Stk, stk::FORMAT_VERSION);
         let noted = |note: &str| Loss {
             note: Some(note.to_owned()),
@@ -97,21 +97,22 @@ impl Source<'_> {
     }
 
     /// The ephemerides of the GNSS satellites for which STK has no theory.
-    fn gnss_files(&self, files: &Files<'_, impl Sink>, gnss: &[InStk]) -> Written {
+    fn gnss_files(&self, files: &Files<'_, impl Sink>, gnss: &[InStk]) -> ProductFiles {
         let mut entries = Vec::new();
-        let mut metadata = self.flown_metadata(self.choices.frame);
+        let mut metadata = self.propagated_metadata(self.choices.frame);
         metadata
             .subject
             .push("GNSS satellite of the scenario".to_owned());
         let empty = Ephemeris::new(self.subject.grid, Vec::new());
         let sampled = Sampled::new(&empty, self.choices.frame);
         for one in gnss {
-            if let Some(flown) = &one.flown {
+            if let Some(propagated) = &one.propagated {
                 let path = format!("stk-scenario/gnss/{}.e", one.name);
                 let format = (Product::Stk, stk::FORMAT_VERSION);
                 entries.push(files.add(&path, format, (1, &metadata), |out| {
-                    let hermite = crate::ephemeris::hermite::Hermite::measured(&sampled, flown)?;
-                    stk::write(out, &one.name, &metadata, (&sampled, flown), hermite)?;
+                    let hermite =
+                        crate::ephemeris::hermite::Hermite::measured(&sampled, propagated)?;
+                    stk::write(out, &one.name, &metadata, (&sampled, propagated), hermite)?;
                     Ok(Loss {
                         interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
                         ..Loss::default()
@@ -122,9 +123,9 @@ impl Source<'_> {
         Ok(entries)
     }
 
-    pub(super) fn gmat(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn gmat(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
         let cannot = |what: String, instead| WriteError::CannotSay {
-            product: Product::Gmat.word(),
+            product: Product::Gmat.keyword(),
             what,
             instead,
         };
@@ -137,7 +138,7 @@ impl Source<'_> {
             let what = format!("the epoch {}: it has milliseconds alone", grid.epoch());
             return Err(cannot(what, "use an epoch of whole milliseconds"));
         };
-        let metadata = self.flown_metadata(Frame::Eme2000);
+        let metadata = self.propagated_metadata(Frame::Eme2000);
         let about = (self.objects.len(), &metadata);
         let format = (Product::Gmat, gmat::FORMAT_VERSION);
         let named: Vec<(String, Satellite)> = self
@@ -162,9 +163,9 @@ impl Source<'_> {
         Ok(vec![script.assuming(gmat_assumptions(model)), field])
     }
 
-    pub(super) fn yuma(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    pub(super) fn yuma(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
         let cannot = |what: String, instead| WriteError::CannotSay {
-            product: Product::Yuma.word(),
+            product: Product::Yuma.keyword(),
             what,
             instead,
         };
@@ -192,7 +193,7 @@ impl Source<'_> {
         system: &System,
         (satellites, almanacs): (&[GnssSatellite], &[Almanac]),
     ) -> Result<FileEntry, WriteError> {
-        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let metadata = self.propagated_metadata(Frame::EarthFixed);
         let path = format!("yuma/{}.alm", system.name());
         let about = (almanacs.len(), &metadata);
         let entry = files.add(&path, (Product::Yuma, yuma::FORMAT_VERSION), about, |out| {
@@ -243,7 +244,7 @@ fn gmat_assumptions(model: Model) -> Vec<String> {
 
 fn reason(why: NoAlmanac) -> &'static str {
     match why {
-        NoAlmanac::Sgp4 => "flies by SGP4",
+        NoAlmanac::Sgp4 => "propagates by SGP4",
         NoAlmanac::Eccentric => "is on an ellipse, whose perigee moves",
     }
 }
@@ -274,13 +275,13 @@ fn in_stk(system: &System, satellite: GnssSatellite) -> InStk {
     if let GnssOrbit::Secular(orbit) = &satellite.orbit {
         return InStk {
             setting: Setting::J2(orbit.elements_at(0.0)),
-            flown: None,
+            propagated: None,
             name,
         };
     }
     InStk {
         setting: Setting::File(format!("gnss/{name}.e")),
-        flown: Some(Flown {
+        propagated: Some(EphemerisSatellite {
             name: name.clone(),
             slot: None,
             propagator: Box::new(satellite.orbit),

@@ -1,7 +1,7 @@
 //! The products that show or rebuild a whole scenario.
 
-use super::products::Written;
-use super::source::Source;
+use super::products::ProductFiles;
+use super::source::ExportSource;
 use super::{Files, Product, Sink};
 use crate::ephemeris::EphemerisError;
 use crate::exchange::manifest::Loss;
@@ -10,10 +10,10 @@ use crate::formats::maps::tracks::Ground;
 use crate::formats::maps::{czml, geojson, kml};
 use crate::formats::{WriteError, csv};
 use crate::frames::Frame;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use std::f64::consts::TAU;
 
-impl Source<'_> {
+impl ExportSource<'_> {
     fn period_s(&self) -> f64 {
         let first = self.satellites.first();
         first.map_or(0.0, |one| TAU / one.elements.kepler_mean_motion_rad_s())
@@ -23,8 +23,8 @@ impl Source<'_> {
         Ground::of(scene, &self.ephemeris, self.period_s())
     }
 
-    pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
-        let metadata = self.flown_metadata(Frame::EarthFixed);
+    pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+        let metadata = self.propagated_metadata(Frame::EarthFixed);
         let about = (0, &metadata);
         let format = (Product::Metrics, "1");
         let series = scene.series()?;
@@ -42,9 +42,9 @@ impl Source<'_> {
             .collect())
     }
 
-    pub(super) fn czml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    pub(super) fn czml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Czml, scene)?;
-        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let metadata = self.propagated_metadata(Frame::EarthFixed);
         let about = (self.objects.len(), &metadata);
         let format = (Product::Czml, czml::FORMAT_VERSION);
         let entry = files.add("scene.czml", format, about, |out| {
@@ -63,8 +63,8 @@ impl Source<'_> {
         Ok(vec![entry.assuming(scene.assumptions())])
     }
 
-    pub(super) fn geojson(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
-        let metadata = self.flown_metadata(Frame::EarthFixed);
+    pub(super) fn geojson(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+        let metadata = self.propagated_metadata(Frame::EarthFixed);
         let format = (Product::Geojson, geojson::FORMAT_VERSION);
         let noted = |note: &str| Loss {
             note: Some(note.to_owned()),
@@ -94,9 +94,9 @@ impl Source<'_> {
             .collect())
     }
 
-    pub(super) fn kml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    pub(super) fn kml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Kml, scene)?;
-        let metadata = self.flown_metadata(Frame::EarthFixed);
+        let metadata = self.propagated_metadata(Frame::EarthFixed);
         let ground = self.ground(scene)?;
         let about = (ground.len(), &metadata);
         let format = (Product::Kml, kml::FORMAT_VERSION);
@@ -120,7 +120,7 @@ fn check_points(product: Product, scene: &Scene<'_>) -> Result<(), WriteError> {
         return Ok(());
     }
     Err(WriteError::TooManyPoints {
-        product: product.word(),
+        product: product.keyword(),
         points,
     })
 }

@@ -1,14 +1,14 @@
 //! What the products of an export are made from.
 
-use super::{Choices, Subject};
+use super::{Choices, ExportSubject};
 use crate::constellation::Satellite;
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::exchange::manifest::{Conventions, FileEntry, Loss, Manifest};
 use crate::formats::metadata::{ElementChoice, Metadata, Object, Theory};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::{WriteError, element_set, tle};
 use crate::frames::Frame;
-use crate::orbit::Spread;
+use crate::orbit::PropagatorDistance;
 use crate::orbit::fit::{Fit, fit};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
@@ -16,16 +16,16 @@ use crate::orbit::{PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 
 /// What an export is made from.
-pub(super) struct Source<'a> {
-    pub(super) subject: &'a Subject,
+pub(super) struct ExportSource<'a> {
+    pub(super) subject: &'a ExportSubject,
     pub(super) choices: Choices,
     pub(super) satellites: Vec<Satellite>,
     pub(super) objects: Vec<Object>,
     pub(super) ephemeris: Ephemeris,
 }
 
-impl<'a> Source<'a> {
-    pub(super) fn new(subject: &'a Subject, choices: Choices) -> Result<Self, WriteError> {
+impl<'a> ExportSource<'a> {
+    pub(super) fn new(subject: &'a ExportSubject, choices: Choices) -> Result<Self, WriteError> {
         let ephemeris = Ephemeris::of_design(&subject.design, subject.model, subject.grid)?;
         Ok(Self {
             subject,
@@ -66,21 +66,27 @@ impl<'a> Source<'a> {
         if self.choices.elements != ElementChoice::Fit {
             return Ok(sets.collect());
         }
-        let fitted = |(set, flown): (sgp4::Elements, &Flown)| Ok(self.fit(&set, flown)?.set);
+        let fitted = |(set, propagated): (sgp4::Elements, &EphemerisSatellite)| {
+            Ok(self.fit(&set, propagated)?.set)
+        };
         sets.zip(self.ephemeris.satellites()).map(fitted).collect()
     }
 
     /// A set fitted to at most 200 samples of the trajectory.
-    fn fit(&self, start: &sgp4::Elements, flown: &Flown) -> Result<Fit, EphemerisError> {
+    fn fit(
+        &self,
+        start: &sgp4::Elements,
+        propagated: &EphemerisSatellite,
+    ) -> Result<Fit, EphemerisError> {
         let grid = self.subject.grid;
         let stride = grid.len().div_ceil(200);
         let mut positions = Vec::new();
         for k in (0..grid.len()).step_by(stride) {
             let elapsed_s = grid.elapsed_s(k);
-            let state = self.ephemeris.state(flown, elapsed_s)?;
+            let state = self.ephemeris.state(propagated, elapsed_s)?;
             positions.push((elapsed_s, state.position_km));
         }
-        fit(start, &positions, grid.epoch()).map_err(|source| failed(flown, source))
+        fit(start, &positions, grid.epoch()).map_err(|source| failed(propagated, source))
     }
 
     /// The sets as a TLE rounds them, and before: at the epoch next to that of the study.
@@ -89,7 +95,7 @@ impl<'a> Source<'a> {
     }
 
     /// What the sets cost, looked at about once an hour, by the satellite that loses most: their
-    /// digits in a TLE, and SGP4 against the model that is flown.
+    /// digits in a TLE, and SGP4 against the model that is propagated.
     pub(super) fn loss_of_sets(
         &self,
         sets: &[sgp4::Elements],
@@ -98,16 +104,21 @@ impl<'a> Source<'a> {
         let grid = self.subject.grid;
         let span_s = grid.elapsed_s(grid.len() - 1) + 1.0;
         let hourly = TimeGrid::new(grid.epoch(), span_s, 3_577.0).unwrap_or(grid);
-        let (mut digits, mut theory) = (Spread::default(), Spread::default());
-        for (set, flown) in sets.iter().zip(self.ephemeris.satellites()) {
+        let (mut digits, mut theory) =
+            (PropagatorDistance::default(), PropagatorDistance::default());
+        for (set, propagated) in sets.iter().zip(self.ephemeris.satellites()) {
             let of_set = |set: &sgp4::Elements| {
-                Sgp4Orbit::from_element_set(set, grid.epoch()).map_err(|e| failed(flown, e))
+                Sgp4Orbit::from_element_set(set, grid.epoch()).map_err(|e| failed(propagated, e))
             };
             let exact = of_set(set)?;
-            theory.widen(&self.apart(flown, (&exact, flown.propagator.as_ref()), hourly)?);
+            theory.widen(&self.apart(
+                propagated,
+                (&exact, propagated.propagator.as_ref()),
+                hourly,
+            )?);
             if tle {
                 let rounded = of_set(&tle::as_written(set)?)?;
-                digits.widen(&self.apart(flown, (&exact, &rounded), hourly)?);
+                digits.widen(&self.apart(propagated, (&exact, &rounded), hourly)?);
             }
         }
         Ok(Loss {
@@ -121,15 +132,15 @@ impl<'a> Source<'a> {
 
     fn apart(
         &self,
-        flown: &Flown,
+        propagated: &EphemerisSatellite,
         (one, other): (&dyn Propagator, &dyn Propagator),
         grid: TimeGrid,
-    ) -> Result<Spread, EphemerisError> {
-        Spread::between(one, other, grid).map_err(|source| failed(flown, source))
+    ) -> Result<PropagatorDistance, EphemerisError> {
+        PropagatorDistance::between(one, other, grid).map_err(|source| failed(propagated, source))
     }
 
     pub(super) fn manifest(&self, files: Vec<FileEntry>) -> Manifest {
-        let Subject { grid, study, .. } = self.subject;
+        let ExportSubject { grid, study, .. } = self.subject;
         Manifest {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -144,7 +155,7 @@ impl<'a> Source<'a> {
     }
 }
 
-pub(super) fn failed(satellite: &Flown, source: PropagationError) -> EphemerisError {
+pub(super) fn failed(satellite: &EphemerisSatellite, source: PropagationError) -> EphemerisError {
     EphemerisError {
         name: satellite.name.clone(),
         source,

@@ -1,10 +1,10 @@
 //! Exports into memory, for tests.
 
-use super::{Choices, Product, Subject, export_scene};
+use super::{Choices, ExportSubject, Product, export_scene};
 use crate::constellation::Design;
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};
-use crate::exchange::manifest::{Manifest, Study};
+use crate::exchange::manifest::{ExportedStudy, Manifest};
 use crate::formats::maps::scene::Scene;
 use crate::ground::{Grid, PointWeights};
 use crate::orbit::Model;
@@ -21,13 +21,13 @@ pub(crate) const GRID: Grid = Grid {
     weights: PointWeights::Equal,
 };
 
-/// A subject of tests: a design of the study `paper`, flown by J2.
-pub(crate) fn subject(design: Design, grid: TimeGrid) -> Subject {
-    Subject {
+/// A subject of tests: a design of the study `paper`, propagated by J2.
+pub(crate) fn subject(design: Design, grid: TimeGrid) -> ExportSubject {
+    ExportSubject {
         design,
         model: Model::J2,
         grid,
-        study: Study {
+        study: ExportedStudy {
             name: "paper".to_owned(),
             hash: "0123".to_owned(),
         },
@@ -37,7 +37,7 @@ pub(crate) fn subject(design: Design, grid: TimeGrid) -> Subject {
 }
 
 /// A scenario for a subject: the region and BeiDou-3 at 7°.
-pub(crate) fn setup(subject: &Subject) -> Setup {
+pub(crate) fn setup(subject: &ExportSubject) -> Setup {
     Setup {
         model: subject.model,
         ..testing::setup(subject.grid, GRID.sites(Surface::Wgs84).unwrap(), 7.0)
@@ -64,7 +64,7 @@ impl Write for Kept {
 
 /// The manifest and the files of an export by their paths.
 pub(crate) fn in_memory(
-    subject: &Subject,
+    subject: &ExportSubject,
     products: &[Product],
     choices: Choices,
 ) -> (Manifest, BTreeMap<String, Vec<u8>>) {

@@ -5,7 +5,7 @@ use crate::formats::tle;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
-fn subject() -> Subject {
+fn subject() -> ExportSubject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     testing::subject(
         "delta:55:14/7/1@925".parse().unwrap(),

@@ -5,7 +5,7 @@ use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::Trajectory;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use nalgebra::Vector3;
@@ -40,13 +40,13 @@ fn fleet(files: &BTreeMap<String, Vec<u8>>) -> Fleet {
 }
 
 /// Largest distance from the design, km.
-fn apart_km(flown: &Ephemeris) -> f64 {
+fn apart_km(propagated: &Ephemeris) -> f64 {
     let truth = Ephemeris::of_design(&design(), Model::J2, grid()).unwrap();
-    assert_eq!(flown.satellites().len(), 6);
+    assert_eq!(propagated.satellites().len(), 6);
     let mut worst = 0.0_f64;
-    for (a, b) in flown.satellites().iter().zip(truth.satellites()) {
+    for (a, b) in propagated.satellites().iter().zip(truth.satellites()) {
         for t in grid().iter() {
-            let (a, b) = (flown.state(a, t).unwrap(), truth.state(b, t).unwrap());
+            let (a, b) = (propagated.state(a, t).unwrap(), truth.state(b, t).unwrap());
             worst = worst.max((a.position_km - b.position_km).norm());
             assert!((a.velocity_km_s - b.velocity_km_s).norm() < 0.02);
         }
@@ -54,10 +54,10 @@ fn apart_km(flown: &Ephemeris) -> f64 {
     worst
 }
 
-/// Every product flies again: states to their digits, SGP4 to the J3 terms and the shift of the
+/// Every product propagates again: states to their digits, SGP4 to the J3 terms and the shift of the
 /// radius that mean J2 lacks (under 20 km at 55° in an hour).
 #[test]
-fn every_product_flies_where_the_design_does() {
+fn every_product_propagates_where_the_design_does() {
     for frame in Frame::ALL {
         for time_system in [TimeSystem::Utc, TimeSystem::Gps] {
             let choices = Choices {
@@ -66,48 +66,48 @@ fn every_product_flies_where_the_design_does() {
                 ..Choices::default()
             };
             for product in [Product::Oem, Product::Opm, Product::Stk] {
-                let flown = fleet(&exported(&[product], choices))
-                    .fly(grid(), Model::J2)
+                let propagated = fleet(&exported(&[product], choices))
+                    .propagate(grid(), Model::J2)
                     .unwrap();
                 // Nine decimals, and rotations forth and back in doubles.
-                assert!(apart_km(&flown) < 1e-8, "{frame} {product}");
+                assert!(apart_km(&propagated) < 1e-8, "{frame} {product}");
             }
         }
     }
     for oem_combined in [false, true] {
         let choices = Choices {
-            oem: oem::Notation::Xml,
+            oem: oem::OemSyntax::Xml,
             oem_combined,
             ..Choices::default()
         };
-        let flown = fleet(&exported(&[Product::Oem], choices))
-            .fly(grid(), Model::J2)
+        let propagated = fleet(&exported(&[Product::Oem], choices))
+            .propagate(grid(), Model::J2)
             .unwrap();
-        assert!(apart_km(&flown) < 1e-8);
+        assert!(apart_km(&propagated) < 1e-8);
     }
     let sp3 = fleet(&exported(&[Product::Sp3], Choices::default()));
     // Six decimals of a kilometre in three components.
-    assert!(apart_km(&sp3.fly(grid(), Model::J2).unwrap()) < 1e-6);
+    assert!(apart_km(&sp3.propagate(grid(), Model::J2).unwrap()) < 1e-6);
     let czml = fleet(&exported(&[Product::Czml], Choices::default()));
     // The metre between samples, and decimetres.
-    assert!(apart_km(&czml.fly(grid(), Model::J2).unwrap()) < 2.2e-3);
+    assert!(apart_km(&czml.propagate(grid(), Model::J2).unwrap()) < 2.2e-3);
     let mut tables = exported(&[Product::Csv], Choices::default());
     let states = tables.remove("states.csv").unwrap();
-    assert!(apart_km(&fleet(&tables).fly(grid(), Model::J2).unwrap()) < 1e-8);
+    assert!(apart_km(&fleet(&tables).propagate(grid(), Model::J2).unwrap()) < 1e-8);
     let (_, states) = Fleet::read(states.as_slice(), None, None).unwrap();
-    assert!(apart_km(&states.fly(grid(), Model::J2).unwrap()) < 1e-8);
-    for notation in Notation::ALL {
+    assert!(apart_km(&states.propagate(grid(), Model::J2).unwrap()) < 1e-8);
+    for notation in OmmSyntax::ALL {
         let choices = Choices {
             omm: *notation,
             ..Choices::default()
         };
         let sets = fleet(&exported(&[Product::Omm], choices))
-            .fly(grid(), Model::J2)
+            .propagate(grid(), Model::J2)
             .unwrap();
         assert!(apart_km(&sets) < 20.0, "{notation}");
     }
     let sets = fleet(&exported(&[Product::Tle], Choices::default()));
-    assert!(apart_km(&sets.fly(grid(), Model::J2).unwrap()) < 20.0);
+    assert!(apart_km(&sets.propagate(grid(), Model::J2).unwrap()) < 20.0);
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn a_grid_that_the_samples_do_not_cover_is_refused() {
         (3_600.0, 30.0, "2025-01-01T00:00:30"),
     ] {
         let longer = TimeGrid::new(epoch, duration_s, step_s).unwrap();
-        let error = fleet.fly(longer, Model::J2).err().unwrap();
+        let error = fleet.propagate(longer, Model::J2).err().unwrap();
         assert!(error.to_string().contains(missing), "{error}");
         assert!(
             error.to_string().contains("NW-P01-S01 has no state"),
@@ -127,11 +127,11 @@ fn a_grid_that_the_samples_do_not_cover_is_refused() {
         );
     }
     let earlier = TimeGrid::new(epoch.plus_seconds(-60.0), 600.0, 60.0).unwrap();
-    assert!(fleet.fly(earlier, Model::J2).is_err());
+    assert!(fleet.propagate(earlier, Model::J2).is_err());
     // Every other sample, from the tenth on.
     let inside = TimeGrid::new(epoch.plus_seconds(600.0), 1_200.0, 120.0).unwrap();
-    let flown = fleet.fly(inside, Model::J2).unwrap();
-    let between = flown.satellites()[0].propagator.state_at(60.0);
+    let propagated = fleet.propagate(inside, Model::J2).unwrap();
+    let between = propagated.satellites()[0].propagator.state_at(60.0);
     assert!(between.is_err());
 }
 
@@ -142,10 +142,12 @@ fn what_makes_no_constellation_is_refused() {
     let mixed = oem.append(tle.clone()).unwrap_err();
     assert!(mixed.to_string().contains("sampled states"), "{mixed}");
     oem.append(oem.clone()).unwrap();
-    let twice = oem.fly(grid(), Model::J2).err().unwrap();
+    let twice = oem.propagate(grid(), Model::J2).err().unwrap();
     assert_eq!(twice.to_string(), "satellite NW-P01-S01 is given twice");
     assert_eq!(
-        Fleet::Sampled(Vec::new()).fly(grid(), Model::J2).err(),
+        Fleet::Sampled(Vec::new())
+            .propagate(grid(), Model::J2)
+            .err(),
         Some(FleetError::Empty)
     );
     let hollow = Trajectory {
@@ -154,7 +156,11 @@ fn what_makes_no_constellation_is_refused() {
         frame: Frame::Teme,
         states: Vec::new(),
     };
-    assert!(Fleet::Sampled(vec![hollow]).fly(grid(), Model::J2).is_err());
+    assert!(
+        Fleet::Sampled(vec![hollow])
+            .propagate(grid(), Model::J2)
+            .is_err()
+    );
     let files = exported(&[Product::Opm], Choices::default());
     let text = String::from_utf8(files["opm/NW-P01-S01.opm"].clone()).unwrap();
     let foreign: String = text
@@ -192,5 +198,5 @@ fn velocities_follow_from_positions() {
         .map(|line| format!("{line}\n"))
         .collect();
     let (_, fleet) = Fleet::read(positions_only.as_bytes(), None, None).unwrap();
-    assert!(apart_km(&fleet.fly(grid(), Model::J2).unwrap()) < 1e-6);
+    assert!(apart_km(&fleet.propagate(grid(), Model::J2).unwrap()) < 1e-6);
 }

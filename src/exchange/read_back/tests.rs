@@ -199,12 +199,12 @@ fn a_frame_that_is_misnamed_in_the_file_fails() {
     let original = Original::new(&evaluator, &design()).unwrap();
     for (notation, from, to) in [
         (
-            oem::Notation::Kvn,
+            oem::OemSyntax::Kvn,
             "REF_FRAME = TEME",
             "REF_FRAME = EME2000",
         ),
         (
-            oem::Notation::Xml,
+            oem::OemSyntax::Xml,
             "<REF_FRAME>TEME<",
             "<REF_FRAME>EME2000<",
         ),
@@ -227,7 +227,7 @@ fn a_frame_that_is_misnamed_in_the_file_fails() {
 }
 
 #[test]
-fn fitted_sets_are_held_against_the_flown_design() {
+fn fitted_sets_are_held_against_the_propagated_design() {
     let evaluator = evaluator();
     let original = Original::new(&evaluator, &design()).unwrap();
     let fit = Choices {

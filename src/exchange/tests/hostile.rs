@@ -4,7 +4,7 @@ use super::samples;
 use crate::exchange::import::Fleet;
 use crate::exchange::lint::{Format, lint};
 use crate::formats::text::finding::{Finding, Severity};
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use std::io::{self, BufRead, Read};
 
 /// What the linter finds, all of it in the file or where its next line would be; the reader

@@ -2,10 +2,10 @@
 //! keyword tables that say what belongs where.
 
 use crate::formats::metadata::Metadata;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::Line;
 use crate::formats::text::timestamp::{self, SecondDigits, calendar};
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use chrono::NaiveDateTime;
 use std::io::{self, Write};
 
@@ -15,9 +15,9 @@ const LINE: usize = 254;
 /// Most digits of a number (7.5.6, 7.5.7).
 const DIGITS: usize = 16;
 
-words! {
+keywords! {
     /// A version of the Orbit Data Messages.
-    Version {
+    CcsdsVersion {
         /// CCSDS 502.0-B-2: what most readers know.
         V2 = "2.0",
         /// CCSDS 502.0-B-3.
@@ -27,9 +27,9 @@ words! {
 
 /// The header of a message (tables 3-1, 4-1 and 5-2, which are alike).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Header {
+pub struct CcsdsHeader {
     /// Version of the message.
-    pub version: Version,
+    pub version: CcsdsVersion,
     /// Comments behind the version.
     pub comments: Vec<String>,
     /// Classification (version 3).
@@ -42,11 +42,11 @@ pub struct Header {
     pub message_id: Option<String>,
 }
 
-impl Header {
+impl CcsdsHeader {
     /// The header of a file that `metadata` describes.
     ///
     /// Version 3 too goes without `MESSAGE_ID`, which is optional and which some readers refuse.
-    pub(crate) fn new(version: Version, metadata: &Metadata) -> Self {
+    pub(crate) fn new(version: CcsdsVersion, metadata: &Metadata) -> Self {
         Self {
             version,
             comments: metadata.comments(),
@@ -81,11 +81,15 @@ impl Header {
     }
 
     /// The header from its keywords; `block` holds the version under `version_key`.
-    pub(crate) fn read(block: &Block, version_key: &str, findings: &mut Findings) -> Option<Self> {
+    pub(crate) fn read(
+        block: &KvnBlock,
+        version_key: &str,
+        findings: &mut FindingList,
+    ) -> Option<Self> {
         let text = block.text(version_key)?;
         // Version 1.0 differs from 2.0 in nothing that is read here.
         let known = if text == "1.0" { "2.0" } else { &text };
-        let Ok(version) = Version::from_word(known) else {
+        let Ok(version) = CcsdsVersion::from_keyword(known) else {
             let message = format!("version '{text}' is not 1.0, 2.0 or 3.0");
             findings.error(block.place(version_key), "ccsds-version", message);
             return None;
@@ -118,30 +122,30 @@ pub(crate) enum Need {
 }
 
 /// A keyword of a table, and whether it must be there.
-pub(crate) struct Keyword {
+pub(crate) struct KvnKeyword {
     name: &'static str,
     need: Need,
 }
 
 /// A keyword that must be there.
-pub(crate) const fn must(name: &'static str) -> Keyword {
-    Keyword {
+pub(crate) const fn must(name: &'static str) -> KvnKeyword {
+    KvnKeyword {
         name,
         need: Need::Mandatory,
     }
 }
 
 /// A keyword that must be there by the standard, without which a reader goes on.
-pub(crate) const fn should(name: &'static str) -> Keyword {
-    Keyword {
+pub(crate) const fn should(name: &'static str) -> KvnKeyword {
+    KvnKeyword {
         name,
         need: Need::Expected,
     }
 }
 
 /// A keyword that may be there.
-pub(crate) const fn may(name: &'static str) -> Keyword {
-    Keyword {
+pub(crate) const fn may(name: &'static str) -> KvnKeyword {
+    KvnKeyword {
         name,
         need: Need::Optional,
     }
@@ -165,7 +169,7 @@ pub(crate) enum Item<'a> {
 }
 
 /// Takes a line apart.
-pub(crate) fn item<'a>(line: &'a Line, findings: &mut Findings) -> Item<'a> {
+pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
     if line.text.len() > LINE {
         let message = format!(
             "the line has {} characters; {LINE} are allowed",
@@ -196,7 +200,7 @@ pub(crate) fn item<'a>(line: &'a Line, findings: &mut Findings) -> Item<'a> {
 
 /// The frame and the elements of a covariance matrix, as they end an OPM and an OMM (tables 3-3 and
 /// 4-3).
-pub(crate) const COVARIANCE: &[Keyword] = &[
+pub(crate) const COVARIANCE: &[KvnKeyword] = &[
     may("COV_REF_FRAME"),
     may("CX_X"),
     may("CY_X"),
@@ -223,15 +227,15 @@ pub(crate) const COVARIANCE: &[Keyword] = &[
 
 /// A value with its place in the file.
 #[derive(Debug, Clone)]
-struct Placed {
+struct PlacedValue {
     text: String,
     place: (usize, usize),
 }
 
 /// The values of one table of keywords, as they come in.
-pub(crate) struct Block {
-    table: Vec<&'static Keyword>,
-    values: Vec<Option<Placed>>,
+pub(crate) struct KvnBlock {
+    table: Vec<&'static KvnKeyword>,
+    values: Vec<Option<PlacedValue>>,
     /// Which keywords have come in, with a value or without.
     seen: Vec<bool>,
     last: Option<usize>,
@@ -240,9 +244,9 @@ pub(crate) struct Block {
     pub(crate) comments: Vec<String>,
 }
 
-impl Block {
+impl KvnBlock {
     /// A block whose keywords come in the order of the tables.
-    pub(crate) fn new(tables: &[&'static [Keyword]]) -> Self {
+    pub(crate) fn new(tables: &[&'static [KvnKeyword]]) -> Self {
         let table: Vec<_> = tables.iter().copied().flatten().collect();
         Self {
             values: table.iter().map(|_| None).collect(),
@@ -255,7 +259,7 @@ impl Block {
     }
 
     /// A block whose keywords may come in any order.
-    pub(crate) fn unordered(tables: &[&'static [Keyword]]) -> Self {
+    pub(crate) fn unordered(tables: &[&'static [KvnKeyword]]) -> Self {
         Self {
             ordered: false,
             ..Self::new(tables)
@@ -277,7 +281,7 @@ impl Block {
     }
 
     /// Takes a keyword of the table.
-    pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+    pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         let Some(index) = self.index(pair.key) else {
             let message = format!("keyword {} does not belong here", pair.key);
             findings.error(pair.key_place, "ccsds-keyword", message);
@@ -301,7 +305,7 @@ impl Block {
             }
             return;
         }
-        self.values[index] = Some(Placed {
+        self.values[index] = Some(PlacedValue {
             text: pair.value.to_owned(),
             place: pair.value_place,
         });
@@ -312,7 +316,7 @@ impl Block {
         &mut self,
         (key, value): (&str, &str),
         place: (usize, usize),
-        findings: &mut Findings,
+        findings: &mut FindingList,
     ) {
         let pair = Pair {
             key,
@@ -324,7 +328,7 @@ impl Block {
     }
 
     /// Reports the mandatory keywords that have not come in.
-    pub(crate) fn finish(&self, place: (usize, usize), findings: &mut Findings) {
+    pub(crate) fn finish(&self, place: (usize, usize), findings: &mut FindingList) {
         for (keyword, seen) in self.table.iter().zip(&self.seen) {
             let message = || format!("{} is mandatory and missing", keyword.name);
             match keyword.need {
@@ -335,7 +339,7 @@ impl Block {
         }
     }
 
-    fn placed(&self, key: &str) -> Option<&Placed> {
+    fn placed(&self, key: &str) -> Option<&PlacedValue> {
         self.values[self.index(key)?].as_ref()
     }
 
@@ -350,13 +354,13 @@ impl Block {
     }
 
     /// A time; a finding if it is none.
-    pub(crate) fn stamp(&self, key: &str, findings: &mut Findings) -> Option<NaiveDateTime> {
+    pub(crate) fn stamp(&self, key: &str, findings: &mut FindingList) -> Option<NaiveDateTime> {
         let value = self.placed(key)?;
         read_stamp(&value.text, value.place, findings)
     }
 
     /// A number, behind which its unit in brackets may stand; a finding if it is none.
-    pub(crate) fn number(&self, key: &str, findings: &mut Findings) -> Option<f64> {
+    pub(crate) fn number(&self, key: &str, findings: &mut FindingList) -> Option<f64> {
         let value = self.placed(key)?;
         let text = match value.text.split_once('[') {
             Some((number, unit)) if unit.ends_with(']') => number.trim_end(),
@@ -366,7 +370,7 @@ impl Block {
     }
 
     /// A count; a finding if it is none.
-    pub(crate) fn count(&self, key: &str, findings: &mut Findings) -> Option<u64> {
+    pub(crate) fn count(&self, key: &str, findings: &mut FindingList) -> Option<u64> {
         let value = self.placed(key)?;
         let parsed = value.text.parse().ok();
         if parsed.is_none() {
@@ -381,7 +385,7 @@ impl Block {
 pub(crate) fn read_stamp(
     text: &str,
     place: (usize, usize),
-    findings: &mut Findings,
+    findings: &mut FindingList,
 ) -> Option<NaiveDateTime> {
     let stamp = timestamp::parse(text);
     if stamp.is_none() {
@@ -395,7 +399,7 @@ pub(crate) fn read_stamp(
 pub(crate) fn read_number(
     text: &str,
     place: (usize, usize),
-    findings: &mut Findings,
+    findings: &mut FindingList,
 ) -> Option<f64> {
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);

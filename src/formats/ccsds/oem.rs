@@ -10,16 +10,16 @@ mod write;
 mod xml;
 
 pub use read::{parse, read};
-pub use write::Writer;
+pub use write::OemWriter;
 pub use xml::{parse_xml, read_xml};
 
 use crate::ephemeris::hermite::Hermite;
-use crate::formats::ccsds::kvn::{Header, write_comments};
+use crate::formats::ccsds::kvn::{CcsdsHeader, write_comments};
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::formats::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
 use crate::frames::{Frame, State};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::time::TimeGrid;
 use chrono::NaiveDateTime;
 use nalgebra::Vector3;
@@ -29,9 +29,9 @@ use std::io::{self, Write};
 pub(crate) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
 
-words! {
+keywords! {
     /// How a message is written down.
-    Notation {
+    OemSyntax {
         /// Keyword = value lines.
         Kvn = "kvn",
         /// XML.
@@ -46,7 +46,7 @@ const VERSION: &str = "CCSDS_OEM_VERS";
 #[derive(Debug, Clone, PartialEq)]
 pub struct Oem {
     /// The header.
-    pub header: Header,
+    pub header: CcsdsHeader,
     /// The segments, in the order of the file.
     pub segments: Vec<Segment>,
 }
@@ -106,7 +106,7 @@ impl Oem {
     /// Writes the message in keyword = value notation.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         self.header.write(out, VERSION)?;
         for segment in &self.segments {

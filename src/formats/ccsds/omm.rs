@@ -9,12 +9,12 @@ mod read;
 
 pub use read::{parse_csv, parse_json, parse_kvn, parse_xml};
 
-use crate::formats::ccsds::kvn::{Header, Version};
+use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
 use crate::formats::metadata::Metadata;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::formats::{ReadError, WriteError};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use std::io::{self, BufRead, Write};
 
 /// Keyword of the version.
@@ -28,9 +28,9 @@ const METADATA: [(&str, &str); 4] = [
     ("MEAN_ELEMENT_THEORY", "SGP4"),
 ];
 
-words! {
+keywords! {
     /// How a message is written down.
-    Notation {
+    OmmSyntax {
         /// Keyword = value lines, one message a file.
         Kvn = "kvn",
         /// XML, any number of messages in one combined instantiation (`ndm`).
@@ -46,7 +46,7 @@ words! {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Omm {
     /// Its header; JSON and CSV have none, and catalogues leave it incomplete.
-    pub header: Option<Header>,
+    pub header: Option<CcsdsHeader>,
     /// Its element set.
     pub set: sgp4::Elements,
     /// Line on which it begins.
@@ -57,8 +57,8 @@ pub struct Omm {
 ///
 /// # Errors
 /// The first finding, or a failure of the input.
-pub fn read(input: impl BufRead, notation: Notation) -> Result<Vec<Omm>, ReadError> {
-    let mut findings = Findings::of_reader();
+pub fn read(input: impl BufRead, notation: OmmSyntax) -> Result<Vec<Omm>, ReadError> {
+    let mut findings = FindingList::of_reader();
     let mut messages = Vec::new();
     parse(input, notation, &mut findings, |message| {
         messages.push(message)
@@ -72,25 +72,25 @@ pub fn read(input: impl BufRead, notation: Notation) -> Result<Vec<Omm>, ReadErr
 /// A failure of the input.
 pub fn parse(
     input: impl BufRead,
-    notation: Notation,
-    findings: &mut Findings,
+    notation: OmmSyntax,
+    findings: &mut FindingList,
     take: impl FnMut(Omm),
 ) -> io::Result<()> {
     match notation {
-        Notation::Kvn => parse_kvn(input, findings, take),
-        Notation::Xml => parse_xml(input, findings, take),
-        Notation::Json => parse_json(input, findings, take),
-        Notation::Csv => parse_csv(input, findings, take),
+        OmmSyntax::Kvn => parse_kvn(input, findings, take),
+        OmmSyntax::Xml => parse_xml(input, findings, take),
+        OmmSyntax::Json => parse_json(input, findings, take),
+        OmmSyntax::Csv => parse_csv(input, findings, take),
     }
 }
 
 /// A value of a message.
-enum Value {
+enum OmmValue {
     Text(String),
     Number(String),
 }
 
-impl Value {
+impl OmmValue {
     fn text(&self) -> &str {
         match self {
             Self::Text(text) | Self::Number(text) => text,
@@ -99,10 +99,10 @@ impl Value {
 }
 
 /// A number with `decimals` decimals, without the zeros at its end but one.
-fn decimal(value: f64, decimals: usize) -> Value {
+fn decimal(value: f64, decimals: usize) -> OmmValue {
     let text = format!("{value:.decimals$}");
     let short = text.trim_end_matches('0');
-    Value::Number(if short.ends_with('.') {
+    OmmValue::Number(if short.ends_with('.') {
         format!("{short}0")
     } else {
         short.to_owned()
@@ -110,18 +110,18 @@ fn decimal(value: f64, decimals: usize) -> Value {
 }
 
 /// A small number in floating-point notation, at most 16 digits.
-fn scientific(value: f64) -> Value {
+fn scientific(value: f64) -> OmmValue {
     match value {
-        0.0 => Value::Number("0.0".to_owned()),
-        _ => Value::Number(format!("{value:.15e}")),
+        0.0 => OmmValue::Number("0.0".to_owned()),
+        _ => OmmValue::Number(format!("{value:.15e}")),
     }
 }
 
 /// Name and identifier of a set (table 4-2).
-fn identity(set: &sgp4::Elements) -> [(&'static str, Value); 2] {
+fn identity(set: &sgp4::Elements) -> [(&'static str, OmmValue); 2] {
     let or_unknown = |text: &Option<String>| {
         let unknown = || "UNKNOWN".to_owned();
-        Value::Text(text.clone().unwrap_or_else(unknown))
+        OmmValue::Text(text.clone().unwrap_or_else(unknown))
     };
     [
         ("OBJECT_NAME", or_unknown(&set.object_name)),
@@ -130,10 +130,10 @@ fn identity(set: &sgp4::Elements) -> [(&'static str, Value); 2] {
 }
 
 /// The mean elements (table 4-3): 12 decimals of a degree, 4e-16 of an orbit.
-fn elements(set: &sgp4::Elements) -> [(&'static str, Value); 7] {
+fn elements(set: &sgp4::Elements) -> [(&'static str, OmmValue); 7] {
     let epoch = calendar(set.datetime, SecondDigits::of_stamp(set.datetime));
     [
-        ("EPOCH", Value::Text(epoch)),
+        ("EPOCH", OmmValue::Text(epoch)),
         ("MEAN_MOTION", decimal(set.mean_motion, 13)),
         ("ECCENTRICITY", decimal(set.eccentricity, 15)),
         ("INCLINATION", decimal(set.inclination, 12)),
@@ -144,16 +144,16 @@ fn elements(set: &sgp4::Elements) -> [(&'static str, Value); 7] {
 }
 
 /// The TLE related parameters (table 4-3).
-fn tle_parameters(set: &sgp4::Elements) -> [(&'static str, Value); 8] {
+fn tle_parameters(set: &sgp4::Elements) -> [(&'static str, OmmValue); 8] {
     let class = match set.classification {
         sgp4::Classification::Unclassified => "U",
         sgp4::Classification::Classified => "C",
         sgp4::Classification::Secret => "S",
     };
-    let count = |value: u64| Value::Number(value.to_string());
+    let count = |value: u64| OmmValue::Number(value.to_string());
     [
         ("EPHEMERIS_TYPE", count(u64::from(set.ephemeris_type))),
-        ("CLASSIFICATION_TYPE", Value::Text(class.to_owned())),
+        ("CLASSIFICATION_TYPE", OmmValue::Text(class.to_owned())),
         ("NORAD_CAT_ID", count(set.norad_id)),
         ("ELEMENT_SET_NO", count(set.element_set_number)),
         ("REV_AT_EPOCH", count(set.revolution_number)),
@@ -166,10 +166,10 @@ fn tle_parameters(set: &sgp4::Elements) -> [(&'static str, Value); 8] {
 /// Writes one message in keyword = value notation.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_kvn(
     out: &mut impl Write,
-    header: &Header,
+    header: &CcsdsHeader,
     set: &sgp4::Elements,
 ) -> Result<(), WriteError> {
     header.write(out, VERSION)?;
@@ -187,17 +187,17 @@ pub fn write_kvn(
 
 /// The header that the messages of an export share.
 #[must_use]
-pub fn header(version: Version, metadata: &Metadata) -> Header {
-    Header::new(version, metadata)
+pub fn header(version: CcsdsVersion, metadata: &Metadata) -> CcsdsHeader {
+    CcsdsHeader::new(version, metadata)
 }
 
 /// Writes messages as one combined instantiation in XML.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_xml(
     out: &mut impl Write,
-    header: &Header,
+    header: &CcsdsHeader,
     sets: &[sgp4::Elements],
 ) -> Result<(), WriteError> {
     crate::formats::ccsds::xml::begin_ndm(out, header.version)?;
@@ -205,7 +205,7 @@ pub fn write_xml(
         writeln!(out, "<omm id=\"{VERSION}\" version=\"{}\">", header.version)?;
         crate::formats::ccsds::xml::write_header(out, header)?;
         writeln!(out, "<body><segment><metadata>")?;
-        let fixed = METADATA.map(|(key, value)| (key, Value::Text(value.to_owned())));
+        let fixed = METADATA.map(|(key, value)| (key, OmmValue::Text(value.to_owned())));
         write_leaves(out, identity(set).into_iter().chain(fixed))?;
         writeln!(out, "</metadata><data><meanElements>")?;
         write_leaves(out, elements(set))?;
@@ -219,7 +219,7 @@ pub fn write_xml(
 
 fn write_leaves(
     out: &mut impl Write,
-    pairs: impl IntoIterator<Item = (&'static str, Value)>,
+    pairs: impl IntoIterator<Item = (&'static str, OmmValue)>,
 ) -> io::Result<()> {
     pairs.into_iter().try_for_each(|(key, value)| {
         crate::formats::ccsds::xml::write_leaves(out, [(key, value.text())])
@@ -229,7 +229,7 @@ fn write_leaves(
 /// Writes messages as an array of JSON objects.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_json(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), WriteError> {
     write!(out, "[")?;
     for (index, set) in sets.iter().enumerate() {
@@ -238,10 +238,10 @@ pub fn write_json(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), W
             let comma = if member == 0 { "" } else { "," };
             write!(out, "{comma}\"{key}\":")?;
             match value {
-                Value::Text(text) => {
+                OmmValue::Text(text) => {
                     serde_json::to_writer(&mut *out, &text).map_err(io::Error::from)?
                 }
-                Value::Number(number) => write!(out, "{number}")?,
+                OmmValue::Number(number) => write!(out, "{number}")?,
             }
         }
         write!(out, "}}")?;
@@ -253,7 +253,7 @@ pub fn write_json(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), W
 /// Writes messages as a table.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_csv(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), WriteError> {
     let mut table = ::csv::Writer::from_writer(out);
     let mut header_written = false;
@@ -264,7 +264,7 @@ pub fn write_csv(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), Wr
                 .write_record(&keys)
                 .map_err(crate::formats::csv::io_error)?;
         }
-        let texts = values.iter().map(Value::text);
+        let texts = values.iter().map(OmmValue::text);
         table
             .write_record(texts)
             .map_err(crate::formats::csv::io_error)?;
@@ -274,7 +274,7 @@ pub fn write_csv(out: &mut impl Write, sets: &[sgp4::Elements]) -> Result<(), Wr
 }
 
 /// What JSON and CSV hold.
-fn values(set: &sgp4::Elements) -> impl Iterator<Item = (&'static str, Value)> {
+fn values(set: &sgp4::Elements) -> impl Iterator<Item = (&'static str, OmmValue)> {
     identity(set)
         .into_iter()
         .chain(elements(set))

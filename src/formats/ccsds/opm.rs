@@ -12,7 +12,7 @@ pub use keplerian::Keplerian;
 pub use read::{parse, read};
 
 use crate::earth::MU_KM3_S2;
-use crate::formats::ccsds::kvn::{Header, Version, write_comments};
+use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion, write_comments};
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::{Frame, State};
@@ -45,7 +45,7 @@ const THEORY: (&str, &str) = ("USER_DEFINED_MEAN_ELEMENT_THEORY", "SECULAR-J2 TE
 #[derive(Debug, Clone, PartialEq)]
 pub struct Opm {
     /// The header.
-    pub header: Header,
+    pub header: CcsdsHeader,
     /// Name of the satellite.
     pub object_name: String,
     /// Identifier of the satellite.
@@ -71,7 +71,7 @@ impl Opm {
     /// frame of `metadata`.
     #[must_use]
     pub fn new(
-        version: Version,
+        version: CcsdsVersion,
         metadata: &Metadata,
         object: &Object,
         elements: &MeanElements,
@@ -94,7 +94,7 @@ impl Opm {
         let is_inertial = metadata.frame != Frame::EarthFixed;
         let keplerian = || Keplerian::of_state(&state, MU_KM3_S2);
         Self {
-            header: Header::new(version, metadata),
+            header: CcsdsHeader::new(version, metadata),
             object_name: object.name.clone(),
             object_id: object.id.clone(),
             center_name: "EARTH".to_owned(),
@@ -110,7 +110,7 @@ impl Opm {
     /// Writes the message.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         self.header.write(out, VERSION)?;
         let (r, v) = (self.state.position_km.km(), self.state.velocity_km_s);

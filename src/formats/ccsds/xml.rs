@@ -3,8 +3,8 @@
 //! Leaves are told from elements with children; memory is bounded by the length of one tag or
 //! text and by the depth. Document types and entities other than the five of XML are refused.
 
-use crate::formats::ccsds::kvn::{Header, Version};
-use crate::formats::text::finding::Findings;
+use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
+use crate::formats::text::finding::FindingList;
 use quick_xml::Reader;
 use quick_xml::escape::{escape, resolve_predefined_entity};
 use quick_xml::events::{BytesRef, BytesStart, Event};
@@ -18,7 +18,7 @@ const MAX_DEPTH: usize = 32;
 
 /// An element, or its end.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Node {
+pub(crate) enum XmlNode {
     /// Beginning of an element with children, with its `version` if it has one.
     Open(String, Option<String>),
     /// An element with text alone.
@@ -28,7 +28,7 @@ pub(crate) enum Node {
 }
 
 /// A node and the place where it begins.
-pub(crate) type Placed = ((usize, usize), Node);
+pub(crate) type Placed = ((usize, usize), XmlNode);
 
 /// Counts lines as they are consumed, and refuses an event that is too long.
 struct Counting<R> {
@@ -116,14 +116,14 @@ impl<R: BufRead> Nodes<R> {
         &mut self,
         place: (usize, usize),
         message: impl Into<String>,
-        findings: &mut Findings,
+        findings: &mut FindingList,
     ) {
         findings.error(place, "xml-syntax", message);
         self.ended = true;
     }
 
     /// The next node; none at the end, or after a finding.
-    pub(crate) fn next(&mut self, findings: &mut Findings) -> io::Result<Option<Placed>> {
+    pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<Placed>> {
         let mut buffer = Vec::new();
         loop {
             if let Some(node) = self.queued.take() {
@@ -150,7 +150,7 @@ impl<R: BufRead> Nodes<R> {
                 }
                 Ok(Event::Empty(tag)) => {
                     let Held { name, place, .. } = held(&tag, place);
-                    let leaf = (place, Node::Leaf(name, String::new()));
+                    let leaf = (place, XmlNode::Leaf(name, String::new()));
                     let parent = self.held.take().map(opened);
                     self.any = true;
                     self.after(parent, leaf)
@@ -159,8 +159,8 @@ impl<R: BufRead> Nodes<R> {
                     self.depth = self.depth.saturating_sub(1);
                     let name = name_of(tag.name().as_ref());
                     Some(match self.held.take() {
-                        Some(held) => (held.place, Node::Leaf(held.name, held.text)),
-                        None => (place, Node::Close(name)),
+                        Some(held) => (held.place, XmlNode::Leaf(held.name, held.text)),
+                        None => (place, XmlNode::Close(name)),
                     })
                 }
                 Ok(Event::Text(text)) => {
@@ -197,7 +197,7 @@ impl<R: BufRead> Nodes<R> {
         }
     }
 
-    fn start(&mut self, held: Held, findings: &mut Findings) -> Option<Placed> {
+    fn start(&mut self, held: Held, findings: &mut FindingList) -> Option<Placed> {
         self.any = true;
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -218,7 +218,7 @@ impl<R: BufRead> Nodes<R> {
         }
     }
 
-    fn text(&mut self, text: &str, place: (usize, usize), findings: &mut Findings) {
+    fn text(&mut self, text: &str, place: (usize, usize), findings: &mut FindingList) {
         match &mut self.held {
             Some(held) if held.text.len() + text.len() <= MAX_EVENT => held.text.push_str(text),
             Some(_) => self.refuse(place, "a text is too long", findings),
@@ -229,7 +229,7 @@ impl<R: BufRead> Nodes<R> {
 }
 
 fn opened(held: Held) -> Placed {
-    (held.place, Node::Open(held.name, held.version))
+    (held.place, XmlNode::Open(held.name, held.version))
 }
 
 fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
@@ -255,10 +255,10 @@ fn resolved(reference: &BytesRef<'_>) -> Option<String> {
 }
 
 /// What the outermost element says of its schema (CCSDS 505.0-B-2, section 4).
-fn schema(version: Version) -> String {
+fn schema(version: CcsdsVersion) -> String {
     let schema = match version {
-        Version::V2 => "ndmxml-2.0.0-master-2.0.xsd",
-        Version::V3 => "ndmxml-3.0.0-master-3.0.xsd",
+        CcsdsVersion::V2 => "ndmxml-2.0.0-master-2.0.xsd",
+        CcsdsVersion::V3 => "ndmxml-3.0.0-master-3.0.xsd",
     };
     format!(
         "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" \
@@ -269,7 +269,7 @@ fn schema(version: Version) -> String {
 const DECLARATION: &str = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>";
 
 /// Begins a combined instantiation (CCSDS 505.0-B-2, section 4; 502.0-B-3, 8.12).
-pub(crate) fn begin_ndm(out: &mut impl Write, version: Version) -> io::Result<()> {
+pub(crate) fn begin_ndm(out: &mut impl Write, version: CcsdsVersion) -> io::Result<()> {
     writeln!(out, "{DECLARATION}\n<ndm {}>", schema(version))
 }
 
@@ -277,7 +277,7 @@ pub(crate) fn begin_ndm(out: &mut impl Write, version: Version) -> io::Result<()
 pub(crate) fn begin_file(
     out: &mut impl Write,
     (element, id): (&str, &str),
-    version: Version,
+    version: CcsdsVersion,
 ) -> io::Result<()> {
     let schema = schema(version);
     writeln!(
@@ -308,7 +308,7 @@ pub(crate) fn end_ndm(out: &mut impl Write) -> io::Result<()> {
 }
 
 /// The header section of a message.
-pub(crate) fn write_header(out: &mut impl Write, header: &Header) -> io::Result<()> {
+pub(crate) fn write_header(out: &mut impl Write, header: &CcsdsHeader) -> io::Result<()> {
     writeln!(out, "<header>")?;
     write_comments(out, &header.comments)?;
     for (key, value) in header.pairs() {

@@ -1,9 +1,9 @@
 //! Reads tables of elements and of states. Columns are found by their names, in any order; others
 //! are passed over.
 
-use super::Table;
+use super::CsvTable;
 use crate::formats::ReadError;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, State};
@@ -71,7 +71,7 @@ const STATES: [(Frame, [&str; 8]); 2] = [
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read_elements(input: impl BufRead) -> Result<Vec<ElementsRow>, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let mut rows = Vec::new();
     parse_elements(input, &mut findings, |row| rows.push(row))?;
     findings.unless_error(rows)
@@ -83,7 +83,7 @@ pub fn read_elements(input: impl BufRead) -> Result<Vec<ElementsRow>, ReadError>
 /// A failure of the input.
 pub fn parse_elements(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(ElementsRow),
 ) -> io::Result<()> {
     let tables = [((), ELEMENTS)];
@@ -121,7 +121,7 @@ pub fn parse_elements(
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read_states(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let trajectories = parse_states(input, &mut findings)?;
     findings.unless_error(trajectories)
 }
@@ -130,7 +130,10 @@ pub fn read_states(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
 ///
 /// # Errors
 /// A failure of the input.
-pub fn parse_states(input: impl BufRead, findings: &mut Findings) -> io::Result<Vec<Trajectory>> {
+pub fn parse_states(
+    input: impl BufRead,
+    findings: &mut FindingList,
+) -> io::Result<Vec<Trajectory>> {
     let mut trajectories: Vec<Trajectory> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     rows(input, &STATES, findings, |frame, row, findings| {
@@ -169,13 +172,13 @@ pub fn parse_states(input: impl BufRead, findings: &mut Findings) -> io::Result<
 }
 
 /// A row whose fields are numbered as the columns that are read.
-struct Row<'a> {
+struct CsvRow<'a> {
     line: usize,
     record: &'a ::csv::StringRecord,
     columns: &'a [usize],
 }
 
-impl Row<'_> {
+impl CsvRow<'_> {
     fn text(&self, index: usize) -> &str {
         self.record.get(self.columns[index]).unwrap_or_default()
     }
@@ -185,7 +188,7 @@ impl Row<'_> {
         (self.line, self.columns[index] + 1)
     }
 
-    fn number(&self, index: usize, findings: &mut Findings) -> Option<f64> {
+    fn number(&self, index: usize, findings: &mut FindingList) -> Option<f64> {
         let value = self.text(index).parse::<f64>().ok();
         let value = value.filter(|value| value.is_finite());
         if value.is_none() {
@@ -195,7 +198,7 @@ impl Row<'_> {
         value
     }
 
-    fn stamp(&self, index: usize, findings: &mut Findings) -> Option<Epoch> {
+    fn stamp(&self, index: usize, findings: &mut FindingList) -> Option<Epoch> {
         let stamp = timestamp::parse(self.text(index));
         if stamp.is_none() {
             let text = self.text(index);
@@ -210,10 +213,10 @@ impl Row<'_> {
 fn rows<T: Copy, const N: usize>(
     input: impl BufRead,
     tables: &[(T, [&str; N])],
-    findings: &mut Findings,
-    mut see: impl FnMut(T, &Row<'_>, &mut Findings),
+    findings: &mut FindingList,
+    mut see: impl FnMut(T, &CsvRow<'_>, &mut FindingList),
 ) -> io::Result<()> {
-    let mut table = Table::new(input);
+    let mut table = CsvTable::new(input);
     let Some(header) = table.header(findings)? else {
         return Ok(());
     };
@@ -235,7 +238,7 @@ fn rows<T: Copy, const N: usize>(
     let mut record = ::csv::StringRecord::new();
     while let Some(line) = table.next(&mut record, findings)? {
         any = true;
-        let row = Row {
+        let row = CsvRow {
             line,
             record: &record,
             columns: &columns,

@@ -1,6 +1,6 @@
 //! Rows of a table, each of bounded length.
 
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead, Read};
 
 /// Longest row, in bytes, line feeds within quotes included; the buffer of the reader comes on top.
@@ -39,7 +39,7 @@ impl<R: Read> Read for Bounded<R> {
             let count = self.input.read(buffer)?;
             let kept = self.unify_line_ends(&mut buffer[..count]);
             self.since_row += kept;
-            // Nothing left of something read is no end of the input.
+            // Nothing left of something read is not an end of the input.
             if kept > 0 || count == 0 {
                 return Ok(kept);
             }
@@ -48,11 +48,11 @@ impl<R: Read> Read for Bounded<R> {
 }
 
 /// A table whose first row is the header; blanks around fields do not matter.
-pub(in crate::formats) struct Table<R> {
+pub(in crate::formats) struct CsvTable<R> {
     rows: ::csv::Reader<Bounded<R>>,
 }
 
-impl<R: BufRead> Table<R> {
+impl<R: BufRead> CsvTable<R> {
     pub(in crate::formats) fn new(input: R) -> Self {
         let bounded = Bounded {
             input,
@@ -69,7 +69,7 @@ impl<R: BufRead> Table<R> {
     /// The names of the columns, without a byte order mark; none after a finding.
     pub(in crate::formats) fn header(
         &mut self,
-        findings: &mut Findings,
+        findings: &mut FindingList,
     ) -> io::Result<Option<::csv::StringRecord>> {
         match self.rows.headers() {
             Ok(header) => Ok(Some(
@@ -86,7 +86,7 @@ impl<R: BufRead> Table<R> {
     pub(in crate::formats) fn next(
         &mut self,
         row: &mut ::csv::StringRecord,
-        findings: &mut Findings,
+        findings: &mut FindingList,
     ) -> io::Result<Option<usize>> {
         self.rows.get_mut().since_row = 0;
         match self.rows.read_record(row) {
@@ -97,7 +97,7 @@ impl<R: BufRead> Table<R> {
     }
 
     /// Turns a row that cannot be read into a finding.
-    fn report(&self, error: ::csv::Error, findings: &mut Findings) -> io::Result<()> {
+    fn report(&self, error: ::csv::Error, findings: &mut FindingList) -> io::Result<()> {
         let at = error.position().unwrap_or(self.rows.position());
         let place = (at.line() as usize, 1);
         match error.into_kind() {

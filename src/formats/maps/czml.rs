@@ -11,7 +11,7 @@
 mod read;
 mod write;
 
-pub use read::{Track, parse, read};
+pub use read::{CzmlTrack, parse, read};
 pub use write::write;
 
 use nalgebra::Vector3;

@@ -6,9 +6,9 @@
 
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
-use crate::formats::maps::scene::{Scale, Scene, colour_of, point_place, shown};
+use crate::formats::maps::scene::{ColourScale, Scene, colour_of, point_place, shown};
 use crate::formats::maps::tracks::Ground;
-use crate::ground::shapes::{Place, cell_rings};
+use crate::ground::shapes::{LonLat, cell_rings};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
@@ -18,10 +18,10 @@ pub const FORMAT_VERSION: &str = "RFC 7946";
 /// Writes the ground points with their metrics: the cells of a grid, or the points of a list.
 ///
 /// # Errors
-/// When a satellite has no state, or the output does not take the bytes.
+/// When a satellite has no state, or the output fails.
 pub fn write_region(out: &mut impl Write, scene: &Scene<'_>) -> Result<(), WriteError> {
     let points = scene.points()?;
-    let scale = Scale::of(points);
+    let scale = ColourScale::of(points);
     let features = points.iter().map(|point| {
         let geometry = match scene.cell(point) {
             Some(corners) => areas(&cell_rings(corners)),
@@ -36,7 +36,7 @@ pub fn write_region(out: &mut impl Write, scene: &Scene<'_>) -> Result<(), Write
 /// Writes the ground track of each satellite over its first revolution.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_tracks(out: &mut impl Write, ground: &[Ground]) -> Result<(), WriteError> {
     let features = ground.iter().map(|one| {
         let geometry = json!({"type": "MultiLineString", "coordinates": one.track});
@@ -49,7 +49,7 @@ pub fn write_tracks(out: &mut impl Write, ground: &[Ground]) -> Result<(), Write
 /// Writes the footprint of each satellite at the epoch: where it stands above the mask.
 ///
 /// # Errors
-/// When the output does not take the bytes.
+/// If writing fails.
 pub fn write_footprints(out: &mut impl Write, ground: &[Ground]) -> Result<(), WriteError> {
     let features = ground
         .iter()
@@ -63,18 +63,18 @@ fn feature(geometry: &Value, properties: &Value) -> Value {
 }
 
 /// One ring a polygon: no area has a hole.
-fn areas(rings: &[Vec<Place>]) -> Value {
+fn areas(rings: &[Vec<LonLat>]) -> Value {
     match rings {
         [ring] => json!({"type": "Polygon", "coordinates": [ring]}),
         _ => {
-            let polygons: Vec<[&Vec<Place>; 1]> = rings.iter().map(|ring| [ring]).collect();
+            let polygons: Vec<[&Vec<LonLat>; 1]> = rings.iter().map(|ring| [ring]).collect();
             json!({"type": "MultiPolygon", "coordinates": polygons})
         }
     }
 }
 
 /// `fill` is the colour by mean PDOP, as viewers that follow simplestyle show it.
-fn point_properties(point: &PointMetrics, scale: Option<&Scale>) -> Value {
+fn point_properties(point: &PointMetrics, scale: Option<&ColourScale>) -> Value {
     let [red, green, blue] = colour_of(scale, point.mean_pdop);
     json!({
         "latitude_deg": point.latitude_deg,

@@ -8,10 +8,10 @@ use crate::constellation::Design;
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
 use crate::formats::maps::scene::{
-    Scale, Scene, UNSOLVED, colour_of, plane_colour, point_place, shown,
+    ColourScale, Scene, UNSOLVED, colour_of, plane_colour, point_place, shown,
 };
 use crate::formats::maps::tracks::Ground;
-use crate::ground::shapes::{Place, cell_rings};
+use crate::ground::shapes::{LonLat, cell_rings};
 use quick_xml::escape::escape;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -25,7 +25,7 @@ const CELL_OPACITY: u8 = 0x90;
 /// Writes the document.
 ///
 /// # Errors
-/// When a satellite has no state, or the output does not take the bytes.
+/// When a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     scene: &Scene<'_>,
@@ -43,7 +43,7 @@ pub fn write(
         escape(format!("navwalker {design}"))
     )?;
     let points = scene.points()?;
-    let scale = Scale::of(points);
+    let scale = ColourScale::of(points);
     description(out, scene, scale.as_ref())?;
     for plane in 0..design.planes() {
         let colour = hex(plane_colour(plane, design.planes()), 0xff);
@@ -81,12 +81,16 @@ pub fn write(
 }
 
 /// What the study assumes, and the colours of the cells.
-fn description(out: &mut impl Write, scene: &Scene<'_>, scale: Option<&Scale>) -> io::Result<()> {
+fn description(
+    out: &mut impl Write,
+    scene: &Scene<'_>,
+    scale: Option<&ColourScale>,
+) -> io::Result<()> {
     let mut html = String::from("<p>Mean PDOP:");
     let swatch = |[red, green, blue]: [u8; 3], text: &str| {
         format!(" <span style=\"color:#{red:02x}{green:02x}{blue:02x}\">&#9632;</span> {text}")
     };
-    for (value, colour) in scale.map(Scale::legend).unwrap_or_default() {
+    for (value, colour) in scale.map(ColourScale::legend).unwrap_or_default() {
         html += &swatch(colour, &format!("{value:.2}"));
     }
     html += &swatch(UNSOLVED, "unsolved");
@@ -120,7 +124,7 @@ fn folder<W: Write, T>(
 fn place(
     out: &mut impl Write,
     scene: &Scene<'_>,
-    scale: Option<&Scale>,
+    scale: Option<&ColourScale>,
     point: &PointMetrics,
 ) -> io::Result<()> {
     let colour = colour_of(scale, point.mean_pdop);
@@ -178,14 +182,14 @@ fn grouped(geometry: &str) -> String {
     format!("<MultiGeometry>{geometry}</MultiGeometry>")
 }
 
-fn polygon(ring: &[Place]) -> String {
+fn polygon(ring: &[LonLat]) -> String {
     format!(
         "<Polygon><tessellate>1</tessellate><outerBoundaryIs><LinearRing>{}</LinearRing></outerBoundaryIs></Polygon>",
         coordinates(ring)
     )
 }
 
-fn coordinates(places: &[Place]) -> String {
+fn coordinates(places: &[LonLat]) -> String {
     let mut text = String::from("<coordinates>");
     for [longitude, latitude] in places {
         // Writing to a string cannot fail.

@@ -7,7 +7,7 @@ use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{Evaluator, PointMetrics, Series};
 use crate::ground::Grid;
-use crate::ground::shapes::{Place, cell};
+use crate::ground::shapes::{LonLat, cell};
 use crate::units::round_decimal;
 use std::sync::OnceLock;
 
@@ -86,7 +86,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The corners of the cell of a point; none without a grid.
-    pub(crate) fn cell(&self, point: &PointMetrics) -> Option<[Place; 2]> {
+    pub(crate) fn cell(&self, point: &PointMetrics) -> Option<[LonLat; 2]> {
         let grid = self.grid.as_ref()?;
         Some(cell(grid, [point.longitude_deg, point.latitude_deg]))
     }
@@ -105,7 +105,7 @@ impl<'a> Scene<'a> {
                 grid.step_s()
             ),
             format!(
-                "design: {}, mean elements in TEME at the first sample, flown by {}",
+                "design: {}, mean elements in TEME at the first sample, propagated by {}",
                 self.design, setup.model
             ),
         ];
@@ -169,7 +169,7 @@ pub(crate) fn wrapped(longitude_deg: f64) -> f64 {
 }
 
 /// Where a point lies on a map.
-pub(crate) fn point_place(point: &PointMetrics) -> Place {
+pub(crate) fn point_place(point: &PointMetrics) -> LonLat {
     [wrapped(point.longitude_deg), point.latitude_deg]
 }
 
@@ -179,7 +179,7 @@ pub(crate) fn shown(value: f64) -> f64 {
 }
 
 /// The colours of mean PDOP over the points of a region.
-pub(crate) struct Scale {
+pub(crate) struct ColourScale {
     low: f64,
     high: f64,
 }
@@ -196,7 +196,7 @@ const COLOURS: [[u8; 3]; 5] = [
     [253, 231, 37],
 ];
 
-impl Scale {
+impl ColourScale {
     /// The scale from the least to the greatest mean PDOP; none if no point is solved.
     pub(crate) fn of(points: &[PointMetrics]) -> Option<Self> {
         let values = || points.iter().filter_map(|point| point.mean_pdop);
@@ -238,7 +238,7 @@ impl Scale {
 }
 
 /// The colour of a mean PDOP, or that of a point without one.
-pub(crate) fn colour_of(scale: Option<&Scale>, pdop: Option<f64>) -> [u8; 3] {
+pub(crate) fn colour_of(scale: Option<&ColourScale>, pdop: Option<f64>) -> [u8; 3] {
     match (scale, pdop) {
         (Some(scale), Some(pdop)) => scale.colour(pdop),
         _ => UNSOLVED,

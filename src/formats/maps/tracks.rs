@@ -1,10 +1,10 @@
 //! Where satellites are over the ground: tracks and footprints for maps.
 
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::formats::maps::scene::Scene;
 use crate::frames::EarthFixed;
-use crate::ground::shapes::{Place, footprint, lines, place_below, rings};
+use crate::ground::shapes::{LonLat, footprint, lines, place_below, rings};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -18,11 +18,11 @@ pub struct Ground {
     /// Its plane and its place in it, from 1.
     pub(crate) slot: Option<[usize; 2]>,
     /// The first revolution, cut at the antimeridian.
-    pub(crate) track: Vec<Vec<Place>>,
+    pub(crate) track: Vec<Vec<LonLat>>,
     /// Where it stands above the mask at the epoch.
-    pub(crate) footprint: Vec<Vec<Place>>,
+    pub(crate) footprint: Vec<Vec<LonLat>>,
     /// The place below it at the epoch.
-    pub(crate) below: Place,
+    pub(crate) below: LonLat,
 }
 
 impl Ground {
@@ -37,15 +37,15 @@ impl Ground {
     ) -> Result<Vec<Self>, EphemerisError> {
         let sampled = Sampled::new(ephemeris, EarthFixed);
         let mask_rad = scene.setup().mask.degrees().to_radians();
-        let one = |flown: &Flown| {
-            let position = |t: f64| Ok(sampled.state(flown, t)?.position_km);
+        let one = |propagated: &EphemerisSatellite| {
+            let position = |t: f64| Ok(sampled.state(propagated, t)?.position_km);
             let place = |t: f64| Ok(place_below(scene.surface(), position(t)?));
             let times = (0..=STEPS).map(|k| period_s * k as f64 / STEPS as f64);
-            let track: Vec<Place> = times.map(place).collect::<Result<_, EphemerisError>>()?;
+            let track: Vec<LonLat> = times.map(place).collect::<Result<_, EphemerisError>>()?;
             let start = position(0.0)?;
             Ok(Self {
-                name: flown.name.clone(),
-                slot: flown.slot.map(|slot| [slot.plane + 1, slot.index + 1]),
+                name: propagated.name.clone(),
+                slot: propagated.slot.map(|slot| [slot.plane + 1, slot.index + 1]),
                 below: track[0],
                 track: lines(&track),
                 footprint: rings(&footprint(scene.surface(), start, mask_rad)),

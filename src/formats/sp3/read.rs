@@ -1,8 +1,8 @@
 //! Reads SP3-a to SP3-d by columns.
 
-use super::{DM_IN_KM, Sample, Sp3};
+use super::{DM_IN_KM, Sp3, Sp3Sample};
 use crate::formats::ReadError;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::time_system_of_name;
@@ -17,7 +17,7 @@ use std::io::{self, BufRead};
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let file = parse(input, &mut findings)?;
     findings.unless_error(file)
 }
@@ -26,16 +26,16 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
 ///
 /// # Errors
 /// A failure of the input.
-pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Sp3> {
+pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Sp3> {
     let mut lines = Lines::new(input);
-    let mut parser = Parser::new();
+    let mut parser = Sp3Parser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
     }
     Ok(parser.end(lines.number().max(1), findings))
 }
 
-struct Parser {
+struct Sp3Parser {
     file: Sp3,
     /// Number of satellites and of epochs that the header announces.
     announced: (usize, usize),
@@ -51,7 +51,7 @@ struct Parser {
     any: bool,
 }
 
-impl Parser {
+impl Sp3Parser {
     fn new() -> Self {
         Self {
             file: Sp3 {
@@ -73,7 +73,7 @@ impl Parser {
         }
     }
 
-    fn line(&mut self, line: &Line, findings: &mut Findings) {
+    fn line(&mut self, line: &Line, findings: &mut FindingList) {
         let text = line.text.trim_end();
         let place = (line.number, 1);
         if !std::mem::replace(&mut self.any, true) {
@@ -102,7 +102,7 @@ impl Parser {
         }
     }
 
-    fn first_line(&mut self, line: &Line, findings: &mut Findings) {
+    fn first_line(&mut self, line: &Line, findings: &mut FindingList) {
         let bytes = line.text.as_bytes();
         let ([b'#', version @ b'a'..=b'd', b'P' | b'V', ..], true) = (bytes, bytes.len() >= 51)
         else {
@@ -128,7 +128,7 @@ impl Parser {
         }
     }
 
-    fn ids(&mut self, line: &Line, findings: &mut Findings) {
+    fn ids(&mut self, line: &Line, findings: &mut FindingList) {
         let text = &line.text;
         if let Some(Ok(count)) = text.get(3..6).map(|count| count.trim().parse()) {
             self.announced.0 = count;
@@ -142,7 +142,7 @@ impl Parser {
             }
             let place = (line.number, column + 1);
             if !is_id(id) {
-                let message = format!("'{id}' is no id: a letter and two digits");
+                let message = format!("'{id}' is not an id: a letter and two digits");
                 findings.error(place, "sp3-id", message);
             } else if self.file.ids.iter().any(|known| known == id) {
                 findings.error(place, "sp3-id", format!("{id} is named twice"));
@@ -153,7 +153,7 @@ impl Parser {
         }
     }
 
-    fn file_type(&mut self, line: &Line, findings: &mut Findings) {
+    fn file_type(&mut self, line: &Line, findings: &mut FindingList) {
         self.type_lines += 1;
         if self.type_lines > 1 || !matches!(self.file.version, 'c' | 'd') {
             return;
@@ -185,7 +185,7 @@ impl Parser {
         }
     }
 
-    fn epoch(&mut self, line: &Line, findings: &mut Findings) {
+    fn epoch(&mut self, line: &Line, findings: &mut FindingList) {
         let stamp = line.text.get(3..31).and_then(calendar);
         let Some(stamp) = stamp else {
             findings.error((line.number, 4), "sp3-time", "the epoch is not a time");
@@ -204,7 +204,7 @@ impl Parser {
     }
 
     /// The satellite of a record, and its three numbers.
-    fn record(&self, line: &Line, findings: &mut Findings) -> Option<(usize, Vector3<f64>)> {
+    fn record(&self, line: &Line, findings: &mut FindingList) -> Option<(usize, Vector3<f64>)> {
         let text = &line.text;
         let id = text.get(1..4).unwrap_or_default();
         let Some(index) = self.file.ids.iter().position(|known| known == id) else {
@@ -227,7 +227,7 @@ impl Parser {
         Some((index, Vector3::from(values)))
     }
 
-    fn position(&mut self, line: &Line, findings: &mut Findings) {
+    fn position(&mut self, line: &Line, findings: &mut FindingList) {
         let (Some((index, position_km)), Some(at)) = (self.record(line, findings), self.at) else {
             return;
         };
@@ -242,14 +242,14 @@ impl Parser {
             findings.error((line.number, 2), "sp3-repeated", message);
             return;
         }
-        states.push(Sample {
+        states.push(Sp3Sample {
             at,
             position_km: Position::new(position_km),
             velocity_km_s: None,
         });
     }
 
-    fn velocity(&mut self, line: &Line, findings: &mut Findings) {
+    fn velocity(&mut self, line: &Line, findings: &mut FindingList) {
         let Some((index, velocity_dm_s)) = self.record(line, findings) else {
             return;
         };
@@ -265,7 +265,7 @@ impl Parser {
         }
     }
 
-    fn end(self, number: usize, findings: &mut Findings) -> Sp3 {
+    fn end(self, number: usize, findings: &mut FindingList) -> Sp3 {
         let place = (number, 1);
         if !self.any {
             findings.error(place, "sp3-first-line", "the file is empty");

@@ -2,7 +2,7 @@ use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::formats::metadata::Theory;
-use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::finding::{Finding, FindingList};
 use crate::frames::{Teme, from_teme};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
@@ -16,14 +16,14 @@ fn ephemeris(design: &str) -> Ephemeris {
     Ephemeris::of_design(&design, Model::J2, grid).unwrap()
 }
 
-fn written(ephemeris: &Ephemeris, version: Version, letter: char) -> Result<String, WriteError> {
+fn written(ephemeris: &Ephemeris, version: Sp3Version, letter: char) -> Result<String, WriteError> {
     let epoch = ephemeris.grid().epoch();
     let metadata = Metadata {
         originator: "NAVWALKER".to_owned(),
         creation: epoch,
         frame: Frame::EarthFixed,
         time_system: TimeSystem::Gps,
-        theory: Theory::Flown(Model::J2),
+        theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:20/5/1@925".to_owned()],
     };
     let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
@@ -35,7 +35,7 @@ fn written(ephemeris: &Ephemeris, version: Version, letter: char) -> Result<Stri
 }
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(20);
+    let mut findings = FindingList::of_linter(20);
     parse(text.as_ref(), &mut findings).unwrap();
     findings.into_vec()
 }
@@ -44,7 +44,7 @@ fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
 /// Wednesday of GPS week 2347; modified Julian day 60676.
 #[test]
 fn validate_columns_of_the_header() {
-    let text = written(&ephemeris("delta:55:20/5/1@925"), Version::C, 'L').unwrap();
+    let text = written(&ephemeris("delta:55:20/5/1@925"), Sp3Version::C, 'L').unwrap();
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(
         lines[0],
@@ -81,7 +81,7 @@ fn validate_columns_of_the_header() {
 #[test]
 fn states_survive_with_their_units() {
     let ephemeris = ephemeris("delta:55:20/5/1@925");
-    for version in [Version::C, Version::D] {
+    for version in [Sp3Version::C, Sp3Version::D] {
         let text = written(&ephemeris, version, 'X').unwrap();
         assert_eq!(findings(&text), [], "{version}");
         let file = read(text.as_bytes()).unwrap();
@@ -104,7 +104,7 @@ fn states_survive_with_their_units() {
 
 #[test]
 fn sp3d_names_every_satellite_in_its_comments() {
-    let text = written(&ephemeris("delta:55:98/7/1@925"), Version::D, 'L').unwrap();
+    let text = written(&ephemeris("delta:55:98/7/1@925"), Sp3Version::D, 'L').unwrap();
     assert!(text.contains("\n/* L98 = NW-P07-S14\n"));
     assert!(text.lines().all(|line| line.len() <= 80));
     assert_eq!(read(text.as_bytes()).unwrap().ids.len(), 98);
@@ -117,14 +117,14 @@ fn what_does_not_fit_is_refused() {
             .unwrap_err()
             .to_string()
     };
-    assert!(error("delta:55:98/7/1@925", Version::C, 'L').contains("1 to 85"));
-    assert!(error("delta:55:100/5/1@925", Version::D, 'L').contains("1 to 99"));
-    assert!(error("delta:55:6/3/1@925", Version::D, 'l').contains("capital"));
+    assert!(error("delta:55:98/7/1@925", Sp3Version::C, 'L').contains("1 to 85"));
+    assert!(error("delta:55:100/5/1@925", Sp3Version::D, 'L').contains("1 to 99"));
+    assert!(error("delta:55:6/3/1@925", Sp3Version::D, 'l').contains("capital"));
 }
 
 #[test]
 fn broken_rules_are_named_with_their_place() {
-    let text = written(&ephemeris("delta:55:6/3/1@925"), Version::C, 'L').unwrap();
+    let text = written(&ephemeris("delta:55:6/3/1@925"), Sp3Version::C, 'L').unwrap();
     let cases = [
         ("#cV", "#zV", (1, 1, "sp3-first-line")),
         ("      7 ORBIT", "      8 ORBIT", (114, 1, "sp3-count")),
@@ -168,7 +168,7 @@ fn broken_rules_are_named_with_their_place() {
 proptest! {
     #[test]
     fn damaged_files_never_panic(at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in 0_usize..90) {
-        let mut bytes = written(&ephemeris("delta:55:6/3/1@925"), Version::D, 'L').unwrap().into_bytes();
+        let mut bytes = written(&ephemeris("delta:55:6/3/1@925"), Sp3Version::D, 'L').unwrap().into_bytes();
         let at = at.index(bytes.len());
         bytes[at] = byte;
         let end = (at + cut).min(bytes.len());
@@ -200,12 +200,12 @@ fn regress_numbers_wider_than_their_columns_are_refused() {
             Vector3::new(0.0, 0.0, position_km),
             Vector3::new(0.0, 0.0, velocity_km_s),
         );
-        let far = Flown {
+        let far = EphemerisSatellite {
             name: "FAR".to_owned(),
             slot: None,
             propagator: Box::new(Distant(state)),
         };
-        let found = written(&Ephemeris::new(grid, vec![far]), Version::D, 'L');
+        let found = written(&Ephemeris::new(grid, vec![far]), Sp3Version::D, 'L');
         match found {
             Ok(text) => assert!(fits && read(text.as_bytes()).is_ok()),
             Err(error) => assert!(!fits && error.to_string().contains("14 columns"), "{error}"),
@@ -226,7 +226,7 @@ fn regress_instants_without_a_week_are_refused() {
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         let design: Design = "delta:55:1/1/0@925".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        let found = written(&ephemeris, Version::D, 'L');
+        let found = written(&ephemeris, Sp3Version::D, 'L');
         assert_eq!(found.is_ok(), fits, "{epoch:?}");
         if let Err(error) = found {
             assert!(error.to_string().contains("1980-01-06"), "{error}");

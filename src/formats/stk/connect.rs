@@ -30,7 +30,7 @@ pub enum Setting {
 }
 
 /// A scenario of commands.
-pub struct Scenario<'a> {
+pub struct ConnectScenario<'a> {
     /// The span.
     pub grid: TimeGrid,
     /// Names and settings, those of the design first.
@@ -86,11 +86,11 @@ pub fn by_hand(one_mask: bool, files: bool) -> Vec<String> {
     told
 }
 
-impl Scenario<'_> {
+impl ConnectScenario<'_> {
     /// Writes the commands, one a line.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         let epoch = self.grid.epoch();
         let span_s = self.grid.step_s() * self.grid.len() as f64;
@@ -195,7 +195,7 @@ impl Scenario<'_> {
     /// Writes the ground points as a point file: latitude and longitude in degrees.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write_points(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "stk.v.{FORMAT_VERSION}\nBegin PointList")?;
         for site in self.sites {
@@ -233,7 +233,7 @@ mod tests {
         let mut satellites: Vec<_> = design.satellites().into_iter().map(set).collect();
         satellites.push(("GEO-1".to_owned(), Setting::File("gnss/GEO-1.e".to_owned())));
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-        let scenario = Scenario {
+        let scenario = ConnectScenario {
             grid: TimeGrid::new(epoch, 86_400.0, 60.0).unwrap(),
             satellites: &satellites,
             sites: &grid.sites(Surface::Wgs84).unwrap(),

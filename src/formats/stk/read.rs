@@ -4,7 +4,7 @@ use super::{MONTHS, StkEphemeris};
 use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::{read_number, words};
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
@@ -29,7 +29,7 @@ const PASSED_OVER: [&str; 8] = [
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let file = parse(input, &mut findings)?;
     let read = findings.unless_error(file)?;
     read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
@@ -39,9 +39,9 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 ///
 /// # Errors
 /// A failure of the input.
-pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<StkEphemeris>> {
+pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<StkEphemeris>> {
     let mut lines = Lines::with_tabs(input);
-    let mut parser = Parser::default();
+    let mut parser = StkParser::default();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
     }
@@ -50,7 +50,7 @@ pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<
 
 /// What the next line belongs to.
 #[derive(Clone, Copy, PartialEq, Default)]
-enum Part {
+enum StkSection {
     #[default]
     Version,
     Before,
@@ -60,8 +60,8 @@ enum Part {
 }
 
 #[derive(Default)]
-struct Parser {
-    part: Part,
+struct StkParser {
+    part: StkSection,
     comments: Vec<String>,
     points: Option<(usize, (usize, usize))>,
     epoch: Option<NaiveDateTime>,
@@ -74,8 +74,8 @@ struct Parser {
     states: Vec<(f64, State<Frame>)>,
 }
 
-impl Parser {
-    fn line(&mut self, line: &Line, findings: &mut Findings) {
+impl StkParser {
+    fn line(&mut self, line: &Line, findings: &mut FindingList) {
         let text = line.text.trim();
         let place = (line.number, 1);
         if text.is_empty() {
@@ -88,21 +88,27 @@ impl Parser {
         let (key, value) = text.split_once(' ').unwrap_or((text, ""));
         let value = value.trim().trim_matches('"');
         match self.part {
-            Part::Version => {
+            StkSection::Version => {
                 if !text.to_ascii_lowercase().starts_with("stk.v.") {
                     let message = "the first line must be stk.v. and a version";
                     findings.error(place, "stk-version", message);
                 }
-                self.part = Part::Before;
+                self.part = StkSection::Before;
             }
-            Part::Before if is(key, "BEGIN") && is(value, "Ephemeris") => {
-                self.part = Part::Keywords
+            StkSection::Before if is(key, "BEGIN") && is(value, "Ephemeris") => {
+                self.part = StkSection::Keywords
             }
-            Part::Before => findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here"),
-            Part::Keywords => self.keyword(place, (key, value), line, findings),
-            Part::Table if is(key, "END") && is(value, "Ephemeris") => self.part = Part::After,
-            Part::Table => self.row(line, findings),
-            Part::After => findings.error(place, "stk-line", "nothing may follow END Ephemeris"),
+            StkSection::Before => {
+                findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here")
+            }
+            StkSection::Keywords => self.keyword(place, (key, value), line, findings),
+            StkSection::Table if is(key, "END") && is(value, "Ephemeris") => {
+                self.part = StkSection::After
+            }
+            StkSection::Table => self.row(line, findings),
+            StkSection::After => {
+                findings.error(place, "stk-line", "nothing may follow END Ephemeris")
+            }
         }
     }
 
@@ -111,10 +117,10 @@ impl Parser {
         place: (usize, usize),
         (key, value): (&str, &str),
         line: &Line,
-        findings: &mut Findings,
+        findings: &mut FindingList,
     ) {
         let value_place = (line.number, line.text.find(value).unwrap_or(0) + 1);
-        let known = |known: bool, findings: &mut Findings| {
+        let known = |known: bool, findings: &mut FindingList| {
             if !known {
                 let message = format!("{key} '{value}' is unknown here");
                 findings.error(value_place, "stk-value", message);
@@ -160,7 +166,7 @@ impl Parser {
         }
     }
 
-    fn begin_table(&mut self, place: (usize, usize), findings: &mut Findings) {
+    fn begin_table(&mut self, place: (usize, usize), findings: &mut FindingList) {
         for (missing, name) in [
             (self.epoch.is_none(), "ScenarioEpoch"),
             (self.frame.is_none(), "CoordinateSystem"),
@@ -170,10 +176,10 @@ impl Parser {
                 findings.error(place, "stk-missing", message);
             }
         }
-        self.part = Part::Table;
+        self.part = StkSection::Table;
     }
 
-    fn row(&mut self, line: &Line, findings: &mut Findings) {
+    fn row(&mut self, line: &Line, findings: &mut FindingList) {
         let needed = if self.positions_only { 4 } else { 7 };
         let fields: Vec<_> = words(&line.text).take(8).collect();
         if fields.len() != needed {
@@ -204,7 +210,7 @@ impl Parser {
         self.states.push((elapsed_s, state));
     }
 
-    fn derive_velocities(&mut self, number: usize, findings: &mut Findings) {
+    fn derive_velocities(&mut self, number: usize, findings: &mut FindingList) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
         let position = |(elapsed_s, state): &(f64, State<Frame>)| {
@@ -224,8 +230,8 @@ impl Parser {
         }
     }
 
-    fn end(mut self, number: usize, findings: &mut Findings) -> Option<StkEphemeris> {
-        if self.part != Part::After {
+    fn end(mut self, number: usize, findings: &mut FindingList) -> Option<StkEphemeris> {
+        if self.part != StkSection::After {
             findings.error((number, 1), "stk-truncated", "END Ephemeris is missing");
         }
         match self.points {

@@ -2,9 +2,9 @@ use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::formats::metadata::Theory;
-use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use nalgebra::Vector3;
@@ -28,7 +28,7 @@ END Ephemeris
 ";
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(20);
+    let mut findings = FindingList::of_linter(20);
     parse(text.as_ref(), &mut findings).unwrap();
     findings.into_vec()
 }
@@ -43,7 +43,7 @@ fn written(frame: Frame, step_s: f64) -> String {
         creation: epoch,
         frame,
         time_system: TimeSystem::Utc,
-        theory: Theory::Flown(Model::J2),
+        theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
     };
     let sampled = Sampled::new(&ephemeris, frame);

@@ -7,7 +7,7 @@ use thiserror::Error;
 pub enum Severity {
     /// The content cannot be trusted: a reader refuses the file.
     Error,
-    /// The standard forbids it, but the meaning is clear: a reader goes on, a linter tells.
+    /// The standard forbids it, but the meaning is clear: readers continue; lint reports it.
     Warning,
 }
 
@@ -29,13 +29,13 @@ pub struct Finding {
 
 /// A list of findings that stops growing at a limit, so that a hostile file costs no memory.
 #[derive(Debug)]
-pub struct Findings {
+pub struct FindingList {
     limit: usize,
     keeps_warnings: bool,
     found: Vec<Finding>,
 }
 
-impl Findings {
+impl FindingList {
     /// For a linter: errors and warnings, up to `limit` of them.
     #[must_use]
     pub fn of_linter(limit: usize) -> Self {

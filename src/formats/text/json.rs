@@ -1,20 +1,20 @@
 //! The objects of a JSON array, one at a time, each with its place in the file.
 
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
 /// Longest object that is kept, in bytes.
 const MAX_OBJECT: usize = 1 << 20;
 
 /// An object of the array.
-pub(crate) struct Object {
+pub(crate) struct JsonObject {
     /// Its text, from `{` to `}`.
     text: String,
     /// Where it begins.
     start: (usize, usize),
 }
 
-impl Object {
+impl JsonObject {
     /// Place of a byte of the object in the file.
     fn place(&self, at: usize) -> (usize, usize) {
         let before = &self.text[..at];
@@ -30,13 +30,13 @@ impl Object {
         self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
     }
 
-    /// The object as a value; a finding if it is no JSON.
-    pub(crate) fn value(&self, findings: &mut Findings) -> Option<serde_json::Value> {
+    /// The object as a value; a finding if it is not a JSON.
+    pub(crate) fn value(&self, findings: &mut FindingList) -> Option<serde_json::Value> {
         self.parsed(findings)
     }
 
-    /// The members of the object as texts; a finding if it is no object of plain values.
-    pub(crate) fn members(&self, findings: &mut Findings) -> Option<Vec<(String, String)>> {
+    /// The members of the object as texts; a finding if it is not an object of plain values.
+    pub(crate) fn members(&self, findings: &mut FindingList) -> Option<Vec<(String, String)>> {
         let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
         let text = |(key, value): (String, serde_json::Value)| match value {
             serde_json::Value::String(text) => Some((key, text)),
@@ -47,7 +47,7 @@ impl Object {
         Some(members.into_iter().filter_map(text).collect())
     }
 
-    fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut Findings) -> Option<T> {
+    fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut FindingList) -> Option<T> {
         let error = match serde_json::from_str(&self.text) {
             Ok(parsed) => return Some(parsed),
             Err(error) => error,
@@ -69,11 +69,11 @@ impl Object {
 pub(crate) struct Objects<R> {
     input: R,
     place: (usize, usize),
-    state: State,
+    state: ScanState,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+enum ScanState {
     Start,
     Inside,
     BetweenObjects,
@@ -85,7 +85,7 @@ impl<R: BufRead> Objects<R> {
         Self {
             input,
             place: (1, 0),
-            state: State::Start,
+            state: ScanState::Start,
         }
     }
 
@@ -107,32 +107,34 @@ impl<R: BufRead> Objects<R> {
     }
 
     /// The next object; none at the end, or after a finding.
-    pub(crate) fn next(&mut self, findings: &mut Findings) -> io::Result<Option<Object>> {
-        while self.state != State::End {
+    pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
+        while self.state != ScanState::End {
             let Some(byte) = self.byte()? else {
                 let message = "the array is not closed, or there is none";
                 findings.error((self.place.0, self.place.1 + 1), "json-truncated", message);
-                self.state = State::End;
+                self.state = ScanState::End;
                 return Ok(None);
             };
             match (self.state, byte) {
                 (_, b' ' | b'\t' | b'\r' | b'\n') => {}
                 // A byte order mark in front.
-                (State::Start, 0xEF | 0xBB | 0xBF) if self.place.1 <= 3 => {}
-                (State::Start, b'[') => self.state = State::Inside,
-                (State::Inside | State::BetweenObjects, b']') => self.state = State::End,
-                (State::BetweenObjects, b',') => self.state = State::Inside,
-                (State::Start | State::Inside, b'{') => {
+                (ScanState::Start, 0xEF | 0xBB | 0xBF) if self.place.1 <= 3 => {}
+                (ScanState::Start, b'[') => self.state = ScanState::Inside,
+                (ScanState::Inside | ScanState::BetweenObjects, b']') => {
+                    self.state = ScanState::End
+                }
+                (ScanState::BetweenObjects, b',') => self.state = ScanState::Inside,
+                (ScanState::Start | ScanState::Inside, b'{') => {
                     self.state = match self.state {
-                        State::Start => State::End,
-                        _ => State::BetweenObjects,
+                        ScanState::Start => ScanState::End,
+                        _ => ScanState::BetweenObjects,
                     };
                     return self.object(findings);
                 }
                 _ => {
                     let message = "neither an array of objects nor an object";
                     findings.error(self.place, "json-syntax", message);
-                    self.state = State::End;
+                    self.state = ScanState::End;
                 }
             }
             self.line_ended(byte);
@@ -141,7 +143,7 @@ impl<R: BufRead> Objects<R> {
     }
 
     /// The rest of an object whose brace has been taken.
-    fn object(&mut self, findings: &mut Findings) -> io::Result<Option<Object>> {
+    fn object(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
         let start = self.place;
         let mut bytes = vec![b'{'];
         let (mut depth, mut in_string, mut escaped) = (1_usize, false, false);
@@ -150,7 +152,7 @@ impl<R: BufRead> Objects<R> {
             let Some(byte) = byte else {
                 let message = format!("the object is not closed within {MAX_OBJECT} bytes");
                 findings.error(start, "json-truncated", message);
-                self.state = State::End;
+                self.state = ScanState::End;
                 return Ok(None);
             };
             bytes.push(byte);
@@ -166,9 +168,9 @@ impl<R: BufRead> Objects<R> {
         }
         let Ok(text) = String::from_utf8(bytes) else {
             findings.error(start, "character", "the object is not UTF-8");
-            self.state = State::End;
+            self.state = ScanState::End;
             return Ok(None);
         };
-        Ok(Some(Object { text, start }))
+        Ok(Some(JsonObject { text, start }))
     }
 }

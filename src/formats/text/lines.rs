@@ -1,6 +1,6 @@
 //! Lines of a text file, with a bound on their length and an eye on their encoding.
 
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
 /// Longest line that is kept, in bytes; the longest that a supported format allows is 254.
@@ -57,7 +57,7 @@ impl<R: BufRead> Lines<R> {
     }
 
     /// The next line whose bytes are text; findings tell of the lines that are passed over.
-    pub(crate) fn next(&mut self, findings: &mut Findings) -> io::Result<Option<Line>> {
+    pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<Line>> {
         while !findings.is_full() {
             let mut bytes = Vec::new();
             let taken = self.take_bytes(&mut bytes)?;
@@ -77,7 +77,7 @@ impl<R: BufRead> Lines<R> {
             match bytes.iter().position(|byte| !is_text(*byte)) {
                 None => return Ok(Some(self.line(&bytes))),
                 Some(at) => {
-                    let message = format!("byte 0x{:02X} is no printable ASCII", bytes[at]);
+                    let message = format!("byte 0x{:02X} is not printable ASCII", bytes[at]);
                     findings.error((self.number, at + 1), "character", message);
                 }
             }
@@ -92,7 +92,7 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    fn replace_tabs(&self, bytes: &mut [u8], findings: &mut Findings) {
+    fn replace_tabs(&self, bytes: &mut [u8], findings: &mut FindingList) {
         for (at, byte) in bytes.iter_mut().enumerate() {
             if *byte == b'\t' {
                 *byte = b' ';
@@ -159,7 +159,7 @@ mod tests {
         Vec<(usize, String)>,
         Vec<crate::formats::text::finding::Finding>,
     ) {
-        let mut findings = Findings::of_linter(10);
+        let mut findings = FindingList::of_linter(10);
         let mut reader = Lines::new(bytes);
         let mut found = Vec::new();
         while let Some(line) = reader.next(&mut findings).unwrap() {

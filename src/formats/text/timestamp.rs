@@ -1,6 +1,6 @@
 //! Calendar instants as files write them, and the time systems that they are counted in.
 
-use crate::keyword::words;
+use crate::keyword::keywords;
 use crate::time::{Epoch, TimeGrid};
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta, Timelike};
 
@@ -10,7 +10,7 @@ const TAI_MINUS_GPS_S: f64 = 19.0;
 /// TT - TAI, s.
 const TT_MINUS_TAI_S: f64 = 32.184;
 
-words! {
+keywords! {
     /// A time system of an exchanged file.
     TimeSystem {
         /// Coordinated Universal Time.

@@ -3,14 +3,14 @@
 use super::{EPOCH_STEP_NS, LINE, NAME, checksum, since_midnight_ns};
 use crate::formats::ReadError;
 use crate::formats::metadata::CatalogNumber;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use chrono::{Datelike, NaiveDate, TimeDelta};
 use std::io::{self, BufRead};
 
 /// An element set and the line that it starts on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Record {
+pub struct TleRecord {
     /// The element set.
     pub set: sgp4::Elements,
     /// Number of its first element line.
@@ -22,7 +22,7 @@ pub struct Record {
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<Vec<sgp4::Elements>, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let mut sets = Vec::new();
     parse(input, &mut findings, |record| sets.push(record.set))?;
     findings.unless_error(sets)
@@ -34,8 +34,8 @@ pub fn read(input: impl BufRead) -> Result<Vec<sgp4::Elements>, ReadError> {
 /// A failure of the input.
 pub fn parse(
     input: impl BufRead,
-    findings: &mut Findings,
-    mut take: impl FnMut(Record),
+    findings: &mut FindingList,
+    mut take: impl FnMut(TleRecord),
 ) -> io::Result<()> {
     let mut lines = Lines::new(input);
     let mut name: Option<Line> = None;
@@ -98,7 +98,7 @@ impl Role {
     }
 }
 
-fn report_unpaired(first: Option<Line>, findings: &mut Findings) {
+fn report_unpaired(first: Option<Line>, findings: &mut FindingList) {
     if let Some(line) = first {
         findings.error(
             (line.number, 1),
@@ -108,7 +108,7 @@ fn report_unpaired(first: Option<Line>, findings: &mut Findings) {
     }
 }
 
-fn missing_lines(name: &Line, findings: &mut Findings) {
+fn missing_lines(name: &Line, findings: &mut FindingList) {
     let message = "neither line 1 nor line 2 of an element set, nor a name before one";
     findings.error((name.number, 1), "tle-line", message);
 }
@@ -148,7 +148,7 @@ fn is_alpha5(byte: u8) -> bool {
 }
 
 /// Checks length, columns and checksum of a line.
-fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut Findings) -> bool {
+fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> bool {
     let text = line.text.trim_end().as_bytes();
     if text.len() != LINE {
         let message = format!("the line has {} columns; it needs {LINE}", text.len());
@@ -180,8 +180,8 @@ fn record(
     name: Option<Line>,
     first: &Line,
     second: &Line,
-    findings: &mut Findings,
-) -> Option<Record> {
+    findings: &mut FindingList,
+) -> Option<TleRecord> {
     // Both lines are looked at before giving up, so that a linter sees what is wrong with each.
     let first_fits = line_fits(first, FIRST, findings);
     let second_fits = line_fits(second, SECOND, findings);
@@ -213,11 +213,11 @@ fn record(
         Ok(mut set) => {
             let line = first.number;
             if !is_designator(&one[9..17]) {
-                let message = format!("'{}' is no year, launch and piece", &one[9..17]);
+                let message = format!("'{}' is not a year, launch and piece", &one[9..17]);
                 findings.warning((line, 10), "tle-designator", message);
                 set.international_designator = None;
             }
-            Some(Record { set, line })
+            Some(TleRecord { set, line })
         }
         Err(error) => {
             findings.error((first.number, 1), "tle-field", error.to_string());
@@ -254,7 +254,7 @@ fn is_designator(columns: &str) -> bool {
     is_named || columns.trim().is_empty()
 }
 
-fn checked_name(line: &Line, findings: &mut Findings) -> Option<String> {
+fn checked_name(line: &Line, findings: &mut FindingList) -> Option<String> {
     let text = line.text.trim();
     let name = text.strip_prefix("0 ").unwrap_or(text).trim_start();
     if name.len() <= NAME {
@@ -266,7 +266,7 @@ fn checked_name(line: &Line, findings: &mut Findings) -> Option<String> {
 }
 
 /// Checks the values that the columns alone do not bound.
-fn ranges_fit(first: &Line, second: &Line, findings: &mut Findings) -> bool {
+fn ranges_fit(first: &Line, second: &Line, findings: &mut FindingList) -> bool {
     let number = |line: &Line, from: usize, to: usize| line.text[from..to].trim().parse::<f64>();
     let mut fits = true;
     let mut check = |line: &Line, (from, to): (usize, usize), name: &str, most: f64| {

@@ -2,9 +2,9 @@ use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::formats::metadata::Object;
-use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::finding::{Finding, FindingList};
 use crate::frames::ric_basis;
-use crate::orbit::Spread;
+use crate::orbit::PropagatorDistance;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::orbit::{Model, Propagator};
 use crate::time::TimeGrid;
@@ -40,7 +40,7 @@ fn written(sets: &[sgp4::Elements]) -> String {
 }
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(20);
+    let mut findings = FindingList::of_linter(20);
     parse(text.as_ref(), &mut findings, |_| ()).unwrap();
     findings.into_vec()
 }
@@ -199,7 +199,7 @@ fn a_design_survives_its_file_and_tells_the_loss() {
     let grid = TimeGrid::new(epoch(), 86_400.0, 600.0).unwrap();
     let orbit = |set: &sgp4::Elements| Sgp4Orbit::from_element_set(set, epoch()).unwrap();
     let (exact, rounded) = (orbit(&sets[17]), orbit(&read_back[17]));
-    let loss = Spread::between(&exact, &rounded, grid).unwrap();
+    let loss = PropagatorDistance::between(&exact, &rounded, grid).unwrap();
     // Half a digit of an angle, 5e-5°, is 6.4 m at 7303 km; three angles add up to less than 20 m.
     // Half a digit of the mean motion, 5e-9 rev/day, is 0.2 m after a day.
     assert!(loss.max_km > 1e-4 && loss.max_km < 0.02, "{loss:?}");
@@ -215,18 +215,18 @@ fn growth_km_per_day(inclination_deg: f64, slot: MeanMotionSlot) -> f64 {
         .unwrap();
     let sets = read(written(&design_sets(&design, slot, epoch())).as_bytes()).unwrap();
     let grid = TimeGrid::new(epoch(), 86_400.0, 300.0).unwrap();
-    let flown = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
+    let propagated = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
     let orbits: Vec<_> = sets
         .iter()
         .map(|set| Sgp4Orbit::from_element_set(set, epoch()).unwrap())
         .collect();
     let mean = |elapsed_s: f64| {
-        let apart = |(satellite, orbit): (&crate::ephemeris::Flown, &Sgp4Orbit)| {
-            let j2 = flown.state(satellite, elapsed_s).unwrap();
+        let apart = |(satellite, orbit): (&crate::ephemeris::EphemerisSatellite, &Sgp4Orbit)| {
+            let j2 = propagated.state(satellite, elapsed_s).unwrap();
             let sgp4 = orbit.state_at(elapsed_s).unwrap();
             (ric_basis(&j2).unwrap() * (sgp4.position_km - j2.position_km)).y
         };
-        flown
+        propagated
             .satellites()
             .iter()
             .zip(&orbits)

@@ -10,11 +10,11 @@ const MAX_LINE: u64 = 1 << 12;
 /// Why an almanac is not read.
 #[derive(Debug, Error)]
 pub enum ReadAlmanacError {
-    /// The source does not give the bytes.
+    /// Reading failed.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// A line without a value, or with one that is no number.
-    #[error("line {line}: {text:?} is no key and number of an almanac")]
+    /// A line without a value, or with one that is not a number.
+    #[error("line {line}: expected a key and a number of an almanac, found {text:?}")]
     Line {
         /// Line, from 1.
         line: usize,
@@ -22,7 +22,7 @@ pub enum ReadAlmanacError {
         text: String,
     },
     /// A block that lacks a field.
-    #[error("the block that ends at line {line} lacks '{key}'")]
+    #[error("the block ending at line {line} has no '{key}'")]
     Lacks {
         /// Line, from 1.
         line: usize,
@@ -51,7 +51,7 @@ const KEYS: [&str; 13] = [
 /// Reads the satellites.
 ///
 /// # Errors
-/// Names the line that is no field, or the field that is missing.
+/// Names the line that is not a field, or the field that is missing.
 pub fn read(mut input: impl BufRead) -> Result<Vec<Almanac>, ReadAlmanacError> {
     let mut almanacs = Vec::new();
     let mut values: [Option<f64>; 13] = [None; 13];

@@ -1,7 +1,7 @@
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::frames::from_teme;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::Propagator;
 
 fn epoch() -> Epoch {
@@ -20,7 +20,7 @@ fn validate_week_and_time_of_applicability() {
     assert_eq!((at.week, at.toa_s), (2348, 0.0));
 }
 
-/// Every satellite of every preset stands where it flies, from a day before to a day after the time of
+/// Every satellite of every preset stands where it propagates, from a day before to a day after the time of
 /// applicability, but for the shift of its radius; degrees for radians, or a node that is not turned by
 /// sidereal time, are thousands of kilometres.
 #[test]
@@ -34,8 +34,10 @@ fn almanacs_hold_the_presets() {
             assert!(shift_km.abs() < 2.0, "{shift_km}");
             for since_toa_s in [-86_400.0, 0.0, 30_000.0, 86_400.0] {
                 let t = at.epoch().seconds_since(epoch()) + since_toa_s;
-                let flown = satellite.orbit.state_at(t).unwrap();
-                let ours = from_teme(flown, EarthFixed, epoch(), t).position_km.km();
+                let propagated = satellite.orbit.state_at(t).unwrap();
+                let ours = from_teme(propagated, EarthFixed, epoch(), t)
+                    .position_km
+                    .km();
                 let theirs = almanac.position_km(since_toa_s).km();
                 let moved = theirs - ours * (theirs.norm() / ours.norm());
                 // The quadratic term of sidereal time is below a micrometre in a day.

@@ -3,12 +3,12 @@ use crate::earth::RADIUS_KM;
 use crate::ground::PointWeights;
 
 /// Position over a place of the sphere.
-fn over([longitude, latitude]: Place, altitude_km: f64) -> Position<EarthFixed> {
+fn over([longitude, latitude]: LonLat, altitude_km: f64) -> Position<EarthFixed> {
     let (latitude, longitude) = (latitude.to_radians(), longitude.to_radians());
     Position::new(Surface::Sphere.vertical(latitude, longitude) * (RADIUS_KM + altitude_km))
 }
 
-fn well_formed(rings: &[Vec<Place>]) {
+fn well_formed(rings: &[Vec<LonLat>]) {
     for ring in rings {
         assert_eq!(ring.first(), ring.last());
         assert!(signed_area(&ring[1..]) > 0.0, "clockwise: {ring:?}");
@@ -53,7 +53,7 @@ fn edges_see_the_satellite_at_the_mask() {
 }
 
 /// Whether a place is in one of the rings, by the crossings of a line to the north of it.
-fn holds(rings: &[Vec<Place>], [x, y]: Place) -> bool {
+fn holds(rings: &[Vec<LonLat>], [x, y]: LonLat) -> bool {
     rings.iter().any(|ring| {
         let crossings = ring.windows(2).filter(|pair| {
             let [a, b] = [pair[0], pair[1]];

@@ -1,5 +1,5 @@
 use super::super::hypervolume;
-use super::super::problem::Kind;
+use super::super::problem::VariableKind;
 use super::super::test_problems::{TestProblem, UNIT, binh_korn, constr, mixed, zdt1, zdt2, zdt3};
 use super::*;
 
@@ -141,7 +141,7 @@ fn validate_mixed_front() {
 
 #[test]
 fn one_objective_is_a_genetic_algorithm() {
-    let sphere = TestProblem::new(&[Kind::Real { lo: -5.0, hi: 5.0 }; 3], 1, |x| {
+    let sphere = TestProblem::new(&[VariableKind::Real { lo: -5.0, hi: 5.0 }; 3], 1, |x| {
         (vec![x.iter().map(|x| (x - 1.0).powi(2)).sum()], 0.0)
     });
     let config = Nsga2Config {
@@ -232,8 +232,8 @@ fn a_resumed_run_equals_an_unbroken_one_bit_for_bit() {
 #[test]
 fn a_space_smaller_than_the_population_is_held_whole() {
     let kinds = [
-        Kind::Integer { lo: 0, hi: 3 },
-        Kind::Integer { lo: 5, hi: 6 },
+        VariableKind::Integer { lo: 0, hi: 3 },
+        VariableKind::Integer { lo: 5, hi: 6 },
     ];
     let problem = TestProblem::new(&kinds, 2, |v| (vec![v[0], v[1] - v[0]], 0.0));
     let search = run(&problem, &Nsga2Config::default(), 1);
@@ -261,8 +261,8 @@ fn the_smallest_and_odd_populations_work() {
 #[test]
 fn no_genome_is_held_twice_and_repair_is_obeyed() {
     let kinds = [
-        Kind::Integer { lo: 2, hi: 5 },
-        Kind::Integer { lo: 0, hi: 4 },
+        VariableKind::Integer { lo: 2, hi: 5 },
+        VariableKind::Integer { lo: 0, hi: 4 },
         UNIT,
     ];
     let problem = TestProblem::new(&kinds, 2, |v| (vec![v[0], -v[1] + v[2]], 0.0))

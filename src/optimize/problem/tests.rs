@@ -4,7 +4,7 @@ fn real(name: &str, lo: f64, hi: f64) -> Variable {
     let name = name.to_owned();
     Variable {
         name,
-        kind: Kind::Real { lo, hi },
+        kind: VariableKind::Real { lo, hi },
     }
 }
 
@@ -12,7 +12,7 @@ fn integer(name: &str, lo: i64, hi: i64) -> Variable {
     let name = name.to_owned();
     Variable {
         name,
-        kind: Kind::Integer { lo, hi },
+        kind: VariableKind::Integer { lo, hi },
     }
 }
 

@@ -188,7 +188,7 @@ fn validate_radius_shift_of_an_ellipse() {
                 ..mean
             };
             let rates = orbit.secular.rates();
-            let place = Place::new(&at, &rates, orbit.terms.eta);
+            let place = EllipsePosition::new(&at, &rates, orbit.terms.eta);
             orbit
                 .terms
                 .radius_km(&place, &DoubleArgument::new(&place))
@@ -201,7 +201,7 @@ fn validate_radius_shift_of_an_ellipse() {
     assert!((average - expected).abs() < 1e-9, "{average} {expected}");
 }
 
-/// An SGP4 set with e = 0 flies the frozen eccentricity, its perigee in the north: against J2
+/// An SGP4 set with e = 0 propagates the frozen eccentricity, its perigee in the north: against J2
 /// alone its radius swings by -a e sin u.
 #[test]
 fn validate_frozen_eccentricity_against_sgp4() {

@@ -33,7 +33,7 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         ));
     }
     for (m, objective) in problem.goals().objectives.iter().enumerate() {
-        // What is counted or computed from few variables by definition is no discovery.
+        // What is counted or computed from few variables by definition is not a discovery.
         if matches!(
             objective,
             Quantity::Satellites | Quantity::Planes | Quantity::LaunchCost

@@ -9,7 +9,7 @@ use crate::units::{SECONDS_PER_HOUR, round_decimal};
 
 /// A profile with the name that it has in the legend.
 #[derive(Debug, Clone)]
-pub struct Named<'a> {
+pub struct NamedProfile<'a> {
     /// What the design is called.
     pub name: String,
     /// Its cuts.
@@ -32,7 +32,7 @@ pub(in crate::report) fn at_epoch(measure: Measure, epoch: &EpochMetrics) -> Opt
 fn label_over_points(measure: Measure) -> &'static str {
     match measure {
         Measure::MeanVisible => "E_g(N_visible): visible LEO satellites, mean over the points",
-        Measure::MaxPdop => "largest PDOP of the points",
+        Measure::MaxPdop => "maximum PDOP of the points",
         _ => "E_g(PDOP): mean PDOP over the points",
     }
 }
@@ -42,7 +42,7 @@ fn label_over_points(measure: Measure) -> &'static str {
 ///
 /// # Errors
 /// When the measure has no distribution, or nothing is to be shown.
-pub fn cdf(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureError> {
+pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, FigureError> {
     let figure = Figure::Cdf;
     let distribution = |profile: &Profile| -> Vec<Quantile> {
         let epochs = profile.epochs.iter();
@@ -134,7 +134,7 @@ fn measure_column(measure: Measure) -> &'static str {
 ///
 /// # Errors
 /// When the measure has no value at an instant, or nothing is to be shown.
-pub fn series(designs: &[Named<'_>], measure: Measure) -> Result<Plate, FigureError> {
+pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, FigureError> {
     let figure = Figure::Series;
     if !OVER_TIME.contains(&measure) {
         return Err(FigureError::measure(figure, measure, &OVER_TIME));

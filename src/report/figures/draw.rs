@@ -7,7 +7,7 @@ mod map;
 mod plane;
 
 use super::{BarChart, Chart, PlaneChart};
-use crate::keyword::words;
+use crate::keyword::keywords;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
@@ -17,7 +17,7 @@ use std::io::{self, Write};
 use std::sync::{Arc, Once};
 use thiserror::Error;
 
-words! {
+keywords! {
     /// The form of a figure's file.
     Form {
         /// Scalable Vector Graphics.
@@ -36,10 +36,10 @@ pub enum DrawError {
     #[error("cannot draw the figure")]
     Drawing(#[from] DrawingAreaErrorKind<io::Error>),
     /// The dots of the picture.
-    #[error("cannot draw the dots of the figure")]
+    #[error("cannot rasterize the figure")]
     Dots(#[from] usvg::Error),
     /// The picture is larger than memory allows.
-    #[error("the figure of {0} by {1} dots is too large")]
+    #[error("the figure of {0} by {1} pixels is too large")]
     Size(u32, u32),
     /// The picture as a file.
     #[error("cannot encode the figure")]

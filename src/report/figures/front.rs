@@ -5,7 +5,7 @@ use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantit
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::run::{FrontMember, Run};
-use crate::scenario::{Quantity, Word};
+use crate::scenario::{Keyword, Quantity};
 use crate::search::Goals;
 
 /// A design that is shown beside the front.
@@ -20,7 +20,7 @@ pub struct Baseline {
 }
 
 impl Baseline {
-    /// A design with its objectives; `None` when it cannot be flown.
+    /// A design with its objectives; `None` when it cannot be propagated.
     #[must_use]
     pub fn evaluate(
         name: &str,
@@ -48,7 +48,7 @@ pub struct NamedFront {
 }
 
 /// Rows of the plane: name of the set, generation, index, notation, objectives, membership.
-struct Row<'a> {
+struct FrontRow<'a> {
     set: &'a str,
     generation: Option<u64>,
     index: Option<usize>,
@@ -78,7 +78,7 @@ pub fn pareto(
         return Err(FigureError::Nothing { figure, reason });
     };
     let rows = rows(run, &names, baselines, fronts);
-    let points = |keep: &dyn Fn(&Row<'_>) -> bool| -> Vec<(f64, f64)> {
+    let points = |keep: &dyn Fn(&FrontRow<'_>) -> bool| -> Vec<(f64, f64)> {
         let kept = rows.iter().filter(|row| keep(row));
         kept.filter_map(|row| Some((row.objectives[0]?, row.objectives[1]?)))
             .collect()
@@ -134,10 +134,10 @@ fn rows<'a>(
     names: &[String],
     baselines: &'a [Baseline],
     fronts: &'a [NamedFront],
-) -> Vec<Row<'a>> {
+) -> Vec<FrontRow<'a>> {
     let of_front = |set: &'a str, front: &'a [FrontMember]| {
         let names = names.to_vec();
-        front.iter().map(move |member| Row {
+        front.iter().map(move |member| FrontRow {
             set,
             generation: None,
             index: Some(member.index),
@@ -146,11 +146,11 @@ fn rows<'a>(
             membership: Some(member.membership),
         })
     };
-    let mut rows: Vec<Row<'_>> = of_front("front", &run.front).collect();
+    let mut rows: Vec<FrontRow<'_>> = of_front("front", &run.front).collect();
     for other in fronts {
         rows.extend(of_front(&other.name, &other.front));
     }
-    rows.extend(baselines.iter().map(|baseline| Row {
+    rows.extend(baselines.iter().map(|baseline| FrontRow {
         set: "baseline",
         generation: None,
         index: None,
@@ -159,7 +159,7 @@ fn rows<'a>(
         membership: None,
     }));
     for (generation, objectives) in earlier(run, names) {
-        rows.push(Row {
+        rows.push(FrontRow {
             set: "generation",
             generation: Some(generation),
             index: None,
@@ -175,7 +175,7 @@ fn rows<'a>(
 pub(in crate::report) fn earlier(run: &Run, names: &[String]) -> Vec<(u64, Vec<f64>)> {
     let quantities: Vec<_> = names
         .iter()
-        .map(|name| Quantity::from_word(name).ok())
+        .map(|name| Quantity::from_keyword(name).ok())
         .collect();
     let own = |minimised: &Vec<f64>| -> Vec<f64> {
         let pairs = quantities.iter().zip(minimised);
@@ -196,7 +196,7 @@ pub(in crate::report) fn earlier(run: &Run, names: &[String]) -> Vec<(u64, Vec<f
     run.history.iter().flat_map(of_record).collect()
 }
 
-fn table(rows: &[Row<'_>], names: &[String]) -> Result<String, FigureError> {
+fn table(rows: &[FrontRow<'_>], names: &[String]) -> Result<String, FigureError> {
     let columns: Vec<String> = names.iter().map(|name| name.replace('-', "_")).collect();
     let mut header = vec!["set", "generation", "index", "notation"];
     header.extend(columns.iter().map(String::as_str));

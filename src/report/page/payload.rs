@@ -11,7 +11,7 @@ use crate::report::coastline::{self, Bounds};
 use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_label};
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
 use crate::run::{FrontMember, Run};
-use crate::scenario::{Quantity, Region, Scenario, Word};
+use crate::scenario::{Keyword, Quantity, Region, Scenario};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -106,7 +106,7 @@ struct Cuts {
     orbit: Orbit,
 }
 
-/// What the globe flies: mean elements at the epoch and their rates.
+/// What the globe propagates: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
     semi_major_axis_km: f64,
@@ -250,7 +250,7 @@ impl Objective {
         Self {
             name: name.to_owned(),
             label: quantity_label(name),
-            maximised: Quantity::from_word(name).is_ok_and(Quantity::is_maximised),
+            maximised: Quantity::from_keyword(name).is_ok_and(Quantity::is_maximised),
         }
     }
 }
@@ -285,7 +285,7 @@ impl Front {
                 ("mean PDOP", column(&|m| m.metrics.mean_pdop)),
                 ("CVaR of PDOP", column(&|m| m.metrics.cvar_pdop)),
                 ("95 % PDOP", column(&|m| m.metrics.p95_pdop)),
-                ("largest PDOP", column(&|m| m.metrics.max_pdop)),
+                ("maximum PDOP", column(&|m| m.metrics.max_pdop)),
                 ("availability", column(&|m| Some(m.metrics.availability))),
                 ("solved", column(&|m| Some(m.metrics.solved_fraction))),
             ],
@@ -322,13 +322,13 @@ impl Cuts {
                 .points
                 .iter()
                 .map(|p: &PointMetrics| at_point(measure, p));
-            (measure.word(), Packed::new(values))
+            (measure.keyword(), Packed::new(values))
         };
         let over_time = |measure: Measure| {
             let values = profile.epochs.iter().filter_map(|e| at_epoch(measure, e));
-            (measure.word(), levels(&quantiles_of(values)))
+            (measure.keyword(), levels(&quantiles_of(values)))
         };
-        let series = |measure: Measure| (measure.word(), by_intervals(&profile.epochs, measure));
+        let series = |measure: Measure| (measure.keyword(), by_intervals(&profile.epochs, measure));
         Self {
             maps: MAPS.into_iter().map(map).collect(),
             series: SERIES.into_iter().map(series).collect(),
@@ -351,7 +351,7 @@ fn interval(epochs: usize) -> usize {
     epochs.div_ceil(MOST_EPOCHS).max(1)
 }
 
-/// A measure over time; of intervals the mean, but of the largest PDOP the largest.
+/// A measure over time; of intervals the mean, but of the maximum PDOP the largest.
 fn by_intervals(epochs: &[EpochMetrics], measure: Measure) -> Packed {
     let of_interval = |interval: &[EpochMetrics]| {
         let values: Vec<f64> = interval

@@ -134,7 +134,7 @@ fn a_large_front_has_cuts_of_some_and_says_so() {
     let places = members_with_cuts(&page);
     assert_eq!(places.len(), MOST_CUTS + 1);
     assert!(places.contains(&0) && places.contains(&1) && places.contains(&9999));
-    let summary = Summary::new(&page, &places);
+    let summary = PageSummary::new(&page, &places);
     assert!(
         summary
             .gaps

@@ -5,11 +5,11 @@ use crate::earth;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::run::{FrontMember, Hypervolume, Run, VERSION};
-use crate::scenario::{Algorithm, Quantity, Region, Scenario, Word};
+use crate::scenario::{Algorithm, Keyword, Quantity, Region, Scenario};
 use crate::units::round_decimal;
 
 /// The beginning of the page.
-pub(super) struct Summary {
+pub(super) struct PageSummary {
     /// What was studied and found.
     pub(super) paragraphs: Vec<String>,
     /// What the program noticed.
@@ -27,7 +27,7 @@ pub(super) struct Best {
 }
 
 /// A row of the table of members.
-pub(super) struct Member {
+pub(super) struct MemberRow {
     pub(super) place: usize,
     pub(super) index: usize,
     pub(super) notation: String,
@@ -56,7 +56,7 @@ pub(super) fn title(run: &Run) -> String {
 
 /// The name of an algorithm as the literature writes it.
 fn algorithm_title(word: &str) -> &str {
-    match Algorithm::from_word(word) {
+    match Algorithm::from_keyword(word) {
         Ok(Algorithm::Nsga2) => "NSGA-II",
         Ok(Algorithm::Mopso) => "MOPSO",
         Ok(Algorithm::Random) => "Random search",
@@ -69,7 +69,7 @@ fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "none".to_owned(), |value| format!("{value:.4}"))
 }
 
-impl Summary {
+impl PageSummary {
     pub(super) fn new(page: &Page<'_>, places_with_cuts: &[usize]) -> Self {
         let run = page.run;
         let mut paragraphs = Vec::new();
@@ -115,7 +115,7 @@ fn setting(scenario: &Scenario) -> String {
         .gnss
         .constellations
         .iter()
-        .map(|c| c.word())
+        .map(|c| c.keyword())
         .collect();
     let gnss = if gnss.is_empty() && scenario.gnss.files.is_empty() {
         "no GNSS".to_owned()
@@ -213,7 +213,7 @@ fn choice(run: &Run) -> Option<String> {
 /// The best design by each objective.
 pub(super) fn best(run: &Run) -> Vec<Best> {
     let of = |name: &String| {
-        let quantity = Quantity::from_word(name).ok();
+        let quantity = Quantity::from_keyword(name).ok();
         let key = |member: &FrontMember| {
             let value = member.objective(name).unwrap_or(f64::INFINITY);
             quantity.map_or(value, |q| q.minimised(value))
@@ -231,7 +231,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
 }
 
 /// The members of the table: at most `most`, evenly over the front, and the chosen one.
-pub(super) fn members(run: &Run, most: usize) -> Vec<Member> {
+pub(super) fn members(run: &Run, most: usize) -> Vec<MemberRow> {
     let all = &run.front;
     let shown = all.len().min(most);
     let at = |k: usize| k * (all.len() - 1) / (shown - 1).max(1);
@@ -246,7 +246,7 @@ pub(super) fn members(run: &Run, most: usize) -> Vec<Member> {
         .collect()
 }
 
-fn row(place: usize, member: &FrontMember) -> Member {
+fn row(place: usize, member: &FrontMember) -> MemberRow {
     let metrics = &member.metrics;
     let mut cells: Vec<String> = member
         .objectives
@@ -264,7 +264,7 @@ fn row(place: usize, member: &FrontMember) -> Member {
         ]
         .map(number),
     );
-    Member {
+    MemberRow {
         place,
         index: member.index,
         notation: member.design.notation.clone(),
@@ -402,7 +402,7 @@ fn run_names(scenario: &Scenario) -> String {
         .objectives
         .minimize
         .iter()
-        .map(|q| q.word())
+        .map(|q| q.keyword())
         .collect();
     names.join(", ")
 }

@@ -3,7 +3,7 @@
 use super::{ReproduceResult, expected};
 use crate::run::columns::optional;
 use crate::run::tables::text;
-use crate::study::paper::{Curve, Line, Place, Reproduction};
+use crate::study::paper::{Curve, PlacedDesign, Reproduction, Statement};
 use ::csv::Writer;
 use std::io;
 
@@ -33,7 +33,7 @@ fn cell(value: f64) -> String {
 ///
 /// # Errors
 /// Never for a table in memory.
-pub fn reproduction_csv(lines: &[Line]) -> io::Result<String> {
+pub fn reproduction_csv(lines: &[Statement]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let header = [
         "place",
@@ -126,7 +126,7 @@ fn sensitivity_csv(study: &Reproduction) -> io::Result<String> {
 }
 
 /// Figure 2: places in the plane of both objectives, with the fuzzy values over each set.
-fn places_csv(places: &[Place]) -> io::Result<String> {
+fn places_csv(places: &[PlacedDesign]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "set",

@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::number::{read_pair, write_pair};
 use super::{Node, Number, Reading, Rule, Text};
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
 use crate::scenario::values::MaskPoint;
@@ -24,7 +24,7 @@ impl<T> OneOf<T> {
     }
 }
 
-impl<T: Word> Rule for OneOf<T> {
+impl<T: Keyword> Rule for OneOf<T> {
     type Value = T;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<T> {
@@ -32,7 +32,7 @@ impl<T: Word> Rule for OneOf<T> {
             reading.refuse(node);
             return None;
         };
-        T::from_word(word)
+        T::from_keyword(word)
             .map_err(|unknown| reading.report(node.span(), unknown))
             .ok()
     }
@@ -47,7 +47,7 @@ impl<T: Word> Rule for OneOf<T> {
     }
 
     fn write(&self, value: &T) -> String {
-        toml_text(value.word())
+        toml_text(value.keyword())
     }
 }
 
@@ -66,7 +66,7 @@ impl<T> SomeOf<T> {
     }
 }
 
-impl<T: Word + Hash> Rule for SomeOf<T> {
+impl<T: Keyword + Hash> Rule for SomeOf<T> {
     type Value = Vec<T>;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<T>> {

@@ -80,9 +80,9 @@ impl Rule for Text {
 }
 
 /// A UTC instant: RFC 3339 in a text, or a TOML date-time, both with `Z`.
-pub(in crate::scenario) struct Instant;
+pub(in crate::scenario) struct UtcInstant;
 
-impl Instant {
+impl UtcInstant {
     /// UTC begins in 1960; precession and nutation are those of the century around us.
     const YEARS: std::ops::RangeInclusive<i32> = 1960..=2100;
 
@@ -96,7 +96,7 @@ impl Instant {
     }
 }
 
-impl Rule for Instant {
+impl Rule for UtcInstant {
     type Value = DateTime<Utc>;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<DateTime<Utc>> {

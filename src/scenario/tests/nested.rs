@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::keyword::nearest;
 use crate::scenario::keys::{Key, KeyPath, Section, Walk, list, paths, section};
-use crate::scenario::problem::{Fault, Problems, Report};
+use crate::scenario::problem::{Fault, ProblemList, Problems};
 use crate::scenario::reader::{Given, Reader};
 use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule};
 use crate::scenario::source::Source;
@@ -230,7 +230,7 @@ fn read(text: &str) -> Result<Nested, Problems> {
     let table = DeTable::parse(text).unwrap();
     let node = Spanned::new(0..text.len(), DeValue::Table(table.into_inner()));
     let rule = Table::<Nested>::new();
-    let mut report = Report::default();
+    let mut report = ProblemList::default();
     let mut reading = Reading {
         source: &source,
         key: "search".to_owned(),

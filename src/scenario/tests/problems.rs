@@ -1,7 +1,7 @@
 //! Where problems are, what they say, and how they look.
 
 use super::{parse, problem, refuses};
-use crate::scenario::{Fault, Place, Problem, Scenario};
+use crate::scenario::{Fault, Place, Scenario, ScenarioProblem};
 
 #[test]
 fn names_are_safe_in_a_path() {
@@ -148,7 +148,7 @@ fn bytes_that_are_not_text_say_where() {
     let bytes = b"name = \"x\"\n[time]\n# \xff\n";
     let problems = Scenario::parse::<&str>("study.toml", bytes, &[]).unwrap_err();
     let [
-        Problem {
+        ScenarioProblem {
             place: Place::File { line, column, .. },
             fault,
             ..

@@ -7,17 +7,17 @@ use proptest::sample::{select, subsequence};
 
 use super::parse;
 use crate::scenario::{
-    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, LaunchCost, MaskPoint, Objectives,
-    Optimizer, Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace, TimeSpan,
-    Visibility, Word, template,
+    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, Keyword, LaunchCost, MaskPoint,
+    Objectives, Optimizer, Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace,
+    TimeSpan, Visibility, template,
 };
 use crate::search::DesignSpace;
 
-fn word<T: Word + std::fmt::Debug>() -> impl Strategy<Value = T> {
+fn word<T: Keyword + std::fmt::Debug>() -> impl Strategy<Value = T> {
     select(T::ALL)
 }
 
-fn some<T: Word + std::fmt::Debug>(least: usize) -> impl Strategy<Value = Vec<T>> {
+fn some<T: Keyword + std::fmt::Debug>(least: usize) -> impl Strategy<Value = Vec<T>> {
     subsequence(T::ALL.to_vec(), least..=T::ALL.len()).prop_shuffle()
 }
 

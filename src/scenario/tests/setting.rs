@@ -145,7 +145,7 @@ fn the_pdop_cap_is_above_one() {
 
 #[test]
 fn latitudes_run_northwards() {
-    let reversed = "found [54, 3], but the low limit is above the high one";
+    let reversed = "found [54, 3], but the low limit is above the high limit";
     refuses("region", "latitude-deg = [54, 3]", "latitude-deg", reversed);
     let range = "expected [low, high], each a number >= -90 and <= 90, in deg";
     for (line, found) in [

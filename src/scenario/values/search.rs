@@ -42,7 +42,7 @@ section! {
         /// Altitude over the equatorial radius.
         altitude_km = numbers(Number::above_to(0.0, 100_000.0)), unit "km",
             default [400.0, 1000.0];
-        /// Walker's F, or N_c of a lattice, cut at the number of planes less one.
+        /// Walker's F, or N_c of a lattice, cut at the number of planes minus one.
         phasing = integers(0, MAX_SATELLITES), default [1, 1];
         /// Eccentricity; a variable of the search where the limits differ.
         eccentricity = numbers(Number::from_below(0.0, 0.9)), default [0.0, 0.0];

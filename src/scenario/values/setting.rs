@@ -5,7 +5,7 @@ use chrono::{DateTime, Utc};
 use super::{JANUARY_2025, STEP_SLACK};
 use crate::scenario::keys::{key, section};
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Instant, Number, OneOf, Paths, Skyline, SomeOf};
+use crate::scenario::rule::{Number, OneOf, Paths, Skyline, SomeOf, UtcInstant};
 use crate::scenario::{Clocks, Model, ObservationWeights, Preset, Surface};
 
 /// Samples in time: 366 days at every 3.2 seconds.
@@ -16,8 +16,8 @@ section! {
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct TimeSpan in "time", finish check_samples {
         /// First sample, UTC; the elements of every design hold at it.
-        pub epoch: DateTime<Utc> = Instant, default JANUARY_2025;
-        /// Length of the study; the closing instant is no sample.
+        pub epoch: DateTime<Utc> = UtcInstant, default JANUARY_2025;
+        /// Length of the study; the end instant is excluded.
         pub duration_h: f64 = Number::above_to(0.0, 366.0 * 24.0), unit "h", default 24.0;
         /// Interval between samples.
         pub step_s: f64 = Number::above(0.0), unit "s", default 60.0;
@@ -55,7 +55,7 @@ section! {
     /// The motion of the LEO design.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub struct Propagation in "propagation" {
-        /// Motion of the LEO design; GNSS constellations are always flown as they are defined.
+        /// Motion of the LEO design; GNSS constellations are always propagated as they are defined.
         pub model: Model = OneOf::new(), default Model::J2;
     }
 }

@@ -1,7 +1,7 @@
 //! The data of the paper's Figures 2 to 4.
 
 use super::searches::{BASELINES, PROPOSED, SATELLITES, SINGLE};
-use super::{FoundSet, Measured, PaperError, Row};
+use super::{FoundSet, Measured, PaperError, TableRow};
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{EpochMetrics, Evaluator};
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// One design of Figure 2: its place in the plane of both objectives and its fuzzy values over
 /// the combined set.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct PlacedDesign {
     /// `table` for the rows of Table II as printed, `search` for the sets found here.
     pub set: &'static str,
     /// Kind of constellation.
@@ -54,7 +54,7 @@ impl Curve {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
     /// Figure 2.
-    pub places: Vec<Place>,
+    pub places: Vec<PlacedDesign>,
     /// Figure 3: the rows with 182 satellites, as printed.
     pub constellations: Vec<Curve>,
     /// Figure 4: the picks of the three strategies.
@@ -63,7 +63,7 @@ pub struct Figures {
 
 pub(super) fn figures(
     evaluator: &Evaluator,
-    rows: &[Row],
+    rows: &[TableRow],
     printed: &Measured,
     searches: &[FoundSet],
 ) -> Result<Figures, PaperError> {
@@ -83,10 +83,10 @@ pub(super) fn figures(
 }
 
 /// The curves of the rows that share the paper's own number of satellites, 182: number 2 of each
-/// kind, flown as `designs`.
+/// kind, propagated as `designs`.
 pub(super) fn compared(
     evaluator: &Evaluator,
-    rows: &[Row],
+    rows: &[TableRow],
     designs: &[Design],
 ) -> Result<Vec<Curve>, PaperError> {
     let second = rows.iter().zip(designs).filter(|(row, _)| row.number == 2);
@@ -107,7 +107,7 @@ fn curves(evaluator: &Evaluator, named: Vec<(String, Design)>) -> Result<Vec<Cur
     named.into_par_iter().map(curve).collect()
 }
 
-fn table_places(rows: &[Row], printed: &Measured) -> Result<Vec<Place>, PaperError> {
+fn table_places(rows: &[TableRow], printed: &Measured) -> Result<Vec<PlacedDesign>, PaperError> {
     let both = rows.iter().zip(&printed.values).filter_map(|(row, value)| {
         let names = (row.scheme.to_string(), row.design.to_string());
         Some((names, [value.j_pos?, value.j_cost?]))
@@ -115,7 +115,7 @@ fn table_places(rows: &[Row], printed: &Measured) -> Result<Vec<Place>, PaperErr
     placed("table", both.collect())
 }
 
-fn search_places(searches: &[FoundSet]) -> Result<Vec<Place>, PaperError> {
+fn search_places(searches: &[FoundSet]) -> Result<Vec<PlacedDesign>, PaperError> {
     let shown = |set: &&FoundSet| set.name == PROPOSED || BASELINES.contains(&set.name);
     let both = searches.iter().filter(shown).flat_map(|set| {
         set.members.iter().filter_map(|member| {
@@ -126,23 +126,25 @@ fn search_places(searches: &[FoundSet]) -> Result<Vec<Place>, PaperError> {
     placed("search", both.collect())
 }
 
-type Named = ((String, String), [f64; 2]);
+type NamedPoint = ((String, String), [f64; 2]);
 
-fn placed(set: &'static str, designs: Vec<Named>) -> Result<Vec<Place>, PaperError> {
+fn placed(set: &'static str, designs: Vec<NamedPoint>) -> Result<Vec<PlacedDesign>, PaperError> {
     if designs.is_empty() {
         return Ok(Vec::new());
     }
     let points: Vec<[f64; 2]> = designs.iter().map(|(_, point)| *point).collect();
     let memberships = fuzzy(&points)?;
     let values = memberships.minimum.iter().zip(&memberships.share);
-    let place = |((names, [j_pos, j_cost]), (&membership, &membership_sum)): (Named, _)| Place {
-        set,
-        scheme: names.0,
-        design: names.1,
-        j_pos,
-        j_cost,
-        membership,
-        membership_sum,
+    let place = |((names, [j_pos, j_cost]), (&membership, &membership_sum)): (NamedPoint, _)| {
+        PlacedDesign {
+            set,
+            scheme: names.0,
+            design: names.1,
+            j_pos,
+            j_cost,
+            membership,
+            membership_sum,
+        }
     };
     Ok(designs.into_iter().zip(values).map(place).collect())
 }

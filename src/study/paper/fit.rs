@@ -1,6 +1,6 @@
 //! One-dimensional fits to the visibility column of Table II.
 
-use super::{PaperError, Row};
+use super::{PaperError, TableRow};
 use crate::constellation::{Design, DesignParameters};
 use crate::evaluate::{Evaluator, Setup};
 use crate::visibility::Mask;
@@ -77,7 +77,7 @@ pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, 
 /// tenth of a degree as the paper prints them; `None` when there is none within 10°.
 pub(super) fn fitting_inclination(
     evaluator: &Evaluator,
-    row: &Row,
+    row: &TableRow,
 ) -> Result<Option<f64>, PaperError> {
     let excess = |inclination_deg: f64| {
         let design = inclined(&row.design, inclination_deg)?;
@@ -124,7 +124,7 @@ pub struct MaskFit {
 }
 
 /// Fits the mask to each row of Table II as printed.
-pub(super) fn fit_mask(setup: &Setup, rows: &[Row]) -> Result<MaskFit, PaperError> {
+pub(super) fn fit_mask(setup: &Setup, rows: &[TableRow]) -> Result<MaskFit, PaperError> {
     let masks: Vec<Option<f64>> = rows
         .par_iter()
         .map(|row| row_mask(setup, row))
@@ -146,7 +146,7 @@ pub(super) fn fit_mask(setup: &Setup, rows: &[Row]) -> Result<MaskFit, PaperErro
     })
 }
 
-fn row_mask(setup: &Setup, row: &Row) -> Result<Option<f64>, PaperError> {
+fn row_mask(setup: &Setup, row: &TableRow) -> Result<Option<f64>, PaperError> {
     let excess = |mask_deg: f64| {
         let mask = Mask::from_degrees(mask_deg)?;
         let setup = Setup { mask, ..sky(setup) };

@@ -1,10 +1,10 @@
 //! The rule by which a statement of the paper is met.
 
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use serde::{Serialize, Serializer};
 
-words! {
-    /// What came of a statement.
+keywords! {
+    /// Verdict on a statement.
     Verdict {
         /// It holds under the assumptions of the scenario.
         Met = "met",
@@ -17,7 +17,7 @@ words! {
 
 impl Serialize for Verdict {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.word())
+        serializer.serialize_str(self.keyword())
     }
 }
 
@@ -51,7 +51,7 @@ impl Expected {
 
 /// One statement of the paper, judged.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Line {
+pub struct Statement {
     /// Where the paper says it.
     pub place: String,
     /// What is stated.
@@ -71,7 +71,7 @@ pub struct Line {
 }
 
 /// A number under a named assumption.
-pub(super) struct Otherwise<'a> {
+pub(super) struct OtherAssumption<'a> {
     pub(super) assumption: &'a str,
     pub(super) found: Option<f64>,
 }
@@ -83,12 +83,12 @@ pub(super) fn judge(
     [place, statement, unit]: [&str; 3],
     expected: Expected,
     ours: Option<f64>,
-    others: &[Otherwise<'_>],
-) -> Line {
+    others: &[OtherAssumption<'_>],
+) -> Statement {
     let right = |found: Option<f64>| found.is_some_and(|found| expected.holds(found));
-    let away = |other: &&Otherwise<'_>| match (expected, other.found) {
+    let away = |other: &&OtherAssumption<'_>| match (expected, other.found) {
         (Expected::Value { value, .. }, Some(found)) => (found - value).abs(),
-        // Beyond a bound all are right alike.
+        // All values past the bound count equally.
         _ => 0.0,
     };
     let holds = others.iter().filter(|other| right(other.found));
@@ -98,7 +98,7 @@ pub(super) fn judge(
         (false, Some(other)) => (Verdict::MetOtherwise, Some(other)),
         (false, None) => (Verdict::NotMet, None),
     };
-    Line {
+    Statement {
         place: place.to_owned(),
         statement: statement.to_owned(),
         unit: unit.to_owned(),
@@ -119,10 +119,10 @@ mod tests {
         tolerance: 0.1,
     };
 
-    fn judged(expected: Expected, ours: Option<f64>, others: &[Option<f64>]) -> Line {
+    fn judged(expected: Expected, ours: Option<f64>, others: &[Option<f64>]) -> Statement {
         let names = ["a", "b", "c"];
         let others: Vec<_> = (names.iter().zip(others))
-            .map(|(assumption, &found)| Otherwise { assumption, found })
+            .map(|(assumption, &found)| OtherAssumption { assumption, found })
             .collect();
         judge(["", "", ""], expected, ours, &others)
     }

@@ -1,9 +1,11 @@
 //! The statements of the paper, one by one.
 
-use super::judge::{Otherwise, judge};
+use super::judge::{OtherAssumption, judge};
 use super::searches::{PROPOSED, SATELLITES, SINGLE};
 use super::table::{PERCENTAGES, Printable, TABLE1};
-use super::{Curve, Expected, FoundSet, Line, MaskFit, Measured, PaperError, Row, Scheme, Value};
+use super::{
+    Curve, Expected, FoundSet, MaskFit, Measured, PaperError, RowValue, Scheme, Statement, TableRow,
+};
 use crate::constellation::gnss::GnssSatellite;
 use crate::earth::RADIUS_KM;
 use crate::evaluate::Setup;
@@ -41,7 +43,7 @@ const TABLE1_TOLERANCE: f64 = 0.5;
 /// What the lines are judged by.
 pub(super) struct Evidence<'a> {
     pub(super) setup: &'a Setup,
-    pub(super) rows: &'a [Row],
+    pub(super) rows: &'a [TableRow],
     pub(super) mask_fit: &'a MaskFit,
     pub(super) printed: &'a Measured,
     /// Inclination that fits each row, where the printed one does not, degrees.
@@ -64,8 +66,8 @@ impl Evidence<'_> {
         &self,
         texts: [&str; 3],
         expected: Expected,
-        of: impl Fn(&[Value]) -> Option<f64>,
-    ) -> Line {
+        of: impl Fn(&[RowValue]) -> Option<f64>,
+    ) -> Statement {
         self.judge_fitted(texts, expected, &self.at_fitting.assumption, of)
     }
 
@@ -75,13 +77,13 @@ impl Evidence<'_> {
         texts: [&str; 3],
         expected: Expected,
         fitting: &str,
-        of: impl Fn(&[Value]) -> Option<f64>,
-    ) -> Line {
-        let mut others = vec![Otherwise {
+        of: impl Fn(&[RowValue]) -> Option<f64>,
+    ) -> Statement {
+        let mut others = vec![OtherAssumption {
             assumption: fitting,
             found: of(&self.at_fitting.values),
         }];
-        others.extend(self.alternatives.iter().map(|measured| Otherwise {
+        others.extend(self.alternatives.iter().map(|measured| OtherAssumption {
             assumption: &measured.assumption,
             found: of(&measured.values),
         }));
@@ -94,7 +96,7 @@ impl Evidence<'_> {
 }
 
 /// All lines, in the order of the paper.
-pub(super) fn lines(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
+pub(super) fn lines(evidence: &Evidence<'_>) -> Result<Vec<Statement>, PaperError> {
     let mut lines = table1(evidence);
     lines.extend(mask(evidence));
     lines.extend(table2(evidence));
@@ -107,8 +109,8 @@ pub(super) fn lines(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
     Ok(lines)
 }
 
-/// Table I against the GNSS that is flown: counts by name, radii and inclinations by state.
-fn table1(evidence: &Evidence<'_>) -> Vec<Line> {
+/// Table I against the GNSS that is propagated: counts by name, radii and inclinations by state.
+fn table1(evidence: &Evidence<'_>) -> Vec<Statement> {
     let epoch = evidence.setup.grid.epoch();
     let satellites: Vec<GnssSatellite> = (evidence.setup.gnss.iter())
         .flat_map(|system| system.satellites(epoch))
@@ -143,7 +145,7 @@ fn table1(evidence: &Evidence<'_>) -> Vec<Line> {
 }
 
 /// The mask of the scenario against the one that Table II implies.
-fn mask(evidence: &Evidence<'_>) -> Option<Line> {
+fn mask(evidence: &Evidence<'_>) -> Option<Statement> {
     let expected = Expected::Value {
         value: evidence.mask_fit.median_deg?,
         tolerance: MASK_TOLERANCE_DEG,
@@ -154,7 +156,7 @@ fn mask(evidence: &Evidence<'_>) -> Option<Line> {
 }
 
 /// What a row prints: N̄ and mean PDOP.
-fn printed(row: &Row) -> [Expected; 2] {
+fn printed(row: &TableRow) -> [Expected; 2] {
     let visible = Expected::Value {
         value: row.mean_visible,
         tolerance: VISIBLE_TOLERANCE,
@@ -166,14 +168,14 @@ fn printed(row: &Row) -> [Expected; 2] {
     [visible, pdop]
 }
 
-fn table2(evidence: &Evidence<'_>) -> Vec<Line> {
+fn table2(evidence: &Evidence<'_>) -> Vec<Statement> {
     let mut lines = Vec::new();
     for (n, (row, fitted)) in evidence.rows.iter().zip(evidence.fitted).enumerate() {
         let [visible, pdop] = printed(row);
         let name = row.name();
         let inclination_deg = fitted.unwrap_or(row.design.inclination_deg());
         let fitting = format!("inclination {inclination_deg}°");
-        let judge = |what: &str, expected, of: fn(&Value) -> Option<f64>| {
+        let judge = |what: &str, expected, of: fn(&RowValue) -> Option<f64>| {
             let statement = format!("{name} {what}");
             let texts = ["Table II", &statement, ""];
             evidence.judge_fitted(texts, expected, &fitting, |values| of(&values[n]))
@@ -185,8 +187,8 @@ fn table2(evidence: &Evidence<'_>) -> Vec<Line> {
 }
 
 /// Whether one assumption gives a whole column: an assumption that suits one row may fail another.
-fn whole_table2(evidence: &Evidence<'_>) -> [Line; 2] {
-    let share = |values: &[Value], which: usize| {
+fn whole_table2(evidence: &Evidence<'_>) -> [Statement; 2] {
+    let share = |values: &[RowValue], which: usize| {
         let rows = evidence.rows.iter().zip(values);
         percent(rows.map(|(row, value)| {
             let found = [Some(value.mean_visible), value.mean_pdop][which];
@@ -206,12 +208,12 @@ fn whole_table2(evidence: &Evidence<'_>) -> [Line; 2] {
 }
 
 /// Table II is headed "Pareto-optimal solutions".
-fn pareto(evidence: &Evidence<'_>) -> Option<Line> {
+fn pareto(evidence: &Evidence<'_>) -> Option<Statement> {
     let front: Vec<[f64; 2]> = (evidence.set(PROPOSED)?.members.iter())
         .filter_map(|member| Some([member.metrics.j_pos?, member.metrics.j_cost?]))
         .collect();
-    let own = |row: &Row| row.scheme == Scheme::Proposed;
-    let share = |values: &[Value]| {
+    let own = |row: &TableRow| row.scheme == Scheme::Proposed;
+    let share = |values: &[RowValue]| {
         let points = evidence.rows.iter().zip(values).filter(|(row, _)| own(row));
         let points = points.filter_map(|(_, value)| Some([value.j_pos?, value.j_cost?]));
         percent(points.map(|point| !front.iter().any(|member| dominates(member, &point))))
@@ -224,7 +226,7 @@ fn pareto(evidence: &Evidence<'_>) -> Option<Line> {
         "proposed rows that no design found here dominates",
         "%",
     ];
-    let others = [Otherwise {
+    let others = [OtherAssumption {
         assumption: &evidence.at_fitting.assumption,
         found: there,
     }];
@@ -236,7 +238,7 @@ fn pareto(evidence: &Evidence<'_>) -> Option<Line> {
     ))
 }
 
-fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
+fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Statement>, PaperError> {
     let mut lines = Vec::new();
     for stated in PERCENTAGES {
         let (row, with) = (evidence.index(stated.row)?, evidence.index(stated.with)?);
@@ -244,11 +246,11 @@ fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
             Printable::MeanVisible => PERCENTAGE_TOLERANCE,
             Printable::MeanPdop => PDOP_PERCENTAGE_TOLERANCE,
         };
-        let value = |value: &Value| match stated.of {
+        let value = |value: &RowValue| match stated.of {
             Printable::MeanVisible => Some(value.mean_visible),
             Printable::MeanPdop => value.mean_pdop,
         };
-        let change = |values: &[Value]| {
+        let change = |values: &[RowValue]| {
             let ratio = value(&values[row])? / value(&values[with])?;
             Some(100.0 * (ratio - 1.0))
         };
@@ -261,20 +263,20 @@ fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Line>, PaperError> {
     Ok(lines)
 }
 
-fn figure2(evidence: &Evidence<'_>) -> Vec<Line> {
+fn figure2(evidence: &Evidence<'_>) -> Vec<Statement> {
     let own = |n: usize| evidence.rows[n].scheme == Scheme::Proposed;
-    let points = |values: &[Value]| -> Option<Vec<[f64; 2]>> {
+    let points = |values: &[RowValue]| -> Option<Vec<[f64; 2]>> {
         (values.iter())
             .map(|value| Some([value.j_pos?, value.j_cost?]))
             .collect()
     };
-    let dominated = |values: &[Value]| {
+    let dominated = |values: &[RowValue]| {
         let points = points(values)?;
         let beaten =
             |n: usize| (0..points.len()).any(|m| own(m) && dominates(&points[m], &points[n]));
         percent((0..points.len()).filter(|&n| !own(n)).map(beaten))
     };
-    let lead = |values: &[Value]| {
+    let lead = |values: &[RowValue]| {
         let memberships = fuzzy(&points(values)?).ok()?.minimum;
         let highest = |of_own: bool| {
             let chosen = memberships
@@ -309,10 +311,10 @@ fn figure2(evidence: &Evidence<'_>) -> Vec<Line> {
     ]
 }
 
-fn figure3(evidence: &Evidence<'_>) -> Vec<Line> {
+fn figure3(evidence: &Evidence<'_>) -> Vec<Statement> {
     let consistently = Expected::AtLeast(CONSISTENTLY_PERCENT);
     let line = |texts, of: fn(&[Curve]) -> Option<f64>| {
-        let others = [Otherwise {
+        let others = [OtherAssumption {
             assumption: &evidence.at_fitting.assumption,
             found: of(evidence.curves[1]),
         }];
@@ -345,7 +347,7 @@ fn most_visible(curves: &[Curve]) -> Option<f64> {
     percent((own.iter().enumerate()).map(|(k, x)| others.iter().all(|other| other[k] < *x)))
 }
 
-/// Share of the instants at which the largest PDOP of the first curve is below all others.
+/// Share of the instants at which the maximum PDOP of the first curve is below all others.
 fn lowest_max(curves: &[Curve]) -> Option<f64> {
     let (own, others) = curves.split_first()?;
     let below = |k: usize, x: f64| {
@@ -357,7 +359,7 @@ fn lowest_max(curves: &[Curve]) -> Option<f64> {
 }
 
 /// The three strategies, as changes from the proposed one, percent.
-fn figure4(evidence: &Evidence<'_>) -> Vec<Line> {
+fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
     let pick = |name: &str| Some(*evidence.set(name)?.pick()?);
     let (proposed, single, fewest) = (pick(PROPOSED), pick(SINGLE), pick(SATELLITES));
     let Some(reference) = evidence.rows.iter().position(|row| row.name() == REFERENCE) else {
@@ -373,7 +375,7 @@ fn figure4(evidence: &Evidence<'_>) -> Vec<Line> {
         |statement, (other, own): (Option<f64>, Option<f64>), row: Option<f64>, sign: f64| {
             let expected = Expected::MoreThan(0.0);
             let signed = |change: Option<f64>| change.map(|percent| sign * percent);
-            let others = [Otherwise {
+            let others = [OtherAssumption {
                 assumption: "the paper's own pick, row 2 of Table II, as the proposed design",
                 found: signed(change(other, row)),
             }];

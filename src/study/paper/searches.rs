@@ -23,12 +23,12 @@ pub struct FoundMember {
 impl Serialize for FoundMember {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
-        struct Shown<'a> {
+        struct ShownMember<'a> {
             design: String,
             satellites: usize,
             metrics: &'a Metrics,
         }
-        Shown {
+        ShownMember {
             design: self.design.to_string(),
             satellites: self.design.satellite_count(),
             metrics: &self.metrics,

@@ -2,10 +2,10 @@
 
 use super::PaperError;
 use crate::constellation::Design;
-use crate::keyword::{Word, words};
+use crate::keyword::{Keyword, keywords};
 use serde::{Deserialize, Serialize, Serializer};
 
-words! {
+keywords! {
     /// The kinds of constellation that the paper compares.
     Scheme {
         /// Its own Walker delta designs.
@@ -21,13 +21,13 @@ words! {
 
 impl Serialize for Scheme {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.word())
+        serializer.serialize_str(self.keyword())
     }
 }
 
 /// One row of Table II.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Row {
+pub struct TableRow {
     /// The kind of constellation.
     pub scheme: Scheme,
     /// Its number within the kind, from 1.
@@ -42,7 +42,7 @@ pub struct Row {
     pub fitting_inclination_deg: Option<f64>,
 }
 
-impl Row {
+impl TableRow {
     /// A name that is unique in the table, as `polar-2`.
     #[must_use]
     pub fn name(&self) -> String {
@@ -65,15 +65,15 @@ struct Printed {
 ///
 /// # Errors
 /// Never, as long as the file that is built in is as a test finds it.
-pub fn table2() -> Result<Vec<Row>, PaperError> {
+pub fn table2() -> Result<Vec<TableRow>, PaperError> {
     let text = include_str!("../../../data/paper/table2.csv");
     let mut reader = csv::ReaderBuilder::new()
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
     let row = |printed: Result<Printed, csv::Error>| {
         let printed = printed?;
-        Ok(Row {
-            scheme: Scheme::from_word(&printed.scheme)?,
+        Ok(TableRow {
+            scheme: Scheme::from_keyword(&printed.scheme)?,
             number: printed.number,
             design: printed.design.parse()?,
             mean_visible: printed.mean_visible,
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn the_table_has_eleven_rows_with_unique_names() {
         let rows = table2().unwrap();
-        let names: std::collections::BTreeSet<String> = rows.iter().map(Row::name).collect();
+        let names: std::collections::BTreeSet<String> = rows.iter().map(TableRow::name).collect();
         assert_eq!((rows.len(), names.len()), (11, 11));
         for percentage in PERCENTAGES {
             assert!(names.contains(percentage.row) && names.contains(percentage.with));

@@ -32,7 +32,7 @@ fn study(overrides: &[&str]) -> PaperStudy {
 /// The study as the scenario stands.
 static PAPER: LazyLock<Reproduction> = LazyLock::new(|| reproduce(&study(&[])).unwrap());
 
-fn line<'a>(reproduction: &'a Reproduction, statement: &str) -> &'a Line {
+fn line<'a>(reproduction: &'a Reproduction, statement: &str) -> &'a Statement {
     let found = reproduction
         .lines
         .iter()
@@ -118,7 +118,7 @@ fn one_assumption_changes_at_a_time() {
             "{name} is not in {names:?}"
         );
     }
-    // What the scenario has already is no alternative.
+    // What the scenario has already is not an alternative.
     for name in ["mask 7°", "surface sphere", "clocks per-system"] {
         assert!(
             names.iter().all(|found| found != name),

@@ -4,7 +4,7 @@
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::orbit::MeanElements;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
-use crate::validate::{Check, Measure, Subject};
+use crate::validate::{Check, CheckedQuantity, Subject};
 use std::f64::consts::TAU;
 
 /// Nodes of the quadrature over the true anomaly; the integrand is a trigonometric polynomial of
@@ -65,8 +65,8 @@ fn rates(orbit: &MeanElements) -> [f64; 2] {
     [node, n - 2.0 / (n * a) * by_a + by_e / na2 - cos_i * node]
 }
 
-/// Rates of the flown theory, by its elements after a day.
-fn flown_rates(subject: &Subject<'_>, orbit: &MeanElements, expected: [f64; 2]) -> [f64; 2] {
+/// Rates of the propagated theory, by its elements after a day.
+fn propagated_rates(subject: &Subject<'_>, orbit: &MeanElements, expected: [f64; 2]) -> [f64; 2] {
     let after = (subject.parts.mean_j2)(orbit).elements_at(SECONDS_PER_DAY);
     let turned = [
         after.raan_rad - orbit.raan_rad,
@@ -86,7 +86,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         return Vec::new();
     }
     let expected = rates(&orbit);
-    let found = flown_rates(subject, &orbit, expected);
+    let found = propagated_rates(subject, &orbit, expected);
     ["node", "argument-of-latitude"]
         .into_iter()
         .zip([0, 1])
@@ -94,7 +94,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
             let apart = (found[n] - expected[n]) * SECONDS_PER_DAY;
             Check::new(
                 &format!("analytic/rates/{name}"),
-                Measure {
+                CheckedQuantity {
                     quantity: &format!("rate of the {name} less that of the averaged potential"),
                     unit: "deg/day",
                     statistic: "value",

@@ -7,7 +7,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::frames::EarthRotation;
 use crate::ground::Site;
 use crate::time::TimeGrid;
-use crate::validate::{Check, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::{DMatrix, Vector3};
 
@@ -17,7 +17,7 @@ const INSTANTS: usize = 12;
 /// Points that are computed again.
 const POINTS: usize = 40;
 
-/// A study of some instants and points of another, and its systems flown.
+/// A study of some instants and points of another, and its systems propagated.
 struct Again {
     setup: Setup,
     gnss: Vec<Ephemeris>,
@@ -27,7 +27,7 @@ impl Again {
     fn new(subject: &Subject<'_>) -> Option<Self> {
         let full = subject.setup();
         let span_s = full.grid.len() as f64 * full.grid.step_s();
-        // A step that is no divisor of the day or the period.
+        // A step that is not a divisor of the day or the period.
         let step_s = span_s / (INSTANTS as f64 - 0.37);
         let grid = TimeGrid::new(full.grid.epoch(), span_s, step_s).ok()?;
         let stride = full.sites.len().div_ceil(POINTS);
@@ -42,8 +42,8 @@ impl Again {
                 .collect(),
             ..full.clone()
         };
-        let fly = |system: &System| Ephemeris::of_gnss(system.satellites(grid.epoch()), grid);
-        let gnss = setup.gnss.iter().map(fly).collect();
+        let propagate = |system: &System| Ephemeris::of_gnss(system.satellites(grid.epoch()), grid);
+        let gnss = setup.gnss.iter().map(propagate).collect();
         Some(Self { setup, gnss })
     }
 
@@ -98,12 +98,12 @@ impl Again {
     }
 }
 
-/// N̄, mean and largest PDOP of the parts of a study by definition and by the evaluator.
+/// N̄, mean and maximum PDOP of the parts of a study by definition and by the evaluator.
 pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
     let Some(again) = Again::new(subject) else {
         return Ok(Vec::new());
     };
-    let full = subject.fly_mean_j2()?;
+    let full = subject.propagate_mean_j2()?;
     let setup = &again.setup;
     let (mut visible, mut sum, mut solved, mut largest) = (0.0, 0.0, 0.0, 0.0_f64);
     for elapsed_s in setup.grid.iter() {
@@ -130,15 +130,15 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         clocks: (subject.parts.clocks)(setup.clocks),
         ..setup.clone()
     };
-    let flown = subject.fly_mean_j2()?.into_satellites();
+    let propagated = subject.propagate_mean_j2()?.into_satellites();
     let metrics =
-        Evaluator::new(solved_for)?.evaluate_ephemeris(&Ephemeris::new(setup.grid, flown))?;
+        Evaluator::new(solved_for)?.evaluate_ephemeris(&Ephemeris::new(setup.grid, propagated))?;
     let samples = setup.sample_count() as f64;
     let unit_weights = setup.observation_weights == ObservationWeights::Unit;
     let reason = "the same definitions by another way: angles for squares of sines, whole matrices for Schur complements";
     let mut checks = vec![Check::new(
         "analytic/geometry/mean-visible",
-        Measure {
+        CheckedQuantity {
             quantity: "mean visible satellites of some samples, by angles",
             unit: "1",
             statistic: "difference",
@@ -163,7 +163,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         if let Some(found) = found.filter(|_| unit_weights) {
             checks.push(Check::new(
                 &format!("analytic/geometry/{name}"),
-                Measure {
+                CheckedQuantity {
                     quantity: &format!("{name} of some samples, by whole matrices"),
                     unit: "1",
                     statistic: "difference",

@@ -9,7 +9,7 @@ use crate::evaluate::Setup;
 use crate::ground::Site;
 use crate::orbit::MeanElements;
 use crate::orbit::kepler::eccentric_anomaly;
-use crate::validate::{Check, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use std::f64::consts::{PI, TAU};
 
 /// Nodes over the mean anomaly. Arcs end like square roots: an error of N^-3/2, 1e-6.
@@ -115,12 +115,12 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     let expected = share * subject.design.satellite_count() as f64;
     let found = subject
         .evaluator
-        .evaluate_ephemeris(&subject.fly_mean_j2()?)?
+        .evaluate_ephemeris(&subject.propagate_mean_j2()?)?
         .mean_visible;
     Ok(vec![
         Check::new(
             "analytic/mean-visible/quadrature",
-            Measure {
+            CheckedQuantity {
                 quantity: "mean visible satellites, by quadrature",
                 unit: "1",
                 statistic: "mean",
@@ -131,7 +131,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         ),
         Check::new(
             "analytic/mean-visible",
-            Measure {
+            CheckedQuantity {
                 quantity: "mean visible satellites of the study over quadrature, less 1",
                 unit: "1",
                 statistic: "mean",

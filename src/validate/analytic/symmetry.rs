@@ -6,7 +6,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::frames::EarthRotation;
 use crate::orbit::MeanElements;
 use crate::units::wrap_two_pi;
-use crate::validate::{Check, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
@@ -69,7 +69,7 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     };
     Some(Check::new(
         "analytic/symmetry/turn",
-        Measure {
+        CheckedQuantity {
             quantity: "distance of the pattern, turned and shifted, from itself",
             unit: "km",
             statistic: "max",
@@ -83,8 +83,8 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
 fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     let forwards = subject
         .evaluator
-        .evaluate_ephemeris(&subject.fly_mean_j2()?)?;
-    let mut satellites = subject.fly_mean_j2()?.into_satellites();
+        .evaluate_ephemeris(&subject.propagate_mean_j2()?)?;
+    let mut satellites = subject.propagate_mean_j2()?.into_satellites();
     satellites.reverse();
     let backwards = subject
         .evaluator
@@ -101,7 +101,7 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     };
     Ok(Check::new(
         "analytic/symmetry/order",
-        Measure {
+        CheckedQuantity {
             quantity: "change of the metrics when satellites are reordered",
             unit: "1",
             statistic: "max",
@@ -115,14 +115,14 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
 /// The largest gain of mean visible satellites when the mask is raised, which must not be.
 fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let setup = subject.setup();
-    let flown = subject.fly_mean_j2()?;
+    let propagated = subject.propagate_mean_j2()?;
     let mut before = None;
     let mut largest_gain = f64::NEG_INFINITY;
     let raised = MASK_STEPS_DEG.map(|step| setup.mask.degrees() + step);
     let masks = std::iter::once(setup.mask.degrees()).chain(raised);
     for mask in masks.filter_map(|degrees| Mask::from_degrees(degrees).ok()) {
         let visible = Evaluator::new(without_gnss(setup, mask))?
-            .evaluate_ephemeris(&flown)?
+            .evaluate_ephemeris(&propagated)?
             .mean_visible;
         if let Some(before) = before {
             largest_gain = largest_gain.max(visible - before);
@@ -132,7 +132,7 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     Ok(largest_gain.is_finite().then(|| {
         Check::new(
             "analytic/mask",
-            Measure {
+            CheckedQuantity {
                 quantity: "gain of mean visible satellites when the mask is raised",
                 unit: "1",
                 statistic: "max",

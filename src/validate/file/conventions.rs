@@ -1,12 +1,12 @@
 //! Conventions of other tools, tried one after the other on what a file holds.
 
-mod flights;
+mod propagators;
 
 use super::matching::Matching;
 use super::tracks::Track;
 use crate::constellation::{Design, Pattern, Satellite};
 use crate::earth::RADIUS_KM;
-use crate::ephemeris::{Ephemeris, Flown, object_name};
+use crate::ephemeris::{Ephemeris, EphemerisSatellite, object_name};
 use crate::frames::Frame;
 use crate::orbit::j2::{SecularOrbit, SecularRates};
 use crate::orbit::osculating::OsculatingOrbit;
@@ -14,7 +14,7 @@ use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, ZonalHarmonics};
 use crate::orbit::{MeanElements, Propagator};
 use crate::units::wrap_two_pi;
 use crate::validate::{Subject, ValidateError};
-use flights::{about_j2000, gps_minus_utc_s, mislabelled, taken_as_osculating};
+use propagators::{about_j2000, gps_minus_utc_s, mislabelled, taken_as_osculating};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -43,14 +43,14 @@ pub struct Explanation {
     pub after_km: f64,
 }
 
-/// A satellite as another convention flies it.
-type Flight = Box<dyn Propagator>;
+/// A satellite as another convention propagates it.
+type OtherPropagator = Box<dyn Propagator>;
 
-/// A way in which a tool may have flown the design.
+/// A way in which a tool may have propagated the design.
 struct Convention {
     name: &'static str,
     meaning: &'static str,
-    fly: fn(&Subject<'_>, Fitted) -> Vec<(String, Flight)>,
+    propagate: fn(&Subject<'_>, Fitted) -> Vec<(String, OtherPropagator)>,
 }
 
 /// What conventions take from the files.
@@ -64,7 +64,7 @@ impl Fitted {
     /// The mean excess of the radii at the first samples, at which nothing has drifted yet, as an
     /// excess of the semi-major axis; zero when not every object is near a slot.
     fn to(subject: &Subject<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
-        let ours = subject.fly_model()?;
+        let ours = subject.propagate_model()?;
         let matching = Matching::of(subject, &ours, tracks);
         let pairs = matching.pairs(tracks);
         let mut sum = 0.0;
@@ -82,25 +82,25 @@ impl Fitted {
 }
 
 /// Secular J2 on other satellites.
-fn j2_of(satellites: Vec<Satellite>) -> Vec<(String, Flight)> {
-    fly_each(&satellites, |elements| Some(SecularOrbit::j2(elements)))
+fn j2_of(satellites: Vec<Satellite>) -> Vec<(String, OtherPropagator)> {
+    propagate_each(&satellites, |elements| Some(SecularOrbit::j2(elements)))
 }
 
-fn fly_each<P: Propagator + 'static>(
+fn propagate_each<P: Propagator + 'static>(
     satellites: &[Satellite],
     theory: impl Fn(&MeanElements) -> Option<P>,
-) -> Vec<(String, Flight)> {
-    let fly = |satellite: &Satellite| {
-        let flown: Flight = Box::new(theory(&satellite.elements)?);
-        Some((object_name(satellite.slot), flown))
+) -> Vec<(String, OtherPropagator)> {
+    let propagate = |satellite: &Satellite| {
+        let propagated: OtherPropagator = Box::new(theory(&satellite.elements)?);
+        Some((object_name(satellite.slot), propagated))
     };
-    satellites.iter().filter_map(fly).collect()
+    satellites.iter().filter_map(propagate).collect()
 }
 
 fn with_elements(
     subject: &Subject<'_>,
     change: impl Fn(&Satellite) -> MeanElements,
-) -> Vec<(String, Flight)> {
+) -> Vec<(String, OtherPropagator)> {
     let changed = subject.design.satellites().into_iter();
     j2_of(
         changed
@@ -112,7 +112,7 @@ fn with_elements(
     )
 }
 
-fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, Flight)> {
+fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, OtherPropagator)> {
     with_elements(subject, |satellite| MeanElements {
         semi_major_axis_km: satellite.elements.semi_major_axis_km + extra_km,
         ..satellite.elements
@@ -120,7 +120,11 @@ fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, Flight)> 
 }
 
 /// The design in another pattern or with another phase step, in turns between planes.
-fn with_layout(subject: &Subject<'_>, node_turns: f64, phase_turns: f64) -> Vec<(String, Flight)> {
+fn with_layout(
+    subject: &Subject<'_>,
+    node_turns: f64,
+    phase_turns: f64,
+) -> Vec<(String, OtherPropagator)> {
     let design = subject.design;
     let per_plane = design.satellites_per_plane() as f64;
     with_elements(subject, |satellite| {
@@ -144,9 +148,9 @@ fn layout(design: &Design) -> (f64, f64) {
     }
 }
 
-fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, Flight)> {
+fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, OtherPropagator)> {
     let epoch = subject.epoch();
-    fly_each(&subject.design.satellites(), |elements| {
+    propagate_each(&subject.design.satellites(), |elements| {
         Sgp4Orbit::from_mean_elements(elements, epoch, slot, ZonalHarmonics::Full).ok()
     })
 }
@@ -158,14 +162,14 @@ const ANOTHER_RADIUS: &str = "altitude-over-another-radius";
 const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
-        meaning: "secular J2 on the mean elements, as the model j2 flies it",
-        fly: |subject, _| j2_of(subject.design.satellites()),
+        meaning: "secular J2 on the mean elements, as the model j2 propagates it",
+        propagate: |subject, _| j2_of(subject.design.satellites()),
     },
     Convention {
         name: "two-body",
         meaning: "no J2 at all",
-        fly: |subject, _| {
-            fly_each(&subject.design.satellites(), |e| {
+        propagate: |subject, _| {
+            propagate_each(&subject.design.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
             })
         },
@@ -173,8 +177,8 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "j2-without-mean-anomaly",
         meaning: "secular J2 on node and perigee, but dM/dt = n",
-        fly: |subject, _| {
-            fly_each(&subject.design.satellites(), |elements| {
+        propagate: |subject, _| {
+            propagate_each(&subject.design.satellites(), |elements| {
                 let rates = SecularRates {
                     mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
                     ..SecularRates::j2(elements)
@@ -185,9 +189,9 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "osculating-j2",
-        meaning: "mean elements flown with first-order short-period terms",
-        fly: |subject, _| {
-            fly_each(&subject.design.satellites(), |e| {
+        meaning: "mean elements propagated with first-order short-period terms",
+        propagate: |subject, _| {
+            propagate_each(&subject.design.satellites(), |e| {
                 Some(OsculatingOrbit::new(e))
             })
         },
@@ -195,27 +199,27 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "elements-taken-as-osculating",
         meaning: "the elements are osculating at the epoch and J2 is integrated",
-        fly: |subject, _| taken_as_osculating(subject),
+        propagate: |subject, _| taken_as_osculating(subject),
     },
     Convention {
         name: "sgp4",
         meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
-        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
+        propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
     },
     Convention {
         name: "sgp4-kepler-slot",
         meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
-        fly: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
+        propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
     },
     Convention {
         name: ANOTHER_RADIUS,
         meaning: "altitudes over another radius of the Earth",
-        fly: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
+        propagate: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
     },
     Convention {
         name: "star-for-delta",
         meaning: "nodes over 180 degrees instead of 360",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 0.5 * node, phase)
         },
@@ -223,7 +227,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "delta-for-star",
         meaning: "nodes over 360 degrees instead of 180",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, 2.0 * node, phase)
         },
@@ -231,7 +235,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-slots",
         meaning: "phase step F 360/P instead of F 360/T",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(
                 subject,
@@ -243,7 +247,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-in-degrees",
         meaning: "phase step of F degrees",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, _) = layout(&subject.design);
             with_layout(subject, node, subject.design.phasing() as f64 / 360.0)
         },
@@ -251,7 +255,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-backwards",
         meaning: "phase step -F 360/T",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, -phase)
         },
@@ -259,7 +263,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-halved",
         meaning: "phase step F 180/T, as lox has for stars",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, phase) = layout(&subject.design);
             with_layout(subject, node, 0.5 * phase)
         },
@@ -267,7 +271,7 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "phasing-ignored",
         meaning: "no phase step between planes: F = 0",
-        fly: |subject, _| {
+        propagate: |subject, _| {
             let (node, _) = layout(&subject.design);
             with_layout(subject, node, 0.0)
         },
@@ -275,53 +279,53 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "teme-taken-for-eme2000",
         meaning: "TEME states, labelled EME2000; or, the same, elements and pole of J2 counted from the equator of J2000",
-        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
+        propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
     },
     Convention {
         name: "eme2000-taken-for-teme",
         meaning: "EME2000 states, labelled TEME",
-        fly: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
+        propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
     },
     Convention {
         name: "teme-taken-for-earth-fixed",
         meaning: "TEME states, labelled as of the rotating Earth",
-        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
+        propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
     },
     Convention {
         name: "earth-fixed-taken-for-teme",
         meaning: "states of the rotating Earth, labelled TEME",
-        fly: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
+        propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
     },
     Convention {
         name: "utc-taken-for-gps",
         meaning: "UTC instants, labelled GPS time",
-        fly: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
+        propagate: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "gps-taken-for-utc",
         meaning: "GPS instants, labelled UTC",
-        fly: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
+        propagate: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "j2-about-the-j2000-pole",
         meaning: "secular J2 about the pole of J2000 instead of the true pole of date",
-        fly: |subject, _| about_j2000(subject),
+        propagate: |subject, _| about_j2000(subject),
     },
 ];
 
 /// The convention that leaves least, if it leaves little enough.
 ///
 /// # Errors
-/// When the design itself cannot be flown.
+/// When the design itself cannot be propagated.
 pub(super) fn explanation(
     subject: &Subject<'_>,
     tracks: &[Track],
 ) -> Result<Option<Explanation>, ValidateError> {
-    let before_km = rms_km(subject, subject.fly_model()?, tracks);
+    let before_km = rms_km(subject, subject.propagate_model()?, tracks);
     let fitted = Fitted::to(subject, tracks)?;
     let tried = CONVENTIONS.iter().filter_map(|convention| {
-        let flown = (convention.fly)(subject, fitted).into_iter();
-        let satellites = flown.map(|(name, propagator)| Flown {
+        let propagated = (convention.propagate)(subject, fitted).into_iter();
+        let satellites = propagated.map(|(name, propagator)| EphemerisSatellite {
             name,
             slot: None,
             propagator,
@@ -350,11 +354,11 @@ pub(super) fn explanation(
 
 /// Root mean square distance of the tracks from an ephemeris, every object counted; `None` when
 /// not all of them match.
-fn rms_km(subject: &Subject<'_>, flown: Ephemeris, tracks: &[Track]) -> Option<f64> {
-    let matching = Matching::of(subject, &flown, tracks);
+fn rms_km(subject: &Subject<'_>, propagated: Ephemeris, tracks: &[Track]) -> Option<f64> {
+    let matching = Matching::of(subject, &propagated, tracks);
     let pairs = matching.pairs(tracks);
     let with_states = tracks.iter().filter(|t| !t.states.is_empty()).count();
-    if pairs.len() < with_states.min(flown.satellites().len()) {
+    if pairs.len() < with_states.min(propagated.satellites().len()) {
         return None;
     }
     let per_object = (SAMPLES / pairs.len().max(1)).max(3);
@@ -362,7 +366,9 @@ fn rms_km(subject: &Subject<'_>, flown: Ephemeris, tracks: &[Track]) -> Option<f
     for (slot, track) in pairs {
         let stride = track.states.len().div_ceil(per_object).max(1);
         for (elapsed_s, theirs) in track.states.iter().step_by(stride) {
-            let ours = flown.state(&flown.satellites()[slot], *elapsed_s).ok()?;
+            let ours = propagated
+                .state(&propagated.satellites()[slot], *elapsed_s)
+                .ok()?;
             squares += (theirs.position_km - ours.position_km).norm_squared();
             samples += 1.0;
         }
@@ -375,11 +381,15 @@ pub(super) fn names() -> impl Iterator<Item = &'static str> {
     CONVENTIONS.iter().map(|convention| convention.name)
 }
 
-/// The design as a convention flies it.
+/// The design as a convention propagates it.
 #[cfg(test)]
-pub(super) fn flown(subject: &Subject<'_>, name: &str, fitted: Fitted) -> Vec<(String, Flight)> {
+pub(super) fn propagated(
+    subject: &Subject<'_>,
+    name: &str,
+    fitted: Fitted,
+) -> Vec<(String, OtherPropagator)> {
     let convention = CONVENTIONS
         .iter()
         .find(|convention| convention.name == name);
-    (convention.unwrap().fly)(subject, fitted)
+    (convention.unwrap().propagate)(subject, fitted)
 }

@@ -19,7 +19,7 @@ pub enum FileError {
     /// Mean elements, which say nothing of where a satellite is without a theory.
     #[error("{0} holds mean elements; states or SGP4 element sets can be compared")]
     MeanElements(String),
-    /// SGP4 does not fly an element set.
+    /// SGP4 does not propagate an element set.
     #[error("{object}: {source}")]
     ElementSet {
         /// The object.
@@ -29,7 +29,7 @@ pub enum FileError {
     },
     /// No state lies in the span of the study.
     #[error(
-        "no state of the {objects} objects lies in the span of the study, {from} to {to}; the first object has {first} to {last}"
+        "none of the {objects} objects has a state within the span of the study, {from} to {to}; the first object covers {first} to {last}"
     )]
     AnotherEpoch {
         /// Objects of the files.
@@ -65,7 +65,7 @@ pub enum FileError {
 pub enum Comparand {
     /// Sampled states.
     States(Trajectory),
-    /// An element set, to be flown by SGP4.
+    /// An element set, to be propagated by SGP4.
     Elements(Box<::sgp4::Elements>),
 }
 
@@ -92,7 +92,7 @@ pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError
         Fleet::Tracks(tracks) => {
             let sampled = tracks
                 .iter()
-                .map(crate::formats::maps::czml::Track::sampled);
+                .map(crate::formats::maps::czml::CzmlTrack::sampled);
             sampled.map(Comparand::States).collect()
         }
         Fleet::Elements(_) => return Err(FileError::MeanElements(file.to_owned())),

@@ -1,8 +1,8 @@
 use super::*;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::exchange::export::{Choices, Product, Subject as Exported, testing::in_memory};
-use crate::exchange::manifest::Study;
+use crate::exchange::export::{Choices, ExportSubject, Product, testing::in_memory};
+use crate::exchange::manifest::ExportedStudy;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, Position, from_teme};
 use crate::orbit::Model;
@@ -27,25 +27,24 @@ fn design() -> Design {
     DESIGN.parse().unwrap()
 }
 
-/// The design as another program might have flown it, sampled in TEME.
-fn flown(convention: &str) -> Vec<Comparand> {
+/// The design as another program might have propagated it, sampled in TEME.
+fn propagated(convention: &str) -> Vec<Comparand> {
     let evaluator = evaluator();
     let subject = Subject::new(design(), &evaluator);
     // 6371 km, from which other tools count altitudes.
     let fitted = conventions::Fitted {
         radius_offset_km: -7.137,
     };
-    conventions::flown(&subject, convention, fitted)
+    conventions::propagated(&subject, convention, fitted)
         .into_iter()
-        .map(|(name, flight)| {
-            let states =
-                grid()
-                    .iter()
-                    .map(|t| (t, flight.state_at(t).unwrap()))
-                    .map(|(t, state)| {
-                        let declared = from_teme(state, Frame::Teme, epoch(), t);
-                        (epoch().plus_seconds(t), declared)
-                    });
+        .map(|(name, propagation)| {
+            let states = grid()
+                .iter()
+                .map(|t| (t, propagation.state_at(t).unwrap()))
+                .map(|(t, state)| {
+                    let declared = from_teme(state, Frame::Teme, epoch(), t);
+                    (epoch().plus_seconds(t), declared)
+                });
             Comparand::States(Trajectory {
                 id: name.clone(),
                 name,
@@ -81,11 +80,14 @@ fn is_another_place(convention: &str) -> bool {
 #[test]
 fn each_convention_explains_its_own_ephemeris() {
     for name in conventions::names().filter(|name| *name != "mean-j2") {
-        // For a delta pattern it is no mistake that could be made.
+        // For a delta pattern it is not a mistake that could be made.
         if name == "delta-for-star" {
             continue;
         }
-        for (how, comparands) in [("name", flown(name)), ("place", renamed(flown(name)))] {
+        for (how, comparands) in [
+            ("name", propagated(name)),
+            ("place", renamed(propagated(name))),
+        ] {
             let findings = compared(&comparands).unwrap();
             let comparison = &findings.files[0];
             let found = comparison
@@ -110,7 +112,7 @@ fn each_convention_explains_its_own_ephemeris() {
 
 #[test]
 fn a_radius_is_fitted() {
-    let findings = compared(&flown("altitude-over-another-radius")).unwrap();
+    let findings = compared(&propagated("altitude-over-another-radius")).unwrap();
     let explanation = findings.files[0].explanation.as_ref().unwrap();
     assert_eq!(
         explanation.meaning,
@@ -118,10 +120,10 @@ fn a_radius_is_fitted() {
     );
 }
 
-/// What is no convention of the list is not given the name of one, however large it is.
+/// What is not a convention of the list is not given the name of one, however large it is.
 #[test]
 fn an_unknown_difference_is_not_explained() {
-    let mut comparands = renamed(flown("mean-j2"));
+    let mut comparands = renamed(propagated("mean-j2"));
     for (n, comparand) in comparands.iter_mut().enumerate() {
         let Comparand::States(trajectory) = comparand else {
             continue;
@@ -147,7 +149,7 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
     let evaluator = evaluator();
     let design: Design = "delta:54.6:24/4/2@925".parse().unwrap();
     let subject = Subject::new(design, &evaluator);
-    let ours = subject.fly_model().unwrap();
+    let ours = subject.propagate_model().unwrap();
     let objects = ours.satellites().iter().enumerate().map(|(n, satellite)| {
         let states = grid().iter().map(|t| {
             let state = ours.state(satellite, t + 18.0).unwrap();
@@ -172,7 +174,7 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
 
 #[test]
 fn the_design_itself_needs_no_explanation() {
-    let findings = compared(&renamed(flown("mean-j2"))).unwrap();
+    let findings = compared(&renamed(propagated("mean-j2"))).unwrap();
     let comparison = &findings.files[0];
     assert_eq!(comparison.matched_by, "place");
     assert!(comparison.agrees && comparison.explanation.is_none());
@@ -189,11 +191,11 @@ fn the_design_itself_needs_no_explanation() {
 /// What is exported comes back: each format by its own reader, in its own frame.
 #[test]
 fn exported_files_are_the_design() {
-    let subject = Exported {
+    let subject = ExportSubject {
         design: design(),
         model: Model::J2,
         grid: grid(),
-        study: Study {
+        study: ExportedStudy {
             name: "test".to_owned(),
             hash: String::new(),
         },
@@ -231,7 +233,7 @@ fn exported_files_are_the_design() {
 
 #[test]
 fn missing_and_surplus_objects_fail_by_name() {
-    let mut comparands = flown("mean-j2");
+    let mut comparands = propagated("mean-j2");
     comparands.remove(3);
     let findings = compared(&comparands).unwrap();
     assert_eq!(findings.files[0].unmatched_slots, ["NW-P01-S04"]);
@@ -255,7 +257,7 @@ fn missing_and_surplus_objects_fail_by_name() {
 
 #[test]
 fn another_epoch_is_an_error_that_says_so() {
-    let mut comparands = flown("mean-j2");
+    let mut comparands = propagated("mean-j2");
     for comparand in &mut comparands {
         if let Comparand::States(trajectory) = comparand {
             for (at, _) in &mut trajectory.states {
@@ -269,7 +271,7 @@ fn another_epoch_is_an_error_that_says_so() {
 
 #[test]
 fn a_short_span_fails_and_is_measured() {
-    let mut comparands = flown("mean-j2");
+    let mut comparands = propagated("mean-j2");
     if let Comparand::States(trajectory) = &mut comparands[0] {
         trajectory.states.truncate(73);
     }
@@ -286,7 +288,7 @@ fn a_short_span_fails_and_is_measured() {
 /// Nothing is interpolated over a gap, and no metrics are made of it.
 #[test]
 fn a_gap_is_no_coverage() {
-    let mut comparands = flown("mean-j2");
+    let mut comparands = propagated("mean-j2");
     if let Comparand::States(trajectory) = &mut comparands[5] {
         // Samples 11 to 20 of 144: eleven steps, 55 min, are missing.
         trajectory.states.drain(11..21);

@@ -27,7 +27,7 @@ pub(super) struct Track {
     pub(super) states: Vec<(f64, State<Teme>)>,
     /// All states in or next to the span, for interpolating.
     all: Vec<(f64, State<Teme>)>,
-    flown: Option<Sgp4Orbit>,
+    propagated: Option<Sgp4Orbit>,
 }
 
 /// The objects in the span of the study.
@@ -75,7 +75,7 @@ fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Traje
         name: trajectory.name.clone(),
         states: within.into_iter().step_by(stride).collect(),
         all,
-        flown: None,
+        propagated: None,
     }
 }
 
@@ -88,18 +88,18 @@ fn of_elements(subject: &Subject<'_>, set: &::sgp4::Elements) -> Result<Track, V
         object: name.clone(),
         source,
     };
-    let flown = Sgp4Orbit::from_element_set(set, subject.epoch()).map_err(failed)?;
+    let propagated = Sgp4Orbit::from_element_set(set, subject.epoch()).map_err(failed)?;
     let grid = subject.grid();
     let stride = grid.len().div_ceil(MOST_SAMPLES);
     let mut states = Vec::new();
     for elapsed_s in grid.iter().step_by(stride) {
-        states.push((elapsed_s, flown.state_at(elapsed_s).map_err(failed)?));
+        states.push((elapsed_s, propagated.state_at(elapsed_s).map_err(failed)?));
     }
     Ok(Track {
         name,
         states,
         all: Vec::new(),
-        flown: Some(flown),
+        propagated: Some(propagated),
     })
 }
 
@@ -131,7 +131,7 @@ impl Track {
     /// interpolated.
     pub(super) fn covered_share(&self, subject: &Subject<'_>) -> f64 {
         let last_s = last_s(subject);
-        if self.flown.is_some() {
+        if self.propagated.is_some() {
             return 1.0;
         }
         if last_s <= 0.0 {
@@ -150,7 +150,7 @@ impl Track {
     pub(super) fn covers(&self, subject: &Subject<'_>) -> bool {
         let has_velocity = |(_, state): &(f64, State<Teme>)| state.velocity_km_s.norm() > 0.0;
         self.covered_share(subject) > 1.0 - 1e-9
-            && (self.flown.is_some() || self.all.iter().all(has_velocity))
+            && (self.propagated.is_some() || self.all.iter().all(has_velocity))
     }
 
     /// A state near an instant, by the sample that is nearest in time.
@@ -166,8 +166,8 @@ impl Track {
 impl Propagator for Track {
     /// The state by Hermite interpolation, or of the sample itself; inside the span only.
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
-        if let Some(flown) = &self.flown {
-            return flown.state_at(elapsed_s);
+        if let Some(propagated) = &self.propagated {
+            return propagated.state_at(elapsed_s);
         }
         let behind = self.all.partition_point(|(t, _)| *t < elapsed_s);
         let nodes = NODES.min(self.all.len());

@@ -1,7 +1,7 @@
 //! The area that a satellite sees, by geodesic polygons, against the spherical cap.
 
 use crate::earth::{FLATTENING, RADIUS_KM, Surface};
-use crate::validate::{Check, Measure, Subject};
+use crate::validate::{Check, CheckedQuantity, Subject};
 use geographiclib_rs::{DirectGeodesic, Geodesic, PolygonArea, Winding};
 use std::f64::consts::PI;
 
@@ -59,7 +59,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     vec![
         Check::new(
             "geographiclib/footprint/cap",
-            Measure {
+            CheckedQuantity {
                 quantity: "area of the footprint by the cap formula",
                 unit: "km^2",
                 statistic: "value",
@@ -70,7 +70,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         ),
         Check::new(
             "geographiclib/footprint/geodesic-polygon",
-            Measure {
+            CheckedQuantity {
                 quantity: "area of the footprint by a geodesic polygon over that of the cap, less 1",
                 unit: "1",
                 statistic: "max",

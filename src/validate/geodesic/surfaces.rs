@@ -4,7 +4,7 @@ use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup};
 use crate::frames::LocalFrame;
 use crate::ground::Site;
-use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 
 /// A geodetic point on the ellipsoid whose vertical points away from the Earth's centre: the mistake.
 fn with_geocentric_vertical(latitude_rad: f64, longitude_rad: f64) -> LocalFrame {
@@ -36,10 +36,10 @@ fn setup_with(setup: &Setup, frame: Frames) -> Setup {
 
 /// The change of the metrics by the surface, against WGS 84.
 pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
-    let flown = subject.fly_mean_j2()?;
+    let propagated = subject.propagate_mean_j2()?;
     let metrics = |frame: Frames| {
         let evaluator = Evaluator::new(setup_with(subject.setup(), frame))?;
-        evaluator.evaluate_ephemeris(&flown)
+        evaluator.evaluate_ephemeris(&propagated)
     };
     let right = metrics(|lat, lon| LocalFrame::new(Surface::Wgs84, lat, lon))?;
     let others: [(&str, &str, Frames); 2] = [
@@ -62,7 +62,7 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
                 let label = format!("change of {quantity} against WGS 84");
                 findings.checks.push(Check::new(
                     &format!("geographiclib/{name}/{quantity}"),
-                    Measure {
+                    CheckedQuantity {
                         quantity: &label,
                         unit: "1",
                         statistic: "difference",

@@ -1,12 +1,12 @@
 //! The element sets that an export writes: what their digits and their epoch cost.
 
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown, object_name};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::formats::metadata::Object;
 use crate::formats::{element_set, tle};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::validate::residuals::{BudgetLine, compare};
-use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 
 /// Half of the last digit of an angle of a TLE, degrees.
 const ANGLE_DEG: f64 = 0.5e-4;
@@ -17,27 +17,27 @@ const MEAN_MOTION_REV_DAY: f64 = 0.5e-8;
 /// Half of the last digit of the eccentricity.
 const ECCENTRICITY: f64 = 0.5e-7;
 
-/// A design as element sets, flown by SGP4.
-pub(super) struct Written {
+/// A design as element sets, propagated by SGP4.
+pub(super) struct WrittenSets {
     /// As a reader finds them in the lines.
-    pub(super) flown: Ephemeris,
+    pub(super) propagated: Ephemeris,
     /// With all digits, at the epoch that a TLE can write.
     unrounded: Ephemeris,
 }
 
-impl Written {
+impl WrittenSets {
     pub(super) fn new(subject: &Subject<'_>) -> Result<Self, ValidateError> {
         let epoch = subject.epoch();
         let rounded = tle::rounded_epoch(epoch);
         let since_s = rounded.seconds_since(epoch);
-        let (mut flown, mut unrounded) = (Vec::new(), Vec::new());
+        let (mut propagated, mut unrounded) = (Vec::new(), Vec::new());
         for (index, satellite) in subject.satellites().iter().enumerate() {
             let name = object_name(satellite.slot);
             let object = Object::numbered(&name, index, epoch)?;
             let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
             let set = element_set(&elements, &object, rounded, subject.parts.slot);
-            let fly = |set: &::sgp4::Elements| match Sgp4Orbit::from_element_set(set, epoch) {
-                Ok(orbit) => Ok(Flown {
+            let propagate = |set: &::sgp4::Elements| match Sgp4Orbit::from_element_set(set, epoch) {
+                Ok(orbit) => Ok(EphemerisSatellite {
                     name: name.clone(),
                     slot: Some(satellite.slot),
                     propagator: Box::new(orbit),
@@ -47,11 +47,11 @@ impl Written {
                     source,
                 }),
             };
-            flown.push(fly(&tle::as_written(&set)?)?);
-            unrounded.push(fly(&set)?);
+            propagated.push(propagate(&tle::as_written(&set)?)?);
+            unrounded.push(propagate(&set)?);
         }
         Ok(Self {
-            flown: Ephemeris::new(subject.grid(), flown),
+            propagated: Ephemeris::new(subject.grid(), propagated),
             unrounded: Ephemeris::new(subject.grid(), unrounded),
         })
     }
@@ -68,7 +68,7 @@ impl Written {
                 "digits of a TLE: angles to 1e-4 deg, mean motion to 1e-8 rev/day",
             ),
             &self.unrounded,
-            &self.flown,
+            &self.propagated,
         )?;
         let epoch = compare(
             (
@@ -98,7 +98,7 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
     let drift_km = std::f64::consts::TAU * MEAN_MOTION_REV_DAY * subject.days() * a;
     Check::new(
         "sgp4/tle/digits",
-        Measure {
+        CheckedQuantity {
             quantity: "distance by the digits of a TLE",
             unit: "km",
             statistic: "max",
@@ -113,7 +113,7 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
 fn epoch_check(line: &BudgetLine) -> Check {
     Check::new(
         "sgp4/tle/epoch",
-        Measure {
+        CheckedQuantity {
             quantity: "distance by the epoch of a TLE",
             unit: "km",
             statistic: "max",
@@ -139,7 +139,7 @@ fn sidereal_check(subject: &Subject<'_>) -> Check {
     });
     Check::new(
         "sgp4/sidereal-time",
-        Measure {
+        CheckedQuantity {
             quantity: "shift of the Earth by SGP4's own sidereal time",
             unit: "km",
             statistic: "max",

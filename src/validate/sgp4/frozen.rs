@@ -1,6 +1,6 @@
 //! The eccentricity that J3 forces, and how an element set cancels it.
 
-use super::Scale;
+use super::GateScale;
 use super::causes::Causes;
 use crate::earth::RADIUS_KM;
 use crate::ephemeris::EphemerisError;
@@ -8,13 +8,13 @@ use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::validate::eccentricity::eccentricity_vector;
-use crate::validate::{Check, Measure, Subject};
+use crate::validate::{Check, CheckedQuantity, Subject};
 use std::f64::consts::TAU;
 
 /// Samples over the first revolution.
 const SAMPLES: usize = 72;
 
-/// The eccentricity vector of one flight less that of another over the first revolution.
+/// The eccentricity vector of one propagation less that of another over the first revolution.
 fn vector(
     orbit: &MeanElements,
     with: &impl Propagator,
@@ -40,7 +40,10 @@ fn vector(
 
 /// The frozen eccentricity against its closed form, and what is left when an element set carries it
 /// at the perigee that cancels it. For circular designs.
-pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>, EphemerisError> {
+pub(super) fn checks(
+    subject: &Subject<'_>,
+    scale: &GateScale,
+) -> Result<Vec<Check>, EphemerisError> {
     let orbit = subject.orbit();
     if orbit.eccentricity > 0.0 || scale.deep_space {
         return Ok(Vec::new());
@@ -59,18 +62,18 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
     Ok(vec![
         Check::new(
             "sgp4/frozen-eccentricity",
-            Measure {
+            CheckedQuantity {
                 quantity: "e sin w that J3 forces",
                 unit: "1",
                 statistic: "fit",
             },
             forced[1],
             None,
-            "an element set with e = 0 flies this eccentricity at w = 90 deg",
+            "an element set with e = 0 propagates this eccentricity at w = 90 deg",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/closed-form",
-            Measure {
+            CheckedQuantity {
                 quantity: "forced e sin w less |J3/(2 J2)| R/a sin i",
                 unit: "1",
                 statistic: "fit",
@@ -81,7 +84,7 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
-            Measure {
+            CheckedQuantity {
                 quantity: "e left when the set carries the frozen e at the cancelling w",
                 unit: "1",
                 statistic: "fit",
@@ -101,10 +104,10 @@ fn eccentricities(
     causes: &Causes,
 ) -> Result<Option<[[f64; 2]; 2]>, PropagationError> {
     let slot = subject.parts.slot;
-    let fly = |elements: &MeanElements, zonals| {
+    let propagate = |elements: &MeanElements, zonals| {
         Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, zonals)
     };
-    let plain = fly(orbit, ZonalHarmonics::J2Only)?;
+    let plain = propagate(orbit, ZonalHarmonics::J2Only)?;
     let perigee_rad = subject.parts.cancelling_perigee_deg.to_radians();
     let carrying = MeanElements {
         eccentricity: causes.frozen_km / orbit.semi_major_axis_km,
@@ -112,11 +115,11 @@ fn eccentricities(
         mean_anomaly_rad: orbit.mean_argument_of_latitude_rad() - perigee_rad,
         ..*orbit
     };
-    let can_fly = carrying.semi_major_axis_km * (1.0 - carrying.eccentricity) > RADIUS_KM;
-    if !can_fly {
+    let can_propagate = carrying.semi_major_axis_km * (1.0 - carrying.eccentricity) > RADIUS_KM;
+    if !can_propagate {
         return Ok(None);
     }
-    let forced = vector(orbit, &fly(orbit, ZonalHarmonics::Full)?, &plain)?;
-    let left = vector(orbit, &fly(&carrying, ZonalHarmonics::Full)?, &plain)?;
+    let forced = vector(orbit, &propagate(orbit, ZonalHarmonics::Full)?, &plain)?;
+    let left = vector(orbit, &propagate(&carrying, ZonalHarmonics::Full)?, &plain)?;
     Ok(forced.zip(left).map(|(forced, left)| [forced, left]))
 }

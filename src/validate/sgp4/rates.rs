@@ -1,13 +1,13 @@
 //! Rates of the node and the argument of latitude, from states, against their closed forms.
 
-use super::Scale;
+use super::GateScale;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{State, Teme};
 use crate::orbit::sgp4::{Sgp4Orbit, ZonalHarmonics};
 use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
-use crate::validate::{Check, Measure, Subject};
+use crate::validate::{Check, CheckedQuantity, Subject};
 
 /// Below this sine of the inclination there is no node to speak of.
 const LEAST_SIN_I: f64 = 0.02;
@@ -40,17 +40,17 @@ pub(in crate::validate) fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
 /// Slopes of the angles less their closed forms, deg/day: the mean over the constellation.
 fn excess_deg_per_day(
     subject: &Subject<'_>,
-    flown: &Ephemeris,
+    propagated: &Ephemeris,
 ) -> Result<[f64; 2], EphemerisError> {
     let rates = closed_form(subject);
     let satellites = subject.satellites();
-    let times: Vec<f64> = flown.grid().iter().collect();
+    let times: Vec<f64> = propagated.grid().iter().collect();
     let mut means = [vec![0.0; times.len()], vec![0.0; times.len()]];
-    for (satellite, place) in flown.satellites().iter().zip(&satellites) {
+    for (satellite, place) in propagated.satellites().iter().zip(&satellites) {
         let elements = &place.elements;
         let start = [elements.raan_rad, elements.mean_argument_of_latitude_rad()];
         for (k, &elapsed_s) in times.iter().enumerate() {
-            let found = angles(&flown.state(satellite, elapsed_s)?);
+            let found = angles(&propagated.state(satellite, elapsed_s)?);
             for angle in 0..2 {
                 let expected = start[angle] + rates[angle] * elapsed_s;
                 means[angle][k] += wrap_pi(found[angle] - expected) / satellites.len() as f64;
@@ -62,15 +62,18 @@ fn excess_deg_per_day(
 }
 
 /// The rates of our theory and of SGP4 against the closed forms.
-pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>, EphemerisError> {
+pub(super) fn checks(
+    subject: &Subject<'_>,
+    scale: &GateScale,
+) -> Result<Vec<Check>, EphemerisError> {
     let orbit = subject.orbit();
     if orbit.inclination_rad.sin() < LEAST_SIN_I {
         return Ok(Vec::new());
     }
     let names = ["node", "argument-of-latitude"];
     let closed = closed_form(subject).map(|rate| (rate * SECONDS_PER_DAY).to_degrees());
-    let ours = excess_deg_per_day(subject, &subject.fly_mean_j2()?)?;
-    let sgp4 = subject.fly(|elements| {
+    let ours = excess_deg_per_day(subject, &subject.propagate_mean_j2()?)?;
+    let sgp4 = subject.propagate(|elements| {
         let slot = subject.parts.slot;
         Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, ZonalHarmonics::Full)
     })?;
@@ -88,7 +91,7 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
         let unit = "deg/day";
         checks.push(Check::new(
             &format!("sgp4/rates/{name}"),
-            Measure {
+            CheckedQuantity {
                 quantity: &format!("rate of the {name}, closed form"),
                 unit,
                 statistic: "rate",
@@ -99,25 +102,25 @@ pub(super) fn checks(subject: &Subject<'_>, scale: &Scale) -> Result<Vec<Check>,
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/mean-j2"),
-            Measure {
+            CheckedQuantity {
                 quantity: &format!("rate of the {name} less closed form"),
                 unit,
                 statistic: "slope",
             },
             ours[n],
             Some(1e-6 + if n == 1 { leftover_deg } else { 0.0 }),
-            "states of the model against the closed form of its rates: rounding, and what a part of a revolution leaves",
+            "states of the model against the closed form of its rates: rounding, and residual from an incomplete revolution",
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/sgp4"),
-            Measure {
+            CheckedQuantity {
                 quantity: &format!("rate of the {name} less closed form"),
                 unit,
                 statistic: "slope",
             },
             theirs[n],
             scale.gate(lever * in_track_deg + leftover_deg),
-            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and what a part of a revolution leaves"),
+            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and residual from an incomplete revolution"),
         ));
     }
     Ok(checks)

@@ -1,13 +1,13 @@
 //! The budget by cause over inclinations and altitudes: a closed form that holds for one design might
 //! do so by chance.
 
-use super::{Flights, Scale};
+use super::{GateScale, Propagations};
 use crate::constellation::{Design, DesignParameters, Pattern};
 use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::distribution::{Distribution, Residual};
 use crate::validate::residuals::Ric;
-use crate::validate::{Check, Findings, Measure, Subject, ValidateError};
+use crate::validate::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use serde::{Deserialize, Serialize};
 
 /// From where the mean radius shift is largest, over 54.7°, where the common mistake of the mean
@@ -75,7 +75,7 @@ pub(super) fn over_inclination_and_altitude(
     let worst = shares.iter().map(|one| one.value).fold(0.0, f64::max);
     findings.checks.push(Check::new(
         name,
-        Measure {
+        CheckedQuantity {
             quantity: "largest share of a gate over inclination and altitude",
             unit: "1",
             statistic: "max",
@@ -97,12 +97,12 @@ fn cell(subject: &Subject<'_>) -> Result<(SweepCell, Vec<Share>), ValidateError>
     let span_s = subject.days() * SECONDS_PER_DAY;
     let step_s = STEP_S.max(subject.grid().step_s()).min(span_s);
     let grid = TimeGrid::new(subject.epoch(), span_s, step_s)?;
-    let budget = Flights::new(subject, grid)?.budget(CASES)?;
+    let budget = Propagations::new(subject, grid)?.budget(CASES)?;
     let at = (
         subject.design.inclination_deg(),
         subject.design.altitude_km(),
     );
-    let checks = Scale::of(subject).budget_checks(&budget);
+    let checks = GateScale::of(subject).budget_checks(&budget);
     let shares: Vec<Share> = checks
         .into_iter()
         .filter_map(|check| {

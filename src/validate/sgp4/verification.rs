@@ -9,7 +9,7 @@ use crate::orbit::sgp4::{Sgp4Mode, Sgp4Orbit, Sgp4Theory};
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
 use crate::validate::distribution::{Distribution, Residual};
-use crate::validate::{Check, Findings, Measure};
+use crate::validate::{Check, CheckedQuantity, Findings};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -21,13 +21,13 @@ const MODES: &str = include_str!("../../../validation/cases/sgp4/modes.csv");
 const REFUSED: u64 = 33_334;
 
 /// A state that the list gives.
-struct Expected {
+struct PublishedState {
     number: u64,
     minutes: f64,
     position_km: Position<Teme>,
 }
 
-/// The element sets by catalogue number; the lines go on behind column 69 with the span to fly.
+/// The element sets by catalogue number; the lines go on behind column 69 with the span to propagate.
 fn sets() -> BTreeMap<u64, ::sgp4::Elements> {
     let lines: Vec<&str> = SETS.lines().filter(|line| !line.starts_with('#')).collect();
     lines
@@ -58,7 +58,7 @@ fn repaired(line: &str) -> Vec<u8> {
     bytes
 }
 
-fn published() -> Vec<Expected> {
+fn published() -> Vec<PublishedState> {
     let mut number = 0;
     let mut expected = Vec::new();
     for line in PUBLISHED.lines() {
@@ -74,7 +74,7 @@ fn published() -> Vec<Expected> {
     expected
 }
 
-fn of_mode(mode: &str) -> Vec<Expected> {
+fn of_mode(mode: &str) -> Vec<PublishedState> {
     let rows = MODES
         .lines()
         .map(|line| line.split(',').collect::<Vec<_>>());
@@ -83,13 +83,13 @@ fn of_mode(mode: &str) -> Vec<Expected> {
         .collect()
 }
 
-fn row(number: u64, fields: [&str; 4]) -> Option<Expected> {
+fn row(number: u64, fields: [&str; 4]) -> Option<PublishedState> {
     let mut values = [0.0; 4];
     for (value, field) in values.iter_mut().zip(fields) {
         *value = field.parse().ok()?;
     }
     let [minutes, x, y, z] = values;
-    Some(Expected {
+    Some(PublishedState {
         number,
         minutes,
         position_km: Position::new(Vector3::new(x, y, z)),
@@ -97,13 +97,13 @@ fn row(number: u64, fields: [&str; 4]) -> Option<Expected> {
 }
 
 /// Distances of the crate's states from a list, km; a state that the crate refuses is infinitely far.
-fn distances(expected: &[Expected], mode: Sgp4Mode) -> Vec<Residual<(u64, f64)>> {
+fn distances(expected: &[PublishedState], mode: Sgp4Mode) -> Vec<Residual<(u64, f64)>> {
     let theory = Sgp4Theory {
         mode,
         ..Sgp4Theory::STANDARD
     };
     let sets = sets();
-    let distance = |case: &Expected| -> Result<f64, PropagationError> {
+    let distance = |case: &PublishedState| -> Result<f64, PropagationError> {
         let Some(set) = sets.get(&case.number) else {
             return Ok(f64::INFINITY);
         };
@@ -144,7 +144,7 @@ pub fn against_the_verification_set() -> Findings {
         let max = residuals.iter().map(|one| one.value).fold(0.0, f64::max);
         findings.checks.push(Check::new(
             name,
-            Measure {
+            CheckedQuantity {
                 quantity: "distance of the sgp4 crate from the verification set",
                 unit: "km",
                 statistic: "max",

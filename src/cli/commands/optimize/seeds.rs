@@ -1,7 +1,7 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
 use super::{Ended, hint_resume, interrupt_flag, open, search, status, sweep, text};
-use crate::cli::args::{Format, OptimizeArgs};
+use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
 use crate::evaluate::Evaluator;
@@ -62,13 +62,13 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
         files::write_atomically(&out.join(name), text.as_bytes())?;
     }
     output::result(&match args.format {
-        Format::Text => format!(
+        OutputFormat::Text => format!(
             "{}\n{}",
             text(&result.first, &study.scenario.name),
             result.to_text()
         ),
-        Format::Json => json,
-        Format::Csv => result.to_csv()?,
+        OutputFormat::Json => json,
+        OutputFormat::Csv => result.to_csv()?,
     })?;
     output::hint(&format!(
         "\nruns written to {}/{RUN}{first} to {RUN}{last}",
@@ -88,7 +88,7 @@ fn require_seeds(directory: &Path) -> Result<()> {
         let name = entry?.file_name().to_string_lossy().into_owned();
         if !name.starts_with(RUN) && !TABLE.contains(&name.as_str()) {
             bail!(
-                "{} holds {name}, which is no run of a seed; choose another --out, or replace what \
+                "{} holds {name}, which is not the run of a seed; choose another --out, or replace what \
                  is in the way with --force",
                 directory.display()
             );

@@ -3,9 +3,9 @@
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::{
-    Block, Header, Item, Keyword, Pair, item, may, must, read_number, read_stamp, words,
+    CcsdsHeader, Item, KvnBlock, KvnKeyword, Pair, item, may, must, read_number, read_stamp, words,
 };
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::frames::State;
 use chrono::NaiveDateTime;
@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
 /// Table 5-2.
-pub(super) const HEADER: &[Keyword] = &[
+pub(super) const HEADER: &[KvnKeyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     must("CREATION_DATE"),
@@ -22,7 +22,7 @@ pub(super) const HEADER: &[Keyword] = &[
 ];
 
 /// Table 5-3.
-pub(super) const METADATA: &[Keyword] = &[
+pub(super) const METADATA: &[KvnKeyword] = &[
     must("OBJECT_NAME"),
     must("OBJECT_ID"),
     must("CENTER_NAME"),
@@ -38,14 +38,14 @@ pub(super) const METADATA: &[Keyword] = &[
 ];
 
 /// Table 5-4, between its markers.
-const COVARIANCE: &[Keyword] = &[must("EPOCH"), may("COV_REF_FRAME")];
+const COVARIANCE: &[KvnKeyword] = &[must("EPOCH"), may("COV_REF_FRAME")];
 
 /// Reads a message; the first broken rule ends it.
 ///
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<Oem, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let mut segments = Vec::new();
     let header = parse(input, &mut findings, |segment| segments.push(segment))?;
     let message = header.map(|header| Oem { header, segments });
@@ -61,11 +61,11 @@ pub fn read(input: impl BufRead) -> Result<Oem, ReadError> {
 /// A failure of the input.
 pub fn parse(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Segment),
-) -> io::Result<Option<Header>> {
+) -> io::Result<Option<CcsdsHeader>> {
     let mut lines = Lines::new(input);
-    let mut parser = Parser::new();
+    let mut parser = OemParser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings, &mut take);
     }
@@ -73,19 +73,19 @@ pub fn parse(
 }
 
 /// The part of the message that the next line belongs to.
-enum Part {
+enum OemSection {
     Header,
-    Metadata(Block),
+    Metadata(KvnBlock),
     Ephemeris,
     Covariance(Covariance),
     /// After a covariance only a new segment may follow.
     BetweenSegments,
 }
 
-struct Parser {
-    part: Part,
-    header_block: Block,
-    header: Option<Header>,
+struct OemParser {
+    part: OemSection,
+    header_block: KvnBlock,
+    header: Option<CcsdsHeader>,
     /// Time system of the first segment, which all share (5.2.4.5).
     time_system: Option<String>,
     segment: Option<Segment>,
@@ -94,11 +94,11 @@ struct Parser {
     segments: usize,
 }
 
-impl Parser {
+impl OemParser {
     fn new() -> Self {
         Self {
-            part: Part::Header,
-            header_block: Block::new(&[HEADER]),
+            part: OemSection::Header,
+            header_block: KvnBlock::new(&[HEADER]),
             header: None,
             time_system: None,
             segment: None,
@@ -107,7 +107,7 @@ impl Parser {
         }
     }
 
-    fn line(&mut self, line: &Line, findings: &mut Findings, take: &mut impl FnMut(Segment)) {
+    fn line(&mut self, line: &Line, findings: &mut FindingList, take: &mut impl FnMut(Segment)) {
         match item(line, findings) {
             Item::Blank => {}
             Item::Comment(text) => self.comment(line.number, text, findings),
@@ -120,12 +120,16 @@ impl Parser {
         }
     }
 
-    fn comment(&mut self, number: usize, text: &str, findings: &mut Findings) {
+    fn comment(&mut self, number: usize, text: &str, findings: &mut FindingList) {
         let kept = match (&mut self.part, &mut self.segment) {
-            (Part::Header, _) if !self.header_block.is_empty() => &mut self.header_block.comments,
-            (Part::Metadata(block), _) if block.is_empty() => &mut block.comments,
-            (Part::Ephemeris, Some(segment)) if segment.states.is_empty() => &mut segment.comments,
-            (Part::Covariance(covariance), _) if covariance.is_untouched() => return,
+            (OemSection::Header, _) if !self.header_block.is_empty() => {
+                &mut self.header_block.comments
+            }
+            (OemSection::Metadata(block), _) if block.is_empty() => &mut block.comments,
+            (OemSection::Ephemeris, Some(segment)) if segment.states.is_empty() => {
+                &mut segment.comments
+            }
+            (OemSection::Covariance(covariance), _) if covariance.is_untouched() => return,
             _ => {
                 let message = "a comment may stand only at the beginning of a section (7.8.9)";
                 findings.warning((number, 1), "oem-comment", message);
@@ -135,12 +139,12 @@ impl Parser {
         kept.push(text.to_owned());
     }
 
-    fn pair(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+    fn pair(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         match &mut self.part {
-            Part::Header => self.header_block.accept(pair, findings),
-            Part::Metadata(block) => block.accept(pair, findings),
-            Part::Covariance(covariance) => covariance.pair(pair, findings),
-            Part::Ephemeris | Part::BetweenSegments => {
+            OemSection::Header => self.header_block.accept(pair, findings),
+            OemSection::Metadata(block) => block.accept(pair, findings),
+            OemSection::Covariance(covariance) => covariance.pair(pair, findings),
+            OemSection::Ephemeris | OemSection::BetweenSegments => {
                 let message = format!("keyword {} does not belong here", pair.key);
                 findings.error(pair.key_place, "ccsds-keyword", message);
             }
@@ -150,22 +154,22 @@ impl Parser {
     fn meta_start(
         &mut self,
         number: usize,
-        findings: &mut Findings,
+        findings: &mut FindingList,
         take: &mut impl FnMut(Segment),
     ) {
         match &self.part {
-            Part::Header => self.header = header(&self.header_block, number, findings),
-            Part::Ephemeris | Part::BetweenSegments => self.end_segment(findings, take),
-            Part::Metadata(_) | Part::Covariance(_) => {
+            OemSection::Header => self.header = header(&self.header_block, number, findings),
+            OemSection::Ephemeris | OemSection::BetweenSegments => self.end_segment(findings, take),
+            OemSection::Metadata(_) | OemSection::Covariance(_) => {
                 misplaced_marker("META_START", number, findings);
             }
         }
         self.segment_line = number;
-        self.part = Part::Metadata(Block::new(&[METADATA]));
+        self.part = OemSection::Metadata(KvnBlock::new(&[METADATA]));
     }
 
-    fn meta_stop(&mut self, number: usize, findings: &mut Findings) {
-        let Part::Metadata(block) = &self.part else {
+    fn meta_stop(&mut self, number: usize, findings: &mut FindingList) {
+        let OemSection::Metadata(block) = &self.part else {
             misplaced_marker("META_STOP", number, findings);
             return;
         };
@@ -179,27 +183,27 @@ impl Parser {
             comments: Vec::new(),
             states: Vec::new(),
         });
-        self.part = Part::Ephemeris;
+        self.part = OemSection::Ephemeris;
     }
 
-    fn covariance_start(&mut self, number: usize, findings: &mut Findings) {
-        if !matches!(self.part, Part::Ephemeris) {
+    fn covariance_start(&mut self, number: usize, findings: &mut FindingList) {
+        if !matches!(self.part, OemSection::Ephemeris) {
             misplaced_marker("COVARIANCE_START", number, findings);
         }
-        self.part = Part::Covariance(Covariance::default());
+        self.part = OemSection::Covariance(Covariance::default());
     }
 
-    fn covariance_stop(&mut self, number: usize, findings: &mut Findings) {
+    fn covariance_stop(&mut self, number: usize, findings: &mut FindingList) {
         match &self.part {
-            Part::Covariance(covariance) => covariance.end(number, findings),
+            OemSection::Covariance(covariance) => covariance.end(number, findings),
             _ => misplaced_marker("COVARIANCE_STOP", number, findings),
         }
-        self.part = Part::BetweenSegments;
+        self.part = OemSection::BetweenSegments;
     }
 
-    fn data(&mut self, line: &Line, findings: &mut Findings) {
+    fn data(&mut self, line: &Line, findings: &mut FindingList) {
         match &mut self.part {
-            Part::Ephemeris => {
+            OemSection::Ephemeris => {
                 let state = state_line(line, findings);
                 if let (Some(segment), Some(state)) = (&mut self.segment, state)
                     && in_order(segment, &state, line.number, findings)
@@ -207,15 +211,15 @@ impl Parser {
                     segment.states.push(state);
                 }
             }
-            Part::Covariance(covariance) => covariance.row(line, findings),
-            Part::Header | Part::Metadata(_) | Part::BetweenSegments => {
+            OemSection::Covariance(covariance) => covariance.row(line, findings),
+            OemSection::Header | OemSection::Metadata(_) | OemSection::BetweenSegments => {
                 let message = "neither a keyword = value pair nor a marker of this section";
                 findings.error((line.number, 1), "oem-line", message);
             }
         }
     }
 
-    fn end_segment(&mut self, findings: &mut Findings, take: &mut impl FnMut(Segment)) {
+    fn end_segment(&mut self, findings: &mut FindingList, take: &mut impl FnMut(Segment)) {
         if let Some(segment) = self.segment.take() {
             check_segment(&segment, (self.segment_line, 1), findings);
             take(segment);
@@ -225,19 +229,19 @@ impl Parser {
     fn end(
         mut self,
         number: usize,
-        findings: &mut Findings,
+        findings: &mut FindingList,
         take: &mut impl FnMut(Segment),
-    ) -> Option<Header> {
+    ) -> Option<CcsdsHeader> {
         match &self.part {
-            Part::Ephemeris | Part::BetweenSegments => self.end_segment(findings, take),
-            Part::Header => {
+            OemSection::Ephemeris | OemSection::BetweenSegments => self.end_segment(findings, take),
+            OemSection::Header => {
                 self.header = header(&self.header_block, number, findings);
                 findings.error((number, 1), "oem-truncated", "the message has no segment");
             }
-            Part::Metadata(_) => {
+            OemSection::Metadata(_) => {
                 findings.error((number, 1), "oem-truncated", "META_STOP is missing");
             }
-            Part::Covariance(_) => {
+            OemSection::Covariance(_) => {
                 findings.error((number, 1), "oem-truncated", "COVARIANCE_STOP is missing");
             }
         }
@@ -249,8 +253,8 @@ impl Parser {
 pub(super) fn check_time_system(
     first: &mut Option<String>,
     metadata: &SegmentMetadata,
-    block: &Block,
-    findings: &mut Findings,
+    block: &KvnBlock,
+    findings: &mut FindingList,
 ) {
     let first = first.get_or_insert_with(|| metadata.time_system.clone());
     if *first != metadata.time_system {
@@ -260,7 +264,7 @@ pub(super) fn check_time_system(
 }
 
 /// What must hold for a segment as a whole.
-pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: &mut Findings) {
+pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: &mut FindingList) {
     let lines = segment.states.len();
     let needed = match &segment.metadata.interpolation {
         Some((method, degree)) if method.eq_ignore_ascii_case("HERMITE") => degree / 2 + 1,
@@ -283,20 +287,24 @@ pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: 
     }
 }
 
-fn misplaced_marker(marker: &str, number: usize, findings: &mut Findings) {
+fn misplaced_marker(marker: &str, number: usize, findings: &mut FindingList) {
     let message = format!("{marker} does not belong here");
     findings.error((number, 1), "oem-marker", message);
 }
 
-pub(super) fn header(block: &Block, number: usize, findings: &mut Findings) -> Option<Header> {
+pub(super) fn header(
+    block: &KvnBlock,
+    number: usize,
+    findings: &mut FindingList,
+) -> Option<CcsdsHeader> {
     block.finish((number, 1), findings);
-    Header::read(block, VERSION, findings)
+    CcsdsHeader::read(block, VERSION, findings)
 }
 
 pub(super) fn metadata(
-    block: &Block,
+    block: &KvnBlock,
     number: usize,
-    findings: &mut Findings,
+    findings: &mut FindingList,
 ) -> Option<SegmentMetadata> {
     block.finish((number, 1), findings);
     let interpolation = match block.text("INTERPOLATION") {
@@ -333,7 +341,7 @@ pub(super) fn metadata(
 }
 
 /// Reads the seven or ten fields of an ephemeris line.
-fn state_line(line: &Line, findings: &mut Findings) -> Option<StateLine> {
+fn state_line(line: &Line, findings: &mut FindingList) -> Option<StateLine> {
     let fields: Vec<_> = words(&line.text).take(11).collect();
     let [(column, epoch), numbers @ ..] = fields.as_slice() else {
         return None;
@@ -364,7 +372,7 @@ pub(super) fn in_order(
     segment: &Segment,
     line: &StateLine,
     number: usize,
-    findings: &mut Findings,
+    findings: &mut FindingList,
 ) -> bool {
     let previous: Option<NaiveDateTime> = segment.states.last().map(|last| last.epoch);
     if previous.is_some_and(|previous| line.epoch <= previous) {
@@ -384,7 +392,7 @@ pub(super) fn in_order(
 /// A covariance section: for each matrix its keywords and six rows.
 #[derive(Default)]
 struct Covariance {
-    block: Option<Block>,
+    block: Option<KvnBlock>,
     rows: usize,
 }
 
@@ -393,17 +401,17 @@ impl Covariance {
         self.block.is_none()
     }
 
-    fn pair(&mut self, pair: &Pair<'_>, findings: &mut Findings) {
+    fn pair(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         // After its six rows, the next matrix begins.
         if self.rows == 6 {
             *self = Self::default();
         }
         self.block
-            .get_or_insert_with(|| Block::new(&[COVARIANCE]))
+            .get_or_insert_with(|| KvnBlock::new(&[COVARIANCE]))
             .accept(pair, findings);
     }
 
-    fn row(&mut self, line: &Line, findings: &mut Findings) {
+    fn row(&mut self, line: &Line, findings: &mut FindingList) {
         self.rows += 1;
         let fields: Vec<_> = words(&line.text).take(8).collect();
         if self.rows > 6 || fields.len() != self.rows || self.block.is_none() {
@@ -416,7 +424,7 @@ impl Covariance {
         }
     }
 
-    fn end(&self, number: usize, findings: &mut Findings) {
+    fn end(&self, number: usize, findings: &mut FindingList) {
         if self.rows != 6 {
             let message = "the covariance ends before its sixth row";
             findings.error((number, 1), "oem-covariance", message);

@@ -2,9 +2,9 @@ use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::ephemeris::sampled::Sampled;
-use crate::formats::ccsds::CcsdsVersion as Version;
+use crate::formats::ccsds::CcsdsVersion;
 use crate::formats::metadata::Theory;
-use crate::formats::text::finding::{Finding, Findings, Severity};
+use crate::formats::text::finding::{Finding, FindingList, Severity};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::to_teme;
 use crate::orbit::Model;
@@ -69,7 +69,7 @@ COVARIANCE_STOP
 ";
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(50);
+    let mut findings = FindingList::of_linter(50);
     parse(text.as_ref(), &mut findings, |_| ()).unwrap();
     findings.into_vec()
 }
@@ -87,18 +87,18 @@ fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
         creation: ephemeris(60.0).grid().epoch(),
         frame,
         time_system,
-        theory: Theory::Flown(Model::J2),
+        theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
     }
 }
 
-fn written(ephemeris: &Ephemeris, metadata: &Metadata, version: Version) -> String {
+fn written(ephemeris: &Ephemeris, metadata: &Metadata, version: CcsdsVersion) -> String {
     let satellite = &ephemeris.satellites()[1];
     let object = Object::numbered(&satellite.name, 1, ephemeris.grid().epoch()).unwrap();
     let sampled = Sampled::new(ephemeris, metadata.frame);
     let hermite = Hermite::measured(&sampled, satellite).unwrap();
     let mut out = Vec::new();
-    let writer = Writer {
+    let writer = OemWriter {
         version,
         metadata,
         sampled: &sampled,
@@ -146,7 +146,7 @@ fn what_is_written_reads_back_and_writes_the_same() {
         (Frame::Teme, TimeSystem::Utc),
         (Frame::Gcrf, TimeSystem::Tt),
     ] {
-        for (step_s, version) in [(60.0, Version::V2), (0.1 + 599.3, Version::V3)] {
+        for (step_s, version) in [(60.0, CcsdsVersion::V2), (0.1 + 599.3, CcsdsVersion::V3)] {
             let text = written(&ephemeris(step_s), &metadata(frame, system), version);
             assert_eq!(findings(&text), [], "{frame} {step_s}");
             let message = read(text.as_bytes()).unwrap();
@@ -166,7 +166,7 @@ fn states_survive_frames_and_time_systems() {
         (Frame::EarthFixed, TimeSystem::Gps),
         (Frame::Eme2000, TimeSystem::Tai),
     ] {
-        let text = written(&ephemeris, &metadata(frame, system), Version::V2);
+        let text = written(&ephemeris, &metadata(frame, system), CcsdsVersion::V2);
         let trajectory = read(text.as_bytes()).unwrap().segments[0]
             .trajectory()
             .unwrap();
@@ -186,10 +186,10 @@ fn states_survive_frames_and_time_systems() {
 #[test]
 fn times_have_the_digits_of_the_step() {
     let utc = metadata(Frame::Eme2000, TimeSystem::Utc);
-    let text = written(&ephemeris(0.1), &utc, Version::V2);
+    let text = written(&ephemeris(0.1), &utc, CcsdsVersion::V2);
     assert!(text.contains("\n2025-01-01T00:00:00.300 "));
     assert!(text.contains("\nSTOP_TIME = 2025-01-01T01:59:59.900\n"));
-    let text = written(&ephemeris(1.0 / 3.0), &utc, Version::V2);
+    let text = written(&ephemeris(1.0 / 3.0), &utc, CcsdsVersion::V2);
     assert!(text.contains("\n2025-01-01T00:00:00.333333333 "));
 }
 
@@ -326,7 +326,7 @@ fn blue_book_xml() -> String {
 }
 
 fn findings_xml(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(50);
+    let mut findings = FindingList::of_linter(50);
     parse_xml(text.as_ref(), &mut findings, |_| ()).unwrap();
     findings.into_vec()
 }
@@ -356,8 +356,8 @@ fn combined_xml_reads_back_satellite_by_satellite() {
     let metadata = metadata(Frame::Gcrf, TimeSystem::Tai);
     let sampled = Sampled::new(&ephemeris, metadata.frame);
     let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
-    let writer = Writer {
-        version: Version::V3,
+    let writer = OemWriter {
+        version: CcsdsVersion::V3,
         metadata: &metadata,
         sampled: &sampled,
         hermite: None,

@@ -1,11 +1,11 @@
 //! Writes the messages of satellites on a grid, state by state, so that none is held in memory.
 
 use super::{StateLine, VERSION, segment_metadata, write_metadata, write_state};
-use crate::ephemeris::Flown;
+use crate::ephemeris::EphemerisSatellite;
 use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
-use crate::formats::ccsds::kvn::{Header, Version};
+use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
 use crate::formats::ccsds::xml;
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::SecondDigits;
@@ -13,9 +13,9 @@ use crate::frames::Frame;
 use std::io::Write;
 
 /// What the messages of an export share.
-pub struct Writer<'a> {
+pub struct OemWriter<'a> {
     /// Version of the messages.
-    pub version: Version,
+    pub version: CcsdsVersion,
     /// What they say of themselves.
     pub metadata: &'a Metadata,
     /// The satellites in the frame of the messages.
@@ -24,14 +24,14 @@ pub struct Writer<'a> {
     pub hermite: Option<Hermite>,
 }
 
-impl Writer<'_> {
+impl OemWriter<'_> {
     fn digits(&self) -> SecondDigits {
         SecondDigits::of_grid(&self.sampled.grid())
     }
 
     fn lines(
         &self,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
         mut write: impl FnMut(&StateLine) -> std::io::Result<()>,
     ) -> Result<(), WriteError> {
         for sample in self.sampled.states(satellite) {
@@ -48,15 +48,15 @@ impl Writer<'_> {
     /// Writes the message of one satellite in keyword = value notation.
     ///
     /// # Errors
-    /// When the satellite has no state, or the output does not take the bytes.
+    /// When the satellite has no state, or the output fails.
     pub fn kvn(
         &self,
         out: &mut impl Write,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
         object: &Object,
     ) -> Result<(), WriteError> {
         let digits = self.digits();
-        Header::new(self.version, self.metadata).write(out, VERSION)?;
+        CcsdsHeader::new(self.version, self.metadata).write(out, VERSION)?;
         let segment = segment_metadata(self.metadata, object, self.sampled.grid(), self.hermite);
         write_metadata(out, &segment, digits)?;
         self.lines(satellite, |line| write_state(out, line, digits))
@@ -65,11 +65,11 @@ impl Writer<'_> {
     /// Writes the message of one satellite as an XML file.
     ///
     /// # Errors
-    /// When the satellite has no state, or the output does not take the bytes.
+    /// When the satellite has no state, or the output fails.
     pub fn xml(
         &self,
         out: &mut impl Write,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
         object: &Object,
     ) -> Result<(), WriteError> {
         xml::begin_file(out, ("oem", VERSION), self.version)?;
@@ -79,11 +79,11 @@ impl Writer<'_> {
     /// Writes the messages of several satellites as one combined instantiation in XML.
     ///
     /// # Errors
-    /// When a satellite has no state, or the output does not take the bytes.
+    /// When a satellite has no state, or the output fails.
     pub fn combined_xml<'s>(
         &self,
         out: &mut impl Write,
-        satellites: impl Iterator<Item = (&'s Flown, &'s Object)>,
+        satellites: impl Iterator<Item = (&'s EphemerisSatellite, &'s Object)>,
     ) -> Result<(), WriteError> {
         xml::begin_ndm(out, self.version)?;
         for (satellite, object) in satellites {
@@ -97,11 +97,11 @@ impl Writer<'_> {
     fn xml_content(
         &self,
         out: &mut impl Write,
-        satellite: &Flown,
+        satellite: &EphemerisSatellite,
         object: &Object,
     ) -> Result<(), WriteError> {
         let digits = self.digits();
-        xml::write_header(out, &Header::new(self.version, self.metadata))?;
+        xml::write_header(out, &CcsdsHeader::new(self.version, self.metadata))?;
         writeln!(out, "<body>")?;
         let segment = segment_metadata(self.metadata, object, self.sampled.grid(), self.hermite);
         super::xml::begin_segment(out, (&segment, &[]), digits)?;

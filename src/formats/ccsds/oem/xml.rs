@@ -3,18 +3,18 @@
 use super::read::{HEADER, METADATA, check_segment, check_time_system, header, in_order, metadata};
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
-use crate::formats::ccsds::kvn::{Block, Keyword, may, must};
+use crate::formats::ccsds::kvn::{KvnBlock, KvnKeyword, may, must};
 use crate::formats::ccsds::xml::{
-    Node, Nodes, begin_file, write_comments, write_header, write_leaves,
+    Nodes, XmlNode, begin_file, write_comments, write_header, write_leaves,
 };
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::State;
 use nalgebra::Vector3;
 use std::io::{self, BufRead, Write};
 
 /// Elements of a `stateVector`.
-const STATE: &[Keyword] = &[
+const STATE: &[KvnKeyword] = &[
     must("EPOCH"),
     must("X"),
     must("Y"),
@@ -31,7 +31,7 @@ impl Oem {
     /// Writes the message as an XML file.
     ///
     /// # Errors
-    /// When the output does not take the bytes.
+    /// If writing fails.
     pub fn write_xml(&self, out: &mut impl Write) -> io::Result<()> {
         begin_file(out, ("oem", VERSION), self.header.version)?;
         write_header(out, &self.header)?;
@@ -101,7 +101,7 @@ pub(super) fn write_state(
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read_xml(input: impl BufRead) -> Result<Vec<Oem>, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let mut messages = Vec::new();
     parse_xml(input, &mut findings, |message| messages.push(message))?;
     findings.unless_error(messages)
@@ -114,7 +114,7 @@ pub fn read_xml(input: impl BufRead) -> Result<Vec<Oem>, ReadError> {
 /// A failure of the input.
 pub fn parse_xml(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Oem),
 ) -> io::Result<()> {
     let mut nodes = Nodes::new(input);
@@ -122,11 +122,11 @@ pub fn parse_xml(
     let mut any = false;
     while let Some((place, node)) = nodes.next(findings)? {
         match (node, &mut message) {
-            (Node::Open(name, version), _) if name == "oem" => {
+            (XmlNode::Open(name, version), _) if name == "oem" => {
                 any = true;
                 message = Some(Message::new(version, place, findings));
             }
-            (Node::Close(name), Some(_)) if name == "oem" => {
+            (XmlNode::Close(name), Some(_)) if name == "oem" => {
                 let ended = message
                     .take()
                     .and_then(|message| message.end(place, findings));
@@ -146,20 +146,20 @@ pub fn parse_xml(
 }
 
 /// The innermost part of a message that the next leaf belongs to.
-enum Part {
+enum OemXmlSection {
     Header,
     Body,
-    Metadata(Block),
+    Metadata(KvnBlock),
     Data,
-    State(Block),
+    State(KvnBlock),
     /// A covariance, which is not kept.
     Covariance,
 }
 
 /// A message as it comes in.
 struct Message {
-    part: Part,
-    header: Block,
+    part: OemXmlSection,
+    header: KvnBlock,
     time_system: Option<String>,
     segment_place: (usize, usize),
     segment: Option<Segment>,
@@ -167,13 +167,13 @@ struct Message {
 }
 
 impl Message {
-    fn new(version: Option<String>, place: (usize, usize), findings: &mut Findings) -> Self {
-        let mut header = Block::new(&[HEADER]);
+    fn new(version: Option<String>, place: (usize, usize), findings: &mut FindingList) -> Self {
+        let mut header = KvnBlock::new(&[HEADER]);
         if let Some(version) = version {
             header.accept_at((VERSION, &version), place, findings);
         }
         Self {
-            part: Part::Body,
+            part: OemXmlSection::Body,
             header,
             time_system: None,
             segment_place: place,
@@ -182,48 +182,56 @@ impl Message {
         }
     }
 
-    fn node(&mut self, node: Node, place: (usize, usize), findings: &mut Findings) {
+    fn node(&mut self, node: XmlNode, place: (usize, usize), findings: &mut FindingList) {
         match node {
-            Node::Open(name, _) => self.open(&name, place),
-            Node::Leaf(name, text) => self.leaf(&name, text, place, findings),
-            Node::Close(name) => self.close(&name, place, findings),
+            XmlNode::Open(name, _) => self.open(&name, place),
+            XmlNode::Leaf(name, text) => self.leaf(&name, text, place, findings),
+            XmlNode::Close(name) => self.close(&name, place, findings),
         }
     }
 
     fn open(&mut self, name: &str, place: (usize, usize)) {
         match name {
-            "header" => self.part = Part::Header,
+            "header" => self.part = OemXmlSection::Header,
             "segment" => self.segment_place = place,
-            "metadata" => self.part = Part::Metadata(Block::new(&[METADATA])),
-            "data" => self.part = Part::Data,
-            "stateVector" => self.part = Part::State(Block::new(&[STATE])),
-            "covarianceMatrix" => self.part = Part::Covariance,
+            "metadata" => self.part = OemXmlSection::Metadata(KvnBlock::new(&[METADATA])),
+            "data" => self.part = OemXmlSection::Data,
+            "stateVector" => self.part = OemXmlSection::State(KvnBlock::new(&[STATE])),
+            "covarianceMatrix" => self.part = OemXmlSection::Covariance,
             _ => {}
         }
     }
 
-    fn leaf(&mut self, name: &str, text: String, place: (usize, usize), findings: &mut Findings) {
+    fn leaf(
+        &mut self,
+        name: &str,
+        text: String,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) {
         let is_comment = name == "COMMENT";
         match (&mut self.part, &mut self.segment) {
-            (Part::Header, _) if is_comment => self.header.comments.push(text),
-            (Part::Header, _) => self.header.accept_at((name, text.trim()), place, findings),
-            (Part::Metadata(block), _) if is_comment => block.comments.push(text),
-            (Part::Metadata(block) | Part::State(block), _) => {
+            (OemXmlSection::Header, _) if is_comment => self.header.comments.push(text),
+            (OemXmlSection::Header, _) => {
+                self.header.accept_at((name, text.trim()), place, findings)
+            }
+            (OemXmlSection::Metadata(block), _) if is_comment => block.comments.push(text),
+            (OemXmlSection::Metadata(block) | OemXmlSection::State(block), _) => {
                 block.accept_at((name, text.trim()), place, findings);
             }
-            (Part::Data, Some(segment)) if is_comment => segment.comments.push(text),
-            (Part::Covariance, _) => {}
-            (Part::Data, None) if is_comment => {}
-            (Part::Body | Part::Data, _) => {
+            (OemXmlSection::Data, Some(segment)) if is_comment => segment.comments.push(text),
+            (OemXmlSection::Covariance, _) => {}
+            (OemXmlSection::Data, None) if is_comment => {}
+            (OemXmlSection::Body | OemXmlSection::Data, _) => {
                 let message = format!("element {name} does not belong here");
                 findings.error(place, "ccsds-keyword", message);
             }
         }
     }
 
-    fn close(&mut self, name: &str, place: (usize, usize), findings: &mut Findings) {
+    fn close(&mut self, name: &str, place: (usize, usize), findings: &mut FindingList) {
         match (name, &self.part) {
-            ("metadata", Part::Metadata(block)) => {
+            ("metadata", OemXmlSection::Metadata(block)) => {
                 let metadata = metadata(block, place.0, findings);
                 if let Some(metadata) = &metadata {
                     check_time_system(&mut self.time_system, metadata, block, findings);
@@ -233,30 +241,30 @@ impl Message {
                     comments: Vec::new(),
                     states: Vec::new(),
                 });
-                self.part = Part::Body;
+                self.part = OemXmlSection::Body;
             }
-            ("stateVector", Part::State(block)) => {
+            ("stateVector", OemXmlSection::State(block)) => {
                 let line = state(block, place, findings);
                 if let (Some(segment), Some(line)) = (&mut self.segment, line)
                     && in_order(segment, &line, place.0, findings)
                 {
                     segment.states.push(line);
                 }
-                self.part = Part::Data;
+                self.part = OemXmlSection::Data;
             }
-            ("covarianceMatrix", _) => self.part = Part::Data,
+            ("covarianceMatrix", _) => self.part = OemXmlSection::Data,
             ("segment", _) => {
                 if let Some(segment) = self.segment.take() {
                     check_segment(&segment, self.segment_place, findings);
                     self.segments.push(segment);
                 }
-                self.part = Part::Body;
+                self.part = OemXmlSection::Body;
             }
-            _ => self.part = Part::Body,
+            _ => self.part = OemXmlSection::Body,
         }
     }
 
-    fn end(self, place: (usize, usize), findings: &mut Findings) -> Option<Oem> {
+    fn end(self, place: (usize, usize), findings: &mut FindingList) -> Option<Oem> {
         let header = header(&self.header, place.0, findings);
         if self.segments.is_empty() {
             findings.error(place, "oem-empty", "the message has no segment");
@@ -268,7 +276,7 @@ impl Message {
     }
 }
 
-fn state(block: &Block, place: (usize, usize), findings: &mut Findings) -> Option<StateLine> {
+fn state(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList) -> Option<StateLine> {
     block.finish(place, findings);
     let epoch = block.stamp("EPOCH", findings);
     let mut vector = |keys: [&str; 3]| {

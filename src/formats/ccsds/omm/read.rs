@@ -2,18 +2,18 @@
 
 use super::{METADATA, Omm, VERSION};
 use crate::formats::ccsds::kvn::{
-    Block, COVARIANCE, Header, Item, Keyword, item, may, must, should,
+    COVARIANCE, CcsdsHeader, Item, KvnBlock, KvnKeyword, item, may, must, should,
 };
-use crate::formats::ccsds::xml::{Node, Nodes};
-use crate::formats::csv::Table;
-use crate::formats::text::finding::Findings;
+use crate::formats::ccsds::xml::{Nodes, XmlNode};
+use crate::formats::csv::CsvTable;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::Objects;
 use crate::formats::text::lines::Lines;
 use std::io::{self, BufRead};
 
 /// Tables 4-1 to 4-3 in their order, the covariance at the end. Catalogues leave the date and
 /// the originator out.
-const MESSAGE: &[Keyword] = &[
+const MESSAGE: &[KvnKeyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     should("CREATION_DATE"),
@@ -53,7 +53,7 @@ const MESSAGE: &[Keyword] = &[
 ];
 
 /// What an object of JSON or a row of CSV must and may hold; other members are passed over.
-const RECORD: &[Keyword] = &[
+const RECORD: &[KvnKeyword] = &[
     may("CENTER_NAME"),
     may("REF_FRAME"),
     may("TIME_SYSTEM"),
@@ -87,11 +87,11 @@ const USER_DEFINED: &str = "USER_DEFINED";
 /// A failure of the input.
 pub fn parse_kvn(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
     let mut lines = Lines::new(input);
-    let mut block = Block::new(&[MESSAGE, COVARIANCE]);
+    let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
     let (mut begin, mut started) = (1, false);
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
@@ -105,7 +105,7 @@ pub fn parse_kvn(
                     message_of(&block, begin, line.number, findings)
                         .into_iter()
                         .for_each(&mut take);
-                    block = Block::new(&[MESSAGE, COVARIANCE]);
+                    block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
                 }
                 if pair.key == VERSION {
                     begin = line.number;
@@ -131,29 +131,29 @@ pub fn parse_kvn(
 /// A failure of the input.
 pub fn parse_xml(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
     let mut nodes = Nodes::new(input);
-    let mut message: Option<(usize, Block)> = None;
+    let mut message: Option<(usize, KvnBlock)> = None;
     let mut any = false;
     while let Some((place, node)) = nodes.next(findings)? {
         match (node, &mut message) {
-            (Node::Open(name, version), _) if name == "omm" => {
-                let mut block = Block::new(&[MESSAGE, COVARIANCE]);
+            (XmlNode::Open(name, version), _) if name == "omm" => {
+                let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
                 if let Some(version) = version {
                     block.accept_at((VERSION, &version), place, findings);
                 }
                 any = true;
                 message = Some((place.0, block));
             }
-            (Node::Close(name), Some((begin, block))) if name == "omm" => {
+            (XmlNode::Close(name), Some((begin, block))) if name == "omm" => {
                 message_of(block, *begin, nodes.place().0, findings)
                     .into_iter()
                     .for_each(&mut take);
                 message = None;
             }
-            (Node::Leaf(name, text), Some((_, block))) => match name.as_str() {
+            (XmlNode::Leaf(name, text), Some((_, block))) => match name.as_str() {
                 "COMMENT" => block.comments.push(text),
                 _ if name.starts_with(USER_DEFINED) => {}
                 _ => block.accept_at((&name, text.trim()), place, findings),
@@ -176,7 +176,7 @@ pub fn parse_xml(
 /// A failure of the input.
 pub fn parse_json(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
     let mut objects = Objects::new(input);
@@ -184,7 +184,7 @@ pub fn parse_json(
         let Some(members) = object.members(findings) else {
             continue;
         };
-        let mut block = Block::unordered(&[RECORD]);
+        let mut block = KvnBlock::unordered(&[RECORD]);
         for (key, value) in &members {
             if block.knows(key) && !value.is_empty() {
                 block.accept_at((key, value), object.place_of(key), findings);
@@ -207,23 +207,23 @@ pub fn parse_json(
 /// A failure of the input.
 pub fn parse_csv(
     input: impl BufRead,
-    findings: &mut Findings,
+    findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
-    let mut table = Table::new(input);
+    let mut table = CsvTable::new(input);
     let Some(keys) = table.header(findings)? else {
         return Ok(());
     };
     if keys
         .iter()
-        .all(|key| !Block::unordered(&[RECORD]).knows(key))
+        .all(|key| !KvnBlock::unordered(&[RECORD]).knows(key))
     {
         findings.error((1, 1), "csv-header", "no column is a keyword of an OMM");
         return Ok(());
     }
     let mut row = ::csv::StringRecord::new();
     while let Some(line) = table.next(&mut row, findings)? {
-        let mut block = Block::unordered(&[RECORD]);
+        let mut block = KvnBlock::unordered(&[RECORD]);
         for (column, (key, value)) in keys.iter().zip(&row).enumerate() {
             if block.knows(key) && !value.is_empty() {
                 block.accept_at((key, value), (line, column + 1), findings);
@@ -239,9 +239,14 @@ pub fn parse_csv(
     Ok(())
 }
 
-fn message_of(block: &Block, begin: usize, end: usize, findings: &mut Findings) -> Option<Omm> {
+fn message_of(
+    block: &KvnBlock,
+    begin: usize,
+    end: usize,
+    findings: &mut FindingList,
+) -> Option<Omm> {
     block.finish((end, 1), findings);
-    let header = Header::read(block, VERSION, findings);
+    let header = CcsdsHeader::read(block, VERSION, findings);
     let set = set(block, (begin, 1), findings);
     Some(Omm {
         header,
@@ -250,7 +255,7 @@ fn message_of(block: &Block, begin: usize, end: usize, findings: &mut Findings) 
     })
 }
 
-fn record_of(block: &Block, place: (usize, usize), findings: &mut Findings) -> Option<Omm> {
+fn record_of(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList) -> Option<Omm> {
     block.finish(place, findings);
     Some(Omm {
         header: None,
@@ -260,7 +265,11 @@ fn record_of(block: &Block, place: (usize, usize), findings: &mut Findings) -> O
 }
 
 /// The element set, if it is one for SGP4 and in range.
-fn set(block: &Block, place: (usize, usize), findings: &mut Findings) -> Option<sgp4::Elements> {
+fn set(
+    block: &KvnBlock,
+    place: (usize, usize),
+    findings: &mut FindingList,
+) -> Option<sgp4::Elements> {
     let mut fits = fits_sgp4(block, place, findings);
     let mut bounded = |key: &str, low: f64, high: f64| {
         let value = block.number(key, findings)?;
@@ -328,7 +337,7 @@ fn set(block: &Block, place: (usize, usize), findings: &mut Findings) -> Option<
 }
 
 /// Whether the message is one for SGP4 (4.2.4.6).
-fn fits_sgp4(block: &Block, place: (usize, usize), findings: &mut Findings) -> bool {
+fn fits_sgp4(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList) -> bool {
     let mut fits = true;
     for (key, expected) in METADATA {
         let Some(found) = block.text(key) else {

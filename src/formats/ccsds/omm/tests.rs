@@ -3,7 +3,7 @@ use crate::formats::metadata::{ElementChoice, Object, Theory};
 use crate::formats::text::finding::{Finding, Severity};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
-use crate::keyword::Word;
+use crate::keyword::Keyword;
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
 use proptest::prelude::*;
@@ -76,13 +76,13 @@ const CELESTRAK_XML: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <MEAN_MOTION_DOT>.289036E-2</MEAN_MOTION_DOT><MEAN_MOTION_DDOT>0</MEAN_MOTION_DDOT></tleParameters></data>
 </segment></body></omm></ndm>"#;
 
-fn findings(text: impl AsRef<[u8]>, notation: Notation) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(50);
+fn findings(text: impl AsRef<[u8]>, notation: OmmSyntax) -> Vec<Finding> {
+    let mut findings = FindingList::of_linter(50);
     parse(text.as_ref(), notation, &mut findings, |_| ()).unwrap();
     findings.into_vec()
 }
 
-fn some_header() -> Header {
+fn some_header() -> CcsdsHeader {
     let metadata = Metadata {
         originator: "NAVWALKER".to_owned(),
         creation: Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap()),
@@ -91,16 +91,16 @@ fn some_header() -> Header {
         theory: Theory::Sgp4Elements(ElementChoice::Kozai),
         subject: vec!["Design: <a & b>".to_owned()],
     };
-    header(Version::V2, &metadata)
+    header(CcsdsVersion::V2, &metadata)
 }
 
-fn written(notation: Notation, header: &Header, sets: Vec<sgp4::Elements>) -> String {
+fn written(notation: OmmSyntax, header: &CcsdsHeader, sets: Vec<sgp4::Elements>) -> String {
     let mut out = Vec::new();
     match notation {
-        Notation::Kvn => write_kvn(&mut out, header, &sets[0]).unwrap(),
-        Notation::Xml => write_xml(&mut out, header, &sets).unwrap(),
-        Notation::Json => write_json(&mut out, &sets).unwrap(),
-        Notation::Csv => write_csv(&mut out, &sets).unwrap(),
+        OmmSyntax::Kvn => write_kvn(&mut out, header, &sets[0]).unwrap(),
+        OmmSyntax::Xml => write_xml(&mut out, header, &sets).unwrap(),
+        OmmSyntax::Json => write_json(&mut out, &sets).unwrap(),
+        OmmSyntax::Csv => write_csv(&mut out, &sets).unwrap(),
     }
     String::from_utf8(out).unwrap()
 }
@@ -118,8 +118,10 @@ fn design_sets() -> Vec<sgp4::Elements> {
 
 #[test]
 fn validate_the_example_of_the_blue_book() {
-    assert_eq!(findings(BLUE_BOOK, Notation::Kvn), []);
-    let message = read(BLUE_BOOK.as_bytes(), Notation::Kvn).unwrap().remove(0);
+    assert_eq!(findings(BLUE_BOOK, OmmSyntax::Kvn), []);
+    let message = read(BLUE_BOOK.as_bytes(), OmmSyntax::Kvn)
+        .unwrap()
+        .remove(0);
     let set = &message.set;
     assert_eq!(set.norad_id, 23581);
     assert_eq!(
@@ -138,13 +140,13 @@ fn validate_the_example_of_the_blue_book() {
 /// The reader of the `sgp4` crate finds the same set, and ours finds the set that it wrote.
 #[test]
 fn validate_json_against_another_reader() {
-    let ours = read(CELESTRAK_JSON.as_bytes(), Notation::Json).unwrap();
+    let ours = read(CELESTRAK_JSON.as_bytes(), OmmSyntax::Json).unwrap();
     let theirs: Vec<sgp4::Elements> = serde_json::from_str(CELESTRAK_JSON).unwrap();
     assert_eq!(ours[0].set, theirs[0]);
     let sets = design_sets();
-    let text = written(Notation::Json, &some_header(), sets.clone());
+    let text = written(OmmSyntax::Json, &some_header(), sets.clone());
     let theirs: Vec<sgp4::Elements> = serde_json::from_str(&text).unwrap();
-    let ours: Vec<_> = read(text.as_bytes(), Notation::Json)
+    let ours: Vec<_> = read(text.as_bytes(), OmmSyntax::Json)
         .unwrap()
         .into_iter()
         .map(|m| m.set)
@@ -161,14 +163,14 @@ fn validate_json_against_another_reader() {
 /// What `CelesTrak` gives out as XML lacks the header and the zeros before the points.
 #[test]
 fn catalogues_that_bend_the_rules_are_read_with_warnings() {
-    let from_xml = read(CELESTRAK_XML.as_bytes(), Notation::Xml)
+    let from_xml = read(CELESTRAK_XML.as_bytes(), OmmSyntax::Xml)
         .unwrap()
         .remove(0);
-    let from_json = read(CELESTRAK_JSON.as_bytes(), Notation::Json)
+    let from_json = read(CELESTRAK_JSON.as_bytes(), OmmSyntax::Json)
         .unwrap()
         .remove(0);
     assert_eq!(from_xml.set, from_json.set);
-    let rules: Vec<_> = findings(CELESTRAK_XML, Notation::Xml)
+    let rules: Vec<_> = findings(CELESTRAK_XML, OmmSyntax::Xml)
         .iter()
         .map(|f| f.rule)
         .collect();
@@ -186,9 +188,9 @@ fn catalogues_that_bend_the_rules_are_read_with_warnings() {
 
 #[test]
 fn what_is_written_reads_back_and_writes_the_same() {
-    for notation in Notation::ALL {
+    for notation in OmmSyntax::ALL {
         let sets = match notation {
-            Notation::Kvn => design_sets()[5..6].to_vec(),
+            OmmSyntax::Kvn => design_sets()[5..6].to_vec(),
             _ => design_sets(),
         };
         let header = some_header();
@@ -207,61 +209,76 @@ fn what_is_written_reads_back_and_writes_the_same() {
 fn places_of_broken_rules_are_told() {
     let cases = [
         (
-            Notation::Kvn,
+            OmmSyntax::Kvn,
             "= SGP/SGP4",
             "= DSST",
             (10, 23, "omm-theory"),
         ),
-        (Notation::Kvn, "= TEME", "= EME2000", (8, 17, "omm-theory")),
-        (Notation::Kvn, "= 3.0539", "= 203.05", (14, 17, "omm-range")),
+        (OmmSyntax::Kvn, "= TEME", "= EME2000", (8, 17, "omm-theory")),
         (
-            Notation::Kvn,
+            OmmSyntax::Kvn,
+            "= 3.0539",
+            "= 203.05",
+            (14, 17, "omm-range"),
+        ),
+        (
+            OmmSyntax::Kvn,
             "= 0.0005013",
             "= -0.1",
             (13, 17, "omm-range"),
         ),
         (
-            Notation::Kvn,
+            OmmSyntax::Kvn,
             "EPOCH         = 2020-064T10:34:41.4264\n",
             "",
             (25, 1, "ccsds-missing"),
         ),
         (
-            Notation::Kvn,
+            OmmSyntax::Kvn,
             "MEAN_MOTION   = 1.00273272",
             "SEMI_MAJOR_AXIS = 42164.0",
             (1, 1, "ccsds-missing"),
         ),
-        (Notation::Kvn, "= 0.0001", "= nan", (24, 17, "ccsds-number")),
-        (Notation::Kvn, "= 4316", "= -1", (23, 17, "ccsds-number")),
-        (Notation::Json, "51.6435", "351.6435", (7, 5, "omm-range")),
-        (Notation::Json, "15.49560532,", "", (6, 19, "json-syntax")),
-        (Notation::Json, "}]", "", (1, 2, "json-truncated")),
-        (Notation::Json, "}]", "}", (19, 2, "json-truncated")),
-        (Notation::Json, "[{", "nonsense", (1, 1, "json-syntax")),
         (
-            Notation::Json,
+            OmmSyntax::Kvn,
+            "= 0.0001",
+            "= nan",
+            (24, 17, "ccsds-number"),
+        ),
+        (OmmSyntax::Kvn, "= 4316", "= -1", (23, 17, "ccsds-number")),
+        (OmmSyntax::Json, "51.6435", "351.6435", (7, 5, "omm-range")),
+        (OmmSyntax::Json, "15.49560532,", "", (6, 19, "json-syntax")),
+        (OmmSyntax::Json, "}]", "", (1, 2, "json-truncated")),
+        (OmmSyntax::Json, "}]", "}", (19, 2, "json-truncated")),
+        (OmmSyntax::Json, "[{", "nonsense", (1, 1, "json-syntax")),
+        (
+            OmmSyntax::Json,
             "\"EPOCH\"",
             "\"EPOCHE\"",
             (1, 2, "ccsds-missing"),
         ),
         (
-            Notation::Json,
+            OmmSyntax::Json,
             "2020-07-12T",
             "2020-07-12 ",
             (4, 5, "ccsds-time"),
         ),
-        (Notation::Xml, "</omm></ndm>", "", (15, 18, "xml-truncated")),
         (
-            Notation::Xml,
+            OmmSyntax::Xml,
+            "</omm></ndm>",
+            "",
+            (15, 18, "xml-truncated"),
+        ),
+        (
+            OmmSyntax::Xml,
             "</metadata>",
             "</metadatas>",
             (7, 48, "xml-syntax"),
         ),
-        (Notation::Xml, "51.6435", "x", (9, 38, "ccsds-number")),
-        (Notation::Xml, "EARTH", "&bomb;", (6, 14, "xml-syntax")),
+        (OmmSyntax::Xml, "51.6435", "x", (9, 38, "ccsds-number")),
+        (OmmSyntax::Xml, "EARTH", "&bomb;", (6, 14, "xml-syntax")),
         (
-            Notation::Xml,
+            OmmSyntax::Xml,
             "<ndm",
             "<!DOCTYPE a><ndm",
             (2, 1, "xml-syntax"),
@@ -270,8 +287,8 @@ fn places_of_broken_rules_are_told() {
     let mut misplaced = Vec::new();
     for (notation, from, to, expected) in cases {
         let original = match notation {
-            Notation::Kvn => BLUE_BOOK,
-            Notation::Json => CELESTRAK_JSON,
+            OmmSyntax::Kvn => BLUE_BOOK,
+            OmmSyntax::Json => CELESTRAK_JSON,
             _ => CELESTRAK_XML,
         };
         let text = original.replacen(from, to, 1);
@@ -288,42 +305,42 @@ fn places_of_broken_rules_are_told() {
 
 #[test]
 fn tables_are_checked_row_by_row() {
-    let table = written(Notation::Csv, &some_header(), design_sets());
+    let table = written(OmmSyntax::Csv, &some_header(), design_sets());
     let rows: Vec<&str> = table.lines().collect();
-    let found = findings(format!("{}\n{},1\n", rows[0], rows[1]), Notation::Csv);
+    let found = findings(format!("{}\n{},1\n", rows[0], rows[1]), OmmSyntax::Csv);
     assert_eq!((found[0].line, found[0].rule), (2, "csv-fields"));
-    let found = findings(table.replacen("63.4", "163.4x", 1), Notation::Csv);
+    let found = findings(table.replacen("63.4", "163.4x", 1), OmmSyntax::Csv);
     assert_eq!(
         (found[0].line, found[0].column, found[0].rule),
         (2, 6, "ccsds-number")
     );
-    assert_eq!(findings("a,b\n1,2\n", Notation::Csv)[0].rule, "csv-header");
+    assert_eq!(findings("a,b\n1,2\n", OmmSyntax::Csv)[0].rule, "csv-header");
     let windows = format!("\u{feff}{}", table.replace('\n', "\r\n"));
     assert_eq!(
-        read(windows.as_bytes(), Notation::Csv).unwrap(),
-        read(table.as_bytes(), Notation::Csv).unwrap()
+        read(windows.as_bytes(), OmmSyntax::Csv).unwrap(),
+        read(table.as_bytes(), OmmSyntax::Csv).unwrap()
     );
 }
 
 #[test]
 fn catalogues_of_several_messages_are_read_with_a_warning() {
     let twice = BLUE_BOOK.repeat(2);
-    let found = findings(&twice, Notation::Kvn);
+    let found = findings(&twice, OmmSyntax::Kvn);
     assert_eq!(found.len(), 1);
     assert_eq!((found[0].line, found[0].severity), (27, Severity::Warning));
-    let messages = read(twice.as_bytes(), Notation::Kvn).unwrap();
+    let messages = read(twice.as_bytes(), OmmSyntax::Kvn).unwrap();
     assert_eq!((messages.len(), messages[1].line), (2, 27));
 }
 
 #[test]
 fn hostile_files_are_refused_in_bounded_memory() {
     let deep = "<a>".repeat(1_000);
-    assert_eq!(findings(deep, Notation::Xml)[0].rule, "xml-syntax");
+    assert_eq!(findings(deep, OmmSyntax::Xml)[0].rule, "xml-syntax");
     let long = format!("<ndm><omm>{}</omm></ndm>", "x".repeat(1 << 20));
-    assert_eq!(findings(long, Notation::Xml)[0].rule, "xml-syntax");
+    assert_eq!(findings(long, OmmSyntax::Xml)[0].rule, "xml-syntax");
     let long = format!("[{{\"A\":\"{}\"}}]", "x".repeat(3 << 20));
-    assert_eq!(findings(long, Notation::Json)[0].rule, "json-truncated");
-    for notation in Notation::ALL {
+    assert_eq!(findings(long, OmmSyntax::Json)[0].rule, "json-truncated");
+    for notation in OmmSyntax::ALL {
         for text in ["", "\0\0", "\n\n"] {
             assert!(
                 read(text.as_bytes(), *notation).is_err(),
@@ -336,7 +353,7 @@ fn hostile_files_are_refused_in_bounded_memory() {
 proptest! {
     #[test]
     fn damaged_files_never_panic(at in any::<prop::sample::Index>(), byte in any::<u8>(), cut in 0_usize..60) {
-        for (text, notation) in [(BLUE_BOOK, Notation::Kvn), (CELESTRAK_JSON, Notation::Json), (CELESTRAK_XML, Notation::Xml), ("EPOCH,MEAN_MOTION\n\"1\",2\n3,4\n", Notation::Csv)] {
+        for (text, notation) in [(BLUE_BOOK, OmmSyntax::Kvn), (CELESTRAK_JSON, OmmSyntax::Json), (CELESTRAK_XML, OmmSyntax::Xml), ("EPOCH,MEAN_MOTION\n\"1\",2\n3,4\n", OmmSyntax::Csv)] {
             let mut bytes = text.as_bytes().to_vec();
             let at = at.index(bytes.len());
             bytes[at] = byte;

@@ -2,8 +2,10 @@
 
 use super::{Keplerian, Opm, USER_DEFINED, VERSION};
 use crate::formats::ReadError;
-use crate::formats::ccsds::kvn::{Block, COVARIANCE, Header, Item, Keyword, Pair, item, may, must};
-use crate::formats::text::finding::Findings;
+use crate::formats::ccsds::kvn::{
+    COVARIANCE, CcsdsHeader, Item, KvnBlock, KvnKeyword, Pair, item, may, must,
+};
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::Lines;
 use crate::frames::State;
 use crate::orbit::kepler::eccentric_anomaly;
@@ -12,7 +14,7 @@ use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
 /// Tables 3-1 to 3-3 in their order, without manoeuvres and what users define.
-const MESSAGE: &[Keyword] = &[
+const MESSAGE: &[KvnKeyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     must("CREATION_DATE"),
@@ -47,7 +49,7 @@ const MESSAGE: &[Keyword] = &[
 ];
 
 /// A manoeuvre of table 3-3; there may be several.
-const MANOEUVRE: &[Keyword] = &[
+const MANOEUVRE: &[KvnKeyword] = &[
     must("MAN_EPOCH_IGNITION"),
     must("MAN_DURATION"),
     must("MAN_DELTA_MASS"),
@@ -65,7 +67,7 @@ const MOST_USER_DEFINED: usize = 1000;
 /// # Errors
 /// The first finding, or a failure of the input.
 pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
-    let mut findings = Findings::of_reader();
+    let mut findings = FindingList::of_reader();
     let message = parse(input, &mut findings)?;
     let read = findings.unless_error(message)?;
     // Without a finding there is a message.
@@ -76,10 +78,10 @@ pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
 ///
 /// # Errors
 /// A failure of the input.
-pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<Opm>> {
+pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<Opm>> {
     let mut lines = Lines::new(input);
-    let mut block = Block::new(&[MESSAGE, COVARIANCE]);
-    let mut manoeuvre: Option<Block> = None;
+    let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
+    let mut manoeuvre: Option<KvnBlock> = None;
     let mut user_defined = Vec::new();
     let mut in_header = true;
     while let Some(line) = lines.next(findings)? {
@@ -109,7 +111,11 @@ pub fn parse(input: impl BufRead, findings: &mut Findings) -> io::Result<Option<
     Ok(message(&block, user_defined, end, findings))
 }
 
-fn take_user_defined(pair: &Pair<'_>, kept: &mut Vec<(String, String)>, findings: &mut Findings) {
+fn take_user_defined(
+    pair: &Pair<'_>,
+    kept: &mut Vec<(String, String)>,
+    findings: &mut FindingList,
+) {
     if kept.len() == MOST_USER_DEFINED {
         let message = format!("more than {MOST_USER_DEFINED} user-defined parameters");
         findings.error(pair.key_place, "opm-user-defined", message);
@@ -124,25 +130,25 @@ fn take_user_defined(pair: &Pair<'_>, kept: &mut Vec<(String, String)>, findings
 }
 
 /// The first keyword of a manoeuvre ends the one before it.
-fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<Block>, findings: &mut Findings) {
+fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<KvnBlock>, findings: &mut FindingList) {
     if pair.key == "MAN_EPOCH_IGNITION"
         && let Some(before) = current.take()
     {
         before.finish(pair.key_place, findings);
     }
     current
-        .get_or_insert_with(|| Block::new(&[MANOEUVRE]))
+        .get_or_insert_with(|| KvnBlock::new(&[MANOEUVRE]))
         .accept(pair, findings);
 }
 
 fn message(
-    block: &Block,
+    block: &KvnBlock,
     user_defined: Vec<(String, String)>,
     end: (usize, usize),
-    findings: &mut Findings,
+    findings: &mut FindingList,
 ) -> Option<Opm> {
     block.finish(end, findings);
-    let header = Header::read(block, VERSION, findings);
+    let header = CcsdsHeader::read(block, VERSION, findings);
     let epoch = block.stamp("EPOCH", findings);
     let mut vector = |keys: [&str; 3]| {
         let [x, y, z] = keys.map(|key| block.number(key, findings));
@@ -166,7 +172,7 @@ fn message(
 }
 
 /// Elements are given all or not at all, with one of the anomalies (3.2.4.4).
-fn keplerian(block: &Block, findings: &mut Findings) -> Option<Keplerian> {
+fn keplerian(block: &KvnBlock, findings: &mut FindingList) -> Option<Keplerian> {
     let given = |key: &&str| block.text(key).is_some();
     let keys = [
         "SEMI_MAJOR_AXIS",

@@ -1,6 +1,6 @@
 use super::*;
 use crate::formats::metadata::Theory;
-use crate::formats::text::finding::{Finding, Findings};
+use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::from_teme;
 use crate::orbit::Model;
@@ -44,7 +44,7 @@ USER_DEFINED_NOTE = kept
 ";
 
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = Findings::of_linter(50);
+    let mut findings = FindingList::of_linter(50);
     parse(text.as_ref(), &mut findings).unwrap();
     findings.into_vec()
 }
@@ -97,14 +97,20 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
         creation: epoch,
         frame,
         time_system: TimeSystem::Tai,
-        theory: Theory::Flown(Model::J2),
+        theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design".to_owned()],
     };
     let object = Object::numbered("NW-P02-S02", 4, epoch).unwrap();
     let state = from_teme(teme, frame, epoch, 0.0);
     (
         elements,
-        Opm::new(Version::V2, &metadata, &object, &elements, (epoch, state)),
+        Opm::new(
+            CcsdsVersion::V2,
+            &metadata,
+            &object,
+            &elements,
+            (epoch, state),
+        ),
     )
 }
 

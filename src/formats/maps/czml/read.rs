@@ -2,7 +2,7 @@
 
 use super::{lagrange, window};
 use crate::formats::ReadError;
-use crate::formats::text::finding::Findings;
+use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::Objects;
 use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
@@ -14,7 +14,7 @@ use std::io::{self, BufRead};
 
 /// A satellite of a document: positions, and the polynomial between them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Track {
+pub struct CzmlTrack {
     /// The id of its packet.
     pub name: String,
     /// Origin of the times.
@@ -27,7 +27,7 @@ pub struct Track {
     pub nodes: Vec<(f64, Vector3<f64>)>,
 }
 
-impl Track {
+impl CzmlTrack {
     /// The state `elapsed_s` after the epoch of the track, as a viewer interpolates it, with the
     /// derivative of the polynomial as velocity; none outside the samples.
     #[must_use]
@@ -65,8 +65,8 @@ impl Track {
 ///
 /// # Errors
 /// The first finding, or a failure of the input.
-pub fn read(input: impl BufRead) -> Result<Vec<Track>, ReadError> {
-    let mut findings = Findings::of_reader();
+pub fn read(input: impl BufRead) -> Result<Vec<CzmlTrack>, ReadError> {
+    let mut findings = FindingList::of_reader();
     let mut tracks = Vec::new();
     parse(input, &mut findings, |track| tracks.push(track))?;
     findings.unless_error(tracks)
@@ -78,8 +78,8 @@ pub fn read(input: impl BufRead) -> Result<Vec<Track>, ReadError> {
 /// A failure of the input.
 pub fn parse(
     input: impl BufRead,
-    findings: &mut Findings,
-    mut each: impl FnMut(Track),
+    findings: &mut FindingList,
+    mut each: impl FnMut(CzmlTrack),
 ) -> io::Result<()> {
     let mut objects = Objects::new(input);
     let mut first = true;
@@ -106,10 +106,10 @@ pub fn parse(
 }
 
 /// The rule that is broken, the key at which, and how.
-type Problem = (&'static str, &'static str, String);
+type PacketFault = (&'static str, &'static str, String);
 
 /// *CZML Guide*, "CZML Structure": the first packet has the id `document` and the version.
-fn document_problem(packet: &Value) -> Option<Problem> {
+fn document_problem(packet: &Value) -> Option<PacketFault> {
     if packet["id"] != "document" {
         let message = "the first packet must have the id \"document\"".to_owned();
         return Some(("czml-document", "id", message));
@@ -122,7 +122,7 @@ fn document_problem(packet: &Value) -> Option<Problem> {
 }
 
 /// The satellite of a packet; none if its position is not sampled, or it is of a GNSS.
-fn track(packet: &Value) -> Result<Option<Track>, Problem> {
+fn track(packet: &Value) -> Result<Option<CzmlTrack>, PacketFault> {
     let position = &packet["position"];
     let of_gnss = packet["parent"]
         .as_str()
@@ -150,7 +150,7 @@ fn track(packet: &Value) -> Result<Option<Track>, Problem> {
             .unwrap_or(1)
             .clamp(1, 50) as usize,
     };
-    Ok(Some(Track {
+    Ok(Some(CzmlTrack {
         name: packet["id"].as_str().unwrap_or("satellite").to_owned(),
         epoch: epoch(position)?,
         frame: frame(position)?,
@@ -159,18 +159,18 @@ fn track(packet: &Value) -> Result<Option<Track>, Problem> {
     }))
 }
 
-fn epoch(position: &Value) -> Result<Epoch, Problem> {
+fn epoch(position: &Value) -> Result<Epoch, PacketFault> {
     let text = position["epoch"].as_str().unwrap_or_default();
     match timestamp::parse(text) {
         Some(at) => Ok(Epoch::from_utc(at.and_utc())),
         None => {
-            let message = format!("epoch {text:?} is no UTC date and time");
+            let message = format!("epoch {text:?} is not a UTC date and time");
             Err(("czml-epoch", "epoch", message))
         }
     }
 }
 
-fn frame(position: &Value) -> Result<Frame, Problem> {
+fn frame(position: &Value) -> Result<Frame, PacketFault> {
     match position["referenceFrame"].as_str() {
         None | Some("FIXED") => Ok(Frame::EarthFixed),
         Some("INERTIAL") => Ok(Frame::Gcrf),
@@ -182,7 +182,7 @@ fn frame(position: &Value) -> Result<Frame, Problem> {
 }
 
 /// Seconds and metres, four numbers a sample.
-fn nodes(cartesian: &[Value]) -> Result<Vec<(f64, Vector3<f64>)>, Problem> {
+fn nodes(cartesian: &[Value]) -> Result<Vec<(f64, Vector3<f64>)>, PacketFault> {
     let broken = |message: &str| ("czml-samples", "cartesian", message.to_owned());
     let numbers: Option<Vec<f64>> = cartesian.iter().map(Value::as_f64).collect();
     let numbers = numbers.ok_or_else(|| broken("a sample is not of numbers"))?;

@@ -3,15 +3,15 @@
 use super::{DEGREE, FORMAT_VERSION, TARGET_KM, lagrange};
 use crate::constellation::Design;
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
 use crate::formats::maps::scene::{
-    Scale, Scene, colour_of, plane_colour, point_place, shown, wrapped,
+    ColourScale, Scene, colour_of, plane_colour, point_place, shown, wrapped,
 };
 use crate::frames::EarthFixed;
 use crate::ground::Grid;
-use crate::ground::shapes::Place;
+use crate::ground::shapes::LonLat;
 use crate::units::round_decimal;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ const CELL_OPACITY: u8 = 130;
 /// each constellation.
 ///
 /// # Errors
-/// When a satellite has no state, or the output does not take the bytes.
+/// When a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     scene: &Scene<'_>,
@@ -48,7 +48,7 @@ pub fn write(
     ephemeris: &Ephemeris,
 ) -> Result<f64, WriteError> {
     let mut packets = Packets { out, any: false };
-    let shown = Shown::of(scene);
+    let shown = ShownSpan::of(scene);
     packets.add(&shown.document(design))?;
     packets.add(&study(scene, design))?;
     for packet in region(scene)? {
@@ -68,15 +68,15 @@ pub fn write(
             n => format!("gnss:{}:{n}", system.name()),
         };
         packets.add(&json!({"id": parent, "name": system.name()}))?;
-        let flown = Ephemeris::of_gnss(satellites, ephemeris.grid());
-        let look = |satellite: &Flown| Look {
+        let propagated = Ephemeris::of_gnss(satellites, ephemeris.grid());
+        let look = |satellite: &EphemerisSatellite| Appearance {
             id: format!("{parent}:{}", satellite.name),
             parent: parent.clone(),
             colour: [255, 255, 255],
             description: String::new(),
             period_s: None,
         };
-        worst_km = worst_km.max(packets.satellites(&shown, &flown, &look)?);
+        worst_km = worst_km.max(packets.satellites(&shown, &propagated, &look)?);
     }
     packets.end()?;
     Ok(worst_km)
@@ -100,22 +100,22 @@ impl<W: Write> Packets<'_, W> {
         self.out.write_all(b"\n]\n")
     }
 
-    /// The packets of satellites that fly alike, so that the first tells the spacing of all.
+    /// The packets of satellites that propagate alike, so that the first tells the spacing of all.
     fn satellites(
         &mut self,
-        shown: &Shown,
+        shown: &ShownSpan,
         ephemeris: &Ephemeris,
-        look: &(impl Fn(&Flown) -> Look + Sync),
+        look: &(impl Fn(&EphemerisSatellite) -> Appearance + Sync),
     ) -> Result<f64, WriteError> {
         let sampled = Sampled::new(ephemeris, EarthFixed);
         let mut spacing: Option<Spacing> = None;
-        for flown in ephemeris.satellites() {
+        for propagated in ephemeris.satellites() {
             // GNSS of several heights: the spacing that suits the lowest suits all.
-            let found = shown.spacing(&sampled, flown)?;
+            let found = shown.spacing(&sampled, propagated)?;
             if spacing.is_none_or(|known| found.step_s < known.step_s) {
                 spacing = Some(found);
             }
-            if flown.slot.is_some() {
+            if propagated.slot.is_some() {
                 break;
             }
         }
@@ -125,7 +125,7 @@ impl<W: Write> Packets<'_, W> {
         for chunk in ephemeris.satellites().chunks(CHUNK) {
             let packets: Vec<Value> = chunk
                 .par_iter()
-                .map(|flown| shown.satellite(&sampled, flown, spacing, look(flown)))
+                .map(|propagated| shown.satellite(&sampled, propagated, spacing, look(propagated)))
                 .collect::<Result<_, _>>()?;
             for packet in &packets {
                 self.add(packet)?;
@@ -136,7 +136,7 @@ impl<W: Write> Packets<'_, W> {
 }
 
 /// How a satellite is shown.
-struct Look {
+struct Appearance {
     id: String,
     parent: String,
     colour: [u8; 3],
@@ -145,12 +145,12 @@ struct Look {
     period_s: Option<f64>,
 }
 
-fn design_look(flown: &Flown, design: &Design) -> Look {
-    let slot = flown.slot;
+fn design_look(propagated: &EphemerisSatellite, design: &Design) -> Appearance {
+    let slot = propagated.slot;
     let elements = design.satellites().first().map(|first| first.elements);
     let period_s = elements.map(|first| TAU / first.kepler_mean_motion_rad_s());
-    Look {
-        id: flown.name.clone(),
+    Appearance {
+        id: propagated.name.clone(),
         parent: "constellation".to_owned(),
         colour: plane_colour(slot.map_or(0, |slot| slot.plane), design.planes()),
         description: slot.map_or_else(String::new, |slot| {
@@ -169,13 +169,13 @@ struct Spacing {
 }
 
 /// The span that is shown.
-struct Shown {
+struct ShownSpan {
     start: String,
     end: String,
     span_s: f64,
 }
 
-impl Shown {
+impl ShownSpan {
     fn of(scene: &Scene<'_>) -> Self {
         let grid = scene.setup().grid;
         let span_s = grid.step_s() * grid.len() as f64;
@@ -209,11 +209,11 @@ impl Shown {
     fn spacing(
         &self,
         sampled: &Sampled<'_, EarthFixed>,
-        flown: &Flown,
+        propagated: &EphemerisSatellite,
     ) -> Result<Spacing, EphemerisError> {
         let mut best: Option<Spacing> = None;
         for step_s in SPACINGS_S {
-            let error_km = self.error_km(sampled, flown, step_s)?;
+            let error_km = self.error_km(sampled, propagated, step_s)?;
             if best.is_none_or(|best| error_km < best.error_km) {
                 best = Some(Spacing { step_s, error_km });
             }
@@ -231,7 +231,7 @@ impl Shown {
     fn error_km(
         &self,
         sampled: &Sampled<'_, EarthFixed>,
-        flown: &Flown,
+        propagated: &EphemerisSatellite,
         step_s: f64,
     ) -> Result<f64, EphemerisError> {
         let intervals = (self.span_s / step_s).ceil().max(1.0) as usize;
@@ -240,12 +240,12 @@ impl Shown {
         for k in (0..intervals).step_by(stride) {
             let nodes = nodes(
                 sampled,
-                flown,
+                propagated,
                 step_s,
                 k as i64 - BEYOND..=k as i64 + 1 + BEYOND,
             )?;
             let middle_s = (k as f64 + 0.5) * step_s;
-            let exact = sampled.state(flown, middle_s)?.position_km.km();
+            let exact = sampled.state(propagated, middle_s)?.position_km.km();
             worst_km = worst_km.max((lagrange(&nodes, middle_s).0 - exact).norm());
         }
         Ok(worst_km)
@@ -254,13 +254,13 @@ impl Shown {
     fn satellite(
         &self,
         sampled: &Sampled<'_, EarthFixed>,
-        flown: &Flown,
+        propagated: &EphemerisSatellite,
         spacing: Spacing,
-        look: Look,
+        look: Appearance,
     ) -> Result<Value, EphemerisError> {
         let step_s = spacing.step_s;
         let intervals = (self.span_s / step_s).ceil() as i64;
-        let nodes = nodes(sampled, flown, step_s, -BEYOND..=intervals + BEYOND)?;
+        let nodes = nodes(sampled, propagated, step_s, -BEYOND..=intervals + BEYOND)?;
         let metres = |km: f64| round_decimal(km * 1000.0, 1);
         let cartesian: Vec<f64> = nodes
             .iter()
@@ -268,7 +268,7 @@ impl Shown {
             .collect();
         let mut packet = json!({
             "id": look.id,
-            "name": flown.name,
+            "name": propagated.name,
             "parent": look.parent,
             "availability": self.interval(),
             "description": look.description,
@@ -297,13 +297,13 @@ impl Shown {
 /// Positions at whole multiples of a spacing, Earth-fixed, km.
 fn nodes(
     sampled: &Sampled<'_, EarthFixed>,
-    flown: &Flown,
+    propagated: &EphemerisSatellite,
     step_s: f64,
     range: std::ops::RangeInclusive<i64>,
 ) -> Result<Vec<(f64, Vector3<f64>)>, EphemerisError> {
     let node = |k: i64| {
         let t = k as f64 * step_s;
-        Ok((t, sampled.state(flown, t)?.position_km.km()))
+        Ok((t, sampled.state(propagated, t)?.position_km.km()))
     };
     range.map(node).collect()
 }
@@ -334,7 +334,7 @@ fn study(scene: &Scene<'_>, design: &Design) -> Value {
 /// The cells or points of the region, its outline and the legend of its colours.
 fn region(scene: &Scene<'_>) -> Result<Vec<Value>, WriteError> {
     let points = scene.points()?;
-    let scale = Scale::of(points);
+    let scale = ColourScale::of(points);
     let mut packets = vec![json!({"id": "region", "name": "Mean PDOP"})];
     for (n, point) in points.iter().enumerate() {
         packets.push(place(scene, scale.as_ref(), (n, point)));
@@ -347,7 +347,11 @@ fn region(scene: &Scene<'_>) -> Result<Vec<Value>, WriteError> {
 }
 
 /// A point of the region as a cell, or as a dot if there is no grid.
-fn place(scene: &Scene<'_>, scale: Option<&Scale>, (n, point): (usize, &PointMetrics)) -> Value {
+fn place(
+    scene: &Scene<'_>,
+    scale: Option<&ColourScale>,
+    (n, point): (usize, &PointMetrics),
+) -> Value {
     let text = |value: Option<f64>| value.map_or("unsolved".to_owned(), |x| format!("{x:.3}"));
     let colour = colour_of(scale, point.mean_pdop);
     let mut packet = json!({
@@ -385,7 +389,7 @@ fn place(scene: &Scene<'_>, scale: Option<&Scale>, (n, point): (usize, &PointMet
 }
 
 /// West, south, east and north of a cell within ±180°; across the antimeridian east is less than west.
-fn rectangle([[west, south], [east, north]]: [Place; 2]) -> [f64; 4] {
+fn rectangle([[west, south], [east, north]]: [LonLat; 2]) -> [f64; 4] {
     if east - west >= 360.0 {
         return [-180.0, south, 180.0, north];
     }
@@ -414,7 +418,7 @@ fn outline(scene: &Scene<'_>, points: &[PointMetrics]) -> Value {
     ];
     let mut degrees = Vec::new();
     for pair in corners.windows(2) {
-        let [from, to]: [Place; 2] = [pair[0], pair[1]];
+        let [from, to]: [LonLat; 2] = [pair[0], pair[1]];
         for k in 0..8 {
             let share = f64::from(k) / 8.0;
             let along = |axis: usize| from[axis] + share * (to[axis] - from[axis]);
@@ -436,7 +440,7 @@ fn outline(scene: &Scene<'_>, points: &[PointMetrics]) -> Value {
 }
 
 /// Labels in the colours of the scale along the southern edge of the region.
-fn legend(grid: &Grid, scale: Option<&Scale>) -> Vec<Value> {
+fn legend(grid: &Grid, scale: Option<&ColourScale>) -> Vec<Value> {
     let Some(scale) = scale else {
         return Vec::new();
     };

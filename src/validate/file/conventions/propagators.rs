@@ -1,6 +1,6 @@
-//! Flights that are more than other elements: mislabelled states, another pole, an integration.
+//! Propagations that are more than other elements: mislabelled states, another pole, an integration.
 
-use super::{Flight, fly_each};
+use super::{OtherPropagator, propagate_each};
 use crate::earth::J2;
 use crate::frames::{
     Eme2000, Frame, FromTeme, Position, State, Teme, from_teme, teme_to_eme2000, to_teme,
@@ -12,9 +12,9 @@ use crate::units::wrap_two_pi;
 use crate::validate::Subject;
 use crate::validate::numerical::integrator::Zonals;
 
-/// A flight whose states are seen through another clock or frame.
+/// A propagation whose states are seen through another clock or frame.
 struct Mislabelled<P> {
-    flight: P,
+    propagation: P,
     epoch: Epoch,
     late_s: f64,
     /// The frame that the states are in, while they are taken for TEME.
@@ -25,7 +25,7 @@ struct Mislabelled<P> {
 
 impl<P: Propagator> Propagator for Mislabelled<P> {
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
-        let state = self.flight.state_at(elapsed_s + self.late_s)?;
+        let state = self.propagation.state_at(elapsed_s + self.late_s)?;
         Ok(if self.inverse {
             to_teme(taken_for(state), self.frame, self.epoch, elapsed_s)
         } else {
@@ -47,11 +47,11 @@ pub(super) fn mislabelled(
     late_s: f64,
     frame: Frame,
     inverse: bool,
-) -> Vec<(String, Flight)> {
+) -> Vec<(String, OtherPropagator)> {
     let epoch = subject.epoch();
-    fly_each(&subject.design.satellites(), |elements| {
+    propagate_each(&subject.design.satellites(), |elements| {
         Some(Mislabelled {
-            flight: SecularOrbit::j2(elements),
+            propagation: SecularOrbit::j2(elements),
             epoch,
             late_s,
             frame,
@@ -79,9 +79,9 @@ impl Propagator for AboutJ2000 {
     }
 }
 
-pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, OtherPropagator)> {
     let to_j2000 = teme_to_eme2000(subject.epoch());
-    fly_each(&subject.design.satellites(), |elements| {
+    propagate_each(&subject.design.satellites(), |elements| {
         let plane = crate::frames::OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
         let normal = to_j2000 * plane.node.cross(&plane.ahead);
         let node = to_j2000 * plane.node;
@@ -128,13 +128,13 @@ impl Propagator for Integrated {
     }
 }
 
-pub(super) fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, Flight)> {
+pub(super) fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, OtherPropagator)> {
     let step_s = 60.0;
     let grid = subject.grid();
     let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
     let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
     let zonals = Zonals { j2: J2, j3: 0.0 };
-    fly_each(&subject.design.satellites(), |elements| {
+    propagate_each(&subject.design.satellites(), |elements| {
         let start = SecularOrbit::two_body(elements).state(0.0);
         let states = zonals.integrate(&start, &times).ok()?;
         Some(Integrated { states, step_s })

@@ -2,7 +2,7 @@
 
 use super::Fleet;
 use crate::constellation::gnss::{ElementSetError, ElementSets};
-use crate::ephemeris::{Ephemeris, EphemerisError, Flown};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, FromTeme, State, Teme};
 use crate::orbit::{Model, PropagationError, Propagator};
@@ -14,18 +14,18 @@ use thiserror::Error;
 /// 10 ns of SP3 and the microseconds of some writers.
 const SAME_INSTANT_S: f64 = 1e-6;
 
-/// Why the satellites of a file do not fly a study.
+/// Why the satellites of a file do not propagate a study.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FleetError {
     /// No satellite.
-    #[error("there is no satellite")]
+    #[error("no satellites")]
     Empty,
     /// Element sets that make no constellation.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
     /// A model that refuses the elements.
     #[error(transparent)]
-    Flight(#[from] EphemerisError),
+    Propagation(#[from] EphemerisError),
     /// Two satellites of one name.
     #[error("satellite {0} is given twice")]
     Repeated(String),
@@ -79,12 +79,12 @@ impl Propagator for Shifted {
 }
 
 impl Fleet {
-    /// The satellites on the grid of a study; `model` flies mean elements.
+    /// The satellites on the grid of a study; `model` propagates mean elements.
     ///
     /// # Errors
-    /// When there is no satellite or one twice, a theory refuses one, or its samples do not cover
+    /// When no satellites or one twice, a theory refuses one, or its samples do not cover
     /// the grid.
-    pub fn fly(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, FleetError> {
+    pub fn propagate(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, FleetError> {
         if self.is_empty() {
             return Err(FleetError::Empty);
         }
@@ -94,7 +94,7 @@ impl Fleet {
                 return Ok(Ephemeris::of_gnss(sets.satellites(grid.epoch()), grid));
             }
             Self::Elements(rows) => {
-                let fly = |row: &super::ElementsRow| {
+                let propagate = |row: &super::ElementsRow| {
                     let propagator = model.propagator(&row.elements, row.epoch);
                     let propagator = propagator.map_err(|source| EphemerisError {
                         name: row.name.clone(),
@@ -105,10 +105,10 @@ impl Fleet {
                         propagator,
                         ahead_s,
                     };
-                    Ok(flown(&row.name, shifted))
+                    Ok(propagated(&row.name, shifted))
                 };
                 rows.iter()
-                    .map(fly)
+                    .map(propagate)
                     .collect::<Result<Vec<_>, FleetError>>()?
             }
             Self::Sampled(trajectories) => sampled(trajectories, grid)?,
@@ -126,8 +126,8 @@ impl Fleet {
     }
 }
 
-fn flown(name: &str, propagator: impl Propagator + 'static) -> Flown {
-    Flown {
+fn propagated(name: &str, propagator: impl Propagator + 'static) -> EphemerisSatellite {
+    EphemerisSatellite {
         name: name.to_owned(),
         slot: None,
         propagator: Box::new(propagator),
@@ -135,7 +135,10 @@ fn flown(name: &str, propagator: impl Propagator + 'static) -> Flown {
 }
 
 /// Satellites of one file share its frame, so that its rotations are kept from one to the next.
-fn sampled(trajectories: &[Trajectory], grid: TimeGrid) -> Result<Vec<Flown>, FleetError> {
+fn sampled(
+    trajectories: &[Trajectory],
+    grid: TimeGrid,
+) -> Result<Vec<EphemerisSatellite>, FleetError> {
     let mut rotations: Vec<FromTeme<Frame>> = Vec::new();
     let mut frame = None;
     let mut satellites = Vec::with_capacity(trajectories.len());
@@ -156,7 +159,7 @@ fn sampled(trajectories: &[Trajectory], grid: TimeGrid) -> Result<Vec<Flown>, Fl
             step_s: grid.step_s(),
             states,
         };
-        satellites.push(flown(&trajectory.name, samples));
+        satellites.push(propagated(&trajectory.name, samples));
     }
     Ok(satellites)
 }
