@@ -13,9 +13,10 @@ mod reproduction;
 mod results;
 mod seeds;
 mod table;
+#[cfg(feature = "validate")]
 mod validation;
 
-pub use csv::{checks_csv, constellation_csv, dops_csv, metrics_csv, records_csv};
+pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
@@ -23,4 +24,5 @@ pub use reproduction::{
 pub use results::{ConstellationResult, ConstellationSummary, EvaluateResult};
 pub use seeds::{SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
-pub use validation::{checks_junit, validation_markdown, validation_text};
+#[cfg(feature = "validate")]
+pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};

@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub(crate) mod columns;
 mod results;
 pub(crate) mod tables;
+#[cfg(feature = "validate")]
 mod validation;
 
 pub use results::{
@@ -13,6 +14,7 @@ pub use results::{
     ScenarioStamp, SearchSummary,
 };
 pub use tables::{front_csv, history_csv};
+#[cfg(feature = "validate")]
 pub use validation::{Basis, ValidateResult};
 
 use crate::optimize::Record;
@@ -87,6 +89,7 @@ pub struct Run {
     /// One record per generation.
     pub history: Vec<Record>,
     /// A validation of one of its designs.
+    #[cfg(feature = "validate")]
     pub validation: Option<ValidateResult>,
     /// What is missing or damaged, in words.
     pub gaps: Vec<String>,
@@ -119,6 +122,7 @@ impl Run {
             Ok(history) => run.history = history,
             Err(gap) => run.gaps.push(gap),
         }
+        #[cfg(feature = "validate")]
         if let Some(bytes) = &files.validation {
             match json("the validation", &Ok(bytes.clone())) {
                 Ok(validation) => run.validation = Some(validation),

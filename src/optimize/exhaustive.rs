@@ -338,7 +338,7 @@ mod tests {
         damaged.points = 31;
         assert_eq!(
             damaged.step(&problem).unwrap_err().to_string(),
-            "the checkpoint does not fit: grid points is 31, expected 30"
+            "the checkpoint does not match: grid points is 31, expected 30"
         );
     }
 }

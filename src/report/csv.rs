@@ -7,7 +7,6 @@ use crate::run::DesignSummary;
 use crate::run::columns::{cells, fields};
 use crate::run::tables::text;
 use crate::stats::Summary;
-use crate::validate::Check;
 use ::csv::Writer;
 use serde::Serialize;
 use std::io;
@@ -76,12 +75,4 @@ pub fn dops_csv(dops: &DopStatistics) -> io::Result<String> {
         writer.write_record(row)?;
     }
     text(writer)
-}
-
-/// The checks of a validation, one a row.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn checks_csv(checks: &[Check]) -> io::Result<String> {
-    records_csv(checks)
 }

@@ -5,12 +5,11 @@ use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Basis, Certificate, DesignSummary, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
-    SearchSummary, VERSION, ValidateResult,
+    Certificate, DesignSummary, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
+    SearchSummary, VERSION,
 };
 use crate::scenario::Scenario;
 use crate::search::{DesignProblem, Quantity};
-use crate::validate::Findings;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -169,25 +168,4 @@ fn front_members(
             })
         })
         .collect()
-}
-
-impl ValidateResult {
-    /// The result of validating one design.
-    #[must_use]
-    pub fn new(
-        design: &Design,
-        against: Vec<String>,
-        findings: Findings,
-        scenario: ScenarioStamp,
-    ) -> Self {
-        Self {
-            design: design.into(),
-            passed: findings.passed(),
-            findings,
-            scenario,
-            against,
-            basis: Basis::default(),
-            version: VERSION.to_owned(),
-        }
-    }
 }

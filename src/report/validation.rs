@@ -398,6 +398,14 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
     text
 }
 
+/// The checks of a validation, one a row.
+///
+/// # Errors
+/// Never for a table in memory.
+pub fn checks_csv(checks: &[Check]) -> std::io::Result<String> {
+    super::records_csv(checks)
+}
+
 /// The checks as `JUnit` XML: a test case each, with the value as its output.
 #[must_use]
 pub fn checks_junit(checks: &[Check]) -> String {

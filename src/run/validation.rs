@@ -1,6 +1,7 @@
 //! The result of a validation, which a run directory may hold beside the run.
 
-use super::{DesignSummary, ScenarioStamp};
+use super::{DesignSummary, ScenarioStamp, VERSION};
+use crate::constellation::Design;
 use crate::earth;
 use crate::validate::{Findings, JUDGES, Judge};
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,27 @@ impl Default for Basis {
             j2: earth::J2,
             flattening: earth::FLATTENING,
             judges: JUDGES.to_vec(),
+        }
+    }
+}
+
+impl ValidateResult {
+    /// The result of validating one design.
+    #[must_use]
+    pub fn new(
+        design: &Design,
+        against: Vec<String>,
+        findings: Findings,
+        scenario: ScenarioStamp,
+    ) -> Self {
+        Self {
+            design: design.into(),
+            passed: findings.passed(),
+            findings,
+            scenario,
+            against,
+            basis: Basis::default(),
+            version: VERSION.to_owned(),
         }
     }
 }

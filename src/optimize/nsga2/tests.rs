@@ -383,19 +383,19 @@ fn a_damaged_checkpoint_is_refused_before_anything_is_evaluated() {
     );
     assert_eq!(
         refused(|s| s.population.clear()),
-        "the checkpoint does not fit: population is 0, expected 1"
+        "the checkpoint does not match: population is 0, expected 1"
     );
     assert_eq!(
         refused(|s| s.history.clear()),
-        "the checkpoint does not fit: history is 0, expected 1"
+        "the checkpoint does not match: history is 0, expected 1"
     );
     assert_eq!(
         refused(|s| s.evaluations = 5),
-        "the checkpoint does not fit: evaluations is 5, expected 4"
+        "the checkpoint does not match: evaluations is 5, expected 4"
     );
     assert_eq!(
         refused(|s| s.config.population = 3),
-        "the checkpoint does not fit: population is 4, expected 3"
+        "the checkpoint does not match: population is 4, expected 3"
     );
 }
 

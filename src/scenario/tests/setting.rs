@@ -222,7 +222,7 @@ fn grid_steps_are_bounded() {
 
 #[test]
 fn poles_alone_weigh_nothing() {
-    let weightless = "every point is a pole and weighs nothing";
+    let weightless = "every point is a pole and has zero weight";
     let line = "latitude-deg = [90, 90]\nweights = \"cos-latitude\"";
     refuses("region", line, "latitude-deg", weightless);
     let line = "latitude-deg = [-90, 90]\nstep-deg = 180\nweights = \"cos-latitude\"";
