@@ -2,7 +2,7 @@
 
 use super::products::Written;
 use super::source::Source;
-use super::{Files, Product, Sink};
+use super::{Files, Product};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
 use crate::ephemeris::sampled::Sampled;
@@ -17,6 +17,9 @@ use crate::keyword::Word;
 use crate::orbit::Model;
 use std::io::Write;
 
+/// Where the files are that build the scenario in STK, its GNSS among them.
+pub(super) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
+
 /// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
 struct InStk {
     name: String,
@@ -26,11 +29,7 @@ struct InStk {
 
 impl Source<'_> {
     /// The ephemerides, and with a scenario the commands that build it.
-    pub(super) fn stk_with(
-        &self,
-        files: &Files<'_, impl Sink>,
-        scene: Option<&Scene<'_>>,
-    ) -> Written {
+    pub(super) fn stk_with(&self, files: &Files<'_>, scene: Option<&Scene<'_>>) -> Written {
         let mut entries = self.stk(files)?;
         if let Some(scene) = scene {
             entries.extend(self.stk_scenario(files, scene)?);
@@ -38,7 +37,7 @@ impl Source<'_> {
         Ok(entries)
     }
 
-    fn stk_scenario(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    fn stk_scenario(&self, files: &Files<'_>, scene: &Scene<'_>) -> Written {
         let setup = scene.setup();
         let mut gnss = Vec::new();
         for (system, satellites) in scene.systems() {
@@ -67,7 +66,7 @@ impl Source<'_> {
             ..Loss::default()
         };
         let about = (satellites.len(), &metadata);
-        let commands = files.add("stk-scenario/connect.txt", format, about, |out| {
+        let commands = files.add(&in_scenario("connect.txt"), format, about, |out| {
             scenario.write(out)?;
             Ok(noted("STK Connect commands; not tried in STK"))
         })?;
@@ -79,7 +78,7 @@ impl Source<'_> {
         told.extend(by_hand(one_mask, with_files));
         entries.push(commands.assuming(told));
         entries.push(
-            files.add("stk-scenario/points.pnt", format, (0, &metadata), |out| {
+            files.add(&in_scenario("points.pnt"), format, (0, &metadata), |out| {
                 scenario.write_points(out)?;
                 Ok(noted("STK point file"))
             })?,
@@ -97,7 +96,7 @@ impl Source<'_> {
     }
 
     /// The ephemerides of the GNSS satellites for which STK has no theory.
-    fn gnss_files(&self, files: &Files<'_, impl Sink>, gnss: &[InStk]) -> Written {
+    fn gnss_files(&self, files: &Files<'_>, gnss: &[InStk]) -> Written {
         let mut entries = Vec::new();
         let mut metadata = self.flown_metadata(self.choices.frame);
         metadata
@@ -107,7 +106,7 @@ impl Source<'_> {
         let sampled = Sampled::new(&empty, self.choices.frame);
         for one in gnss {
             if let Some(flown) = &one.flown {
-                let path = format!("stk-scenario/gnss/{}.e", one.name);
+                let path = in_scenario(&format!("gnss/{}.e", one.name));
                 let format = (Product::Stk, stk::FORMAT_VERSION);
                 entries.push(files.add(&path, format, (1, &metadata), |out| {
                     let hermite = crate::ephemeris::hermite::Hermite::measured(&sampled, flown)?;
@@ -122,7 +121,7 @@ impl Source<'_> {
         Ok(entries)
     }
 
-    pub(super) fn gmat(&self, files: &Files<'_, impl Sink>) -> Written {
+    pub(super) fn gmat(&self, files: &Files<'_>) -> Written {
         let cannot = |what: String, instead| WriteError::CannotSay {
             product: Product::Gmat.word(),
             what,
@@ -162,7 +161,7 @@ impl Source<'_> {
         Ok(vec![script.assuming(gmat_assumptions(model)), field])
     }
 
-    pub(super) fn yuma(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> Written {
+    pub(super) fn yuma(&self, files: &Files<'_>, scene: &Scene<'_>) -> Written {
         let cannot = |what: String, instead| WriteError::CannotSay {
             product: Product::Yuma.word(),
             what,
@@ -188,7 +187,7 @@ impl Source<'_> {
 
     fn almanac_file(
         &self,
-        files: &Files<'_, impl Sink>,
+        files: &Files<'_>,
         system: &System,
         (satellites, almanacs): (&[GnssSatellite], &[Almanac]),
     ) -> Result<FileEntry, WriteError> {
@@ -221,6 +220,10 @@ impl Source<'_> {
             names.join(", "),
         ]))
     }
+}
+
+fn in_scenario(name: &str) -> String {
+    format!("{STK_SCENARIO_DIRECTORY}{name}")
 }
 
 fn gmat_assumptions(model: Model) -> Vec<String> {
