@@ -5,7 +5,7 @@
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use navwalker::exchange::export::{Choices, ExportSubject, Product, export};
+use navwalker::exchange::export::{Choices, ExportSubject, Product, Request, export};
 use navwalker::exchange::import::Fleet;
 use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
@@ -157,7 +157,13 @@ fn files(name: &str) -> Vec<(String, Vec<u8>)> {
     let (product, choices) = case(name);
     let kept = Mutex::new(Vec::new());
     let sink = |path: &str| Ok(Kept(&kept, path.to_owned(), Vec::new()));
-    export(&subject(), &[product], choices, &sink).expect(SOUND);
+    let request = Request {
+        subject: &subject(),
+        scene: None,
+        products: &[product],
+        choices,
+    };
+    export(&request, &sink).expect(SOUND);
     let mut files = kept.into_inner().expect(SOUND);
     files.retain(|(path, _)| path != "manifest.json");
     files
@@ -179,7 +185,13 @@ fn write(bencher: Bencher, name: &str) {
         .counter(BytesCount::new(bytes))
         .counter(ItemsCount::new(SATELLITES * SAMPLES))
         .bench_local(|| {
-            pool.install(|| export(&subject, &[product], choices, &sink).expect(SOUND))
+            let request = Request {
+                subject: &subject,
+                scene: None,
+                products: &[product],
+                choices,
+            };
+            pool.install(|| export(&request, &sink).expect(SOUND))
         });
 }
 

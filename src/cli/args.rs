@@ -18,7 +18,6 @@ use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::Frame;
 use crate::optimize::Pick;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use products::PRODUCTS;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -89,7 +88,7 @@ pub(crate) enum Command {
     /// Export a design to the files other tools read, with a manifest of what each file holds and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
-    #[command(verbatim_doc_comment, after_help = PRODUCTS)]
+    #[command(verbatim_doc_comment, after_help = products::help())]
     Export(ExportArgs),
 
     /// Check a design's propagation against independent standards, with gates that have reasons.

@@ -1,9 +1,10 @@
 //! An export: the files of the products that are asked for, and the manifest that names them.
 
 mod products;
-mod rebuilt;
+mod scenario_products;
 mod scenes;
 mod source;
+mod table;
 
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
@@ -18,45 +19,13 @@ use crate::formats::metadata::{ElementChoice, Metadata};
 use crate::formats::sp3;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
-use crate::keyword::{Keyword, keywords};
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use source::ExportSource;
 use std::io::{self, BufWriter, Write};
 
-keywords! {
-    /// What can be asked of an export.
-    Product {
-        /// Two-line element sets with names, one file.
-        Tle = "tle",
-        /// CCSDS Orbit Mean-Elements Messages in the notation of the choice.
-        Omm = "omm",
-        /// States that SGP4 gives for the element sets as written, for comparing another SGP4.
-        TleStates = "tle-states",
-        /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one of all.
-        Oem = "oem",
-        /// CCSDS Orbit Parameter Messages, one file for each satellite: the state at the epoch.
-        Opm = "opm",
-        /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c), and of GNSS by choice.
-        Sp3 = "sp3",
-        /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
-        Stk = "stk",
-        /// Tables of mean elements and of states.
-        Csv = "csv",
-        /// Tables of the metrics by ground point and by instant.
-        Metrics = "metrics",
-        /// CZML: satellites, orbits and region for CesiumJS.
-        Czml = "czml",
-        /// GeoJSON: region with metrics, ground tracks, footprints.
-        Geojson = "geojson",
-        /// KML: the same for Google Earth.
-        Kml = "kml",
-        /// GMAT: a script that propagates the design under J2 alone.
-        Gmat = "gmat",
-        /// YUMA almanacs of the nominal GNSS.
-        Yuma = "yuma",
-    }
-}
+pub use table::{Product, ProductRow};
 
 /// Where the files of an export go: gives a writer for a path relative to the manifest, with `/`.
 ///
@@ -139,51 +108,30 @@ impl Default for Choices {
     }
 }
 
+/// What is asked of an export.
+#[derive(Clone, Copy)]
+pub struct Request<'a> {
+    /// The study.
+    pub subject: &'a ExportSubject,
+    /// The scenario around the design, for the products that show it.
+    pub scene: Option<&'a Scene<'a>>,
+    /// The products, in the order in which they are written.
+    pub products: &'a [Product],
+    /// What they leave open.
+    pub choices: Choices,
+}
+
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// When a satellite cannot be propagated or named, an element does not fit its format, a file
-/// cannot be written, or a product needs the scenario.
-pub fn export(
-    subject: &ExportSubject,
-    products: &[Product],
-    choices: Choices,
-    sink: &impl Sink,
-) -> Result<Manifest, WriteError> {
-    export_scene(subject, None, (products, choices), sink)
-}
-
-/// Like [`export`], with the scenario around the design for the products that show it.
-///
-/// # Errors
-/// As [`export`], and when the scenario does not fit a format.
-pub fn export_scene(
-    subject: &ExportSubject,
-    scene: Option<&Scene<'_>>,
-    (products, choices): (&[Product], Choices),
-    sink: &impl Sink,
-) -> Result<Manifest, WriteError> {
-    let source = ExportSource::new(subject, choices)?;
+/// When a satellite cannot be propagated or named, an element or the scenario does not fit its
+/// format, a file cannot be written, or a product needs the scenario.
+pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, WriteError> {
+    let source = ExportSource::new(request.subject, request.choices)?;
     let files = Files { sink };
     let mut entries = Vec::new();
-    for product in products {
-        let lacking = || WriteError::NoScene(product.keyword());
-        entries.extend(match product {
-            Product::Tle => source.tle(&files)?,
-            Product::Omm => source.omm(&files)?,
-            Product::TleStates => source.tle_states(&files)?,
-            Product::Oem => source.oem(&files)?,
-            Product::Opm => source.opm(&files)?,
-            Product::Sp3 => source.sp3(&files)?,
-            Product::Stk => source.stk_with(&files, scene)?,
-            Product::Csv => source.csv(&files)?,
-            Product::Metrics => source.metrics(&files, scene.ok_or_else(lacking)?)?,
-            Product::Czml => source.czml(&files, scene.ok_or_else(lacking)?)?,
-            Product::Geojson => source.geojson(&files, scene.ok_or_else(lacking)?)?,
-            Product::Kml => source.kml(&files, scene.ok_or_else(lacking)?)?,
-            Product::Gmat => source.gmat(&files)?,
-            Product::Yuma => source.yuma(&files, scene.ok_or_else(lacking)?)?,
-        });
+    for product in request.products {
+        entries.extend(product.write(&source, &files, request.scene)?);
     }
     let manifest = source.manifest(entries);
     let mut out = BufWriter::new(sink.create(FILE_NAME)?);
@@ -192,24 +140,35 @@ pub fn export_scene(
     Ok(manifest)
 }
 
+/// A [`Sink`] behind a pointer, so that the writers in the table of products have one type.
+trait Open: Sync {
+    fn open(&self, path: &str) -> io::Result<Box<dyn Write + '_>>;
+}
+
+impl<S: Sink> Open for S {
+    fn open(&self, path: &str) -> io::Result<Box<dyn Write + '_>> {
+        Ok(Box::new(self.create(path)?))
+    }
+}
+
 /// Where the products of an export write to.
-struct Files<'a, S> {
-    sink: &'a S,
+struct Files<'a> {
+    sink: &'a dyn Open,
 }
 
 /// What a product writes to: every byte is hashed on its way.
-type Out<S> = BufWriter<HashingWriter<<S as Sink>::File>>;
+type Out<'a> = BufWriter<HashingWriter<Box<dyn Write + 'a>>>;
 
-impl<S: Sink> Files<'_, S> {
+impl Files<'_> {
     /// Writes one file; its entry has the loss that `write` finds.
     fn add(
         &self,
         path: &str,
         (product, version): (Product, &str),
         (objects, metadata): (usize, &Metadata),
-        write: impl FnOnce(&mut Out<S>) -> Result<Loss, WriteError>,
+        write: impl FnOnce(&mut Out<'_>) -> Result<Loss, WriteError>,
     ) -> Result<FileEntry, WriteError> {
-        let mut out = BufWriter::new(HashingWriter::new(self.sink.create(path)?));
+        let mut out = BufWriter::new(HashingWriter::new(self.sink.open(path)?));
         let loss = write(&mut out)?;
         let hashing = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         let sha256 = hashing.finish()?;

@@ -8,31 +8,22 @@
 //! of itself, which bounds the mean number in view, and the geometry changes by d over the
 //! distance, 400 km or more.
 
+pub(crate) mod gates;
+
 use crate::constellation::{Design, Satellite};
-use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::exchange::import::{Fleet, FleetError};
-use crate::exchange::lint::Format;
+use crate::formats::element_set;
 use crate::formats::metadata::{ElementChoice, IdentityError, Object};
-use crate::formats::{element_set, tle};
 use crate::orbit::Model;
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::time::Epoch;
-use crate::units::SECONDS_PER_DAY;
-use std::f64::consts::TAU;
+use gates::Extent;
 use thiserror::Error;
 
-/// Nine decimals of a kilometre, stamps to a nanosecond, and rotations forth and back, km.
-const STATES_KM: f64 = 1e-8;
-
-/// Six decimals of a kilometre in three components, and epochs to 1e-8 s, km.
-const SP3_KM: f64 = 1e-6;
-
-/// The metre between samples for which their spacing is chosen on one satellite, twice for the others,
-/// and a decimetre of digits, km.
-const CZML_KM: f64 = 2.0 * crate::formats::maps::czml::TARGET_KM + 2e-4;
+pub use gates::{Grouping, ReadBack, ReadBackTheory};
 
 /// SGP4 against a theory of J2 alone, km: the frozen eccentricity of J3 (8.1 km up and down, 16.2
 /// along the track at most), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
@@ -117,8 +108,6 @@ pub struct Original<'a> {
     evaluator: &'a Evaluator,
     design: Design,
     propagated: Rescored,
-    semi_major_axis_km: f64,
-    eccentricity: f64,
 }
 
 /// Satellites and what the scenario makes of them.
@@ -141,8 +130,6 @@ impl<'a> Original<'a> {
                 ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
                 metrics: evaluator.evaluate(design)?,
             },
-            semi_major_axis_km: RADIUS_KM + design.altitude_km(),
-            eccentricity: design.eccentricity(),
         })
     }
 
@@ -178,14 +165,14 @@ impl<'a> Original<'a> {
     }
 
     /// Propagates what was read back and compares it; satellites stand in the order of the design.
-    /// `format` is the one whose digits and theory the file has, `sets` how its element sets are
-    /// made, if it has any.
+    /// `product` says which digits and theory the files have, `sets` how their element sets are
+    /// made, if they have any.
     ///
     /// # Errors
     /// When the satellites do not propagate the study, or are not those of the design.
     pub fn check(
         &self,
-        format: Format,
+        product: &ReadBack,
         sets: ElementChoice,
         fleet: &Fleet,
     ) -> Result<Recheck, RecheckError> {
@@ -194,20 +181,16 @@ impl<'a> Original<'a> {
         if found != expected {
             return Err(RecheckError::Satellites { found, expected });
         }
-        let epoch = match format {
-            // A fitted set follows the propagated design, not the one that it started from.
-            _ if sets == ElementChoice::Fit => None,
-            Format::Tle => Some(tle::rounded_epoch(setup.grid.epoch())),
-            Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
-                Some(setup.grid.epoch())
-            }
-            _ => None,
+        // A fitted set follows the propagated design, not the one that it started from.
+        let epoch = match sets {
+            ElementChoice::Fit => None,
+            _ => product.theory.epoch_of_sets(setup.grid.epoch()),
         };
         let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
         let reference = by_sgp4.as_ref().unwrap_or(&self.propagated);
         let read_back = fleet.propagate(setup.grid, setup.model)?;
         let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
-        let gate_km = self.position_gate_km(format, sets);
+        let gate_km = self.position_gate_km(product, sets);
         let relative = gate_km.map(|km| km / SCALE_KM);
         let flips = FLIPS / setup.sample_count() as f64;
         let of = |value: f64| relative.map(|relative| value * relative + flips);
@@ -234,46 +217,30 @@ impl<'a> Original<'a> {
         })
     }
 
-    /// How far the satellites of a file may be from where its theory has them, km; none for sets
-    /// fitted to a theory that SGP4 does not approximate.
-    fn position_gate_km(&self, format: Format, sets: ElementChoice) -> Option<f64> {
-        let setup = self.evaluator.setup();
-        let a = self.semi_major_axis_km;
-        let span_s = setup.grid.elapsed_s(setup.grid.len() - 1);
-        let days = span_s / SECONDS_PER_DAY;
-        // A low orbit turns by 16 revolutions a day at most.
-        let turned_rad = 16.0 * TAU * days;
-        let theory = match (sets, setup.model) {
+    /// How far the satellites of a product may be from where its theory has them, km; none for
+    /// sets fitted to a theory that SGP4 does not approximate.
+    fn position_gate_km(&self, product: &ReadBack, sets: ElementChoice) -> Option<f64> {
+        let extent = Extent::new(&self.design, self.evaluator.setup().grid);
+        let digits_km = (product.digits_km)(extent);
+        match product.theory {
+            ReadBackTheory::Study => Some(digits_km),
+            ReadBackTheory::Sgp4 | ReadBackTheory::Sgp4OfTle => {
+                let theory_km = self.theory_gate_km(sets, extent.days);
+                theory_km.map(|km| km + digits_km)
+            }
+        }
+    }
+
+    /// How far SGP4 may take element sets from the trajectory that they are held against, km.
+    fn theory_gate_km(&self, sets: ElementChoice, days: f64) -> Option<f64> {
+        match (sets, self.evaluator.setup().model) {
             (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
             (ElementChoice::Fit, Model::Sgp4) => Some(0.0),
             (ElementChoice::Fit, Model::J2 | Model::J2Osculating) => {
-                Some((1.0 + 8.0 * self.eccentricity) * (SGP4_KM + SGP4_KM_PER_DAY * days))
+                let eccentric = 1.0 + 8.0 * self.design.eccentricity();
+                Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
             }
             (ElementChoice::Fit, Model::TwoBody) => None,
-        };
-        match format {
-            // Four angles to 1e-4°, e to 1e-7 (twice that along the track), the mean motion to
-            // 1e-8 rev/day; an inclination off by half a digit turns each of three angles, which
-            // J2 moves by 10° a day at most, by three times as much as itself at most.
-            Format::Tle => {
-                let half_digit = 0.5e-4_f64.to_radians();
-                let rates = 3.0 * 3.0 * 10_f64.to_radians() * half_digit;
-                let grown = (TAU * 0.5e-8 + rates) * days;
-                theory.map(|km| km + STATES_KM + a * (4.0 * half_digit + 1e-7 + grown))
-            }
-            // Twelve decimals of a degree, fifteen of e, thirteen of the mean motion.
-            Format::Omm | Format::OmmXml | Format::OmmJson | Format::OmmCsv => {
-                theory.map(|km| km + 1e-8 * (1.0 + days))
-            }
-            Format::Sp3 => Some(SP3_KM),
-            Format::Czml => Some(CZML_KM),
-            // Nine decimals of a kilometre of a: 3/2 da n t along the track.
-            Format::Opm => Some(STATES_KM + 1.5 * 0.5e-9 * turned_rad),
-            Format::Oem
-            | Format::OemXml
-            | Format::Stk
-            | Format::ElementsCsv
-            | Format::StatesCsv => Some(STATES_KM),
         }
     }
 }

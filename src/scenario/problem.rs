@@ -109,7 +109,7 @@ pub enum Fault {
         most: u64,
     },
     /// A list that must be as long as another.
-    #[error("found {found} numbers for {expected} objectives, expected one for each")]
+    #[error("found found {found} numbers for {expected} objectives, expected one for each")]
     Length {
         /// Numbers given.
         found: usize,

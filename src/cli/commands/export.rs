@@ -6,10 +6,10 @@ use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
-use crate::exchange::export::{Choices, ExportSubject, Product, export_scene};
+use crate::exchange::export::{Choices, ExportSubject, Product, Request, export};
 use crate::exchange::lint::Format as LintFormat;
-use crate::exchange::manifest::{ExportedStudy, FileEntry, Manifest};
-use crate::exchange::read_back::{Difference, Original};
+use crate::exchange::manifest::{ExportedStudy, Manifest};
+use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
 use crate::formats::ccsds::oem;
 use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::ElementChoice;
@@ -20,16 +20,6 @@ use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::path::PathBuf;
-
-/// The products that show or rebuild the whole scenario.
-const SCENES: [Product; 6] = [
-    Product::Czml,
-    Product::Geojson,
-    Product::Kml,
-    Product::Stk,
-    Product::Yuma,
-    Product::Metrics,
-];
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
@@ -75,14 +65,20 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     };
     let evaluator = products
         .iter()
-        .any(|product| SCENES.contains(product))
+        .any(|product| product.row().uses_scenario())
         .then(|| study.evaluator())
         .transpose()?;
     let scene = evaluator.as_ref().map(|evaluator| {
         let (surface, grid) = (scenario.earth.surface, scenario.ground_grid());
         Scene::new(evaluator, subject.design, surface, grid)
     });
-    let manifest = export_scene(&subject, scene.as_ref(), (&products, choices), &sink)
+    let request = Request {
+        subject: &subject,
+        scene: scene.as_ref(),
+        products: &products,
+        choices,
+    };
+    let manifest = export(&request, &sink)
         .with_context(|| format!("cannot export to {}", args.out.display()))?;
     progress.finish();
     staged.commit()?;
@@ -98,7 +94,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
 fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(
-            "the mean motion slot holds sqrt(mu/a^3): SGP4 carries the design away from its J2 \
+            "the mean motion slot holds sqrt(mu/a^3): SGP4 propagates the design away from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
         );
     }
@@ -123,19 +119,18 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         ("", Align::Left),
     ]);
     let mut passed = true;
-    for (name, paths) in groups(args, manifest) {
+    for FileGroup {
+        name,
+        paths,
+        read_back,
+    } in groups(args, manifest)
+    {
         let (format, mut fleet) = read_constellation::read(&paths)?;
         if format == LintFormat::Sp3 {
             fleet.name_by_place();
         }
-        // States of SGP4 have the theory and the digits of the element sets.
-        let format = if name == Product::TleStates.keyword() {
-            LintFormat::Tle
-        } else {
-            format
-        };
         let found = original
-            .check(format, args.tle_theory, &fleet)
+            .check(&read_back, args.tle_theory, &fleet)
             .with_context(|| format!("cannot check {name}"))?;
         passed &= found.passed();
         let cells = |difference: Option<Difference>, scale: f64| {
@@ -157,32 +152,32 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     Ok(if passed { Status::Done } else { Status::Failed })
 }
 
-/// Whether a file holds satellites of the design that can be read.
-fn is_read_back(file: &FileEntry) -> bool {
-    let unread = [
-        Product::Geojson,
-        Product::Kml,
-        Product::Gmat,
-        Product::Yuma,
-        Product::Metrics,
-    ];
-    let is = |product: &Product| file.format == product.keyword();
-    file.is_of_design() && !unread.iter().any(is) && !file.path.starts_with("stk-scenario/")
+/// Files that make the constellation once.
+struct FileGroup {
+    name: String,
+    paths: Vec<PathBuf>,
+    read_back: ReadBack,
 }
 
-/// The files that make the constellation once: those of a product, but each table for itself.
-fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<(String, Vec<PathBuf>)> {
-    let mut groups: Vec<(String, Vec<PathBuf>)> = Vec::new();
-    for file in manifest.files.iter().filter(|file| is_read_back(file)) {
-        let name = if file.format == Product::Csv.keyword() {
-            file.path.clone()
-        } else {
-            file.format.clone()
+/// The files of the design that are read back, as their products group them.
+fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<FileGroup> {
+    let mut groups: Vec<FileGroup> = Vec::new();
+    for file in &manifest.files {
+        let Some(read_back) = Product::read_back_of(file) else {
+            continue;
+        };
+        let name = match read_back.files {
+            Grouping::Together => file.format.clone(),
+            Grouping::Each => file.path.clone(),
         };
         let path = args.out.join(&file.path);
-        match groups.iter_mut().find(|(known, _)| *known == name) {
-            Some((_, paths)) => paths.push(path),
-            None => groups.push((name, vec![path])),
+        match groups.iter_mut().find(|known| known.name == name) {
+            Some(known) => known.paths.push(path),
+            None => groups.push(FileGroup {
+                name,
+                paths: vec![path],
+                read_back,
+            }),
         }
     }
     groups
@@ -197,9 +192,7 @@ fn check_choices(args: &ExportArgs) -> Result<()> {
     if !args.gnss.is_empty() && !asked(Product::Sp3) {
         bail!("--gnss writes SP3; add sp3 to --as");
     }
-    let has_frame = [Product::Oem, Product::Opm, Product::Stk]
-        .into_iter()
-        .any(asked);
+    let has_frame = args.products.iter().any(|product| product.row().has_frame);
     if let Some(frame) = args.frame
         && asked(Product::Sp3)
         && !has_frame

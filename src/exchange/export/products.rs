@@ -1,7 +1,7 @@
 //! The files of each product.
 
 use super::source::{ExportSource, failed};
-use super::{Files, Product, Sink};
+use super::{Files, Product};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::hermite::Hermite;
@@ -52,7 +52,7 @@ impl ExportSource<'_> {
             .collect()
     }
 
-    pub(super) fn tle(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn tle(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
         let about = (self.objects.len(), &metadata);
         let sets = self.tle_sets()?;
@@ -63,7 +63,7 @@ impl ExportSource<'_> {
         Ok(vec![entry])
     }
 
-    pub(super) fn omm(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn omm(&self, files: &Files<'_>) -> ProductFiles {
         let notation = self.choices.omm;
         let metadata = self.sgp4_metadata();
         let header = omm::header(self.choices.ccsds_version, &metadata);
@@ -93,7 +93,7 @@ impl ExportSource<'_> {
         Ok(vec![entry])
     }
 
-    pub(super) fn tle_states(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn tle_states(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
         let about = (self.objects.len(), &metadata);
         let format = (Product::TleStates, "1");
@@ -123,7 +123,7 @@ impl ExportSource<'_> {
         })
     }
 
-    pub(super) fn oem(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn oem(&self, files: &Files<'_>) -> ProductFiles {
         let choices = self.choices;
         let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
@@ -167,7 +167,7 @@ impl ExportSource<'_> {
         })
     }
 
-    pub(super) fn opm(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn opm(&self, files: &Files<'_>) -> ProductFiles {
         let choices = self.choices;
         let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
@@ -194,7 +194,7 @@ impl ExportSource<'_> {
             .collect()
     }
 
-    pub(super) fn stk(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn stk(&self, files: &Files<'_>) -> ProductFiles {
         let frame = self.choices.frame;
         let metadata = self.propagated_metadata(frame);
         let sampled = Sampled::new(&self.ephemeris, frame);
@@ -214,7 +214,7 @@ impl ExportSource<'_> {
         })
     }
 
-    pub(super) fn sp3(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn sp3(&self, files: &Files<'_>) -> ProductFiles {
         let (version, letter) = (self.choices.sp3_version, self.choices.sp3_letter);
         let mut metadata = self.propagated_metadata(Frame::EarthFixed);
         metadata.time_system = TimeSystem::Gps;
@@ -258,11 +258,7 @@ impl ExportSource<'_> {
 
     /// A nominal constellation under the letter of its system, in a file of its own, as readers
     /// that take several files join them.
-    fn sp3_of_gnss(
-        &self,
-        files: &Files<'_, impl Sink>,
-        preset: Preset,
-    ) -> Result<FileEntry, WriteError> {
+    fn sp3_of_gnss(&self, files: &Files<'_>, preset: Preset) -> Result<FileEntry, WriteError> {
         let (version, letter) = (self.choices.sp3_version, sp3::letter_of(preset));
         if letter == self.choices.sp3_letter {
             return Err(Sp3Error::LetterOfGnss { letter, preset }.into());
@@ -287,7 +283,7 @@ impl ExportSource<'_> {
         })
     }
 
-    pub(super) fn csv(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn csv(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::Teme);
         let about = (self.objects.len(), &metadata);
         let elements = files.add("elements.csv", (Product::Csv, "1"), about, |out| {

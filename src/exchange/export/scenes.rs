@@ -2,7 +2,7 @@
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
-use super::{Files, Product, Sink};
+use super::{Files, Product};
 use crate::ephemeris::EphemerisError;
 use crate::exchange::manifest::Loss;
 use crate::formats::maps::scene::{MAX_SHOWN_POINTS, Scene};
@@ -23,7 +23,7 @@ impl ExportSource<'_> {
         Ground::of(scene, &self.ephemeris, self.period_s())
     }
 
-    pub(super) fn metrics(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    pub(super) fn metrics(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let about = (0, &metadata);
         let format = (Product::Metrics, "1");
@@ -42,7 +42,7 @@ impl ExportSource<'_> {
             .collect())
     }
 
-    pub(super) fn czml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    pub(super) fn czml(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Czml, scene)?;
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let about = (self.objects.len(), &metadata);
@@ -63,7 +63,7 @@ impl ExportSource<'_> {
         Ok(vec![entry.assuming(scene.assumptions())])
     }
 
-    pub(super) fn geojson(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    pub(super) fn geojson(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let format = (Product::Geojson, geojson::FORMAT_VERSION);
         let noted = |note: &str| Loss {
@@ -94,7 +94,7 @@ impl ExportSource<'_> {
             .collect())
     }
 
-    pub(super) fn kml(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    pub(super) fn kml(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Kml, scene)?;
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let ground = self.ground(scene)?;

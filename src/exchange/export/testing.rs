@@ -1,6 +1,6 @@
 //! Exports into memory, for tests.
 
-use super::{Choices, ExportSubject, Product, export_scene};
+use super::{Choices, ExportSubject, Product, Request, export};
 use crate::constellation::Design;
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};
@@ -73,15 +73,14 @@ pub(crate) fn in_memory(
     let evaluator = Evaluator::new(setup(subject)).unwrap();
     let scene = Scene::new(&evaluator, subject.design, Surface::Wgs84, Some(GRID));
     // The ephemerides of STK alone have none.
-    let shown = [
-        Product::Czml,
-        Product::Geojson,
-        Product::Kml,
-        Product::Yuma,
-        Product::Metrics,
-    ];
-    let scene = Some(&scene).filter(|_| products.iter().any(|one| shown.contains(one)));
-    let manifest = export_scene(subject, scene, (products, choices), &sink).unwrap();
+    let shown = products.iter().any(|one| one.row().needs_scenario());
+    let request = Request {
+        subject,
+        scene: Some(&scene).filter(|_| shown),
+        products,
+        choices,
+    };
+    let manifest = export(&request, &sink).unwrap();
     let files = std::mem::take(&mut *contents.lock().unwrap());
     (manifest, files)
 }

@@ -109,6 +109,12 @@ fn tables_agree_with_the_files() {
 #[test]
 fn a_failing_sink_is_an_error() {
     let sink = |_: &str| -> io::Result<Vec<u8>> { Err(io::Error::other("disk full")) };
-    let error = export(&subject(), &[Product::Tle], Choices::default(), &sink).unwrap_err();
+    let request = Request {
+        subject: &subject(),
+        scene: None,
+        products: &[Product::Tle],
+        choices: Choices::default(),
+    };
+    let error = export(&request, &sink).unwrap_err();
     assert_eq!(error.to_string(), "disk full");
 }

@@ -35,25 +35,26 @@ fn read_back(
     product: Product,
     choices: Choices,
     change: &dyn Fn(String) -> String,
-) -> Result<(Format, Fleet), ReadFleetError> {
+) -> Result<Fleet, ReadFleetError> {
     let subject = subject(design(), grid());
-    let mut whole: Option<(Format, Fleet)> = None;
+    let mut whole: Option<Fleet> = None;
     for (path, bytes) in in_memory(&subject, &[product], choices).1 {
         if path == "manifest.json" || path == "elements.csv" {
             continue;
         }
         let text = change(String::from_utf8(bytes).unwrap());
-        let (format, fleet) = Fleet::read(text.as_bytes(), None, Some(&path))?;
+        let (_, fleet) = Fleet::read(text.as_bytes(), None, Some(&path))?;
         match &mut whole {
-            None => whole = Some((format, fleet)),
-            Some((_, whole)) => whole.append(fleet)?,
+            None => whole = Some(fleet),
+            Some(whole) => whole.append(fleet)?,
         }
     }
-    let (format, fleet) = whole.unwrap();
-    Ok(match product {
-        Product::TleStates => (Format::Tle, fleet),
-        _ => (format, fleet),
-    })
+    Ok(whole.unwrap())
+}
+
+/// How a product is read back.
+fn reader(product: Product) -> ReadBack {
+    product.row().read_back.unwrap()
 }
 
 const CHECKED: [Product; 8] = [
@@ -77,9 +78,9 @@ fn exports_pass_gates_of_their_digits() {
     let evaluator = evaluator();
     let original = Original::new(&evaluator, &design()).unwrap();
     for product in CHECKED {
-        let (format, fleet) = read_back(product, Choices::default(), &as_it_is).unwrap();
+        let fleet = read_back(product, Choices::default(), &as_it_is).unwrap();
         let found = original
-            .check(format, ElementChoice::Kozai, &fleet)
+            .check(&reader(product), ElementChoice::Kozai, &fleet)
             .unwrap();
         assert!(found.passed(), "{product:?}: {found:?}");
         let gate_m = found.position_km.gate.unwrap() * 1e3;
@@ -159,13 +160,13 @@ fn planted_mistakes_fail() {
     ];
     for product in CHECKED {
         for (name, mistake) in mistakes {
-            let (format, mut fleet) = read_back(product, teme, &as_it_is).unwrap();
+            let mut fleet = read_back(product, teme, &as_it_is).unwrap();
             // Sets and mean elements are in TEME by their definition.
             if name == "frame" && !matches!(fleet, Fleet::Sampled(_)) {
                 continue;
             }
             mistake(&mut fleet);
-            let found = original.check(format, ElementChoice::Kozai, &fleet);
+            let found = original.check(&reader(product), ElementChoice::Kozai, &fleet);
             let found = found.unwrap();
             assert!(!found.position_km.passed(), "{product:?} {name}: {found:?}");
         }
@@ -174,17 +175,17 @@ fn planted_mistakes_fail() {
         elements: ElementChoice::Kepler,
         ..Choices::default()
     };
-    let (format, fleet) = read_back(Product::Omm, kepler, &as_it_is).unwrap();
+    let fleet = read_back(Product::Omm, kepler, &as_it_is).unwrap();
     let found = original
-        .check(format, ElementChoice::Kepler, &fleet)
+        .check(&reader(Product::Omm), ElementChoice::Kepler, &fleet)
         .unwrap();
     assert!(found.position_km.value > 100.0 && !found.passed());
-    let (format, mut fleet) = read_back(Product::Oem, teme, &as_it_is).unwrap();
+    let mut fleet = read_back(Product::Oem, teme, &as_it_is).unwrap();
     if let Fleet::Sampled(trajectories) = &mut fleet {
         trajectories.pop();
     }
     let error = original
-        .check(format, ElementChoice::Kozai, &fleet)
+        .check(&reader(Product::Oem), ElementChoice::Kozai, &fleet)
         .unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -215,9 +216,9 @@ fn a_frame_that_is_misnamed_in_the_file_fails() {
             ..Choices::default()
         };
         let change = |text: String| text.replace(from, to);
-        let (format, fleet) = read_back(Product::Oem, choices, &change).unwrap();
+        let fleet = read_back(Product::Oem, choices, &change).unwrap();
         let found = original
-            .check(format, ElementChoice::Kozai, &fleet)
+            .check(&reader(Product::Oem), ElementChoice::Kozai, &fleet)
             .unwrap();
         // A third of a degree of precession since 2000 at 7303 km: 41 km.
         let apart_km = found.position_km.value;
@@ -234,7 +235,9 @@ fn fitted_sets_are_held_against_the_propagated_design() {
         elements: ElementChoice::Fit,
         ..Choices::default()
     };
-    let (format, fleet) = read_back(Product::Omm, fit, &as_it_is).unwrap();
-    let found = original.check(format, ElementChoice::Fit, &fleet).unwrap();
+    let fleet = read_back(Product::Omm, fit, &as_it_is).unwrap();
+    let found = original
+        .check(&reader(Product::Omm), ElementChoice::Fit, &fleet)
+        .unwrap();
     assert!(found.passed() && found.theory_km.is_none(), "{found:?}");
 }

@@ -2,7 +2,7 @@
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
-use super::{Files, Product, Sink};
+use super::{Files, Product};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
 use crate::ephemeris::sampled::Sampled;
@@ -17,6 +17,9 @@ use crate::keyword::Keyword;
 use crate::orbit::Model;
 use std::io::Write;
 
+/// Where the files are that build the scenario in STK, its GNSS among them.
+pub(super) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
+
 /// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
 struct InStk {
     name: String,
@@ -26,11 +29,7 @@ struct InStk {
 
 impl ExportSource<'_> {
     /// The ephemerides, and with a scenario the commands that build it.
-    pub(super) fn stk_with(
-        &self,
-        files: &Files<'_, impl Sink>,
-        scene: Option<&Scene<'_>>,
-    ) -> ProductFiles {
+    pub(super) fn stk_with(&self, files: &Files<'_>, scene: Option<&Scene<'_>>) -> ProductFiles {
         let mut entries = self.stk(files)?;
         if let Some(scene) = scene {
             entries.extend(self.stk_scenario(files, scene)?);
@@ -38,7 +37,7 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    fn stk_scenario(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    fn stk_scenario(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let setup = scene.setup();
         let mut gnss = Vec::new();
         for (system, satellites) in scene.systems() {
@@ -67,7 +66,7 @@ impl ExportSource<'_> {
             ..Loss::default()
         };
         let about = (satellites.len(), &metadata);
-        let commands = files.add("stk-scenario/connect.txt", format, about, |out| {
+        let commands = files.add(&in_scenario("connect.txt"), format, about, |out| {
             scenario.write(out)?;
             Ok(noted("STK Connect commands; not tried in STK"))
         })?;
@@ -79,7 +78,7 @@ impl ExportSource<'_> {
         told.extend(by_hand(one_mask, with_files));
         entries.push(commands.assuming(told));
         entries.push(
-            files.add("stk-scenario/points.pnt", format, (0, &metadata), |out| {
+            files.add(&in_scenario("points.pnt"), format, (0, &metadata), |out| {
                 scenario.write_points(out)?;
                 Ok(noted("STK point file"))
             })?,
@@ -97,7 +96,7 @@ impl ExportSource<'_> {
     }
 
     /// The ephemerides of the GNSS satellites for which STK has no theory.
-    fn gnss_files(&self, files: &Files<'_, impl Sink>, gnss: &[InStk]) -> ProductFiles {
+    fn gnss_files(&self, files: &Files<'_>, gnss: &[InStk]) -> ProductFiles {
         let mut entries = Vec::new();
         let mut metadata = self.propagated_metadata(self.choices.frame);
         metadata
@@ -107,7 +106,7 @@ impl ExportSource<'_> {
         let sampled = Sampled::new(&empty, self.choices.frame);
         for one in gnss {
             if let Some(propagated) = &one.propagated {
-                let path = format!("stk-scenario/gnss/{}.e", one.name);
+                let path = in_scenario(&format!("gnss/{}.e", one.name));
                 let format = (Product::Stk, stk::FORMAT_VERSION);
                 entries.push(files.add(&path, format, (1, &metadata), |out| {
                     let hermite =
@@ -123,7 +122,7 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    pub(super) fn gmat(&self, files: &Files<'_, impl Sink>) -> ProductFiles {
+    pub(super) fn gmat(&self, files: &Files<'_>) -> ProductFiles {
         let cannot = |what: String, instead| WriteError::CannotSay {
             product: Product::Gmat.keyword(),
             what,
@@ -163,7 +162,7 @@ impl ExportSource<'_> {
         Ok(vec![script.assuming(gmat_assumptions(model)), field])
     }
 
-    pub(super) fn yuma(&self, files: &Files<'_, impl Sink>, scene: &Scene<'_>) -> ProductFiles {
+    pub(super) fn yuma(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let cannot = |what: String, instead| WriteError::CannotSay {
             product: Product::Yuma.keyword(),
             what,
@@ -189,7 +188,7 @@ impl ExportSource<'_> {
 
     fn almanac_file(
         &self,
-        files: &Files<'_, impl Sink>,
+        files: &Files<'_>,
         system: &System,
         (satellites, almanacs): (&[GnssSatellite], &[Almanac]),
     ) -> Result<FileEntry, WriteError> {
@@ -222,6 +221,10 @@ impl ExportSource<'_> {
             names.join(", "),
         ]))
     }
+}
+
+fn in_scenario(name: &str) -> String {
+    format!("{STK_SCENARIO_DIRECTORY}{name}")
 }
 
 fn gmat_assumptions(model: Model) -> Vec<String> {

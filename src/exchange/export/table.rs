@@ -1,0 +1,239 @@
+//! The table of the products: one row says all that the program knows of a product.
+
+use super::Files;
+use super::products::ProductFiles;
+use super::scenario_products::STK_SCENARIO_DIRECTORY;
+use super::source::ExportSource;
+use crate::exchange::manifest::FileEntry;
+use crate::exchange::read_back::{Grouping, ReadBack, ReadBackTheory, gates};
+use crate::formats::WriteError;
+use crate::formats::maps::scene::Scene;
+use crate::keyword::{Keyword, keywords};
+
+/// What is known of a product besides its keyword.
+pub struct ProductRow {
+    /// What the help says of it, by lines.
+    pub help: &'static [&'static str],
+    /// Whether it is written in the frame of the choice.
+    pub has_frame: bool,
+    /// How it is read back, or why it is not.
+    pub read_back: Result<ReadBack, &'static str>,
+    write: ProductWriter,
+}
+
+impl ProductRow {
+    /// Whether the product shows the scenario, or shows more with it.
+    #[must_use]
+    pub fn uses_scenario(&self) -> bool {
+        !matches!(self.write, ProductWriter::Design(_))
+    }
+
+    /// Whether the product cannot be written without the scenario.
+    #[must_use]
+    pub fn needs_scenario(&self) -> bool {
+        matches!(self.write, ProductWriter::Scenario(_))
+    }
+}
+
+/// The function that writes the files of a product, by what it writes them from.
+enum ProductWriter {
+    /// The design alone.
+    Design(fn(&ExportSource<'_>, &Files<'_>) -> ProductFiles),
+    /// The design, and the scenario around it where there is one.
+    Either(fn(&ExportSource<'_>, &Files<'_>, Option<&Scene<'_>>) -> ProductFiles),
+    /// The design in its scenario.
+    Scenario(fn(&ExportSource<'_>, &Files<'_>, &Scene<'_>) -> ProductFiles),
+}
+
+/// Declares the products: keyword and row of each, in the order of the help.
+macro_rules! products {
+    ($($(#[$doc:meta])* $product:ident = $word:literal { $($row:tt)+ })+) => {
+        keywords! {
+            /// What can be asked of an export.
+            Product { $($(#[$doc])* $product = $word,)+ }
+        }
+
+        impl Product {
+            /// What is known of the product.
+            #[must_use]
+            pub fn row(self) -> &'static ProductRow {
+                match self {
+                    $(Self::$product => {
+                        static ROW: ProductRow = ProductRow { $($row)+ };
+                        &ROW
+                    })+
+                }
+            }
+        }
+    };
+}
+
+products! {
+    /// Two-line element sets with names, one file.
+    Tle = "tle" {
+        help: &["two-line element sets with names (SGP4), one file"],
+        has_frame: false,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Sgp4OfTle,
+            digits_km: gates::tle_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.tle(files)),
+    }
+    /// CCSDS Orbit Mean-Elements Messages in the notation of the choice.
+    Omm = "omm" {
+        help: &["CCSDS Orbit Mean-Elements Messages (SGP4): kvn, xml, json or csv"],
+        has_frame: false,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Sgp4,
+            digits_km: gates::omm_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.omm(files)),
+    }
+    /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one of all.
+    Oem = "oem" {
+        help: &["CCSDS Orbit Ephemeris Messages: kvn or xml"],
+        has_frame: true,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::states_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.oem(files)),
+    }
+    /// CCSDS Orbit Parameter Messages, one file for each satellite: the state at the epoch.
+    Opm = "opm" {
+        help: &[
+            "CCSDS Orbit Parameter Messages: state, osculating and mean elements at the epoch",
+        ],
+        has_frame: true,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::opm_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.opm(files)),
+    }
+    /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c), and of GNSS by choice.
+    Sp3 = "sp3" {
+        help: &["SP3-c or -d, positions and velocities in GPS time, Earth-fixed"],
+        has_frame: false,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::sp3_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.sp3(files)),
+    }
+    /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
+    Stk = "stk" {
+        help: &[
+            "STK ephemerides (.e), one file for each satellite, and in stk-scenario the Connect",
+            "commands that build the study: period, satellites, GNSS, region, mask, PDOP",
+        ],
+        has_frame: true,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::states_km,
+        }),
+        write: ProductWriter::Either(|source, files, scene| source.stk_with(files, scene)),
+    }
+    /// GMAT: a script that propagates the design under J2 alone.
+    Gmat = "gmat" {
+        help: &["GMAT script of the design under J2 alone, with the field that it loads"],
+        has_frame: false,
+        read_back: Err("a script holds no states until GMAT has run it"),
+        write: ProductWriter::Design(|source, files| source.gmat(files)),
+    }
+    /// CZML: satellites, orbits and region for CesiumJS.
+    Czml = "czml" {
+        help: &["CesiumJS: satellites, orbits, GNSS, and the region coloured by mean PDOP"],
+        has_frame: false,
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::czml_km,
+        }),
+        write: ProductWriter::Scenario(|source, files, scene| source.czml(files, scene)),
+    }
+    /// GeoJSON: region with metrics, ground tracks, footprints.
+    Geojson = "geojson" {
+        help: &["for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
+        has_frame: false,
+        read_back: Err("a map of the ground holds no orbits"),
+        write: ProductWriter::Scenario(|source, files, scene| source.geojson(files, scene)),
+    }
+    /// KML: the same for Google Earth.
+    Kml = "kml" {
+        help: &["for Google Earth: the same in one document"],
+        has_frame: false,
+        read_back: Err("a map of the ground holds no orbits"),
+        write: ProductWriter::Scenario(|source, files, scene| source.kml(files, scene)),
+    }
+    /// YUMA almanacs of the nominal GNSS.
+    Yuma = "yuma" {
+        help: &["YUMA almanacs of the nominal GNSS; a LEO design has none"],
+        has_frame: false,
+        read_back: Err("the almanacs are of the GNSS, not of the design"),
+        write: ProductWriter::Scenario(|source, files, scene| source.yuma(files, scene)),
+    }
+    /// Tables of mean elements and of states.
+    Csv = "csv" {
+        help: &["tables of mean elements and of states, TEME and Earth-fixed"],
+        has_frame: false,
+        read_back: Ok(ReadBack {
+            files: Grouping::Each,
+            theory: ReadBackTheory::Study,
+            digits_km: gates::states_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.csv(files)),
+    }
+    /// Tables of the metrics by ground point and by instant.
+    Metrics = "metrics" {
+        help: &["tables of the metrics by ground point and by instant"],
+        has_frame: false,
+        read_back: Err("the tables hold metrics, no satellites"),
+        write: ProductWriter::Scenario(|source, files, scene| source.metrics(files, scene)),
+    }
+    /// States that SGP4 gives for the element sets as written, for comparing another SGP4.
+    TleStates = "tle-states" {
+        help: &["table of what SGP4 makes of the element sets as written"],
+        has_frame: false,
+        // States of SGP4 have the theory and the digits of the element sets.
+        read_back: Ok(ReadBack {
+            files: Grouping::Together,
+            theory: ReadBackTheory::Sgp4OfTle,
+            digits_km: gates::tle_km,
+        }),
+        write: ProductWriter::Design(|source, files| source.tle_states(files)),
+    }
+}
+
+impl Product {
+    /// How a file of an export is read back, if it holds satellites of the design that can be.
+    #[must_use]
+    pub fn read_back_of(file: &FileEntry) -> Option<ReadBack> {
+        let product = Self::from_keyword(&file.format).ok()?;
+        let beside = !file.is_of_design() || file.path.starts_with(STK_SCENARIO_DIRECTORY);
+        product.row().read_back.ok().filter(|_| !beside)
+    }
+
+    /// Writes the files of the product.
+    pub(super) fn write(
+        self,
+        source: &ExportSource<'_>,
+        files: &Files<'_>,
+        scene: Option<&Scene<'_>>,
+    ) -> ProductFiles {
+        match self.row().write {
+            ProductWriter::Design(write) => write(source, files),
+            ProductWriter::Either(write) => write(source, files, scene),
+            ProductWriter::Scenario(write) => {
+                let scene = scene.ok_or_else(|| WriteError::NoScene(self.keyword()))?;
+                write(source, files, scene)
+            }
+        }
+    }
+}

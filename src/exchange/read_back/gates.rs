@@ -1,0 +1,114 @@
+//! How a product is read back: from which files, against which theory, within which digits.
+
+use crate::constellation::Design;
+use crate::earth::RADIUS_KM;
+use crate::formats::tle;
+use crate::time::{Epoch, TimeGrid};
+use crate::units::SECONDS_PER_DAY;
+use std::f64::consts::TAU;
+
+/// Nine decimals of a kilometre, stamps to a nanosecond, and rotations forth and back, km.
+const STATES_KM: f64 = 1e-8;
+
+/// Six decimals of a kilometre in three components, and epochs to 1e-8 s, km.
+const SP3_KM: f64 = 1e-6;
+
+/// The metre between samples for which their spacing is chosen on one satellite, twice for the others,
+/// and a decimetre of digits, km.
+const CZML_KM: f64 = 2.0 * crate::formats::maps::czml::TARGET_KM + 2e-4;
+
+/// How the files of a product are read back and what they are held against.
+#[derive(Debug, Clone, Copy)]
+pub struct ReadBack {
+    /// Which of its files make the constellation.
+    pub files: Grouping,
+    /// The theory of its satellites.
+    pub theory: ReadBackTheory,
+    /// How far its digits may move a satellite, km.
+    pub digits_km: fn(Extent) -> f64,
+}
+
+/// Which files of a product make the constellation once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Grouping {
+    /// All of them together.
+    Together,
+    /// Each for itself.
+    Each,
+}
+
+/// What the satellites of a product follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReadBackTheory {
+    /// The model of the study.
+    Study,
+    /// SGP4, from element sets at the epoch of the study.
+    Sgp4,
+    /// SGP4, from element sets at the epoch of the study as a TLE rounds it.
+    Sgp4OfTle,
+}
+
+impl ReadBackTheory {
+    /// The epoch of the element sets, if there are any.
+    pub(super) fn epoch_of_sets(self, study: Epoch) -> Option<Epoch> {
+        match self {
+            Self::Study => None,
+            Self::Sgp4 => Some(study),
+            Self::Sgp4OfTle => Some(tle::rounded_epoch(study)),
+        }
+    }
+}
+
+/// What the effect of a digit grows with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extent {
+    /// Semi-major axis of the design, km.
+    pub semi_major_axis_km: f64,
+    /// Span of the study, days.
+    pub days: f64,
+}
+
+impl Extent {
+    pub(super) fn new(design: &Design, grid: TimeGrid) -> Self {
+        Self {
+            semi_major_axis_km: RADIUS_KM + design.altitude_km(),
+            days: grid.elapsed_s(grid.len() - 1) / SECONDS_PER_DAY,
+        }
+    }
+}
+
+/// States and elements as the tables, the OEM and the STK ephemerides write them.
+pub(crate) fn states_km(_: Extent) -> f64 {
+    STATES_KM
+}
+
+/// States of SP3.
+pub(crate) fn sp3_km(_: Extent) -> f64 {
+    SP3_KM
+}
+
+/// Positions of CZML, which a viewer interpolates.
+pub(crate) fn czml_km(_: Extent) -> f64 {
+    CZML_KM
+}
+
+/// Nine decimals of a kilometre of a: 3/2 da n t along the track, where a low orbit turns by 16
+/// revolutions a day at most.
+pub(crate) fn opm_km(extent: Extent) -> f64 {
+    STATES_KM + 1.5 * 0.5e-9 * (16.0 * TAU * extent.days)
+}
+
+/// Twelve decimals of a degree, fifteen of e, thirteen of the mean motion.
+pub(crate) fn omm_km(extent: Extent) -> f64 {
+    1e-8 * (1.0 + extent.days)
+}
+
+/// Four angles to 1e-4°, e to 1e-7 (twice that along the track), the mean motion to 1e-8 rev/day;
+/// an inclination off by half a digit turns each of three angles, which J2 moves by 10° a day at
+/// most, by three times as much as itself at most.
+pub(crate) fn tle_km(extent: Extent) -> f64 {
+    let half_digit = 0.5e-4_f64.to_radians();
+    let rates = 3.0 * 3.0 * 10_f64.to_radians() * half_digit;
+    let grown = (TAU * 0.5e-8 + rates) * extent.days;
+    STATES_KM + extent.semi_major_axis_km * (4.0 * half_digit + 1e-7 + grown)
+}
