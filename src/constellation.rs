@@ -1,4 +1,4 @@
-//! Who propagates where: LEO designs and GNSS constellations, with the identity of each slot.
+//! LEO designs and GNSS constellations, with the identity of each slot.
 
 pub mod gnss;
 mod notation;

@@ -170,7 +170,7 @@ impl Findings {
 /// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
 #[derive(Debug, Clone, Copy)]
 pub struct Parts {
-    /// Who propagates where.
+    /// Satellites and their slots.
     pub satellites: fn(&Design) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,

@@ -96,7 +96,7 @@ impl From<ElementSets> for System {
 pub struct GnssSatellite {
     /// Name, unique in the constellation.
     pub name: String,
-    /// How it propagates.
+    /// How it moves.
     pub orbit: GnssOrbit,
 }
 

@@ -54,7 +54,7 @@ impl<W: Write, F: Fn(&str) -> io::Result<W> + Sync> Sink for F {
 pub struct ExportSubject {
     /// The design.
     pub design: Design,
-    /// What it propagates by.
+    /// The model that propagates it.
     pub model: Model,
     /// The instants of sampled products; its epoch is that of the elements.
     pub grid: TimeGrid,
@@ -159,22 +159,41 @@ struct Files<'a> {
 /// What a product writes to: every byte is hashed on its way.
 type Out<'a> = BufWriter<HashingWriter<Box<dyn Write + 'a>>>;
 
+/// A product in the version of its format.
+#[derive(Clone, Copy)]
+struct ProductVersion<'a> {
+    product: Product,
+    version: &'a str,
+}
+
+/// What a file holds.
+#[derive(Clone, Copy)]
+struct Contents<'a> {
+    objects: usize,
+    metadata: &'a Metadata,
+}
+
 impl Files<'_> {
     /// Writes one file; its entry has the loss that `write` finds.
     fn add(
         &self,
         path: &str,
-        (product, version): (Product, &str),
-        (objects, metadata): (usize, &Metadata),
+        format: ProductVersion<'_>,
+        contents: Contents<'_>,
         write: impl FnOnce(&mut Out<'_>) -> Result<Loss, WriteError>,
     ) -> Result<FileEntry, WriteError> {
         let mut out = BufWriter::new(HashingWriter::new(self.sink.open(path)?));
         let loss = write(&mut out)?;
         let hashing = out.into_inner().map_err(io::IntoInnerError::into_error)?;
         let sha256 = hashing.finish()?;
-        let format = (product.keyword(), version);
         Ok(FileEntry::new(
-            path, format, objects, metadata, loss, sha256,
+            path,
+            format.product.keyword(),
+            format.version,
+            contents.objects,
+            contents.metadata,
+            loss,
+            sha256,
         ))
     }
 }

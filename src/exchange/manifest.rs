@@ -103,7 +103,7 @@ pub struct FileEntry {
     pub sha256: String,
 }
 
-/// What a format costs against the model that the study propagates; what is not measured is null.
+/// What a format costs against the model of the study; what is not measured is null.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Loss {
     /// By rounding to the digits of the file, largest distance, km.
@@ -131,7 +131,8 @@ impl FileEntry {
     #[must_use]
     pub fn new(
         path: &str,
-        (format, version): (&str, &str),
+        format: &str,
+        version: &str,
         objects: usize,
         metadata: &Metadata,
         loss: Loss,

@@ -1,4 +1,4 @@
-//! GMAT: a script that propagates the satellites of a design under J2 alone, and the field it propagates in.
+//! GMAT: a script that propagates the satellites of a design under J2 alone, and its gravity field.
 //!
 //! Source: *GMAT User Guide* R2022a and later: "Spacecraft Orbit State", "ForceModel"
 //! (`PotentialFile`, `Degree`, `Order`), "Propagator", "ReportFile", "Report", "For". One assignment
@@ -104,7 +104,9 @@ pub fn write_script(
     out: &mut impl Write,
     comments: &[String],
     satellites: &[(String, Satellite)],
-    (model, grid, start_text): (Model, TimeGrid, &str),
+    model: Model,
+    grid: TimeGrid,
+    start_text: &str,
 ) -> io::Result<()> {
     for comment in comments {
         writeln!(out, "% {comment}")?;
@@ -249,8 +251,9 @@ mod tests {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         let mut bytes = Vec::new();
-        let propagation = (Model::J2, grid, "01 Jan 2025 00:00:00.000");
-        write_script(&mut bytes, &["study".to_owned()], &satellites, propagation).unwrap();
+        let start = "01 Jan 2025 00:00:00.000";
+        let comments = ["study".to_owned()];
+        write_script(&mut bytes, &comments, &satellites, Model::J2, grid, start).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         assert_eq!(text.matches("Create Spacecraft").count(), 4);
         assert!(text.contains("For Sample = 1:1:9"));

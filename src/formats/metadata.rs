@@ -203,7 +203,7 @@ keywords! {
 /// What the numbers of a file were computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Theory {
-    /// States of the model that the scenario propagates.
+    /// States of the propagation model of the scenario.
     EphemerisSatellite(Model),
     /// An SGP4 element set made from the design.
     Sgp4Elements(ElementChoice),

@@ -147,7 +147,7 @@ pub fn write(
     if let Some(outside) = [start, last].into_iter().find(|at| !has_a_week(*at)) {
         return Err(Sp3Error::Instant(outside).into());
     }
-    write_first_lines(out, version, start, (grid.len(), grid.step_s()))?;
+    write_first_lines(out, version, start, grid.len(), grid.step_s())?;
     write_ids(out, version, &ids)?;
     write_fixed_lines(out, letter)?;
     write_comments(out, version, metadata, &ids, satellites)?;
@@ -156,7 +156,7 @@ pub fn write(
         let at = grid.epoch().plus_seconds(elapsed_s);
         writeln!(out, "*  {}", epoch_fields(TimeSystem::Gps.stamp(at)))?;
         for (number, (satellite, _)) in (1..).zip(satellites) {
-            write_state(out, (letter, number), &sampled.state_at(satellite, k)?)?;
+            write_state(out, letter, number, &sampled.state_at(satellite, k)?)?;
         }
     }
     writeln!(out, "EOF")?;
@@ -168,7 +168,8 @@ fn write_first_lines(
     out: &mut impl Write,
     version: Sp3Version,
     start: NaiveDateTime,
-    (epochs, step_s): (usize, f64),
+    epochs: usize,
+    step_s: f64,
 ) -> io::Result<()> {
     writeln!(
         out,
@@ -308,7 +309,8 @@ fn wrapped(text: &str, width: usize) -> Vec<String> {
 /// A position in km and a velocity in dm/s, to a millimetre and 1e-7 m/s.
 fn write_state(
     out: &mut impl Write,
-    (letter, number): (char, usize),
+    letter: char,
+    number: usize,
     state: &State<EarthFixed>,
 ) -> Result<(), WriteError> {
     let velocity_dm_s = state.velocity_km_s * DM_IN_KM;

@@ -51,7 +51,8 @@ impl StkEphemeris {
         write_head(
             out,
             &self.comments,
-            (self.scenario_epoch, self.states.len()),
+            self.scenario_epoch,
+            self.states.len(),
             self.interpolation_samples_m1,
             self.frame,
         )?;
@@ -70,7 +71,8 @@ pub fn write(
     out: &mut impl Write,
     name: &str,
     metadata: &Metadata,
-    (sampled, satellite): (&Sampled<'_, Frame>, &EphemerisSatellite),
+    sampled: &Sampled<'_, Frame>,
+    satellite: &EphemerisSatellite,
     hermite: Option<Hermite>,
 ) -> Result<(), WriteError> {
     let grid = sampled.grid();
@@ -79,7 +81,8 @@ pub fn write(
     write_head(
         out,
         &comments,
-        (grid.epoch().utc().naive_utc(), grid.len()),
+        grid.epoch().utc().naive_utc(),
+        grid.len(),
         hermite.map(|hermite| hermite.degree / 2),
         sampled.frame(),
     )?;
@@ -105,7 +108,8 @@ pub fn coordinate_system(frame: Frame) -> &'static str {
 fn write_head(
     out: &mut impl Write,
     comments: &[String],
-    (epoch, points): (NaiveDateTime, usize),
+    epoch: NaiveDateTime,
+    points: usize,
     samples_m1: Option<usize>,
     frame: Frame,
 ) -> io::Result<()> {

@@ -62,7 +62,7 @@ pub struct Almanac {
 /// Why a satellite has no almanac.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoAlmanac {
-    /// It propagates by SGP4.
+    /// It is propagated by SGP4.
     Sgp4,
     /// Its perigee moves, which an almanac has no rate for.
     Eccentric,

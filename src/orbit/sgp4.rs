@@ -19,7 +19,7 @@ pub enum MeanMotionSlot {
     Kepler,
 }
 
-/// Which zonal harmonics SGP4 propagates.
+/// Which zonal harmonics SGP4 includes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ZonalHarmonics {
     /// J2, J3 and J4 of WGS-72.

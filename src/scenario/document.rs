@@ -72,7 +72,7 @@ impl<'a> Document<'a> {
         report: &mut ProblemList,
     ) {
         let Some(section) = sections().into_iter().find(|section| *section == name) else {
-            return self.enter(("", name), value, site, report);
+            return self.enter("", name, value, site, report);
         };
         let DeValue::Table(keys) = value.into_inner() else {
             let known = names(section);
@@ -83,13 +83,14 @@ impl<'a> Document<'a> {
                 source: site.source,
                 span: key.span(),
             };
-            self.enter((section, key.get_ref()), value, &site, report);
+            self.enter(section, key.get_ref(), value, &site, report);
         }
     }
 
     fn enter(
         &mut self,
-        (section, name): (&str, &str),
+        section: &str,
+        name: &str,
         value: Node<'a>,
         site: &KeySite<'_, 'a>,
         report: &mut ProblemList,
@@ -134,7 +135,7 @@ impl<'a> Document<'a> {
         let Some((section, name)) = key.split_once('.') else {
             return self.enter_top(key, value, &site, report);
         };
-        self.enter((section, name), value, &site, report);
+        self.enter(section, name, value, &site, report);
     }
 
     /// Checks everything that was written, and adds what is wrong to `report`.

@@ -317,7 +317,7 @@ fn distances(
     ))
 }
 
-/// Decisions, passes and metrics when the file propagates in place of the design.
+/// Decisions, passes and metrics when the file replaces the design.
 fn metrics(
     subject: &Subject<'_>,
     source: &str,

@@ -99,7 +99,7 @@ fn kepler_in_the_mean_motion_slot() {
         "sgp4/mean-j2/sgp4/in-track-growth",
         "sgp4/rates/argument-of-latitude/sgp4",
     ];
-    // Every comparison in which SGP4 propagates that slot.
+    // Every comparison in which SGP4 uses that slot.
     assert_fails(parts, &checks, &["sgp4/"]);
 }
 

@@ -121,7 +121,8 @@ fn instant(
 /// # Errors
 /// When a satellite of either cannot be propagated.
 pub fn compare(
-    (case, cause): (&str, &str),
+    case: &str,
+    cause: &str,
     first: &Ephemeris,
     second: &Ephemeris,
 ) -> Result<BudgetLine, EphemerisError> {
@@ -227,7 +228,7 @@ mod tests {
             Ephemeris::new(grid(), satellites.collect())
         };
         let extra = drift_km_per_day / SECONDS_PER_DAY / (crate::earth::RADIUS_KM + 925.0);
-        let line = compare(("a/b", "ramp"), &propagate(0.0), &propagate(extra)).unwrap();
+        let line = compare("a/b", "ramp", &propagate(0.0), &propagate(extra)).unwrap();
         // The chord is shorter than the arc by 2³/(24 a²) = 6e-9 km.
         assert!((line.growth_km_per_day.in_track - drift_km_per_day).abs() < 1e-6);
         let last_day = 143.0 / 144.0;

@@ -119,7 +119,7 @@ impl Propagations {
         cases
             .into_iter()
             .take(count)
-            .map(|(case, cause, first, second)| compare((case, cause), first, second))
+            .map(|(case, cause, first, second)| compare(case, cause, first, second))
             .collect()
     }
 }
@@ -262,7 +262,7 @@ impl GateScale {
             },
             line.growth_km_per_day.in_track,
             self.gate(self.causes.growth_gate_km_per_day(self.days)),
-            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and residual from an incomplete revolution"),
+            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and the residual of an incomplete revolution"),
         ));
         checks
     }

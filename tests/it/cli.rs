@@ -184,7 +184,7 @@ fn what_cannot_be_run_says_why() {
         ),
         (
             refused(&["optimize", "--set", "search.altitude-km=[1000, 400]"]),
-            "above the high one",
+            "above the high limit",
         ),
         (
             refused(&["validate", "--against", "stk"]),
@@ -447,7 +447,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     );
     assert_eq!(hopeless.status, 2);
     assert!(
-        hopeless.stderr.contains("no earlier one is whole"),
+        hopeless.stderr.contains("no earlier one is intact"),
         "{}",
         hopeless.stderr
     );

@@ -301,5 +301,5 @@ fn what_a_format_cannot_hold_is_refused() {
     let told = refused(&[tle.as_slice(), &century].concat());
     assert!(told.contains("1957 to 2056"), "{told}");
     let letter = ["export", "--as", "sp3", "--out", "x", "--sp3-letter", "l"];
-    assert!(refused(&letter).contains("no capital letter"));
+    assert!(refused(&letter).contains("not a capital letter"));
 }

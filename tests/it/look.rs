@@ -110,7 +110,7 @@ fn a_damaged_run_is_reported_with_its_gaps() {
     fs::remove_file(run.join("history.json")).unwrap();
     let output = navwalker(directory.path(), &["report", "run"]);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("is no run directory"));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("is not a run directory"));
 }
 
 #[test]
@@ -187,8 +187,8 @@ fn figures_that_are_not_there_say_why() {
             "figure series does not show availability",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
-        (&["--figure", "map", "--pick", "99"], "not that one"),
-        (&["--figure", "map", "--out", "map.gif"], "say it with --as"),
+        (&["--figure", "map", "--pick", "99"], "no such member"),
+        (&["--figure", "map", "--out", "map.gif"], "use --as"),
         (
             &["--figure", "map", "--out", "nowhere/map.svg"],
             "nowhere/map.svg",

@@ -170,7 +170,7 @@ fn a_search_that_cannot_succeed_says_so() {
             "objectives.launch-cost-per-plane=-1",
             "expected a number >= 0",
         ),
-        ("search.inclination-deg=[60, 40]", "above the high one"),
+        ("search.inclination-deg=[60, 40]", "above the high limit"),
     ] {
         let stderr = set(value);
         assert!(

@@ -48,8 +48,8 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
     let csv = || metrics_csv([(&result.design, &result.metrics)]);
     let notation = &result.design.notation;
-    let measured = (&result.metrics, result.dops.as_ref());
-    print(args, (study, notation), measured, &result, csv)
+    let dops = result.dops.as_ref();
+    print(args, study, notation, &result.metrics, dops, &result, csv)
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
@@ -80,8 +80,8 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         "{} ({} satellites, {})",
         result.constellation.name, result.constellation.satellites, result.constellation.content
     );
-    let measured = (&result.metrics, result.dops.as_ref());
-    print(args, (study, &title), measured, &result, || {
+    let dops = result.dops.as_ref();
+    print(args, study, &title, &result.metrics, dops, &result, || {
         constellation_csv(&result)
     })
 }
@@ -101,8 +101,10 @@ fn further(
 
 fn print(
     args: &EvaluateArgs,
-    (study, title): (&Study, &str),
-    (metrics, dops): (&Metrics, Option<&DopStatistics>),
+    study: &Study,
+    title: &str,
+    metrics: &Metrics,
+    dops: Option<&DopStatistics>,
     result: &impl Serialize,
     csv: impl Fn() -> std::io::Result<String>,
 ) -> Result<()> {

@@ -94,7 +94,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
 fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(
-            "the mean motion slot holds sqrt(mu/a^3): SGP4 propagates the design away from its J2 \
+            "the mean motion slot holds sqrt(mu/a^3): SGP4 carries the design away from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
         );
     }

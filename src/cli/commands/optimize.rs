@@ -42,8 +42,10 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     let directory = open(args, study, &out)?;
     let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
-    let Some(sweep) = sweep(args, study, &evaluator, &out, &interrupted)? else {
-        return Ok(Status::Interrupted);
+    let sweep = match sweep(args, study, &evaluator, &out, &interrupted)? {
+        Sweep::NotWanted => None,
+        Sweep::Done(result) => Some(result),
+        Sweep::Interrupted => return Ok(Status::Interrupted),
     };
     let ended = search(
         args,
@@ -51,7 +53,7 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
         &evaluator,
         &directory,
         &interrupted,
-        sweep.as_ref(),
+        sweep.as_deref(),
     )?;
     let result = &ended.result;
     output::result(&match args.format {
@@ -72,16 +74,26 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     Ok(status(result))
 }
 
-/// The result of the sweep that certifies, if one is asked for; `None` when it was interrupted.
+/// What became of the sweep that certifies.
+pub(super) enum Sweep {
+    /// None was asked for.
+    NotWanted,
+    /// Its result.
+    Done(Box<OptimizeResult>),
+    /// Ctrl-C came first.
+    Interrupted,
+}
+
+/// The sweep that certifies, if one is asked for.
 pub(super) fn sweep(
     args: &OptimizeArgs,
     study: &Study,
     evaluator: &Evaluator,
     out: &Path,
     interrupted: &AtomicBool,
-) -> Result<Option<Option<OptimizeResult>>> {
+) -> Result<Sweep> {
     if !args.certify {
-        return Ok(Some(None));
+        return Ok(Sweep::NotWanted);
     }
     let mut name = out.file_name().unwrap_or_default().to_owned();
     name.push("-sweep");
@@ -95,9 +107,9 @@ pub(super) fn sweep(
     let ended = search(&args, &study, evaluator, &directory, interrupted, None)?;
     if !ended.is_done {
         hint_resume(&ended.result, &place.display().to_string());
-        return Ok(None);
+        return Ok(Sweep::Interrupted);
     }
-    Ok(Some(Some(ended.result)))
+    Ok(Sweep::Done(Box::new(ended.result)))
 }
 
 /// The run directory of a study.

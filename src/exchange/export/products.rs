@@ -1,7 +1,7 @@
 //! The files of each product.
 
 use super::source::{ExportSource, failed};
-use super::{Files, Product};
+use super::{Contents, Files, Product, ProductVersion};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::hermite::Hermite;
@@ -54,12 +54,23 @@ impl ExportSource<'_> {
 
     pub(super) fn tle(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
-        let about = (self.objects.len(), &metadata);
+        let contents = Contents {
+            objects: self.objects.len(),
+            metadata: &metadata,
+        };
         let sets = self.tle_sets()?;
-        let entry = files.add("constellation.tle", (Product::Tle, "3LE"), about, |out| {
-            sets.iter().try_for_each(|set| tle::write(out, set))?;
-            self.loss_of_sets(&sets, true)
-        })?;
+        let entry = files.add(
+            "constellation.tle",
+            ProductVersion {
+                product: Product::Tle,
+                version: "3LE",
+            },
+            contents,
+            |out| {
+                sets.iter().try_for_each(|set| tle::write(out, set))?;
+                self.loss_of_sets(&sets, true)
+            },
+        )?;
         Ok(vec![entry])
     }
 
@@ -68,37 +79,62 @@ impl ExportSource<'_> {
         let metadata = self.sgp4_metadata();
         let header = omm::header(self.choices.ccsds_version, &metadata);
         let version = self.ccsds_version(notation.keyword());
-        let format = (Product::Omm, version.as_str());
+        let format = ProductVersion {
+            product: Product::Omm,
+            version: version.as_str(),
+        };
         let sets = self.element_sets(self.subject.grid.epoch())?;
         let loss = self.loss_of_sets(&sets, false)?;
         if notation == OmmSyntax::Kvn {
             let one = |(set, object): (&sgp4::Elements, &Object)| {
                 let path = format!("omm/{}.omm", object.name);
-                files.add(&path, format, (1, &metadata), |out| {
-                    omm::write_kvn(out, &header, set)?;
-                    Ok(loss.clone())
-                })
+                files.add(
+                    &path,
+                    format,
+                    Contents {
+                        objects: 1,
+                        metadata: &metadata,
+                    },
+                    |out| {
+                        omm::write_kvn(out, &header, set)?;
+                        Ok(loss.clone())
+                    },
+                )
             };
             return sets.par_iter().zip(&self.objects).map(one).collect();
         }
         let path = format!("omm.{notation}");
-        let entry = files.add(&path, format, (sets.len(), &metadata), |out| {
-            match notation {
-                OmmSyntax::Xml | OmmSyntax::Kvn => omm::write_xml(out, &header, &sets)?,
-                OmmSyntax::Json => omm::write_json(out, &sets)?,
-                OmmSyntax::Csv => omm::write_csv(out, &sets)?,
-            }
-            Ok(loss.clone())
-        })?;
+        let entry = files.add(
+            &path,
+            format,
+            Contents {
+                objects: sets.len(),
+                metadata: &metadata,
+            },
+            |out| {
+                match notation {
+                    OmmSyntax::Xml | OmmSyntax::Kvn => omm::write_xml(out, &header, &sets)?,
+                    OmmSyntax::Json => omm::write_json(out, &sets)?,
+                    OmmSyntax::Csv => omm::write_csv(out, &sets)?,
+                }
+                Ok(loss.clone())
+            },
+        )?;
         Ok(vec![entry])
     }
 
     pub(super) fn tle_states(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.sgp4_metadata();
-        let about = (self.objects.len(), &metadata);
-        let format = (Product::TleStates, "1");
+        let contents = Contents {
+            objects: self.objects.len(),
+            metadata: &metadata,
+        };
+        let format = ProductVersion {
+            product: Product::TleStates,
+            version: "1",
+        };
         let grid = self.subject.grid;
-        let entry = files.add("tle-states.csv", format, about, |out| {
+        let entry = files.add("tle-states.csv", format, contents, |out| {
             let mut satellites = Vec::new();
             for (set, propagated) in self.tle_sets()?.iter().zip(self.ephemeris.satellites()) {
                 let orbit = Sgp4Orbit::from_element_set(&tle::as_written(set)?, grid.epoch())
@@ -135,7 +171,10 @@ impl ExportSource<'_> {
             ..Loss::default()
         };
         let version = self.ccsds_version(choices.oem.keyword());
-        let format = (Product::Oem, version.as_str());
+        let format = ProductVersion {
+            product: Product::Oem,
+            version: version.as_str(),
+        };
         let writer = oem::OemWriter {
             version: choices.ccsds_version,
             metadata: &metadata,
@@ -143,8 +182,11 @@ impl ExportSource<'_> {
             hermite,
         };
         if choices.oem == oem::OemSyntax::Xml && choices.oem_combined {
-            let about = (self.objects.len(), &metadata);
-            let entry = files.add("oem.xml", format, about, |out| {
+            let contents = Contents {
+                objects: self.objects.len(),
+                metadata: &metadata,
+            };
+            let entry = files.add("oem.xml", format, contents, |out| {
                 let satellites = self.ephemeris.satellites().iter();
                 writer.combined_xml(out, satellites.zip(&self.objects))?;
                 Ok(loss)
@@ -157,13 +199,21 @@ impl ExportSource<'_> {
                 oem::OemSyntax::Xml => "xml",
             };
             let path = format!("oem/{}.{extension}", satellite.name);
-            files.add(&path, format, (1, &metadata), |out| {
-                match choices.oem {
-                    oem::OemSyntax::Kvn => writer.kvn(out, satellite, object)?,
-                    oem::OemSyntax::Xml => writer.xml(out, satellite, object)?,
-                }
-                Ok(loss.clone())
-            })
+            files.add(
+                &path,
+                format,
+                Contents {
+                    objects: 1,
+                    metadata: &metadata,
+                },
+                |out| {
+                    match choices.oem {
+                        oem::OemSyntax::Kvn => writer.kvn(out, satellite, object)?,
+                        oem::OemSyntax::Xml => writer.xml(out, satellite, object)?,
+                    }
+                    Ok(loss.clone())
+                },
+            )
         })
     }
 
@@ -177,14 +227,26 @@ impl ExportSource<'_> {
         let one =
             |((propagated, satellite), object): ((&EphemerisSatellite, &Satellite), &Object)| {
                 let path = format!("opm/{}.opm", object.name);
-                let format = (Product::Opm, version.as_str());
-                files.add(&path, format, (1, &metadata), |out| {
-                    let teme = self.ephemeris.state(propagated, 0.0)?;
-                    let state = from_teme(teme, choices.frame, epoch, 0.0);
-                    let (elements, at) = (&satellite.elements, (epoch, state));
-                    Opm::new(choices.ccsds_version, &metadata, object, elements, at).write(out)?;
-                    Ok(Loss::default())
-                })
+                let format = ProductVersion {
+                    product: Product::Opm,
+                    version: version.as_str(),
+                };
+                files.add(
+                    &path,
+                    format,
+                    Contents {
+                        objects: 1,
+                        metadata: &metadata,
+                    },
+                    |out| {
+                        let teme = self.ephemeris.state(propagated, 0.0)?;
+                        let state = from_teme(teme, choices.frame, epoch, 0.0);
+                        let elements = &satellite.elements;
+                        let version = choices.ccsds_version;
+                        Opm::new(version, &metadata, object, elements, epoch, state).write(out)?;
+                        Ok(Loss::default())
+                    },
+                )
             };
         satellites
             .par_iter()
@@ -205,12 +267,29 @@ impl ExportSource<'_> {
         };
         self.each(|satellite, _| {
             let path = format!("stk/{}.e", satellite.name);
-            let format = (Product::Stk, stk::FORMAT_VERSION);
-            files.add(&path, format, (1, &metadata), |out| {
-                let states = (&sampled, satellite);
-                stk::write(out, &satellite.name, &metadata, states, hermite)?;
-                Ok(loss.clone())
-            })
+            let format = ProductVersion {
+                product: Product::Stk,
+                version: stk::FORMAT_VERSION,
+            };
+            files.add(
+                &path,
+                format,
+                Contents {
+                    objects: 1,
+                    metadata: &metadata,
+                },
+                |out| {
+                    stk::write(
+                        out,
+                        &satellite.name,
+                        &metadata,
+                        &sampled,
+                        satellite,
+                        hermite,
+                    )?;
+                    Ok(loss.clone())
+                },
+            )
         })
     }
 
@@ -235,14 +314,25 @@ impl ExportSource<'_> {
         };
         let one = |(index, part): (usize, &[(&EphemerisSatellite, &Object)])| {
             let path = format!("sp3/part-{:02}.sp3", index + 1);
-            let about = (part.len(), &metadata);
-            files.add(&path, (Product::Sp3, version.keyword()), about, |out| {
-                sp3::write(out, version, letter, &metadata, &sampled, part)?;
-                Ok(Loss {
-                    note: note(part),
-                    ..Loss::default()
-                })
-            })
+            let contents = Contents {
+                objects: part.len(),
+                metadata: &metadata,
+            };
+            files.add(
+                &path,
+                ProductVersion {
+                    product: Product::Sp3,
+                    version: version.keyword(),
+                },
+                contents,
+                |out| {
+                    sp3::write(out, version, letter, &metadata, &sampled, part)?;
+                    Ok(Loss {
+                        note: note(part),
+                        ..Loss::default()
+                    })
+                },
+            )
         };
         let parts = satellites.par_chunks(version.most_satellites());
         let mut entries: Vec<FileEntry> = parts.enumerate().map(one).collect::<Result<_, _>>()?;
@@ -273,28 +363,58 @@ impl ExportSource<'_> {
         let note = format!("nominal {preset}: slots, not the satellites in orbit");
         metadata.subject.insert(0, note.clone());
         let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
-        let about = (satellites.len(), &metadata);
-        files.add(&path, (Product::Sp3, version.keyword()), about, |out| {
-            sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
-            Ok(Loss {
-                note: Some(note),
-                ..Loss::default()
-            })
-        })
+        let contents = Contents {
+            objects: satellites.len(),
+            metadata: &metadata,
+        };
+        files.add(
+            &path,
+            ProductVersion {
+                product: Product::Sp3,
+                version: version.keyword(),
+            },
+            contents,
+            |out| {
+                sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
+                Ok(Loss {
+                    note: Some(note),
+                    ..Loss::default()
+                })
+            },
+        )
     }
 
     pub(super) fn csv(&self, files: &Files<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::Teme);
-        let about = (self.objects.len(), &metadata);
-        let elements = files.add("elements.csv", (Product::Csv, "1"), about, |out| {
-            let rows = self.satellites.iter().zip(&self.objects);
-            csv::write_elements(out, rows, self.subject.grid.epoch())?;
-            Ok(Loss::default())
-        })?;
-        let states = files.add("states.csv", (Product::Csv, "1"), about, |out| {
-            csv::write_states(out, &self.ephemeris)?;
-            Ok(Loss::default())
-        })?;
+        let contents = Contents {
+            objects: self.objects.len(),
+            metadata: &metadata,
+        };
+        let elements = files.add(
+            "elements.csv",
+            ProductVersion {
+                product: Product::Csv,
+                version: "1",
+            },
+            contents,
+            |out| {
+                let rows = self.satellites.iter().zip(&self.objects);
+                csv::write_elements(out, rows, self.subject.grid.epoch())?;
+                Ok(Loss::default())
+            },
+        )?;
+        let states = files.add(
+            "states.csv",
+            ProductVersion {
+                product: Product::Csv,
+                version: "1",
+            },
+            contents,
+            |out| {
+                csv::write_states(out, &self.ephemeris)?;
+                Ok(Loss::default())
+            },
+        )?;
         Ok(vec![elements, states])
     }
 }

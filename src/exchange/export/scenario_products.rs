@@ -2,7 +2,7 @@
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
-use super::{Files, Product};
+use super::{Contents, Files, Product, ProductVersion};
 use crate::constellation::Satellite;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
 use crate::ephemeris::sampled::Sampled;
@@ -60,13 +60,19 @@ impl ExportSource<'_> {
             mask_deg: setup.mask.degrees(),
         };
         let metadata = self.propagated_metadata(Frame::Teme);
-        let format = (Product::Stk, stk::FORMAT_VERSION);
+        let format = ProductVersion {
+            product: Product::Stk,
+            version: stk::FORMAT_VERSION,
+        };
         let noted = |note: &str| Loss {
             note: Some(note.to_owned()),
             ..Loss::default()
         };
-        let about = (satellites.len(), &metadata);
-        let commands = files.add(&in_scenario("connect.txt"), format, about, |out| {
+        let contents = Contents {
+            objects: satellites.len(),
+            metadata: &metadata,
+        };
+        let commands = files.add(&in_scenario("connect.txt"), format, contents, |out| {
             scenario.write(out)?;
             Ok(noted("STK Connect commands; not tried in STK"))
         })?;
@@ -77,12 +83,18 @@ impl ExportSource<'_> {
         let mut told = scene.assumptions();
         told.extend(by_hand(one_mask, with_files));
         entries.push(commands.assuming(told));
-        entries.push(
-            files.add(&in_scenario("points.pnt"), format, (0, &metadata), |out| {
+        entries.push(files.add(
+            &in_scenario("points.pnt"),
+            format,
+            Contents {
+                objects: 0,
+                metadata: &metadata,
+            },
+            |out| {
                 scenario.write_points(out)?;
                 Ok(noted("STK point file"))
-            })?,
-        );
+            },
+        )?);
         Ok(entries)
     }
 
@@ -107,16 +119,27 @@ impl ExportSource<'_> {
         for one in gnss {
             if let Some(propagated) = &one.propagated {
                 let path = in_scenario(&format!("gnss/{}.e", one.name));
-                let format = (Product::Stk, stk::FORMAT_VERSION);
-                entries.push(files.add(&path, format, (1, &metadata), |out| {
-                    let hermite =
-                        crate::ephemeris::hermite::Hermite::measured(&sampled, propagated)?;
-                    stk::write(out, &one.name, &metadata, (&sampled, propagated), hermite)?;
-                    Ok(Loss {
-                        interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
-                        ..Loss::default()
-                    })
-                })?);
+                let format = ProductVersion {
+                    product: Product::Stk,
+                    version: stk::FORMAT_VERSION,
+                };
+                entries.push(files.add(
+                    &path,
+                    format,
+                    Contents {
+                        objects: 1,
+                        metadata: &metadata,
+                    },
+                    |out| {
+                        let hermite =
+                            crate::ephemeris::hermite::Hermite::measured(&sampled, propagated)?;
+                        stk::write(out, &one.name, &metadata, &sampled, propagated, hermite)?;
+                        Ok(Loss {
+                            interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
+                            ..Loss::default()
+                        })
+                    },
+                )?);
             }
         }
         Ok(entries)
@@ -138,22 +161,31 @@ impl ExportSource<'_> {
             return Err(cannot(what, "use an epoch of whole milliseconds"));
         };
         let metadata = self.propagated_metadata(Frame::Eme2000);
-        let about = (self.objects.len(), &metadata);
-        let format = (Product::Gmat, gmat::FORMAT_VERSION);
+        let contents = Contents {
+            objects: self.objects.len(),
+            metadata: &metadata,
+        };
+        let format = ProductVersion {
+            product: Product::Gmat,
+            version: gmat::FORMAT_VERSION,
+        };
         let named: Vec<(String, Satellite)> = self
             .satellites
             .iter()
             .zip(&self.objects)
             .map(|(satellite, object)| (gmat::script_name(&object.name), *satellite))
             .collect();
-        let script = files.add("gmat/navwalker.script", format, about, |out| {
-            gmat::write_script(out, &metadata.comments(), &named, (model, grid, &start))?;
+        let script = files.add("gmat/navwalker.script", format, contents, |out| {
+            gmat::write_script(out, &metadata.comments(), &named, model, grid, &start)?;
             Ok(Loss::default())
         })?;
         let field = files.add(
             &format!("gmat/{}", gmat::FIELD_NAME),
             format,
-            (0, &metadata),
+            Contents {
+                objects: 0,
+                metadata: &metadata,
+            },
             |out| {
                 gmat::write_field(out)?;
                 Ok(Loss::default())
@@ -181,7 +213,7 @@ impl ExportSource<'_> {
                 let what = format!("{name} of {}, which {}", system.name(), reason(why));
                 cannot(what, "take its operator's almanac, or use --as tle")
             })?;
-            entries.push(self.almanac_file(files, system, (&satellites, &almanacs))?);
+            entries.push(self.almanac_file(files, system, &satellites, &almanacs)?);
         }
         Ok(entries)
     }
@@ -190,25 +222,37 @@ impl ExportSource<'_> {
         &self,
         files: &Files<'_>,
         system: &System,
-        (satellites, almanacs): (&[GnssSatellite], &[Almanac]),
+        satellites: &[GnssSatellite],
+        almanacs: &[Almanac],
     ) -> Result<FileEntry, WriteError> {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let path = format!("yuma/{}.alm", system.name());
-        let about = (almanacs.len(), &metadata);
-        let entry = files.add(&path, (Product::Yuma, yuma::FORMAT_VERSION), about, |out| {
-            for almanac in almanacs {
-                almanac.write(out)?;
-                writeln!(out)?;
-            }
-            let shifts = satellites.iter().zip(almanacs);
-            let shift = |(one, almanac): (&GnssSatellite, &Almanac)| {
-                radius_shift_km(almanac, &one.orbit).abs()
-            };
-            Ok(Loss {
-                theory_max_km: shifts.map(shift).reduce(f64::max),
-                ..Loss::default()
-            })
-        })?;
+        let contents = Contents {
+            objects: almanacs.len(),
+            metadata: &metadata,
+        };
+        let entry = files.add(
+            &path,
+            ProductVersion {
+                product: Product::Yuma,
+                version: yuma::FORMAT_VERSION,
+            },
+            contents,
+            |out| {
+                for almanac in almanacs {
+                    almanac.write(out)?;
+                    writeln!(out)?;
+                }
+                let shifts = satellites.iter().zip(almanacs);
+                let shift = |(one, almanac): (&GnssSatellite, &Almanac)| {
+                    radius_shift_km(almanac, &one.orbit).abs()
+                };
+                Ok(Loss {
+                    theory_max_km: shifts.map(shift).reduce(f64::max),
+                    ..Loss::default()
+                })
+            },
+        )?;
         let names: Vec<String> = (1..)
             .zip(satellites)
             .map(|(prn, one)| format!("PRN-{prn:02} = {}", one.name))
@@ -247,7 +291,7 @@ fn gmat_assumptions(model: Model) -> Vec<String> {
 
 fn reason(why: NoAlmanac) -> &'static str {
     match why {
-        NoAlmanac::Sgp4 => "propagates by SGP4",
+        NoAlmanac::Sgp4 => "is propagated by SGP4",
         NoAlmanac::Eccentric => "is on an ellipse, whose perigee moves",
     }
 }

@@ -2,7 +2,7 @@
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
-use super::{Files, Product};
+use super::{Contents, Files, Product, ProductVersion};
 use crate::ephemeris::EphemerisError;
 use crate::exchange::manifest::Loss;
 use crate::formats::maps::scene::{MAX_SHOWN_POINTS, Scene};
@@ -25,14 +25,20 @@ impl ExportSource<'_> {
 
     pub(super) fn metrics(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
-        let about = (0, &metadata);
-        let format = (Product::Metrics, "1");
+        let contents = Contents {
+            objects: 0,
+            metadata: &metadata,
+        };
+        let format = ProductVersion {
+            product: Product::Metrics,
+            version: "1",
+        };
         let series = scene.series()?;
-        let points = files.add("metrics/points.csv", format, about, |out| {
+        let points = files.add("metrics/points.csv", format, contents, |out| {
             csv::write_records(out, &series.points)?;
             Ok(Loss::default())
         })?;
-        let epochs = files.add("metrics/epochs.csv", format, about, |out| {
+        let epochs = files.add("metrics/epochs.csv", format, contents, |out| {
             csv::write_records(out, &series.epochs)?;
             Ok(Loss::default())
         })?;
@@ -45,9 +51,15 @@ impl ExportSource<'_> {
     pub(super) fn czml(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Czml, scene)?;
         let metadata = self.propagated_metadata(Frame::EarthFixed);
-        let about = (self.objects.len(), &metadata);
-        let format = (Product::Czml, czml::FORMAT_VERSION);
-        let entry = files.add("scene.czml", format, about, |out| {
+        let contents = Contents {
+            objects: self.objects.len(),
+            metadata: &metadata,
+        };
+        let format = ProductVersion {
+            product: Product::Czml,
+            version: czml::FORMAT_VERSION,
+        };
+        let entry = files.add("scene.czml", format, contents, |out| {
             let design = &self.subject.design;
             let error_km = czml::write(out, scene, design, &self.ephemeris)?;
             Ok(Loss {
@@ -65,24 +77,38 @@ impl ExportSource<'_> {
 
     pub(super) fn geojson(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
-        let format = (Product::Geojson, geojson::FORMAT_VERSION);
+        let format = ProductVersion {
+            product: Product::Geojson,
+            version: geojson::FORMAT_VERSION,
+        };
         let noted = |note: &str| Loss {
             note: Some(note.to_owned()),
             ..Loss::default()
         };
-        let region = files.add("geojson/region.geojson", format, (0, &metadata), |out| {
-            geojson::write_region(out, scene)?;
-            Ok(noted(
-                "metrics over the whole span; PDOP over the solved samples",
-            ))
-        })?;
+        let region = files.add(
+            "geojson/region.geojson",
+            format,
+            Contents {
+                objects: 0,
+                metadata: &metadata,
+            },
+            |out| {
+                geojson::write_region(out, scene)?;
+                Ok(noted(
+                    "metrics over the whole span; PDOP over the solved samples",
+                ))
+            },
+        )?;
         let ground = self.ground(scene)?;
-        let about = (ground.len(), &metadata);
-        let tracks = files.add("geojson/ground-tracks.geojson", format, about, |out| {
+        let contents = Contents {
+            objects: ground.len(),
+            metadata: &metadata,
+        };
+        let tracks = files.add("geojson/ground-tracks.geojson", format, contents, |out| {
             geojson::write_tracks(out, &ground)?;
             Ok(noted("one revolution from the epoch"))
         })?;
-        let footprints = files.add("geojson/footprints.geojson", format, about, |out| {
+        let footprints = files.add("geojson/footprints.geojson", format, contents, |out| {
             geojson::write_footprints(out, &ground)?;
             Ok(noted(
                 "where each satellite is above visibility.mask-deg at the epoch",
@@ -98,9 +124,15 @@ impl ExportSource<'_> {
         check_points(Product::Kml, scene)?;
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let ground = self.ground(scene)?;
-        let about = (ground.len(), &metadata);
-        let format = (Product::Kml, kml::FORMAT_VERSION);
-        let entry = files.add("scene.kml", format, about, |out| {
+        let contents = Contents {
+            objects: ground.len(),
+            metadata: &metadata,
+        };
+        let format = ProductVersion {
+            product: Product::Kml,
+            version: kml::FORMAT_VERSION,
+        };
+        let entry = files.add("scene.kml", format, contents, |out| {
             kml::write(out, scene, &self.subject.design, &ground)?;
             Ok(Loss {
                 note: Some(

@@ -113,12 +113,13 @@ impl<'a> ExportSource<'a> {
             let exact = of_set(set)?;
             theory.widen(&self.apart(
                 propagated,
-                (&exact, propagated.propagator.as_ref()),
+                &exact,
+                propagated.propagator.as_ref(),
                 hourly,
             )?);
             if tle {
                 let rounded = of_set(&tle::as_written(set)?)?;
-                digits.widen(&self.apart(propagated, (&exact, &rounded), hourly)?);
+                digits.widen(&self.apart(propagated, &exact, &rounded, hourly)?);
             }
         }
         Ok(Loss {
@@ -133,7 +134,8 @@ impl<'a> ExportSource<'a> {
     fn apart(
         &self,
         propagated: &EphemerisSatellite,
-        (one, other): (&dyn Propagator, &dyn Propagator),
+        one: &dyn Propagator,
+        other: &dyn Propagator,
         grid: TimeGrid,
     ) -> Result<PropagatorDistance, EphemerisError> {
         PropagatorDistance::between(one, other, grid).map_err(|source| failed(propagated, source))

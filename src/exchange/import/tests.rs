@@ -54,7 +54,7 @@ fn apart_km(propagated: &Ephemeris) -> f64 {
     worst
 }
 
-/// Every product propagates again: states to their digits, SGP4 to the J3 terms and the shift of the
+/// Every product can be propagated again: states to their digits, SGP4 to the J3 terms and the shift of the
 /// radius that mean J2 lacks (under 20 km at 55° in an hour).
 #[test]
 fn every_product_propagates_where_the_design_does() {

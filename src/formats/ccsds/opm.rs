@@ -75,7 +75,8 @@ impl Opm {
         metadata: &Metadata,
         object: &Object,
         elements: &MeanElements,
-        (epoch, state): (Epoch, State<Frame>),
+        epoch: Epoch,
+        state: State<Frame>,
     ) -> Self {
         let angles = [
             elements.inclination_rad,

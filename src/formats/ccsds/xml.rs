@@ -276,7 +276,8 @@ pub(crate) fn begin_ndm(out: &mut impl Write, version: CcsdsVersion) -> io::Resu
 /// Begins a file of one message.
 pub(crate) fn begin_file(
     out: &mut impl Write,
-    (element, id): (&str, &str),
+    element: &str,
+    id: &str,
     version: CcsdsVersion,
 ) -> io::Result<()> {
     let schema = schema(version);

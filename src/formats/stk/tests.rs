@@ -54,7 +54,8 @@ fn written(frame: Frame, step_s: f64) -> String {
         &mut out,
         "NW-P01-S02",
         &metadata,
-        (&sampled, satellite),
+        &sampled,
+        satellite,
         hermite,
     )
     .unwrap();

@@ -20,7 +20,7 @@ fn validate_week_and_time_of_applicability() {
     assert_eq!((at.week, at.toa_s), (2348, 0.0));
 }
 
-/// Every satellite of every preset stands where it propagates, from a day before to a day after the time of
+/// Every satellite of every preset is where its own propagation puts it, from a day before to a day after the time of
 /// applicability, but for the shift of its radius; degrees for radians, or a node that is not turned by
 /// sidereal time, are thousands of kilometres.
 #[test]

@@ -201,7 +201,7 @@ fn validate_radius_shift_of_an_ellipse() {
     assert!((average - expected).abs() < 1e-9, "{average} {expected}");
 }
 
-/// An SGP4 set with e = 0 propagates the frozen eccentricity, its perigee in the north: against J2
+/// An SGP4 set with e = 0 has the frozen eccentricity, its perigee in the north: against J2
 /// alone its radius swings by -a e sin u.
 #[test]
 fn validate_frozen_eccentricity_against_sgp4() {

@@ -106,7 +106,7 @@ struct Cuts {
     orbit: Orbit,
 }
 
-/// What the globe propagates: mean elements at the epoch and their rates.
+/// What the globe draws: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
     semi_major_axis_km: f64,
@@ -189,7 +189,9 @@ impl Payload {
             reference: run.reference().map(<[f64]>::to_vec),
             levels: drawn_levels().into_iter().map(short).collect(),
             cuts: of_members.collect(),
-            region: setup.zip(run.scenario.as_ref()).and_then(RegionData::new),
+            region: setup
+                .zip(run.scenario.as_ref())
+                .and_then(|(setup, scenario)| RegionData::new(setup, scenario)),
             world: setup
                 .zip(run.scenario.as_ref())
                 .map(|(setup, scenario)| World::new(setup, scenario)),
@@ -401,7 +403,7 @@ impl Orbit {
 }
 
 impl RegionData {
-    fn new((setup, scenario): (&Setup, &Scenario)) -> Option<Self> {
+    fn new(setup: &Setup, scenario: &Scenario) -> Option<Self> {
         let step_deg = match &scenario.region {
             Region::Grid(grid) => Some(grid.step_deg),
             Region::Points { .. } => None,

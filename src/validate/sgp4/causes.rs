@@ -10,7 +10,7 @@ use std::f64::consts::{SQRT_2, TAU};
 /// Roehrich, *Spacetrack Report* 3 (1980), section 6), which no J2 model has.
 const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
 
-/// -J3/J2 of WGS-72, the constants that SGP4 propagates (Vallado et al., AIAA 2006-6753, table 1).
+/// -J3/J2 of WGS-72, the constants of SGP4 (Vallado et al., AIAA 2006-6753, table 1).
 const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
 /// Share by which a closed form at e = 0 and first order may be exceeded: terms of order e and
@@ -119,7 +119,7 @@ impl Causes {
     }
 }
 
-/// Whether SGP4 propagates its deep-space theory for an orbit.
+/// Whether SGP4 uses its deep-space theory for an orbit.
 pub(in crate::validate) fn is_deep_space(orbit: &MeanElements) -> bool {
     TAU / orbit.kepler_mean_motion_rad_s() >= DEEP_SPACE_PERIOD_S
 }

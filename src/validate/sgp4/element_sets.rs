@@ -63,18 +63,14 @@ impl WrittenSets {
         exact: &Ephemeris,
     ) -> Result<Findings, ValidateError> {
         let digits = compare(
-            (
-                "sgp4-at-tle-epoch/sgp4-written-tle",
-                "digits of a TLE: angles to 1e-4 deg, mean motion to 1e-8 rev/day",
-            ),
+            "sgp4-at-tle-epoch/sgp4-written-tle",
+            "digits of a TLE: angles to 1e-4 deg, mean motion to 1e-8 rev/day",
             &self.unrounded,
             &self.propagated,
         )?;
         let epoch = compare(
-            (
-                "sgp4/sgp4-at-tle-epoch",
-                "epoch of a TLE, in steps of 1e-8 day, elements carried there by J2",
-            ),
+            "sgp4/sgp4-at-tle-epoch",
+            "epoch of a TLE, in steps of 1e-8 day, elements carried there by J2",
             exact,
             &self.unrounded,
         )?;

@@ -69,7 +69,7 @@ pub(super) fn checks(
             },
             forced[1],
             None,
-            "an element set with e = 0 propagates this eccentricity at w = 90 deg",
+            "SGP4 gives an element set with e = 0 this eccentricity at w = 90 deg",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/closed-form",

@@ -109,7 +109,7 @@ pub(super) fn checks(
             },
             ours[n],
             Some(1e-6 + if n == 1 { leftover_deg } else { 0.0 }),
-            "states of the model against the closed form of its rates: rounding, and residual from an incomplete revolution",
+            "states of the model against the closed form of its rates: rounding, and the residual of an incomplete revolution",
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/sgp4"),
@@ -120,7 +120,7 @@ pub(super) fn checks(
             },
             theirs[n],
             scale.gate(lever * in_track_deg + leftover_deg),
-            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and residual from an incomplete revolution"),
+            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and the residual of an incomplete revolution"),
         ));
     }
     Ok(checks)

@@ -1,6 +1,6 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{Ended, hint_resume, interrupt_flag, open, search, status, sweep, text};
+use super::{Ended, Sweep, hint_resume, interrupt_flag, open, search, status, sweep, text};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
@@ -33,8 +33,10 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
     }
     let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
-    let Some(sweep) = sweep(args, &study, &evaluator, &out, &interrupted)? else {
-        return Ok(Status::Interrupted);
+    let sweep = match sweep(args, &study, &evaluator, &out, &interrupted)? {
+        Sweep::NotWanted => None,
+        Sweep::Done(result) => Some(result),
+        Sweep::Interrupted => return Ok(Status::Interrupted),
     };
     let mut results = Vec::new();
     for seed in first..=last {
@@ -47,7 +49,7 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
             &evaluator,
             &directory,
             &interrupted,
-            sweep.as_ref(),
+            sweep.as_deref(),
         )?;
         if !is_done {
             hint_resume(&result, &place.display().to_string());

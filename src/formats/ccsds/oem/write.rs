@@ -72,7 +72,7 @@ impl OemWriter<'_> {
         satellite: &EphemerisSatellite,
         object: &Object,
     ) -> Result<(), WriteError> {
-        xml::begin_file(out, ("oem", VERSION), self.version)?;
+        xml::begin_file(out, "oem", VERSION, self.version)?;
         self.xml_content(out, satellite, object)
     }
 
@@ -104,7 +104,7 @@ impl OemWriter<'_> {
         xml::write_header(out, &CcsdsHeader::new(self.version, self.metadata))?;
         writeln!(out, "<body>")?;
         let segment = segment_metadata(self.metadata, object, self.sampled.grid(), self.hermite);
-        super::xml::begin_segment(out, (&segment, &[]), digits)?;
+        super::xml::begin_segment(out, &segment, &[], digits)?;
         self.lines(satellite, |line| super::xml::write_state(out, line, digits))?;
         super::xml::end_segment(out)?;
         writeln!(out, "</body>\n</oem>")?;

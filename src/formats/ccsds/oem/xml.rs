@@ -33,12 +33,12 @@ impl Oem {
     /// # Errors
     /// If writing fails.
     pub fn write_xml(&self, out: &mut impl Write) -> io::Result<()> {
-        begin_file(out, ("oem", VERSION), self.header.version)?;
+        begin_file(out, "oem", VERSION, self.header.version)?;
         write_header(out, &self.header)?;
         writeln!(out, "<body>")?;
         for segment in &self.segments {
             let digits = segment.digits();
-            begin_segment(out, (&segment.metadata, &segment.comments), digits)?;
+            begin_segment(out, &segment.metadata, &segment.comments, digits)?;
             for line in &segment.states {
                 write_state(out, line, digits)?;
             }
@@ -51,7 +51,8 @@ impl Oem {
 /// Writes what stands before the states of a segment.
 pub(super) fn begin_segment(
     out: &mut impl Write,
-    (metadata, comments): (&SegmentMetadata, &[String]),
+    metadata: &SegmentMetadata,
+    comments: &[String],
     digits: SecondDigits,
 ) -> io::Result<()> {
     writeln!(out, "<segment>\n<metadata>")?;

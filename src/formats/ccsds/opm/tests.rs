@@ -109,7 +109,8 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
             &metadata,
             &object,
             &elements,
-            (epoch, state),
+            epoch,
+            state,
         ),
     )
 }

@@ -1,4 +1,4 @@
-//! Propagations that are more than other elements: mislabelled states, another pole, an integration.
+//! Propagators that are more than other elements: mislabelled states, another pole, an integration.
 
 use super::{OtherPropagator, propagate_each};
 use crate::earth::J2;
