@@ -97,7 +97,7 @@ fn every_type_has_a_name_of_its_own() {
         let count = places.get(*name).map_or(0, Vec::len);
         assert!(
             count > 1 && !reason.is_empty(),
-            "{name} is no exception any more"
+            "{name} is not an exception any longer"
         );
     }
 }

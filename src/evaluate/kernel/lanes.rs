@@ -252,7 +252,7 @@ pub(super) type Normal = [Lanes<f32>; 6];
 pub(super) struct FixedTile<'a> {
     pub(super) normal: &'a Normal,
     pub(super) remainder: &'a Normal,
-    /// Satellites less clocks of the systems with clocks of their own.
+    /// Satellites minus clocks of the systems with clocks of their own.
     pub(super) surplus: &'a [u8; LANES],
     /// The GNSS satellites that share their clock with the design, if any do.
     pub(super) shared: Option<&'a SharedClock>,
@@ -309,7 +309,7 @@ pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
     }))
 }
 
-/// PDOP at the points of a tile, and satellites less clock states.
+/// PDOP at the points of a tile, and satellites minus clock states.
 pub(super) struct Solution<R> {
     /// [`Real::NO_SOLUTION`] where the position block is not positive definite.
     pub(super) pdop: Lanes<R>,
