@@ -7,15 +7,16 @@
 
 mod sampled;
 
-use navwalker::formats::csv::{self, ElementsRow};
-use navwalker::formats::text::finding::Severity;
 use navwalker::exchange::import::{Fleet, ReadFleetError};
 use navwalker::exchange::lint::{self, Format};
-use navwalker::formats::metadata::{CatalogNumber, Object};
-use navwalker::formats::ccsds::omm::{self, Notation};
-use navwalker::formats::{CcsdsHeader, CcsdsVersion, ReadError};
-use navwalker::formats::maps::czml;
+use navwalker::formats::ReadError;
+use navwalker::formats::ccsds::omm::{self, OmmSyntax};
+use navwalker::formats::ccsds::{CcsdsHeader, CcsdsVersion};
 use navwalker::formats::ccsds::{oem, opm};
+use navwalker::formats::csv::{self, ElementsRow};
+use navwalker::formats::maps::czml;
+use navwalker::formats::metadata::{CatalogNumber, Object};
+use navwalker::formats::text::finding::Severity;
 use navwalker::formats::{stk, tle};
 use navwalker::frames::{Frame, State};
 use navwalker::keyword::Keyword;
@@ -99,7 +100,7 @@ fn same_set(one: &sgp4::Elements, other: &sgp4::Elements) -> bool {
 
 type Message = (Option<CcsdsHeader>, sgp4::Elements);
 
-fn write_omm(notation: Notation, messages: &[Message]) -> Vec<u8> {
+fn write_omm(notation: OmmSyntax, messages: &[Message]) -> Vec<u8> {
     let mut out = Vec::new();
     let header = messages.iter().find_map(|(header, _)| header.clone());
     let header = header.unwrap_or_else(|| CcsdsHeader {
@@ -112,18 +113,18 @@ fn write_omm(notation: Notation, messages: &[Message]) -> Vec<u8> {
     });
     let sets: Vec<_> = messages.iter().map(|(_, set)| set.clone()).collect();
     match notation {
-        Notation::Kvn => sets
+        OmmSyntax::Kvn => sets
             .iter()
             .try_for_each(|set| omm::write_kvn(&mut out, &header, set)),
-        Notation::Xml => omm::write_xml(&mut out, &header, &sets),
-        Notation::Json => omm::write_json(&mut out, &sets),
-        Notation::Csv => omm::write_csv(&mut out, &sets),
+        OmmSyntax::Xml => omm::write_xml(&mut out, &header, &sets),
+        OmmSyntax::Json => omm::write_json(&mut out, &sets),
+        OmmSyntax::Csv => omm::write_csv(&mut out, &sets),
     }
     .expect("what is read can be written");
     out
 }
 
-fn read_omm(bytes: &[u8], notation: Notation) -> Result<Vec<Message>, ReadError> {
+fn read_omm(bytes: &[u8], notation: OmmSyntax) -> Result<Vec<Message>, ReadError> {
     let messages = omm::read(bytes, notation)?;
     Ok(messages
         .into_iter()
@@ -134,10 +135,10 @@ fn read_omm(bytes: &[u8], notation: Notation) -> Result<Vec<Message>, ReadError>
 /// Mean-elements messages in the notation that the bytes show.
 pub fn omm(bytes: &[u8]) {
     let notation = match Format::of(bytes, Some(".omm")) {
-        Format::OmmXml => Notation::Xml,
-        Format::OmmJson => Notation::Json,
-        Format::OmmCsv => Notation::Csv,
-        _ => Notation::Kvn,
+        Format::OmmXml => OmmSyntax::Xml,
+        Format::OmmJson => OmmSyntax::Json,
+        Format::OmmCsv => OmmSyntax::Csv,
+        _ => OmmSyntax::Kvn,
     };
     let Ok(messages) = read_omm(bytes, notation) else {
         return;

@@ -1,12 +1,12 @@
 //! Formats whose writers take satellites on a grid: what is read is propagated, written and read back.
 
+use navwalker::ephemeris::sampled::Sampled;
 use navwalker::ephemeris::{Ephemeris, EphemerisSatellite};
-use navwalker::formats::csv;
 use navwalker::exchange::import::Fleet;
 use navwalker::exchange::lint::Format;
+use navwalker::formats::csv;
 use navwalker::formats::metadata::{Metadata, Object, Theory};
-use navwalker::ephemeris::sampled::Sampled;
-use navwalker::formats::sp3::{self as format, Version};
+use navwalker::formats::sp3::{self as format, Sp3Version};
 use navwalker::formats::text::timestamp::TimeSystem;
 use navwalker::formats::trajectory::Trajectory;
 use navwalker::frames::{EarthFixed, Frame};
@@ -93,10 +93,11 @@ pub fn sp3(bytes: &[u8]) {
         subject: Vec::new(),
     };
     let sampled = Sampled::new(&ephemeris, EarthFixed);
-    let pairs: Vec<(&EphemerisSatellite, &Object)> = ephemeris.satellites().iter().zip(&objects).collect();
+    let pairs: Vec<(&EphemerisSatellite, &Object)> =
+        ephemeris.satellites().iter().zip(&objects).collect();
     let mut out = Vec::new();
     // What its columns do not hold is refused with a reason.
-    if format::write(&mut out, Version::D, 'L', &metadata, &sampled, &pairs).is_err() {
+    if format::write(&mut out, Sp3Version::D, 'L', &metadata, &sampled, &pairs).is_err() {
         return;
     }
     let (_, again) =
