@@ -1,11 +1,19 @@
-//! UTC epochs, their sidereal time, and the sampling of a span.
+//! Instants, their labels in UTC, sidereal time, and the sampling of a span.
 //!
-//! chrono carries UTC; sidereal time and leap seconds come from the SOFA port.
-//! UT1 is taken to equal UTC throughout (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator,
-//! absorbed by the pseudo-Earth-fixed frame).
+//! Time is counted in SI seconds. An [`Epoch`] is an instant of TAI, so that seconds between instants are
+//! those that elapse, over a leap second too; chrono carries its label in UTC, where the leap second is 23:59:60.
+//! Sidereal time and leap seconds come from the SOFA port.
+//!
+//! UT1 is UTC at the epoch of the scenario and advances with SI seconds from there, so that the Earth
+//! turns evenly over a leap second (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator, absorbed by the
+//! pseudo-Earth-fixed frame).
+
+mod leap;
+
+pub use leap::{FIRST_YEAR, LEAP_SECONDS_END, ends_with_leap_second, leap_seconds_note};
 
 use crate::units::SECONDS_PER_DAY;
-use chrono::{DateTime, Datelike, TimeDelta, Timelike, Utc};
+use chrono::{DateTime, Datelike, NaiveDateTime, Timelike, Utc};
 use std::fmt;
 use thiserror::Error;
 
@@ -31,57 +39,112 @@ pub enum TimeError {
     },
 }
 
-/// An instant of UTC.
+/// TT - TAI, s.
+pub(crate) const TT_MINUS_TAI_S: f64 = 32.184;
+
+/// An instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Epoch(DateTime<Utc>);
+pub struct Epoch {
+    /// Whole seconds of TAI since its midnight of 1 January 1970.
+    tai_s: i64,
+    /// Nanoseconds of the second, below 1e9.
+    nanosecond: u32,
+}
+
+/// Nanoseconds in a second.
+const NANOSECONDS: i64 = 1_000_000_000;
 
 impl Epoch {
-    /// The epoch of a UTC date and time.
+    /// The instant of a UTC date and time; chrono keeps 23:59:60 as a nanosecond count past 1e9.
+    ///
+    /// On a day without a leap second, 23:59:60 is the midnight after it.
     #[must_use]
     pub fn from_utc(utc: DateTime<Utc>) -> Self {
-        Self(utc)
+        let tai_minus_utc_s = leap::tai_minus_utc_s(utc.date_naive());
+        let nanosecond = i64::from(utc.nanosecond());
+        Self {
+            tai_s: utc.timestamp() + nanosecond / NANOSECONDS + tai_minus_utc_s,
+            nanosecond: (nanosecond % NANOSECONDS) as u32,
+        }
     }
 
-    /// The date and time in UTC.
-    #[must_use]
-    pub fn utc(self) -> DateTime<Utc> {
-        self.0
-    }
-
-    /// This epoch moved by a number of seconds, to the nearest nanosecond.
+    /// The date and time in UTC; chrono keeps 23:59:60 as a nanosecond count past 1e9.
     ///
     /// Saturates beyond the range of the calendar.
     #[must_use]
-    pub fn plus_seconds(self, seconds: f64) -> Self {
-        let whole = seconds.floor();
-        let nanos = ((seconds - whole) * 1e9).round() as i64;
-        let delta = TimeDelta::try_seconds(whole as i64).unwrap_or(TimeDelta::MAX);
-        let moved = self
-            .0
-            .checked_add_signed(delta)
-            .unwrap_or(DateTime::<Utc>::MAX_UTC);
-        Self(
-            moved
-                .checked_add_signed(TimeDelta::nanoseconds(nanos))
-                .unwrap_or(moved),
-        )
+    pub fn utc(self) -> DateTime<Utc> {
+        let label = |seconds, nanosecond| {
+            let label = DateTime::from_timestamp(seconds, nanosecond);
+            label.unwrap_or(DateTime::<Utc>::MAX_UTC)
+        };
+        // UTC is behind TAI by less than a day: the date is that of TAI, or the one before.
+        let date = label(self.tai_s, 0).date_naive();
+        let later = label(self.tai_s - leap::tai_minus_utc_s(date), self.nanosecond);
+        if later.date_naive() == date {
+            return later;
+        }
+        let date = date.pred_opt().unwrap_or(date);
+        let seconds = self.tai_s - leap::tai_minus_utc_s(date);
+        let earlier = label(seconds, self.nanosecond);
+        if earlier.date_naive() == date {
+            return earlier;
+        }
+        label(seconds - 1, self.nanosecond + NANOSECONDS as u32)
     }
 
-    /// Seconds from `earlier` to this epoch.
+    /// The instant of a TAI date and time.
+    #[must_use]
+    pub fn from_tai(tai: NaiveDateTime) -> Self {
+        let nanosecond = i64::from(tai.nanosecond());
+        Self {
+            tai_s: tai.and_utc().timestamp() + nanosecond / NANOSECONDS,
+            nanosecond: (nanosecond % NANOSECONDS) as u32,
+        }
+    }
+
+    /// The date and time in TAI.
+    ///
+    /// Saturates beyond the range of the calendar.
+    #[must_use]
+    pub fn tai(self) -> NaiveDateTime {
+        let label = DateTime::from_timestamp(self.tai_s, self.nanosecond);
+        label.unwrap_or(DateTime::<Utc>::MAX_UTC).naive_utc()
+    }
+
+    /// This instant moved by a number of SI seconds, to the nearest nanosecond.
+    ///
+    /// Saturates at 100 000 years.
+    #[must_use]
+    pub fn plus_seconds(self, seconds: f64) -> Self {
+        const MOST_S: f64 = 1e5 * 366.0 * SECONDS_PER_DAY;
+        let seconds = seconds.clamp(-MOST_S, MOST_S);
+        let whole = seconds.floor();
+        let nanoseconds =
+            i64::from(self.nanosecond) + ((seconds - whole) * NANOSECONDS as f64).round() as i64;
+        let tai_s = self.tai_s + whole as i64 + nanoseconds.div_euclid(NANOSECONDS);
+        Self {
+            tai_s: tai_s.clamp(-MOST_S as i64, MOST_S as i64),
+            nanosecond: nanoseconds.rem_euclid(NANOSECONDS) as u32,
+        }
+    }
+
+    /// SI seconds from `earlier` to this instant.
     #[must_use]
     pub fn seconds_since(self, earlier: Self) -> f64 {
-        let delta = self.0 - earlier.0;
-        delta.num_seconds() as f64 + f64::from(delta.subsec_nanos()) * 1e-9
+        let nanoseconds = i64::from(self.nanosecond) - i64::from(earlier.nanosecond);
+        (self.tai_s - earlier.tai_s) as f64 + nanoseconds as f64 * 1e-9
     }
 
-    /// UTC as a two-part Julian date: the preceding midnight, and the fraction of the day.
+    /// UTC as a two-part Julian date: the preceding midnight, and the fraction of a day of 86 400 s, which
+    /// passes 1 inside a leap second.
     #[must_use]
     pub fn julian_date(self) -> (f64, f64) {
-        let days_from_ce = f64::from(self.0.num_days_from_ce());
+        let utc = self.utc();
+        let days_from_ce = f64::from(utc.num_days_from_ce());
         // Day 1 of the proleptic Gregorian calendar began at JD 1721425.5.
         let midnight = days_from_ce + 1_721_424.5;
         let seconds =
-            f64::from(self.0.num_seconds_from_midnight()) + f64::from(self.0.nanosecond()) * 1e-9;
+            f64::from(utc.num_seconds_from_midnight()) + f64::from(utc.nanosecond()) * 1e-9;
         (midnight, seconds / SECONDS_PER_DAY)
     }
 
@@ -91,24 +154,24 @@ impl Epoch {
         let (midnight, fraction) = self.julian_date();
         (
             midnight,
-            fraction + (self.leap_seconds() + 32.184) / SECONDS_PER_DAY,
+            fraction + (self.leap_seconds() + TT_MINUS_TAI_S) / SECONDS_PER_DAY,
         )
     }
 
-    /// TAI - UTC in seconds.
+    /// TAI - UTC in seconds, inside a leap second the value before it.
     ///
-    /// 0 before 1960, when UTC did not exist; constant after the last known leap second.
+    /// 10 s before 1972; constant after the table's last entry, of 2016-12-31.
     #[must_use]
     pub fn leap_seconds(self) -> f64 {
-        let (_, fraction) = self.julian_date();
-        let date = (self.0.year(), self.0.month() as i32, self.0.day() as i32);
-        sofars::ts::dat(date.0, date.1, date.2, fraction).unwrap_or(0.0)
+        leap::tai_minus_utc_s(self.utc().date_naive()) as f64
     }
 
     /// Greenwich mean sidereal time (IAU 1982) `elapsed_s` after this epoch, in [0, 2π) radians.
     ///
-    /// Source: Aoki et al. (1982), by the SOFA routine `gmst82`, with UT1 = UTC
-    /// ([M-17](crate::models#m-17)).
+    /// UT1 is UTC at this epoch and advances with SI seconds, over a leap second too: within a
+    /// scenario, take it from the scenario's epoch alone.
+    ///
+    /// Source: Aoki et al. (1982), by the SOFA routine `gmst82` ([M-17](crate::models#m-17)).
     #[must_use]
     pub fn gmst_rad(self, elapsed_s: f64) -> f64 {
         let (midnight, fraction) = self.julian_date();
@@ -119,7 +182,9 @@ impl Epoch {
 impl fmt::Display for Epoch {
     /// ISO 8601 with as many digits as needed: `2025-01-01T00:00:00Z`.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let text = self.0.to_rfc3339_opts(chrono::SecondsFormat::AutoSi, true);
+        let text = self
+            .utc()
+            .to_rfc3339_opts(chrono::SecondsFormat::AutoSi, true);
         formatter.write_str(&text)
     }
 }
@@ -243,6 +308,66 @@ mod tests {
         assert_eq!(epoch("2026-03-21T12:34:56Z").leap_seconds(), 37.0);
         let (_, tt) = epoch("2026-03-21T00:00:00Z").terrestrial_julian_date();
         assert!((tt * 86_400.0 - 69.184).abs() < 1e-9);
+    }
+
+    /// UTC over the leap seconds of 2015-06-30 and 2016-12-31 (IERS Bulletins C 49 and C 52): a second with a label
+    /// of its own, and TAI - UTC of 36 and 37 s after them.
+    #[test]
+    fn validate_labels_over_leap_seconds() {
+        for (start, ahead_s, labels) in [
+            (
+                "2015-06-30T23:59:59Z",
+                35.0,
+                ["2015-06-30T23:59:60Z", "2015-07-01T00:00:00Z"],
+            ),
+            (
+                "2016-12-31T23:59:59Z",
+                36.0,
+                ["2016-12-31T23:59:60Z", "2017-01-01T00:00:00Z"],
+            ),
+        ] {
+            let [inside, after] = labels.map(epoch);
+            let start = epoch(start);
+            assert_eq!(start.plus_seconds(1.0), inside);
+            assert_eq!(start.plus_seconds(2.0), after);
+            assert_eq!(after.seconds_since(start), 2.0);
+            assert_eq!([inside, after].map(|at| at.to_string()), labels);
+            let offsets = [start, inside, after].map(Epoch::leap_seconds);
+            assert_eq!(offsets, [ahead_s, ahead_s, ahead_s + 1.0]);
+            let half = inside.plus_seconds(0.5).to_string();
+            assert_eq!(half, labels[0].replace('Z', ".500Z"));
+        }
+        let tai = epoch("2016-12-31T23:59:60Z").tai().to_string();
+        assert_eq!(tai, "2017-01-01 00:00:36");
+        // An ordinary day has 86 400 s.
+        let ordinary = epoch("2016-12-30T23:59:59Z").plus_seconds(1.0);
+        assert_eq!(ordinary, epoch("2016-12-31T00:00:00Z"));
+    }
+
+    /// TAI and TT go on evenly over a leap second, and so does the Earth.
+    #[test]
+    fn nothing_jumps_at_a_leap_second() {
+        let start = epoch("2016-12-31T23:59:58Z");
+        let inside = start.plus_seconds(2.25);
+        for k in 0..20 {
+            let elapsed_s = f64::from(k) * 0.25;
+            let at = start.plus_seconds(elapsed_s);
+            assert_eq!(Epoch::from_tai(at.tai()), at);
+            assert_eq!(Epoch::from_utc(at.utc()), at);
+            let (start_jd, tt_jd) = (
+                start.terrestrial_julian_date(),
+                at.terrestrial_julian_date(),
+            );
+            let tt_s = (tt_jd.0 - start_jd.0 + tt_jd.1 - start_jd.1) * SECONDS_PER_DAY;
+            // A day's fraction in doubles is good to 1e-11 s.
+            assert!((tt_s - elapsed_s).abs() < 1e-10, "{at}: {tt_s}");
+            // A leap second would be 7.3e-5 rad; the digits of a day's fraction are 1e-15 rad.
+            let turned = crate::units::wrap_pi(start.gmst_rad(elapsed_s) - start.gmst_rad(0.0));
+            assert!((turned - crate::earth::GMST_RATE_RAD_S * elapsed_s).abs() < 1e-12);
+        }
+        // As the epoch of a scenario, its UT1 is UTC by the offset before the leap second.
+        let gmst = crate::units::wrap_pi(inside.gmst_rad(0.0) - start.gmst_rad(2.25));
+        assert!(gmst.abs() < 1e-12);
     }
 
     #[test]

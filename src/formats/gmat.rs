@@ -42,16 +42,15 @@ pub fn script_name(name: &str) -> String {
 #[must_use]
 pub fn calendar(epoch: Epoch) -> Option<String> {
     let utc = epoch.utc();
-    let milliseconds = utc.nanosecond() / 1_000_000;
+    // chrono keeps a leap second as a nanosecond count past 1e9.
+    let milliseconds = utc.nanosecond() % 1_000_000_000 / 1_000_000;
     utc.nanosecond().is_multiple_of(1_000_000).then(|| {
         let month = crate::formats::stk::MONTHS[utc.month0() as usize];
         format!(
-            "{:02} {month} {} {:02}:{:02}:{:02}.{milliseconds:03}",
+            "{:02} {month} {} {}.{milliseconds:03}",
             utc.day(),
             utc.year(),
-            utc.hour(),
-            utc.minute(),
-            utc.second()
+            utc.format("%H:%M:%S")
         )
     })
 }

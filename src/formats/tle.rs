@@ -12,7 +12,7 @@ pub use read::{TleRecord, parse, read};
 use crate::formats::WriteError;
 use crate::formats::metadata::{CatalogNumber, IdentityError};
 use crate::time::Epoch;
-use chrono::{Datelike, NaiveDateTime, Timelike};
+use chrono::{Datelike, NaiveDateTime, NaiveTime, TimeDelta, Timelike};
 use std::io::Write;
 use thiserror::Error;
 
@@ -24,6 +24,9 @@ const NAME: usize = 24;
 
 /// Nanoseconds in 1e-8 day, the step of a TLE epoch.
 const EPOCH_STEP_NS: i64 = 864_000;
+
+/// Nanoseconds in a day without a leap second.
+const DAY_NS: i64 = 86_400_000_000_000;
 
 /// An element that does not fit its columns.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -48,8 +51,10 @@ pub enum TleFieldError {
         /// What would fit.
         bound: &'static str,
     },
-    /// An epoch outside 1957 to 2056, or between two steps of 1e-8 day.
-    #[error("a TLE cannot hold the epoch {0}; it covers 1957 to 2056 in steps of 1e-8 day")]
+    /// An epoch outside 1957 to 2056, between two steps of 1e-8 day, or inside a leap second.
+    #[error(
+        "a TLE cannot hold the epoch {0}; it covers 1957 to 2056 in steps of 1e-8 day, without leap seconds"
+    )]
     Epoch(NaiveDateTime),
     /// A catalogue number past Alpha-5.
     #[error(transparent)]
@@ -60,16 +65,16 @@ pub enum TleFieldError {
 }
 
 /// `epoch` on the nearest step of a TLE epoch, 1e-8 day.
+///
+/// A fraction of a day cannot tell 23:59:60 from the midnight after it: inside a leap second it is that midnight.
 #[must_use]
 pub fn rounded_epoch(epoch: Epoch) -> Epoch {
-    let since_midnight = since_midnight_ns(epoch.utc().naive_utc());
-    let rest = since_midnight.rem_euclid(EPOCH_STEP_NS);
-    let move_ns = if 2 * rest < EPOCH_STEP_NS {
-        -rest
-    } else {
-        EPOCH_STEP_NS - rest
-    };
-    epoch.plus_seconds(move_ns as f64 * 1e-9)
+    let utc = epoch.utc().naive_utc();
+    let step = (since_midnight_ns(utc) + EPOCH_STEP_NS / 2).div_euclid(EPOCH_STEP_NS);
+    let since_midnight = TimeDelta::nanoseconds((step * EPOCH_STEP_NS).min(DAY_NS));
+    let midnight = utc.date().and_time(NaiveTime::MIN);
+    let rounded = midnight.checked_add_signed(since_midnight);
+    rounded.map_or(epoch, |rounded| Epoch::from_utc(rounded.and_utc()))
 }
 
 fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
@@ -194,7 +199,7 @@ fn epoch_field(epoch: NaiveDateTime) -> Result<String, TleFieldError> {
     let wrong = || TleFieldError::Epoch(epoch);
     let year = two_digit_year(epoch.year()).ok_or_else(wrong)?;
     let since_midnight = since_midnight_ns(epoch);
-    if since_midnight % EPOCH_STEP_NS != 0 {
+    if since_midnight % EPOCH_STEP_NS != 0 || since_midnight >= DAY_NS {
         return Err(wrong());
     }
     let fraction = since_midnight / EPOCH_STEP_NS;

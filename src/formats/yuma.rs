@@ -129,7 +129,7 @@ impl Almanac {
         at: Applicability,
     ) -> Result<Self, NoAlmanac> {
         let since_s = at.epoch().seconds_since(epoch);
-        let gmst_rad = at.epoch().gmst_rad(0.0);
+        let gmst_rad = epoch.gmst_rad(since_s);
         let circle = circle(&satellite.orbit, since_s, gmst_rad)?;
         let rate = circle.latitude_argument_rate_rad_s;
         let fixed_node = circle.raan_rad - gmst_rad + GPS_EARTH_RATE_RAD_S * at.toa_s;

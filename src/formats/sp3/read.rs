@@ -4,11 +4,11 @@ use super::{DM_IN_KM, Sp3, Sp3Sample};
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
-use crate::formats::text::timestamp::TimeSystem;
+use crate::formats::text::timestamp::{TimeSystem, stamp};
 use crate::formats::trajectory::time_system_of_name;
 use crate::frames::Position;
 use crate::time::Epoch;
-use chrono::{NaiveDate, NaiveDateTime, TimeDelta};
+use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
@@ -45,8 +45,6 @@ struct Sp3Parser {
     at: Option<Epoch>,
     /// Satellites whose position at this epoch is marked as missing.
     missing: Vec<usize>,
-    /// Seconds by which the time system of the file, when it is none of ours, is behind ours.
-    behind_s: f64,
     ended: bool,
     any: bool,
 }
@@ -67,7 +65,6 @@ impl Sp3Parser {
             epochs: 0,
             at: None,
             missing: Vec::new(),
-            behind_s: 0.0,
             ended: false,
             any: false,
         }
@@ -159,21 +156,18 @@ impl Sp3Parser {
             return;
         }
         let name = line.text.get(9..12).unwrap_or_default().trim();
-        let (name, behind_s) = match name.to_ascii_uppercase().as_str() {
+        let name = match name.to_ascii_uppercase().as_str() {
             // Times of other systems that are steered to GPS time within some tens of ns: 1 mm.
-            "GAL" | "QZS" | "IRN" => ("GPS", 0.0),
+            "GAL" | "QZS" | "IRN" => "GPS",
             // The UTC of GLONASS, without Moscow's three hours.
-            "GLO" => ("UTC", 0.0),
-            // BeiDou time began in 2006 without the leap seconds since 1980 (BDS-SIS-ICD).
-            "BDT" => ("GPS", 14.0),
+            "GLO" => "UTC",
             "CCC" | "" => {
                 let message = "no time system is named; GPS time is assumed";
                 findings.warning((line.number, 10), "sp3-time-system", message);
-                ("GPS", 0.0)
+                "GPS"
             }
-            _ => (name, 0.0),
+            _ => name,
         };
-        self.behind_s = behind_s;
         match time_system_of_name(name) {
             Ok(time_system) => self.file.time_system = time_system,
             Err(_) => {
@@ -193,7 +187,6 @@ impl Sp3Parser {
             return;
         };
         let at = self.file.time_system.epoch(stamp);
-        let at = at.plus_seconds(self.behind_s);
         self.missing.clear();
         if self.at.is_some_and(|before| at <= before) {
             let message = "the epoch is not after the one before";
@@ -303,7 +296,11 @@ fn calendar(text: &str) -> Option<NaiveDateTime> {
     };
     let date = NaiveDate::from_ymd_opt(year.parse().ok()?, month.parse().ok()?, day.parse().ok()?)?;
     let second: f64 = second.parse().ok().filter(|s| (0.0..61.0).contains(s))?;
-    let start = date.and_hms_opt(hour.parse().ok()?, minute.parse().ok()?, 0)?;
+    let of_minute = (
+        hour.parse().ok()?,
+        minute.parse().ok()?,
+        second.floor() as u32,
+    );
     // The columns hold 1e-8 s.
-    start.checked_add_signed(TimeDelta::nanoseconds((second * 1e9).round() as i64))
+    stamp(date, of_minute, (second.fract() * 1e9).round() as i64)
 }

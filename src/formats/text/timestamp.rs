@@ -1,14 +1,14 @@
 //! Calendar instants as files write them, and the time systems that they are counted in.
 
 use crate::keyword::keywords;
-use crate::time::{Epoch, TimeGrid};
+use crate::time::{Epoch, TT_MINUS_TAI_S, TimeGrid, ends_with_leap_second};
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta, Timelike};
 
 /// TAI - GPS time, s (IS-GPS-200: GPS time was UTC in January 1980, when TAI - UTC was 19 s).
 const TAI_MINUS_GPS_S: f64 = 19.0;
 
-/// TT - TAI, s.
-const TT_MINUS_TAI_S: f64 = 32.184;
+/// TAI - BeiDou time, s (BDS-SIS-ICD: BeiDou time was UTC in January 2006, when TAI - UTC was 33 s).
+const TAI_MINUS_BDT_S: f64 = 33.0;
 
 keywords! {
     /// A time system of an exchanged file.
@@ -21,40 +21,40 @@ keywords! {
         Tai = "TAI",
         /// Terrestrial Time.
         Tt = "TT",
+        /// BeiDou time.
+        Bdt = "BDT",
     }
 }
 
 impl TimeSystem {
     /// The instant that a stamp of this system means.
     ///
-    /// A stamp inside a leap second, which only UTC has, is the second after it.
+    /// A stamp of 23:59:60, which only UTC has, is the second after it in the other systems.
     #[must_use]
     pub fn epoch(self, stamp: NaiveDateTime) -> Epoch {
-        let written = Epoch::from_utc(stamp.and_utc());
-        let Some(ahead_of_tai_s) = self.ahead_of_tai_s() else {
-            return written;
-        };
-        // Leap seconds by UTC, which the first pass estimates with those of the stamp itself.
-        let once = written.plus_seconds(-ahead_of_tai_s - written.leap_seconds());
-        written.plus_seconds(-ahead_of_tai_s - once.leap_seconds())
+        match self.ahead_of_tai_s() {
+            None => Epoch::from_utc(stamp.and_utc()),
+            Some(ahead_of_tai_s) => Epoch::from_tai(stamp).plus_seconds(-ahead_of_tai_s),
+        }
     }
 
     /// How this system writes an instant.
     #[must_use]
     pub fn stamp(self, epoch: Epoch) -> NaiveDateTime {
-        let ahead_of_utc_s = self
-            .ahead_of_tai_s()
-            .map_or(0.0, |ahead| ahead + epoch.leap_seconds());
-        epoch.plus_seconds(ahead_of_utc_s).utc().naive_utc()
+        match self.ahead_of_tai_s() {
+            None => epoch.utc().naive_utc(),
+            Some(ahead_of_tai_s) => epoch.plus_seconds(ahead_of_tai_s).tai(),
+        }
     }
 
-    /// This system less TAI in seconds; none for UTC.
+    /// This system minus TAI in seconds; none for UTC.
     fn ahead_of_tai_s(self) -> Option<f64> {
         match self {
             Self::Utc => None,
             Self::Gps => Some(-TAI_MINUS_GPS_S),
             Self::Tai => Some(0.0),
             Self::Tt => Some(TT_MINUS_TAI_S),
+            Self::Bdt => Some(-TAI_MINUS_BDT_S),
         }
     }
 }
@@ -110,7 +110,8 @@ pub fn calendar(stamp: NaiveDateTime, digits: SecondDigits) -> String {
 }
 
 /// Reads CCSDS ASCII time code A or B (CCSDS 502.0-B-3, 7.5.10): calendar day or day of year,
-/// any number of decimals, an optional `Z`. Decimals past nanoseconds are rounded.
+/// any number of decimals, an optional `Z`. Decimals past nanoseconds are rounded. The second is 60 only
+/// at the end of a day that has a leap second.
 #[must_use]
 pub fn parse(text: &str) -> Option<NaiveDateTime> {
     let text = text.strip_suffix('Z').unwrap_or(text);
@@ -132,8 +133,21 @@ pub fn parse(text: &str) -> Option<NaiveDateTime> {
         None => (digits(second, 2)?, 0),
     };
     let (hour, minute) = (digits(hour, 2)?, digits(minute, 2)?);
-    let start = match second {
-        60 => date.and_hms_nano_opt(hour, minute, 59, 1_000_000_000)?,
+    stamp(date, (hour, minute, second), nanoseconds)
+}
+
+/// The stamp of a date, a time of day and nanoseconds; none for a second that the day does not have.
+#[must_use]
+pub fn stamp(
+    date: NaiveDate,
+    (hour, minute, second): (u32, u32, u32),
+    nanoseconds: i64,
+) -> Option<NaiveDateTime> {
+    let start = match (hour, minute, second) {
+        (23, 59, 60) if ends_with_leap_second(date) => {
+            // chrono keeps a leap second as a nanosecond count past 1e9.
+            date.and_hms_nano_opt(hour, minute, 59, 1_000_000_000)?
+        }
         _ => date.and_hms_opt(hour, minute, second)?,
     };
     start.checked_add_signed(TimeDelta::nanoseconds(nanoseconds))
@@ -188,6 +202,8 @@ mod tests {
             "2025-1-1T00:00:00",
             "2025-01-01T00:00",
             "2025-01-01T00:00:61",
+            "2016-12-30T23:59:60",
+            "2016-12-31T22:59:60",
             "2025-366T00:00:00",
             "2025-01-01T00:00:00.",
             "+025-01-01T00:00:00",
@@ -197,7 +213,8 @@ mod tests {
         }
     }
 
-    /// GPS time has been 18 s ahead of UTC since 2017, TAI 37 s, TT 69.184 s (IERS Bulletin C).
+    /// GPS time has been 18 s ahead of UTC since 2017, TAI 37 s, TT 69.184 s (IERS Bulletin C), BeiDou time
+    /// 14 s behind GPS time always (BDS-SIS-ICD).
     #[test]
     fn validate_offsets_of_time_systems() {
         let utc = epoch("2025-01-01T00:00:00Z");
@@ -206,18 +223,68 @@ mod tests {
             (TimeSystem::Gps, 18.0),
             (TimeSystem::Tai, 37.0),
             (TimeSystem::Tt, 69.184),
+            (TimeSystem::Bdt, 4.0),
         ] {
             let stamp = system.stamp(utc);
-            let ahead = Epoch::from_utc(stamp.and_utc()).seconds_since(utc);
+            let ahead = (stamp - utc.utc().naive_utc()).as_seconds_f64();
             assert!((ahead - seconds).abs() < 1e-9, "{system}");
             assert_eq!(system.epoch(stamp), utc);
         }
-        // The first second after a leap second.
-        let new_year = epoch("2017-01-01T00:00:00Z");
-        assert_eq!(
-            TimeSystem::Tai.epoch(TimeSystem::Tai.stamp(new_year)),
-            new_year
-        );
+    }
+
+    /// The labels of the leap second of 2016-12-31 and of the seconds beside it: those of ERFA's `utctai` and the
+    /// fixed offsets of the other systems.
+    #[test]
+    fn validate_stamps_over_a_leap_second() {
+        for (system, labels) in [
+            (
+                TimeSystem::Utc,
+                [
+                    "2016-12-31T23:59:59",
+                    "2016-12-31T23:59:60",
+                    "2017-01-01T00:00:00",
+                ],
+            ),
+            (
+                TimeSystem::Gps,
+                [
+                    "2017-01-01T00:00:16",
+                    "2017-01-01T00:00:17",
+                    "2017-01-01T00:00:18",
+                ],
+            ),
+            (
+                TimeSystem::Tai,
+                [
+                    "2017-01-01T00:00:35",
+                    "2017-01-01T00:00:36",
+                    "2017-01-01T00:00:37",
+                ],
+            ),
+            (
+                TimeSystem::Tt,
+                [
+                    "2017-01-01T00:01:07.184",
+                    "2017-01-01T00:01:08.184",
+                    "2017-01-01T00:01:09.184",
+                ],
+            ),
+            (
+                TimeSystem::Bdt,
+                [
+                    "2017-01-01T00:00:02",
+                    "2017-01-01T00:00:03",
+                    "2017-01-01T00:00:04",
+                ],
+            ),
+        ] {
+            for (elapsed_s, label) in (0..).zip(labels) {
+                let at = epoch("2016-12-31T23:59:59Z").plus_seconds(f64::from(elapsed_s));
+                let stamp = parse(label).unwrap();
+                assert_eq!(system.stamp(at), stamp, "{system}");
+                assert_eq!(system.epoch(stamp), at, "{system}");
+            }
+        }
     }
 
     #[test]

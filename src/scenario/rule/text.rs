@@ -6,6 +6,7 @@ use toml::de::DeValue;
 
 use super::{Node, Reading, Rule};
 use crate::scenario::number::toml_text;
+use crate::time::{FIRST_YEAR, ends_with_leap_second};
 
 /// A text of a certain kind, never empty and without control characters.
 pub(in crate::scenario) enum Text {
@@ -83,16 +84,18 @@ impl Rule for Text {
 pub(in crate::scenario) struct UtcInstant;
 
 impl UtcInstant {
-    /// UTC begins in 1960; precession and nutation are those of the century around us.
-    const YEARS: std::ops::RangeInclusive<i32> = 1960..=2100;
+    /// UTC has leap seconds since 1972; precession and nutation are those of the century around us.
+    const YEARS: std::ops::RangeInclusive<i32> = FIRST_YEAR..=2100;
 
     fn parse(text: &str) -> Option<DateTime<Utc>> {
         let instant = DateTime::parse_from_rfc3339(text).ok()?;
         let in_utc = instant.offset().local_minus_utc() == 0;
-        // chrono holds a leap second as a second of more than 1e9 ns, which no arithmetic keeps.
-        let ordinary = instant.nanosecond() < 1_000_000_000;
         let instant = instant.to_utc();
-        (in_utc && ordinary && Self::YEARS.contains(&instant.year())).then_some(instant)
+        // chrono keeps the second 60 of any minute as a nanosecond count past 1e9.
+        let of_day = instant.num_seconds_from_midnight();
+        let exists = instant.nanosecond() < 1_000_000_000
+            || (of_day == 86_399 && ends_with_leap_second(instant.date_naive()));
+        (in_utc && exists && Self::YEARS.contains(&instant.year())).then_some(instant)
     }
 }
 
@@ -113,7 +116,10 @@ impl Rule for UtcInstant {
 
     fn accepted(&self) -> String {
         let (first, last) = (Self::YEARS.start(), Self::YEARS.end());
-        format!("a UTC instant such as \"2025-01-01T00:00:00Z\", years {first} to {last}")
+        format!(
+            "a UTC instant such as \"2025-01-01T00:00:00Z\", years {first} to {last}, with 23:59:60 \
+             only on days that end with a leap second"
+        )
     }
 
     fn schema(&self) -> Json {

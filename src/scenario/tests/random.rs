@@ -33,9 +33,12 @@ fn file() -> impl Strategy<Value = String> {
 }
 
 fn instant() -> impl Strategy<Value = DateTime<chrono::Utc>> {
-    // 1960-01-01 to 2100-12-31, in nanoseconds.
-    (-315_619_200_000_000_000..4_133_894_400_000_000_000_i64)
-        .prop_map(DateTime::from_timestamp_nanos)
+    // 1972-01-01 to 2100-12-31 in nanoseconds, and inside a leap second.
+    let any = (63_072_000_000_000_000..4_133_894_400_000_000_000_i64)
+        .prop_map(DateTime::from_timestamp_nanos);
+    let leap = (1_000_000_000..2_000_000_000_u32)
+        .prop_map(|ns| DateTime::from_timestamp(1_483_228_799, ns).unwrap());
+    prop_oneof![9 => any, 1 => leap]
 }
 
 fn region() -> impl Strategy<Value = Region> {

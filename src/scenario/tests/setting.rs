@@ -61,14 +61,17 @@ fn the_sample_at_the_end_is_left_out_up_to_rounding() {
 
 #[test]
 fn epochs_are_utc_and_in_range() {
-    let wanted = "expected a UTC instant such as \"2025-01-01T00:00:00Z\", years 1960 to 2100";
+    let wanted = "expected a UTC instant such as \"2025-01-01T00:00:00Z\", years 1972 to 2100, with \
+                  23:59:60 only on days that end with a leap second";
     for found in [
         "\"2025-01-01\"",
         "\"2025-01-01T00:00:00\"",
         "\"2025-01-01T00:00:00+08:00\"",
-        "\"1959-12-31T23:59:59Z\"",
+        "\"1971-12-31T23:59:59Z\"",
         "\"2101-01-01T00:00:00Z\"",
-        "\"2016-12-31T23:59:60Z\"",
+        "\"2017-06-30T23:59:60Z\"",
+        "\"2016-12-31T22:59:60Z\"",
+        "2016-12-30T23:59:60Z",
         "\"2025-02-29T00:00:00Z\"",
         "2025-01-01T00:00:00",
         "2025-01-01",
@@ -87,7 +90,11 @@ fn epochs_are_utc_and_in_range() {
         same
     );
     assert_eq!(same.time.epoch.timestamp_millis(), 1_709_208_000_500);
-    accepts("time", "epoch = \"1960-01-01T00:00:00Z\"");
+    let leap = accepts("time", "epoch = \"2016-12-31T23:59:60.25Z\"");
+    assert_eq!(accepts("time", "epoch = 2016-12-31T23:59:60.25Z"), leap);
+    let epoch = crate::time::Epoch::from_utc(leap.time.epoch);
+    assert_eq!(epoch.to_string(), "2016-12-31T23:59:60.250Z");
+    accepts("time", "epoch = \"1972-01-01T00:00:00Z\"");
     accepts("time", "epoch = \"2100-12-31T23:59:59Z\"");
 }
 
