@@ -6,8 +6,9 @@
 //!
 //! Elements and propagation live in TEME, the true equator and mean equinox of date of
 //! SGP4 (Vallado et al., AIAA 2006-6753, appendix C). What is called Earth-fixed here is
-//! the pseudo-Earth-fixed frame: TEME turned by mean sidereal time (IAU 1982), UT1 = UTC,
-//! without polar motion. In low orbit it lies within 30 m of an ITRF.
+//! the pseudo-Earth-fixed frame: TEME turned by mean sidereal time (IAU 1982), UT1 = UTC at the
+//! epoch of the scenario, without polar motion. It is off an ITRF by |UT1 - UTC| of the epoch and by
+//! polar motion: 360 m in low orbit on 2015-06-30, 0.5 km at most ([M-18](crate::models#m-18)).
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
 use crate::keyword::keywords;

@@ -9,8 +9,10 @@
 //! pseudo-Earth-fixed frame).
 
 mod leap;
+mod ut1;
 
 pub use leap::{FIRST_YEAR, LEAP_SECONDS_END, ends_with_leap_second, leap_seconds_note};
+pub use ut1::{MOST_UT1_MINUS_UTC_S, ut1_minus_utc_s};
 
 use crate::units::SECONDS_PER_DAY;
 use chrono::{DateTime, Datelike, NaiveDateTime, Timelike, Utc};

@@ -347,7 +347,7 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "FRAME", value_parser = frame_of_name)]
     pub(crate) frame: Option<Frame>,
 
-    /// Time system of OEM and OPM: UTC, TAI, GPS or TT.
+    /// Time system of OEM and OPM: UTC, TAI, GPS, TT or BDT (BeiDou time).
     #[arg(long, value_name = "SYSTEM", default_value = "UTC", value_parser = time_system_of_name)]
     pub(crate) time_system: TimeSystem,
 

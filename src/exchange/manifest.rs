@@ -4,6 +4,7 @@ use crate::earth::{FLATTENING, J2, MU_KM3_S2, RADIUS_KM};
 use crate::formats::WriteError;
 use crate::formats::metadata::{Metadata, frame_comment};
 use crate::frames::Frame;
+use crate::time::leap_seconds_note;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::io::{self, Write};
@@ -61,10 +62,18 @@ pub struct Conventions {
     pub frames: Vec<String>,
     /// UT1 and polar motion.
     pub earth_rotation: String,
+    /// How far the pseudo-Earth-fixed frame is from an ITRF at the epoch.
+    #[serde(default)]
+    pub distance_from_itrf: String,
+    /// What is counted, and where leap seconds come in.
+    #[serde(default)]
+    pub time: String,
 }
 
-impl Default for Conventions {
-    fn default() -> Self {
+impl Conventions {
+    /// The conventions of an export whose satellites are from an ITRF as `distance_from_itrf` says.
+    #[must_use]
+    pub fn new(distance_from_itrf: String) -> Self {
         let frames = [Frame::Teme, Frame::EarthFixed, Frame::Eme2000, Frame::Gcrf];
         Self {
             mu_km3_s2: MU_KM3_S2,
@@ -72,7 +81,15 @@ impl Default for Conventions {
             j2: J2,
             flattening: FLATTENING,
             frames: frames.map(|frame| frame_comment(frame).to_owned()).into(),
-            earth_rotation: "GMST (IAU 1982), UT1 = UTC, no polar motion".to_owned(),
+            earth_rotation:
+                "GMST (IAU 1982), UT1 = UTC at the epoch and even in SI seconds from there, no \
+                             polar motion"
+                    .to_owned(),
+            distance_from_itrf,
+            time: format!(
+                "elapsed seconds are SI seconds from the epoch; stamps have {}",
+                leap_seconds_note()
+            ),
         }
     }
 }

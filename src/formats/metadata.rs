@@ -1,13 +1,13 @@
 //! What every exported file says of itself: who and what it describes, and under which
 //! conventions.
 
-use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
+use crate::earth::{GMST_RATE_RAD_S, J2, MU_KM3_S2, RADIUS_KM};
 use crate::ephemeris::EphemerisSatellite;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
 use crate::keyword::keywords;
 use crate::orbit::Model;
-use crate::time::Epoch;
+use crate::time::{Epoch, MOST_UT1_MINUS_UTC_S, ut1_minus_utc_s};
 use chrono::Datelike;
 use std::fmt;
 use std::str::FromStr;
@@ -226,6 +226,9 @@ impl fmt::Display for Theory {
     }
 }
 
+/// Most that the pole of the Earth was from that of an ITRF since 1972, rad: 0.6 arc seconds (IERS EOP C04).
+const MOST_POLAR_MOTION_RAD: f64 = 2.91e-6;
+
 /// What a file says of its content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
@@ -242,6 +245,8 @@ pub struct Metadata {
     pub theory: Theory,
     /// The study that the file belongs to, one line each: design, scenario.
     pub subject: Vec<String>,
+    /// What else is said of the frame: how far it is from the one that it is named for.
+    pub frame_note: Option<String>,
 }
 
 impl Metadata {
@@ -256,6 +261,7 @@ impl Metadata {
              WGS-72 in SGP4 alone"
         ));
         lines.push(frame_comment(self.frame).to_owned());
+        lines.extend(self.frame_note.clone());
         lines.push("Simulated objects: OBJECT_ID and catalogue numbers are synthetic".to_owned());
         lines
     }
@@ -277,10 +283,31 @@ pub fn frame_comment(frame: Frame) -> &'static str {
              frame bias"
         }
         Frame::EarthFixed => {
-            "Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC, no polar motion; \
-             within 30 m of an ITRF in LEO"
+            "Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC at the epoch, no polar motion"
         }
     }
+}
+
+/// How far the pseudo-Earth-fixed frame of a scenario that starts at `epoch` is from an ITRF with
+/// Earth-orientation data, `radius_km` from the axis of the Earth: by UT1 - UTC of the epoch, and by the pole.
+#[must_use]
+pub fn distance_from_itrf(epoch: Epoch, radius_km: f64) -> String {
+    let observed_s = ut1_minus_utc_s(epoch).map(f64::abs);
+    let turned_s = observed_s.unwrap_or(MOST_UT1_MINUS_UTC_S);
+    let ten_metres = |rad: f64| (rad * radius_km * 100.0).round().max(1.0) * 10.0;
+    let turned_m = ten_metres(turned_s * GMST_RATE_RAD_S);
+    let pole_m = ten_metres(MOST_POLAR_MOTION_RAD);
+    let (about, why) = match observed_s {
+        Some(s) => ("about", format!("is {s:.2} s at the epoch (IERS EOP C04)")),
+        None => (
+            "at most",
+            format!("<= {MOST_UT1_MINUS_UTC_S} s, not yet observed at the epoch"),
+        ),
+    };
+    format!(
+        "Off an ITRF with Earth-orientation data by {about} {turned_m} m at r = {radius_km:.0} km, as \
+         |UT1 - UTC| {why}, and by polar motion, at most {pole_m} m"
+    )
 }
 
 #[cfg(test)]
@@ -345,6 +372,7 @@ mod tests {
                 time_system: TimeSystem::Utc,
                 theory: Theory::Sgp4Elements(ElementChoice::Kepler),
                 subject: vec!["Design: delta:55:182/13/1@925".to_owned()],
+                frame_note: None,
             };
             for line in metadata.comments() {
                 assert!(line.len() <= 200 && line.bytes().all(|b| (b' '..=b'~').contains(&b)));

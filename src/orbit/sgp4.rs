@@ -338,6 +338,21 @@ mod tests {
         }
     }
 
+    /// From noon before the leap second of 2016-12-31 to the midnight after it are 43 201 s.
+    #[test]
+    fn minutes_are_of_si_seconds_over_a_leap_second() {
+        let utc = |text: &str| Epoch::from_utc(text.parse().unwrap());
+        let (noon, midnight) = (utc("2016-12-31T12:00:00Z"), utc("2017-01-01T00:00:00Z"));
+        let mut set =
+            ::sgp4::Elements::from_tle(None, VANGUARD.0.as_bytes(), VANGUARD.1.as_bytes()).unwrap();
+        set.datetime = noon.utc().naive_utc();
+        let state = |origin, elapsed_s| {
+            let orbit = Sgp4Orbit::from_element_set(&set, origin).unwrap();
+            orbit.state_at(elapsed_s).unwrap()
+        };
+        assert_eq!(state(midnight, 0.0), state(noon, 43_201.0));
+    }
+
     #[test]
     fn refusals_are_errors() {
         let elements = MeanElements {

@@ -87,7 +87,7 @@ fn conventions(basis: &Basis) -> String {
         .map(|one| format!("{} {}", one.name, one.version))
         .collect();
     format!(
-        "mu {} km3/s2, R {} km, J2 {:e}; SGP4: WGS-72, AFSPC mode, B* = 0; TEME; UT1 = UTC; {}; no random numbers",
+        "mu {} km3/s2, R {} km, J2 {:e}; SGP4: WGS-72, AFSPC mode, B* = 0; TEME; UT1 = UTC at the epoch; {}; no random numbers",
         basis.mu_km3_s2,
         basis.radius_km,
         basis.j2,

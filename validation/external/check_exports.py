@@ -83,12 +83,18 @@ def states(path):
     return stamps, {name: np.array(rows) for name, rows in numbers.items()}
 
 
+def tai(text):
+    """The instant of a UTC stamp, 23:59:60 too, as a Julian date of TAI in two parts."""
+    date, time = text.rstrip("Z").split("T")
+    (year, month, day), (hour, minute, second) = date.split("-"), time.split(":")
+    label = (int(year), int(month), int(day), int(hour), int(minute), float(second))
+    return erfa.utctai(*erfa.dtf2d("UTC", *label))
+
+
 def teme_to_eme2000(epoch, seconds):
     """Matrices by ERFA: equation of the equinoxes (1994), transpose of IAU 1976/1980."""
-    midnight = datetime(epoch.year, epoch.month, epoch.day, tzinfo=timezone.utc)
-    day = 2400000.5 + (midnight - datetime(1858, 11, 17, tzinfo=timezone.utc)).days
-    fraction = ((epoch - midnight).total_seconds() + seconds) / 86400.0
-    tt1, tt2 = erfa.taitt(*erfa.utctai(day, fraction))
+    day, fraction = tai(epoch)
+    tt1, tt2 = erfa.taitt(day, fraction + seconds / 86400.0)
     equinoxes = erfa.eqeq94(tt1, tt2)
     sine, cosine, nought = np.sin(-equinoxes), np.cos(-equinoxes), np.zeros_like(equinoxes)
     to_true = np.stack([
@@ -100,7 +106,7 @@ def teme_to_eme2000(epoch, seconds):
 
 
 def expected(frame, epoch, rows):
-    """Positions and velocities of a table in the frame of a file."""
+    """Positions and velocities of a table that begins at a UTC stamp, in the frame of a file."""
     if frame in POSITION:
         return rows[:, POSITION[frame]], rows[:, VELOCITY[frame]]
     matrices = teme_to_eme2000(epoch, rows[:, 0])
@@ -163,7 +169,7 @@ def check_tle(directory, entry, manifest, report):
 
 def check_oem(directory, entries, manifest, report):
     stamps, truth = states(directory / "states.csv")
-    epoch = utc(manifest["epoch"])
+    epoch = manifest["epoch"]
     names, ids = set(), set()
     position_km, velocity_km_s, count, times = 0.0, 0.0, 0, 0
     for entry in entries:

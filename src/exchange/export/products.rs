@@ -11,7 +11,7 @@ use crate::exchange::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::opm::Opm;
 use crate::formats::ccsds::{oem, omm};
-use crate::formats::metadata::{Metadata, Object, Theory};
+use crate::formats::metadata::{Metadata, Object, Theory, distance_from_itrf};
 use crate::formats::sp3::Sp3Error;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::{WriteError, csv};
@@ -24,6 +24,17 @@ use rayon::prelude::*;
 
 /// The files of a product, or why one is not written.
 pub(super) type ProductFiles = Result<Vec<FileEntry>, WriteError>;
+
+/// What is said of CCSDS messages in a time system that the standard does not have.
+fn bdt_note(time_system: TimeSystem) -> Option<&'static str> {
+    (time_system == TimeSystem::Bdt).then_some(oem::BDT_NOTE)
+}
+
+/// The notes that there are, as one.
+fn joined<const N: usize>(notes: [Option<&'static str>; N]) -> Option<String> {
+    let notes: Vec<&str> = notes.into_iter().flatten().collect();
+    (!notes.is_empty()).then(|| notes.join("; "))
+}
 
 impl ExportSource<'_> {
     fn sgp4_metadata(&self) -> Metadata {
@@ -167,7 +178,10 @@ impl ExportSource<'_> {
         let hermite = self.hermite(&sampled)?;
         let loss = Loss {
             interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
-            note: (choices.frame == Frame::Teme).then(|| oem::TEME_NOTE.to_owned()),
+            note: joined([
+                (choices.frame == Frame::Teme).then_some(oem::TEME_NOTE),
+                bdt_note(choices.time_system),
+            ]),
             ..Loss::default()
         };
         let version = self.ccsds_version(choices.oem.keyword());
@@ -244,7 +258,10 @@ impl ExportSource<'_> {
                         let elements = &satellite.elements;
                         let version = choices.ccsds_version;
                         Opm::new(version, &metadata, object, elements, epoch, state).write(out)?;
-                        Ok(Loss::default())
+                        Ok(Loss {
+                            note: joined([bdt_note(choices.time_system)]),
+                            ..Loss::default()
+                        })
                     },
                 )
             };
@@ -362,6 +379,11 @@ impl ExportSource<'_> {
         metadata.time_system = TimeSystem::Gps;
         let note = format!("nominal {preset}: slots, not the satellites in orbit");
         metadata.subject.insert(0, note.clone());
+        let mut radius_km = 0.0_f64;
+        for satellite in ephemeris.satellites() {
+            radius_km = radius_km.max(ephemeris.state(satellite, 0.0)?.position_km.km().norm());
+        }
+        metadata.frame_note = Some(distance_from_itrf(grid.epoch(), radius_km));
         let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
         let contents = Contents {
             objects: satellites.len(),

@@ -2,9 +2,10 @@
 
 use super::{Choices, ExportSubject};
 use crate::constellation::Satellite;
+use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::exchange::manifest::{Conventions, FileEntry, Loss, Manifest};
-use crate::formats::metadata::{ElementChoice, Metadata, Object, Theory};
+use crate::formats::metadata::{ElementChoice, Metadata, Object, Theory, distance_from_itrf};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::{WriteError, element_set, tle};
 use crate::frames::Frame;
@@ -48,7 +49,14 @@ impl<'a> ExportSource<'a> {
                 format!("Design: {}", self.subject.design),
                 format!("Scenario: {}, hash {}", study.name, study.hash),
             ],
+            frame_note: (frame == Frame::EarthFixed).then(|| self.distance_from_itrf()),
         }
+    }
+
+    /// How far the satellites of the design are from where an ITRF has them.
+    fn distance_from_itrf(&self) -> String {
+        let radius_km = RADIUS_KM + self.subject.design.altitude_km();
+        distance_from_itrf(self.subject.grid.epoch(), radius_km)
     }
 
     /// The unrounded element sets at an epoch, with the satellites that they are of.
@@ -151,7 +159,7 @@ impl<'a> ExportSource<'a> {
             epoch: grid.epoch().to_string(),
             step_s: grid.step_s(),
             samples: grid.len(),
-            conventions: Conventions::default(),
+            conventions: Conventions::new(self.distance_from_itrf()),
             files,
         }
     }

@@ -16,7 +16,7 @@ pub use xml::{parse_xml, read_xml};
 use crate::ephemeris::hermite::Hermite;
 use crate::formats::ccsds::kvn::{CcsdsHeader, write_comments};
 use crate::formats::metadata::{Metadata, Object};
-use crate::formats::text::timestamp::{SecondDigits, calendar};
+use crate::formats::text::timestamp::{SecondDigits, TimeSystem, calendar};
 use crate::formats::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
 use crate::frames::{Frame, State};
 use crate::keyword::keywords;
@@ -28,6 +28,9 @@ use std::io::{self, Write};
 /// What is said of a message in TEME, which is only written when it is asked for.
 pub(crate) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
+
+/// What is said of a message in BeiDou time.
+pub(crate) const BDT_NOTE: &str = "BDT is not a time system of CCSDS 502.0-B-3 (SANA registry): agree on it with who reads the message";
 
 keywords! {
     /// How a message is written down.
@@ -176,6 +179,9 @@ pub(crate) fn segment_metadata(
     let mut comments = Vec::new();
     if metadata.frame == Frame::Teme {
         comments.push(TEME_NOTE.to_owned());
+    }
+    if metadata.time_system == TimeSystem::Bdt {
+        comments.push(BDT_NOTE.to_owned());
     }
     // 7.8.12 c asks for the accuracy.
     if let Some(hermite) = hermite {

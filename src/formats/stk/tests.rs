@@ -45,6 +45,7 @@ fn written(frame: Frame, step_s: f64) -> String {
         time_system: TimeSystem::Utc,
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
+        frame_note: None,
     };
     let sampled = Sampled::new(&ephemeris, frame);
     let satellite = &ephemeris.satellites()[1];

@@ -6,6 +6,7 @@ use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::run::{FrontMember, Hypervolume, Run, VERSION};
 use crate::scenario::{Algorithm, Keyword, Quantity, Region, Scenario};
+use crate::time::leap_seconds_note;
 use crate::units::round_decimal;
 
 /// The beginning of the page.
@@ -332,9 +333,16 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         ),
         (
             "Frames",
-            "mean elements and propagation in TEME; Earth-fixed by GMST (IAU 1982), UT1 = UTC, no polar \
-             motion"
+            "mean elements and propagation in TEME; Earth-fixed by GMST (IAU 1982), UT1 = UTC at the \
+             epoch, no polar motion"
                 .to_owned(),
+        ),
+        (
+            "Time",
+            format!(
+                "SI seconds from the epoch, over which the Earth turns evenly; {}",
+                leap_seconds_note()
+            ),
         ),
         (
             "PDOP",

@@ -89,6 +89,7 @@ fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
         time_system,
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
+        frame_note: None,
     }
 }
 

@@ -90,6 +90,7 @@ fn some_header() -> CcsdsHeader {
         time_system: TimeSystem::Utc,
         theory: Theory::Sgp4Elements(ElementChoice::Kozai),
         subject: vec!["Design: <a & b>".to_owned()],
+        frame_note: None,
     };
     header(CcsdsVersion::V2, &metadata)
 }

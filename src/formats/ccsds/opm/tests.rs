@@ -99,6 +99,7 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
         time_system: TimeSystem::Tai,
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design".to_owned()],
+        frame_note: None,
     };
     let object = Object::numbered("NW-P02-S02", 4, epoch).unwrap();
     let state = from_teme(teme, frame, epoch, 0.0);
