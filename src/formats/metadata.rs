@@ -319,6 +319,38 @@ mod tests {
         Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap())
     }
 
+    /// |UT1 - UTC| ω r of IERS EOP 20 C04: 0.676 s on 2015-06-30 is 360 m at 925 km, 0.046 s on 2025-01-01 is 18 m;
+    /// at most 0.9 s where it is not observed.
+    #[test]
+    fn validate_the_distance_from_an_itrf() {
+        let told = |utc: &str, radius_km| {
+            let text = distance_from_itrf(Epoch::from_utc(utc.parse().unwrap()), radius_km);
+            assert!(text.is_ascii() && text.len() <= 200, "{text}");
+            text
+        };
+        let leap = told("2015-06-30T00:00:00Z", 7_303.0);
+        assert!(
+            leap.contains("about 360 m at r = 7303 km, as |UT1 - UTC| is 0.68 s"),
+            "{leap}"
+        );
+        assert!(leap.ends_with("polar motion, at most 20 m"), "{leap}");
+        let recent = told("2025-01-01T00:00:00Z", 7_303.0);
+        assert!(
+            recent.contains("about 20 m at r = 7303 km, as |UT1 - UTC| is 0.05 s"),
+            "{recent}"
+        );
+        let high = told("2025-01-01T00:00:00Z", 42_164.0);
+        assert!(
+            high.contains("about 140 m") && high.contains("at most 120 m"),
+            "{high}"
+        );
+        let future = told("2090-01-01T00:00:00Z", 7_303.0);
+        assert!(
+            future.contains("at most 480 m at r = 7303 km, as |UT1 - UTC| <= 0.9 s"),
+            "{future}"
+        );
+    }
+
     /// The examples of Space-Track's description of Alpha-5.
     #[test]
     fn validate_alpha5() {

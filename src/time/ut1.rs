@@ -44,9 +44,9 @@ mod tests {
     fn validate_ut1_against_the_iers() {
         for (instant, expected_s) in [
             ("2015-06-30T00:00:00Z", -0.676_031),
-            ("2015-07-01T00:00:00Z", 0.323_638),
+            ("2015-07-01T00:00:00Z", 0.323_364),
             ("2025-01-01T00:00:00Z", 0.046_322),
-            ("2026-08-15T00:00:00Z", 0.011_9),
+            ("2026-08-15T00:00:00Z", 0.009_450),
         ] {
             let found_s = at(instant).unwrap();
             assert!((found_s - expected_s).abs() < 0.01, "{instant}: {found_s}");

@@ -154,6 +154,37 @@ fn an_epoch_may_lie_inside_a_leap_second() {
     }
 }
 
+/// The manifest says up to when leap seconds are known, and how far from an ITRF the Earth-fixed frame is at the epoch.
+#[test]
+fn the_manifest_tells_of_time() {
+    let choices = Choices {
+        frame: Frame::EarthFixed,
+        time_system: TimeSystem::Bdt,
+        ..Choices::default()
+    };
+    let subject = subject(design(), grid("2015-06-30T23:59:00Z"));
+    let (manifest, files) = in_memory(&subject, &[Product::Oem, Product::Opm], choices);
+    assert!(
+        manifest
+            .conventions
+            .time
+            .contains("up to 2027-06-28; none is assumed after it")
+    );
+    assert!(
+        manifest
+            .conventions
+            .distance_from_itrf
+            .contains("about 360 m")
+    );
+    for file in &manifest.files {
+        let note = file.loss.note.as_deref().unwrap();
+        assert!(note.contains("not a time system of CCSDS"), "{note}");
+    }
+    let oem = text(&files, "oem/NW-P01-S01.oem");
+    assert!(oem.contains("COMMENT Off an ITRF with Earth-orientation data by about 360 m"));
+    assert!(oem.contains("COMMENT BDT is not a time system of CCSDS"));
+}
+
 /// What is read back is where the design is at the same SI seconds, to the digits of the files.
 #[test]
 fn readers_count_seconds_over_a_leap_second() {

@@ -43,9 +43,7 @@ fn hold_the_presets(epoch: Epoch) {
             for since_toa_s in [-86_400.0, 0.0, 30_000.0, 86_400.0] {
                 let t = at.epoch().seconds_since(epoch) + since_toa_s;
                 let propagated = satellite.orbit.state_at(t).unwrap();
-                let ours = from_teme(propagated, EarthFixed, epoch, t)
-                    .position_km
-                    .km();
+                let ours = from_teme(propagated, EarthFixed, epoch, t).position_km.km();
                 let theirs = almanac.position_km(since_toa_s).km();
                 let moved = theirs - ours * (theirs.norm() / ours.norm());
                 // The quadratic term of sidereal time is below a micrometre in a day.
