@@ -201,8 +201,8 @@ fn read(bencher: Bencher, name: &str) {
     let bytes: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
     bencher.counter(BytesCount::new(bytes)).bench_local(|| {
         let fleets = files.iter().map(|(path, bytes)| {
-            let (_, fleet) = Fleet::read(bytes.as_slice(), None, Some(path)).expect(SOUND);
-            fleet.len()
+            let read = Fleet::read(bytes.as_slice(), None, Some(path)).expect(SOUND);
+            read.fleet.len()
         });
         fleets.sum::<usize>()
     });

@@ -1,6 +1,7 @@
 //! LEO designs and GNSS constellations, with the identity of each slot.
 
 pub mod gnss;
+pub mod identity;
 mod notation;
 mod shell;
 

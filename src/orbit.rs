@@ -1,5 +1,6 @@
 //! Mean elements and the theories that turn them into TEME states.
 
+pub mod earth_orbit;
 mod elements;
 pub mod fit;
 pub mod j2;
@@ -14,6 +15,7 @@ pub use spread::PropagatorDistance;
 use crate::frames::{State, Teme};
 use crate::keyword::keywords;
 use crate::time::Epoch;
+use earth_orbit::ImplausibleState;
 use thiserror::Error;
 
 /// A theory bound to one satellite: seconds since the epoch in, TEME state out.
@@ -35,24 +37,32 @@ pub enum PropagationError {
         reason: String,
     },
     /// SGP4 gives up at a later time, as when drag drives the eccentricity out of its range.
-    #[error("SGP4 fails {elapsed_s} s after the epoch: {reason}")]
+    #[error("SGP4 fails at {at}: {reason}")]
     Sgp4State {
-        /// Seconds since the epoch of the elements.
-        elapsed_s: f64,
+        /// The instant.
+        at: Epoch,
         /// What SGP4 says.
         reason: String,
     },
     /// SGP4 puts the satellite under the ground.
     #[error(
-        "the orbit has decayed {elapsed_s} s after the epoch: SGP4 gives a radius of {radius_km:.3} km, below the {least_km} km of the Earth"
+        "the orbit has decayed at {at}: SGP4 gives a radius of {radius_km:.3} km, below the {least_km} km of the Earth"
     )]
     Decayed {
-        /// Seconds since the epoch.
-        elapsed_s: f64,
+        /// The instant.
+        at: Epoch,
         /// The radius, km.
         radius_km: f64,
         /// Equatorial radius of the theory, km.
         least_km: f64,
+    },
+    /// A theory gives a state that cannot be one of an Earth orbit.
+    #[error("at {at} {problem}")]
+    Implausible {
+        /// The instant.
+        at: Epoch,
+        /// What cannot be.
+        problem: ImplausibleState,
     },
     /// A sampled trajectory is asked between or beyond its samples.
     #[error("there is no sample {elapsed_s} s after the epoch")]

@@ -74,7 +74,10 @@ pub fn sp3(bytes: &[u8]) {
     if format::read(bytes).is_err() {
         return;
     }
-    let Ok((_, Fleet::Sampled(trajectories))) = Fleet::read(bytes, Some(Format::Sp3), None) else {
+    let Ok(read) = Fleet::read(bytes, Some(Format::Sp3), None) else {
+        return;
+    };
+    let Fleet::Sampled(trajectories) = read.fleet else {
         return;
     };
     let Some(ephemeris) = propagated(&trajectories) else {
@@ -100,9 +103,8 @@ pub fn sp3(bytes: &[u8]) {
     if format::write(&mut out, Sp3Version::D, 'L', &metadata, &sampled, &pairs).is_err() {
         return;
     }
-    let (_, again) =
-        Fleet::read(out.as_slice(), Some(Format::Sp3), None).expect("our own file is read");
-    if let Fleet::Sampled(again) = again
+    let again = Fleet::read(out.as_slice(), Some(Format::Sp3), None).expect("our own file is read");
+    if let Fleet::Sampled(again) = again.fleet
         && trajectories
             .iter()
             .all(|one| one.frame == Frame::EarthFixed)

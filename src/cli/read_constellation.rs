@@ -1,7 +1,9 @@
 //! Constellations from files.
 
+use crate::cli::output;
 use crate::exchange::import::Fleet;
 use crate::exchange::lint::Format;
+use crate::formats::text::finding::LeftOut;
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -15,21 +17,28 @@ pub(crate) fn read(paths: &[PathBuf]) -> Result<(Format, Fleet)> {
             let read = || -> Result<(Format, Fleet)> {
                 let input = BufReader::new(File::open(&file)?);
                 let name = file.file_name().map(|name| name.to_string_lossy());
-                Ok(Fleet::read(input, None, name.as_deref())?)
+                let read = Fleet::read(input, None, name.as_deref())?;
+                warn_left_out(&file, &read.left_out);
+                Ok((read.format, read.fleet))
             };
             let (format, fleet) =
                 read().with_context(|| format!("cannot read {}", file.display()))?;
             match &mut whole {
                 None => whole = Some((format, fleet)),
-                Some((_, whole)) => whole
-                    .append(fleet)
-                    .with_context(|| format!("cannot add {}", file.display()))?,
+                Some((_, whole)) => whole.append(fleet),
             }
         }
     }
     match whole {
         Some(whole) => Ok(whole),
         None => bail!("no file to read"),
+    }
+}
+
+/// Says what of a file is not read.
+pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
+    if !left_out.is_empty() {
+        output::warning(&format!("{}: {left_out}", file.display()));
     }
 }
 

@@ -2,9 +2,16 @@
 //!
 //! Element sets (TLE, OMM) propagate by SGP4; tables of mean elements, and parameter messages that hold
 //! them, by the model of the study; sampled states stand as they are, at their samples.
+//!
+//! Three rules hold for every format, each in one place: which descriptions are of one object
+//! ([`crate::constellation::identity`]), which states can be those of an Earth orbit
+//! ([`crate::orbit::earth_orbit`]), and that what is not read is counted and named
+//! ([`crate::formats::text::finding::LeftOut`]). `docs/formats.md` describes them for users.
 
+mod objects;
 mod propagation;
 
+pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
 
 use crate::ephemeris::derivative::velocities;
@@ -13,13 +20,14 @@ use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv::ElementsRow;
 use crate::formats::maps::czml;
+use crate::formats::text::finding::{FindingList, LeftOut};
 use crate::formats::trajectory::{TrajectoryError, frame_of_name, time_system_of_name};
 use crate::formats::{ReadError, csv};
 use crate::formats::{sp3, stk, tle};
 use crate::frames::{Frame, Position, State};
 use crate::keyword::UnknownKeyword;
 use crate::time::Epoch;
-use std::io::BufRead;
+use std::io::{self, BufRead};
 use thiserror::Error;
 
 /// Satellites as files give them.
@@ -33,6 +41,19 @@ pub enum Fleet {
     Sampled(Vec<crate::formats::trajectory::Trajectory>),
     /// Positions with the polynomials between them.
     Tracks(Vec<crate::formats::maps::czml::CzmlTrack>),
+    /// Parts of different kinds, each of one of the kinds above.
+    Mixed(Vec<Fleet>),
+}
+
+/// What a file gives.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Imported {
+    /// Its format.
+    pub format: Format,
+    /// Its satellites.
+    pub fleet: Fleet,
+    /// What is in it and is not read.
+    pub left_out: LeftOut,
 }
 
 /// Why a file gives no satellites.
@@ -49,14 +70,6 @@ pub enum ReadFleetError {
     NoTheory {
         /// The satellite.
         name: String,
-    },
-    /// Files of one constellation that propagate by different theories.
-    #[error("one file holds {first} and another {second}; give files of one kind")]
-    Mixed {
-        /// What the first holds.
-        first: &'static str,
-        /// What the other holds.
-        second: &'static str,
     },
     /// A satellite whose file has a single sample without a velocity, or two at one instant.
     #[error("{name}: it has no velocities, and too few positions to derive them from")]
@@ -75,27 +88,56 @@ impl Fleet {
         mut input: impl BufRead,
         format: Option<Format>,
         file_name: Option<&str>,
-    ) -> Result<(Format, Self), ReadFleetError> {
+    ) -> Result<Imported, ReadFleetError> {
         let format = match format {
             Some(format) => format,
             None => Format::of(input.fill_buf().map_err(ReadError::Io)?, file_name),
         };
-        let fleet = match format {
-            Format::Tle => Self::Sets(tle::read(input)?),
-            Format::Omm => Self::of_omm(omm::read(input, OmmSyntax::Kvn)?),
-            Format::OmmXml => Self::of_omm(omm::read(input, OmmSyntax::Xml)?),
-            Format::OmmJson => Self::of_omm(omm::read(input, OmmSyntax::Json)?),
-            Format::OmmCsv => Self::of_omm(omm::read(input, OmmSyntax::Csv)?),
-            Format::Oem => Self::of_oem(vec![oem::read(input)?])?,
-            Format::OemXml => Self::of_oem(oem::read_xml(input)?)?,
-            Format::Opm => Self::of_opm(opm::read(input)?)?,
-            Format::Sp3 => Self::of_sp3(sp3::read(input)?)?,
-            Format::Stk => Self::of_stk(stk::read(input)?, file_name),
-            Format::ElementsCsv => Self::Elements(csv::read_elements(input)?),
-            Format::Czml => Self::Tracks(czml::read(input)?),
-            Format::StatesCsv => Self::Sampled(csv::read_states(input)?),
+        let mut findings = FindingList::of_reader();
+        let mut fleet = Self::read_as(format, input, file_name, &mut findings)?;
+        fleet.name_after_file(file_name);
+        Ok(Imported {
+            format,
+            fleet,
+            left_out: findings.left_out().clone(),
+        })
+    }
+
+    fn read_as(
+        format: Format,
+        input: impl BufRead,
+        file_name: Option<&str>,
+        findings: &mut FindingList,
+    ) -> Result<Self, ReadFleetError> {
+        let omm = |input, syntax, findings: &mut FindingList| {
+            let messages = all(findings, |findings, take| {
+                omm::parse(input, syntax, findings, take)
+            })?;
+            Ok(Self::of_omm(messages))
         };
-        Ok((format, fleet))
+        match format {
+            Format::Tle => {
+                let records = all(findings, |findings, take| tle::parse(input, findings, take))?;
+                let sets = records.into_iter().map(|record| record.set);
+                Ok(Self::Sets(sets.collect()))
+            }
+            Format::Omm => omm(input, OmmSyntax::Kvn, findings),
+            Format::OmmXml => omm(input, OmmSyntax::Xml, findings),
+            Format::OmmJson => omm(input, OmmSyntax::Json, findings),
+            Format::OmmCsv => omm(input, OmmSyntax::Csv, findings),
+            Format::Oem => Self::of_oem(vec![oem::read(input)?]),
+            Format::OemXml => Self::of_oem(all(findings, |findings, take| {
+                oem::parse_xml(input, findings, take)
+            })?),
+            Format::Opm => Self::of_opm(opm::read(input)?),
+            Format::Sp3 => Self::of_sp3(sp3::read(input)?),
+            Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
+            Format::ElementsCsv => Ok(Self::Elements(csv::read_elements(input)?)),
+            Format::Czml => Ok(Self::Tracks(all(findings, |findings, take| {
+                czml::parse(input, findings, take)
+            })?)),
+            Format::StatesCsv => Ok(Self::Sampled(csv::read_states(input)?)),
+        }
     }
 
     fn of_omm(messages: Vec<omm::Omm>) -> Self {
@@ -104,19 +146,9 @@ impl Fleet {
 
     /// The segments of one satellite follow each other.
     fn of_oem(messages: Vec<oem::Oem>) -> Result<Self, ReadFleetError> {
-        let mut trajectories: Vec<crate::formats::trajectory::Trajectory> = Vec::new();
-        for message in &messages {
-            let first = trajectories.len();
-            for segment in &message.segments {
-                let next = segment.trajectory()?;
-                let same = trajectories[first..]
-                    .iter_mut()
-                    .find(|before| before.id == next.id && before.frame == next.frame);
-                match same {
-                    Some(before) => join(&mut before.states, next.states),
-                    None => trajectories.push(next),
-                }
-            }
+        let mut trajectories = Vec::new();
+        for segment in messages.iter().flat_map(|message| &message.segments) {
+            objects::unite(&mut trajectories, segment.trajectory()?);
         }
         Ok(Self::Sampled(trajectories))
     }
@@ -155,7 +187,8 @@ impl Fleet {
             };
             trajectories.push(crate::formats::trajectory::Trajectory {
                 name: file.name_of(id).unwrap_or(id).to_owned(),
-                id: id.clone(),
+                // Ids start again in each file: beyond it only the name tells satellites apart.
+                id: file.name_of(id).unwrap_or(id).to_owned(),
                 frame,
                 states: positions.into_iter().zip(velocities).map(state).collect(),
             });
@@ -175,11 +208,7 @@ impl Fleet {
 
     /// The file names no satellite: it is called as its file is.
     fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
-        let file_name = file_name.unwrap_or("satellite");
-        let file_name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
-        let name = file_name
-            .rsplit_once('.')
-            .map_or(file_name, |(stem, _)| stem);
+        let name = stem(file_name.unwrap_or("satellite"));
         let epoch = Epoch::from_utc(file.scenario_epoch.and_utc());
         let at =
             |(elapsed_s, state): &(f64, State<Frame>)| (epoch.plus_seconds(*elapsed_s), *state);
@@ -191,34 +220,63 @@ impl Fleet {
         }])
     }
 
-    /// Adds the satellites of another file.
-    ///
-    /// # Errors
-    /// When they propagate by another theory.
-    pub fn append(&mut self, other: Self) -> Result<(), ReadFleetError> {
+    /// Names satellites that their file leaves without any identifier after the file.
+    fn name_after_file(&mut self, file_name: Option<&str>) {
+        let Some(file_name) = file_name else { return };
+        match self {
+            Self::Sampled(trajectories) => {
+                for trajectory in trajectories {
+                    if objects::identity(trajectory).label().is_none() {
+                        trajectory.name = stem(file_name).to_owned();
+                        trajectory.id.clone_from(&trajectory.name);
+                    }
+                }
+            }
+            Self::Mixed(parts) => parts
+                .iter_mut()
+                .for_each(|part| part.name_after_file(Some(file_name))),
+            Self::Sets(_) | Self::Elements(_) | Self::Tracks(_) => {}
+        }
+    }
+
+    /// Adds the satellites of another file. Sampled states of a satellite that is known and whose spans do not
+    /// overlap continue its states.
+    pub fn append(&mut self, other: Self) {
         match (&mut *self, other) {
             (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),
             (Self::Elements(rows), Self::Elements(more)) => rows.extend(more),
-            (Self::Sampled(states), Self::Sampled(more)) => states.extend(more),
+            (Self::Sampled(states), Self::Sampled(more)) => more
+                .into_iter()
+                .for_each(|next| objects::unite(states, next)),
             (Self::Tracks(tracks), Self::Tracks(more)) => tracks.extend(more),
-            (first, second) => {
-                return Err(ReadFleetError::Mixed {
-                    first: first.content(),
-                    second: second.content(),
-                });
+            (_, Self::Mixed(more)) => more.into_iter().for_each(|part| self.append(part)),
+            (Self::Mixed(parts), other) => {
+                let kind = std::mem::discriminant(&other);
+                let mut parts_mut = parts.iter_mut();
+                match parts_mut.find(|part| std::mem::discriminant(*part) == kind) {
+                    Some(part) => part.append(other),
+                    None => parts.push(other),
+                }
+            }
+            (_, other) => {
+                let first = std::mem::replace(self, Self::Mixed(Vec::new()));
+                *self = Self::Mixed(vec![first, other]);
             }
         }
-        Ok(())
     }
 
     /// What it holds, in words.
     #[must_use]
-    pub fn content(&self) -> &'static str {
+    pub fn content(&self) -> String {
         match self {
-            Self::Sets(_) => "SGP4 element sets",
-            Self::Elements(_) => "mean elements",
-            Self::Sampled(_) => "sampled states",
-            Self::Tracks(_) => "interpolated positions",
+            Self::Sets(_) => "SGP4 element sets".to_owned(),
+            Self::Elements(_) => "mean elements".to_owned(),
+            Self::Sampled(_) => "sampled states".to_owned(),
+            Self::Tracks(_) => "interpolated positions".to_owned(),
+            Self::Mixed(parts) => {
+                let contents: Vec<String> = parts.iter().map(Self::content).collect();
+                contents.join(", ")
+            }
         }
     }
 
@@ -230,6 +288,7 @@ impl Fleet {
             Self::Elements(rows) => rows.len(),
             Self::Sampled(trajectories) => trajectories.len(),
             Self::Tracks(tracks) => tracks.len(),
+            Self::Mixed(parts) => parts.iter().map(Self::len).sum(),
         }
     }
 
@@ -240,15 +299,25 @@ impl Fleet {
     }
 }
 
-/// Puts the states of a later segment behind those of an earlier one, in the order of time;
-/// segments may share an instant or overlap, and then the earlier one's states stand.
-fn join(before: &mut Vec<(Epoch, State<Frame>)>, next: Vec<(Epoch, State<Frame>)>) {
-    before.extend(next);
-    if !before.is_sorted_by(|(one, _), (other, _)| one < other) {
-        // The sort is stable.
-        before.sort_by_key(|(at, _)| *at);
-        before.dedup_by_key(|(at, _)| *at);
+/// Everything that a parser takes, or the first rule that the file breaks.
+fn all<T>(
+    findings: &mut FindingList,
+    parse: impl FnOnce(&mut FindingList, &mut dyn FnMut(T)) -> io::Result<()>,
+) -> Result<Vec<T>, ReadError> {
+    let mut taken = Vec::new();
+    parse(findings, &mut |one| taken.push(one))?;
+    match findings.first_error() {
+        Some(first) => Err(first.clone().into()),
+        None => Ok(taken),
     }
+}
+
+/// The name of a file without its directory and its last extension.
+fn stem(file_name: &str) -> &str {
+    let file_name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
+    file_name
+        .rsplit_once('.')
+        .map_or(file_name, |(stem, _)| stem)
 }
 
 /// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,

@@ -1,5 +1,6 @@
 //! SGP4 in AFSPC mode (WGS-72), by the `sgp4` crate, from mean elements or from element sets.
 
+use super::earth_orbit::check_inertial;
 use super::j2::SecularRates;
 use super::{MeanElements, PropagationError, Propagator};
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
@@ -129,6 +130,8 @@ pub struct Sgp4Orbit {
     mode: Sgp4Mode,
     /// Equatorial radius of the theory, km; below it an orbit has decayed.
     least_km: f64,
+    /// Epoch of the set.
+    epoch: Epoch,
     /// Seconds from the time origin of [`Propagator::state_at`] to the epoch of the set.
     epoch_offset_s: f64,
 }
@@ -171,7 +174,7 @@ impl Sgp4Orbit {
             slot.mean_motion_rad_s(elements) * 60.0,
         )
         .map_err(refused)?;
-        Self::new(orbit, &epoch.utc().naive_utc(), 0.0, theory, 0.0)
+        Self::new(orbit, epoch, 0.0, theory, 0.0)
     }
 
     /// SGP4 from an element set as read from a file; time runs from `origin`.
@@ -204,13 +207,14 @@ impl Sgp4Orbit {
             set.mean_motion * TAU / MINUTES_PER_DAY,
         )
         .map_err(refused)?;
-        let epoch_offset_s = Epoch::from_utc(set.datetime.and_utc()).seconds_since(origin);
-        Self::new(orbit, &set.datetime, set.drag_term, theory, epoch_offset_s)
+        let epoch = Epoch::from_utc(set.datetime.and_utc());
+        let epoch_offset_s = epoch.seconds_since(origin);
+        Self::new(orbit, epoch, set.drag_term, theory, epoch_offset_s)
     }
 
     fn new(
         orbit: ::sgp4::Orbit,
-        epoch: &chrono::NaiveDateTime,
+        epoch: Epoch,
         drag_term: f64,
         theory: Sgp4Theory,
         epoch_offset_s: f64,
@@ -218,7 +222,7 @@ impl Sgp4Orbit {
         let constants = ::sgp4::Constants::new(
             theory.geopotential,
             theory.mode.sidereal_time(),
-            theory.mode.years_since_j2000(epoch),
+            theory.mode.years_since_j2000(&epoch.utc().naive_utc()),
             drag_term,
             orbit,
         )
@@ -227,6 +231,7 @@ impl Sgp4Orbit {
             constants,
             mode: theory.mode,
             least_km: theory.geopotential.ae,
+            epoch,
             epoch_offset_s,
         })
     }
@@ -238,6 +243,7 @@ impl Sgp4Orbit {
             constants: self.constants.clone(),
             mode: self.mode,
             least_km: self.least_km,
+            epoch: self.epoch,
             epoch_offset_s: self.epoch_offset_s - seconds,
         }
     }
@@ -251,13 +257,15 @@ fn refused(error: impl std::fmt::Display) -> PropagationError {
 
 impl Propagator for Sgp4Orbit {
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
-        let minutes = ::sgp4::MinutesSinceEpoch((elapsed_s - self.epoch_offset_s) / 60.0);
+        let since_epoch_s = elapsed_s - self.epoch_offset_s;
+        let minutes = ::sgp4::MinutesSinceEpoch(since_epoch_s / 60.0);
+        let at = || self.epoch.plus_seconds(since_epoch_s);
         let prediction = match self.mode {
             Sgp4Mode::Afspc => self.constants.propagate_afspc_compatibility_mode(minutes),
             Sgp4Mode::Improved => self.constants.propagate(minutes),
         };
         let prediction = prediction.map_err(|error| PropagationError::Sgp4State {
-            elapsed_s,
+            at: at(),
             reason: error.to_string(),
         })?;
         let position_km = Vector3::from(prediction.position);
@@ -265,12 +273,14 @@ impl Propagator for Sgp4Orbit {
         // Error 6 of the authors' code, which the crate leaves to its caller.
         if radius_km < self.least_km {
             return Err(PropagationError::Decayed {
-                elapsed_s,
+                at: at(),
                 radius_km,
                 least_km: self.least_km,
             });
         }
         let velocity_km_s = Vector3::from(prediction.velocity);
+        check_inertial(&position_km, &velocity_km_s)
+            .map_err(|problem| PropagationError::Implausible { at: at(), problem })?;
         Ok(State::new(position_km, velocity_km_s))
     }
 }
@@ -296,12 +306,13 @@ mod tests {
             b"2 29141  82.4288 273.4882 0015848 277.2124  83.9133 15.93343074  6828",
         )
         .unwrap();
-        let orbit =
-            Sgp4Orbit::from_element_set(&set, Epoch::from_utc(set.datetime.and_utc())).unwrap();
+        let epoch = Epoch::from_utc(set.datetime.and_utc());
+        let orbit = Sgp4Orbit::from_element_set(&set, epoch).unwrap();
         assert!(orbit.state_at(420.0 * 60.0).is_ok());
         let error = orbit.state_at(440.0 * 60.0).unwrap_err();
+        let decayed = epoch.plus_seconds(26_400.0);
         assert!(
-            matches!(error, PropagationError::Decayed { elapsed_s, .. } if elapsed_s == 26_400.0),
+            matches!(error, PropagationError::Decayed { at, .. } if at == decayed),
             "{error}"
         );
     }

@@ -5,6 +5,7 @@ use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{Fleet, ReadFleetError};
+use crate::formats::text::finding::LeftOut;
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{Goals, SweepSteps};
@@ -78,8 +79,11 @@ pub enum GnssFileError {
     #[error("the file holds {content}; TLE or OMM element sets are needed")]
     NoSets {
         /// What it holds.
-        content: &'static str,
+        content: String,
     },
+    /// A part of it is not read.
+    #[error("{0}; take it out of the file")]
+    LeftOut(LeftOut),
     /// Its sets make no system.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
@@ -153,10 +157,13 @@ impl Scenario {
             };
             let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
             let name = file.rsplit('/').next().unwrap_or(file);
-            let (_, fleet) = Fleet::read(bytes.as_slice(), None, Some(name))
+            let read = Fleet::read(bytes.as_slice(), None, Some(name))
                 .map_err(|source| error(source.into()))?;
-            let Fleet::Sets(sets) = fleet else {
-                let content = fleet.content();
+            if !read.left_out.is_empty() {
+                return Err(error(GnssFileError::LeftOut(read.left_out)));
+            }
+            let Fleet::Sets(sets) = read.fleet else {
+                let content = read.fleet.content();
                 return Err(error(GnssFileError::NoSets { content }));
             };
             let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);

@@ -6,6 +6,7 @@ use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
+use crate::exchange::import::SatelliteFilter;
 use crate::report::{
     Align, ConstellationResult, ConstellationSummary, EvaluateResult, Table, constellation_csv,
     dops_csv, metrics_csv, records_csv,
@@ -53,9 +54,17 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
-    let (format, fleet) = read_constellation::read(&args.constellation)?;
+    let (format, mut fleet) = read_constellation::read(&args.constellation)?;
+    let filter = SatelliteFilter {
+        only: args.only.clone(),
+        exclude: args.exclude.clone(),
+    };
+    fleet.choose(&filter)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
+    if let Some(stale) = fleet.stale(setup.grid) {
+        output::warning(&stale.to_string());
+    }
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
@@ -68,7 +77,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         constellation: ConstellationSummary {
             name: names.join("+"),
             format: format.to_string(),
-            content: fleet.content().to_owned(),
+            content: fleet.content(),
             satellites: fleet.len(),
         },
         metrics,

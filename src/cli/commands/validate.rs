@@ -2,7 +2,7 @@
 
 use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, files, output};
+use crate::cli::{Status, files, output, read_constellation};
 use crate::exchange::manifest::{FILE_NAME, Manifest};
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
@@ -95,7 +95,9 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_one = |file: &Path| -> Result<Vec<Comparand>> {
         let opened = File::open(file);
         let opened = opened.with_context(|| format!("cannot read {}", file.display()))?;
-        Ok(read(&file.to_string_lossy(), BufReader::new(opened))?)
+        let (comparands, left_out) = read(&file.to_string_lossy(), BufReader::new(opened))?;
+        read_constellation::warn_left_out(file, &left_out);
+        Ok(comparands)
     };
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();

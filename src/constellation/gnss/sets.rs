@@ -1,6 +1,7 @@
 //! A navigation system from SGP4 element sets.
 
 use super::{GnssOrbit, GnssSatellite};
+use crate::constellation::identity::{ObjectIdentity, first_repeated, unique_labels};
 use crate::orbit::PropagationError;
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::time::{Epoch, TimeGrid};
@@ -82,7 +83,7 @@ impl ElementSets {
 
     /// The system `name` from the sets of its satellites.
     ///
-    /// A satellite is named as in its set, or by its catalogue number.
+    /// A satellite is named as in its set, or by its designator or catalogue number.
     ///
     /// # Errors
     /// When there is no set, a satellite has two, or SGP4 refuses one.
@@ -92,12 +93,15 @@ impl ElementSets {
             return Err(ElementSetError::Empty { system: system() });
         }
         let mut members = Vec::with_capacity(sets.len());
-        for (n, set) in sets.iter().enumerate() {
-            let satellite = satellite_name(set);
-            if sets[..n].iter().any(|other| same_satellite(other, set)) {
-                let system = system();
-                return Err(ElementSetError::Duplicate { system, satellite });
-            }
+        let identities: Vec<_> = sets.iter().map(ObjectIdentity::of_set).collect();
+        let names = unique_labels(&identities);
+        if let Some((_, second)) = first_repeated(&identities) {
+            return Err(ElementSetError::Duplicate {
+                system: system(),
+                satellite: names[second].clone(),
+            });
+        }
+        for (satellite, set) in names.into_iter().zip(sets) {
             let epoch = Epoch::from_utc(set.datetime.and_utc());
             match Sgp4Orbit::from_element_set(set, epoch) {
                 Ok(orbit) => members.push(ElementSetMember {
@@ -159,18 +163,6 @@ impl ElementSets {
                 age_days,
             })
     }
-}
-
-/// Sets without a catalogue number (0) are told apart by name.
-fn same_satellite(a: &::sgp4::Elements, b: &::sgp4::Elements) -> bool {
-    a.norad_id == b.norad_id && (a.norad_id != 0 || a.object_name == b.object_name)
-}
-
-fn satellite_name(set: &::sgp4::Elements) -> String {
-    let named = set.object_name.as_deref().map(str::trim);
-    named
-        .filter(|name| !name.is_empty())
-        .map_or_else(|| set.norad_id.to_string(), str::to_owned)
 }
 
 #[cfg(test)]

@@ -43,10 +43,10 @@ fn read_back(
             continue;
         }
         let text = change(String::from_utf8(bytes).unwrap());
-        let (_, fleet) = Fleet::read(text.as_bytes(), None, Some(&path))?;
+        let fleet = Fleet::read(text.as_bytes(), None, Some(&path))?.fleet;
         match &mut whole {
             None => whole = Some(fleet),
-            Some(whole) => whole.append(fleet)?,
+            Some(whole) => whole.append(fleet),
         }
     }
     Ok(whole.unwrap())
@@ -111,6 +111,7 @@ fn swapped(fleet: &mut Fleet) {
         Fleet::Elements(rows) => rows.swap(2, 3),
         Fleet::Sampled(trajectories) => trajectories.swap(2, 3),
         Fleet::Tracks(tracks) => tracks.swap(2, 3),
+        Fleet::Mixed(_) => unreachable!("a product is of one kind"),
     }
 }
 
@@ -126,6 +127,7 @@ fn a_second_late(fleet: &mut Fleet) {
         Fleet::Tracks(tracks) => tracks
             .iter_mut()
             .for_each(|track| track.epoch = track.epoch.plus_seconds(1.0)),
+        Fleet::Mixed(_) => unreachable!("a product is of one kind"),
         Fleet::Sampled(trajectories) => {
             for (_, state) in trajectories.iter_mut().flat_map(|one| &mut one.states) {
                 state.position_km = state.position_km + -state.velocity_km_s;

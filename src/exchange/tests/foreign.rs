@@ -17,7 +17,7 @@ fn read(text: &str, format: Format, warnings: &[&str]) -> Fleet {
     assert_eq!(rules, warnings, "{:?}", report.findings);
     let name = "dir/SAT-7.e";
     let read = Fleet::read(text.as_bytes(), Some(format), Some(name));
-    read.unwrap().1
+    read.unwrap().fleet
 }
 
 fn sets(fleet: Fleet) -> Vec<sgp4::Elements> {

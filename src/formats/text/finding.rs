@@ -1,5 +1,6 @@
 //! What a reader objects to in a file: where it stands and which rule it breaks.
 
+use std::fmt;
 use thiserror::Error;
 
 /// How bad a broken rule is.
@@ -27,12 +28,78 @@ pub struct Finding {
     pub severity: Severity,
 }
 
+/// Names that are listed of each kind that is left out.
+const MOST_NAMES: usize = 5;
+
+/// Parts of a file that a reader does not read, counted, so that nothing goes without a word.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct LeftOut {
+    kinds: Vec<LeftOutKind>,
+}
+
+/// Parts of one kind.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct LeftOutKind {
+    what: &'static str,
+    count: usize,
+    /// The first of them.
+    names: Vec<String>,
+}
+
+impl LeftOut {
+    /// Whether everything has been read.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.kinds.is_empty()
+    }
+
+    /// Number of parts.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.kinds.iter().map(|kind| kind.count).sum()
+    }
+
+    /// Adds a part of the kind `what`.
+    pub(crate) fn add(&mut self, what: &'static str, name: &str) {
+        let kind = match self.kinds.iter_mut().position(|kind| kind.what == what) {
+            Some(at) => &mut self.kinds[at],
+            None => {
+                let (count, names) = (0, Vec::new());
+                self.kinds.push(LeftOutKind { what, count, names });
+                let last = self.kinds.len() - 1;
+                &mut self.kinds[last]
+            }
+        };
+        kind.count += 1;
+        if kind.names.len() < MOST_NAMES {
+            kind.names.push(name.to_owned());
+        }
+    }
+}
+
+impl fmt::Display for LeftOut {
+    /// `left out: 3 (message: opm, tdm; packet without position: SAT-C)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "left out: {} (", self.count())?;
+        for (n, kind) in self.kinds.iter().enumerate() {
+            let separator = if n == 0 { "" } else { "; " };
+            write!(f, "{separator}{}: {}", kind.what, kind.names.join(", "))?;
+            let more = kind.count - kind.names.len();
+            if more > 0 {
+                write!(f, " and {more} more")?;
+            }
+        }
+        write!(f, ")")
+    }
+}
+
 /// A list of findings that stops growing at a limit, so that a hostile file costs no memory.
 #[derive(Debug)]
 pub struct FindingList {
     limit: usize,
     keeps_warnings: bool,
     found: Vec<Finding>,
+    left_out: LeftOut,
 }
 
 impl FindingList {
@@ -43,6 +110,7 @@ impl FindingList {
             limit,
             keeps_warnings: true,
             found: Vec::new(),
+            left_out: LeftOut::default(),
         }
     }
 
@@ -52,6 +120,7 @@ impl FindingList {
             limit: 1,
             keeps_warnings: false,
             found: Vec::new(),
+            left_out: LeftOut::default(),
         }
     }
 
@@ -89,6 +158,26 @@ impl FindingList {
         }
     }
 
+    /// Notes that a part of the file is not read although it breaks no rule: a warning of a linter, and what a
+    /// reader says once it is done. `what` is its kind, as in `message` or `packet without position`.
+    pub(crate) fn leave_out(&mut self, place: (usize, usize), what: &'static str, name: &str) {
+        let message = format!("{what} {name} is not read");
+        self.warning(place, "left-out", message);
+        self.left_out.add(what, name);
+    }
+
+    /// What has been left out so far.
+    #[must_use]
+    pub fn left_out(&self) -> &LeftOut {
+        &self.left_out
+    }
+
+    /// The first error.
+    pub(crate) fn first_error(&self) -> Option<&Finding> {
+        let mut found = self.found.iter();
+        found.find(|finding| finding.severity == Severity::Error)
+    }
+
     fn add(
         &mut self,
         (line, column): (usize, usize),
@@ -123,5 +212,30 @@ impl FindingList {
             None => Ok(value),
             Some(first) => Err(first.into()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_out_is_counted_and_named() {
+        let mut findings = FindingList::of_reader();
+        assert!(findings.left_out().is_empty());
+        findings.leave_out((3, 1), "message", "opm");
+        for n in 1..=7 {
+            findings.leave_out((4 + n, 1), "packet without position", &format!("S{n}"));
+        }
+        let told = findings.left_out().to_string();
+        let expected =
+            "left out: 8 (message: opm; packet without position: S1, S2, S3, S4, S5 and 2 more)";
+        assert_eq!(told, expected);
+        assert!(findings.into_vec().is_empty());
+        let mut findings = FindingList::of_linter(10);
+        findings.leave_out((3, 1), "message", "opm");
+        let found = findings.into_vec();
+        assert_eq!((found[0].line, found[0].rule), (3, "left-out"));
+        assert_eq!(found[0].severity, Severity::Warning);
     }
 }

@@ -1,6 +1,7 @@
 //! From the bytes of a file to what can be compared.
 
 use crate::exchange::import::{Fleet, ReadFleetError};
+use crate::formats::text::finding::LeftOut;
 use crate::formats::trajectory::Trajectory;
 use std::io::BufRead;
 use thiserror::Error;
@@ -69,16 +70,24 @@ pub enum Comparand {
     Elements(Box<::sgp4::Elements>),
 }
 
-/// The objects of a file, its format told by its content or else its name.
+/// The objects of a file, its format told by its content or else its name, and what is not read of it.
 ///
 /// # Errors
 /// When the file breaks its format, or its states are in a frame or time that is not known.
-pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError> {
-    let (_, fleet) = Fleet::read(input, None, Some(file)).map_err(|source| FileError::Read {
+pub fn read(file: &str, input: impl BufRead) -> Result<(Vec<Comparand>, LeftOut), FileError> {
+    let read = Fleet::read(input, None, Some(file)).map_err(|source| FileError::Read {
         file: file.to_owned(),
         source,
     })?;
-    let found: Vec<Comparand> = match fleet {
+    let found = comparands(file, read.fleet)?;
+    if found.is_empty() {
+        return Err(FileError::Empty(file.to_owned()));
+    }
+    Ok((found, read.left_out))
+}
+
+fn comparands(file: &str, fleet: Fleet) -> Result<Vec<Comparand>, FileError> {
+    Ok(match fleet {
         Fleet::Sets(sets) => {
             let boxed = sets.into_iter().map(Box::new);
             boxed.map(Comparand::Elements).collect()
@@ -96,9 +105,12 @@ pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError
             sampled.map(Comparand::States).collect()
         }
         Fleet::Elements(_) => return Err(FileError::MeanElements(file.to_owned())),
-    };
-    if found.is_empty() {
-        return Err(FileError::Empty(file.to_owned()));
-    }
-    Ok(found)
+        Fleet::Mixed(parts) => {
+            let mut all = Vec::new();
+            for part in parts {
+                all.extend(comparands(file, part)?);
+            }
+            all
+        }
+    })
 }

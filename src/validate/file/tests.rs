@@ -216,7 +216,7 @@ fn exported_files_are_the_design() {
         let mut comparands = Vec::new();
         for (path, bytes) in &files {
             if path != "manifest.json" {
-                comparands.extend(read(path, bytes.as_slice()).unwrap());
+                comparands.extend(read(path, bytes.as_slice()).unwrap().0);
             }
         }
         let findings = compared(&comparands).unwrap();
@@ -319,7 +319,8 @@ fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
     let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
-    let findings = against_file(&subject, "orekit", &read("orekit.oem", OREKIT).unwrap()).unwrap();
+    let findings =
+        against_file(&subject, "orekit", &read("orekit.oem", OREKIT).unwrap().0).unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];
     assert_eq!(

@@ -1,0 +1,253 @@
+//! Which object a file speaks of: the one rule inside a file and across files, in every format.
+//!
+//! Two descriptions are of the same object if they agree in the first of these that both have: the catalogue
+//! number, the international designator, the name. Placeholders count as nothing given. The rule is described
+//! for users in `docs/formats.md`.
+
+use std::collections::HashMap;
+
+/// Words that stand where there is no identifier (CCSDS 502.0-B-3 asks for `UNKNOWN`).
+const PLACEHOLDERS: [&str; 9] = [
+    "",
+    "UNKNOWN",
+    "UNKNOWN OBJECT",
+    "UNASSIGNED",
+    "N/A",
+    "NA",
+    "NONE",
+    "TBD",
+    "-",
+];
+
+/// What a file gives of the identity of an object.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ObjectIdentity {
+    /// Catalogue number; 0 is none.
+    catalogue_number: Option<u64>,
+    /// International designator, or another identifier that holds beyond its file.
+    designator: Option<String>,
+    /// Name.
+    name: Option<String>,
+}
+
+impl ObjectIdentity {
+    /// The identity of an object with these identifiers, of which placeholders are dropped.
+    #[must_use]
+    pub fn new(catalogue_number: u64, designator: &str, name: &str) -> Self {
+        Self {
+            catalogue_number: Some(catalogue_number).filter(|number| *number != 0),
+            designator: given(designator).filter(|text| !text.starts_with("0000-")),
+            name: given(name),
+        }
+    }
+
+    /// The identity in an element set.
+    #[must_use]
+    pub fn of_set(set: &::sgp4::Elements) -> Self {
+        let text = |text: &Option<String>| text.clone().unwrap_or_default();
+        Self::new(
+            set.norad_id,
+            &text(&set.international_designator),
+            &text(&set.object_name),
+        )
+    }
+
+    /// Whether both are of one object.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        if let (Some(a), Some(b)) = (self.catalogue_number, other.catalogue_number) {
+            return a == b;
+        }
+        let both = [
+            (&self.designator, &other.designator),
+            (&self.name, &other.name),
+        ];
+        let known = both
+            .into_iter()
+            .find_map(|(a, b)| Some((a.as_ref()?, b.as_ref()?)));
+        known.is_some_and(|(a, b)| a.eq_ignore_ascii_case(b))
+    }
+
+    /// Whether both have names, and these differ.
+    #[must_use]
+    pub fn is_named_otherwise(&self, other: &Self) -> bool {
+        let names = self.name.as_ref().zip(other.name.as_ref());
+        names.is_some_and(|(a, b)| !a.eq_ignore_ascii_case(b))
+    }
+
+    /// What the object is called: its name, or else its designator, or else its number.
+    #[must_use]
+    pub fn label(&self) -> Option<String> {
+        self.name.clone().or_else(|| self.identifier())
+    }
+
+    /// The designator, or else the number.
+    fn identifier(&self) -> Option<String> {
+        let number = || self.catalogue_number.map(|number| number.to_string());
+        self.designator.clone().or_else(number)
+    }
+
+    /// Every text that the object may be asked for by.
+    pub fn texts(&self) -> impl Iterator<Item = String> {
+        let number = self.catalogue_number.map(|number| number.to_string());
+        let texts = [self.name.clone(), self.designator.clone(), number];
+        texts.into_iter().flatten()
+    }
+}
+
+/// A text that is no placeholder.
+fn given(text: &str) -> Option<String> {
+    let text = text.trim();
+    let is_placeholder = PLACEHOLDERS
+        .iter()
+        .any(|word| text.eq_ignore_ascii_case(word));
+    (!is_placeholder).then(|| text.to_owned())
+}
+
+/// Labels of objects, unique among them: objects that share a name have their designator or number behind it, and
+/// those without any identifier are numbered by their place, from 1.
+#[must_use]
+pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
+    let label = |(place, identity): (usize, &ObjectIdentity)| {
+        let unnamed = || format!("satellite {}", place + 1);
+        identity.label().unwrap_or_else(unnamed)
+    };
+    let labels: Vec<String> = identities.iter().enumerate().map(label).collect();
+    let mut counts: HashMap<&str, usize> = HashMap::new();
+    for label in &labels {
+        *counts.entry(label).or_default() += 1;
+    }
+    let unique = |(label, identity): (&String, &ObjectIdentity)| match identity.identifier() {
+        Some(identifier) if counts[label.as_str()] > 1 && identifier != *label => {
+            format!("{label} ({identifier})")
+        }
+        _ => label.clone(),
+    };
+    labels.iter().zip(identities).map(unique).collect()
+}
+
+/// Objects that have been met, to be looked up by identity.
+#[derive(Debug, Default)]
+pub struct KnownObjects {
+    identities: Vec<ObjectIdentity>,
+    by_number: HashMap<u64, Vec<usize>>,
+    by_text: HashMap<String, Vec<usize>>,
+}
+
+impl KnownObjects {
+    /// The place of the first object that is the same as this one; the object is remembered.
+    pub fn meet(&mut self, identity: &ObjectIdentity) -> Option<usize> {
+        let texts = [&identity.designator, &identity.name];
+        let texts = || {
+            texts
+                .into_iter()
+                .flatten()
+                .map(|text| text.to_ascii_uppercase())
+        };
+        let by_number = identity
+            .catalogue_number
+            .and_then(|number| self.by_number.get(&number));
+        let by_text = texts().filter_map(|text| self.by_text.get(&text));
+        let candidates = by_number.into_iter().chain(by_text).flatten();
+        let same = candidates.filter(|place| self.identities[**place].is_same(identity));
+        let found = same.min().copied();
+        let place = self.identities.len();
+        self.identities.push(identity.clone());
+        if let Some(number) = identity.catalogue_number {
+            self.by_number.entry(number).or_default().push(place);
+        }
+        for text in texts() {
+            self.by_text.entry(text).or_default().push(place);
+        }
+        found
+    }
+}
+
+/// The first two places that hold one object.
+#[must_use]
+pub fn first_repeated(identities: &[ObjectIdentity]) -> Option<(usize, usize)> {
+    let mut known = KnownObjects::default();
+    let mut places = identities.iter().enumerate();
+    places.find_map(|(place, identity)| Some((known.meet(identity)?, place)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn object(number: u64, designator: &str, name: &str) -> ObjectIdentity {
+        ObjectIdentity::new(number, designator, name)
+    }
+
+    /// Number before designator before name; what is not given on one side does not count.
+    #[test]
+    fn objects_are_told_apart_by_the_first_identifier_that_both_have() {
+        for (one, other, is_same) in [
+            (
+                object(5, "1958-002B", "A"),
+                object(5, "1958-002C", "B"),
+                true,
+            ),
+            (
+                object(5, "1958-002B", "A"),
+                object(6, "1958-002B", "A"),
+                false,
+            ),
+            (
+                object(5, "1958-002B", "A"),
+                object(0, "1958-002B", "B"),
+                true,
+            ),
+            (
+                object(0, "2025-900A", "UNKNOWN"),
+                object(0, "2025-900B", "UNKNOWN"),
+                false,
+            ),
+            (object(0, "", "UNKNOWN"), object(0, "", "unknown"), false),
+            (
+                object(0, "0000-000A", "A"),
+                object(0, "0000-000A", "B"),
+                false,
+            ),
+            (
+                object(0, "0000-000A", "A"),
+                object(0, "UNKNOWN", "a "),
+                true,
+            ),
+            (
+                object(0, "2025-900A", "A"),
+                object(0, "2025-900a", "B"),
+                true,
+            ),
+            (object(5, "", ""), object(0, "", "5"), false),
+        ] {
+            assert_eq!(one.is_same(&other), is_same, "{one:?} {other:?}");
+            assert_eq!(other.is_same(&one), is_same);
+            let expected = is_same.then_some((0, 1));
+            assert_eq!(first_repeated(&[one, other]), expected);
+        }
+    }
+
+    #[test]
+    fn labels_are_unique() {
+        let labels = unique_labels(&[
+            object(0, "2025-900A", "UNKNOWN"),
+            object(0, "2025-900B", "UNKNOWN"),
+            object(7, "", "DEB"),
+            object(8, "1999-025A", "DEB"),
+            object(9, "", ""),
+            object(0, "", ""),
+            object(10, "", "SAT"),
+        ]);
+        let expected = [
+            "2025-900A",
+            "2025-900B",
+            "DEB (7)",
+            "DEB (1999-025A)",
+            "9",
+            "satellite 6",
+            "SAT",
+        ];
+        assert_eq!(labels, expected);
+    }
+}

@@ -1,0 +1,232 @@
+//! Which satellites a fleet holds: their identities, the joining of their states, and the choice among them.
+
+use super::Fleet;
+use crate::constellation::identity::{ObjectIdentity, unique_labels};
+use crate::formats::trajectory::Trajectory;
+use crate::frames::{Frame, FromTeme, State};
+use crate::keyword::nearest;
+use crate::time::Epoch;
+use thiserror::Error;
+
+/// The identity of a satellite with states; an id that is not its name holds beyond its file.
+pub(super) fn identity(trajectory: &Trajectory) -> ObjectIdentity {
+    let is_own = trajectory.id != trajectory.name;
+    let designator = if is_own { trajectory.id.as_str() } else { "" };
+    ObjectIdentity::new(0, designator, &trajectory.name)
+}
+
+/// Adds states: to those of the same satellite, if they come before or after them, or else as a satellite of
+/// their own.
+pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
+    let of_next = identity(&next);
+    let continued = known.iter_mut().find(|before| {
+        let of_before = identity(before);
+        of_before.is_same(&of_next)
+            && !of_before.is_named_otherwise(&of_next)
+            && !overlap(&before.states, &next.states)
+    });
+    match continued {
+        Some(before) => join(before, next),
+        None => known.push(next),
+    }
+}
+
+/// Whether the spans of states have more in common than an instant.
+fn overlap(one: &[(Epoch, State<Frame>)], other: &[(Epoch, State<Frame>)]) -> bool {
+    let (Some((one_first, _)), Some((one_last, _))) = (one.first(), one.last()) else {
+        return false;
+    };
+    let (Some((first, _)), Some((last, _))) = (other.first(), other.last()) else {
+        return false;
+    };
+    one_last > first && last > one_first
+}
+
+/// Puts states behind or before those of the same satellite; at an instant that both have, the earlier one's
+/// state stands.
+fn join(before: &mut Trajectory, mut next: Trajectory) {
+    if before.frame != next.frame {
+        to_teme(before);
+        to_teme(&mut next);
+    }
+    before.states.extend(next.states);
+    // The sort is stable.
+    before.states.sort_by_key(|(at, _)| *at);
+    before.states.dedup_by_key(|(at, _)| *at);
+}
+
+fn to_teme(trajectory: &mut Trajectory) {
+    for (at, state) in &mut trajectory.states {
+        let teme = FromTeme::to(trajectory.frame, *at, 0.0).undo(*state);
+        *state = State::new(teme.position_km.km(), teme.velocity_km_s);
+    }
+    trajectory.frame = Frame::Teme;
+}
+
+impl Fleet {
+    /// The identities of the satellites, in their order.
+    #[must_use]
+    pub fn identities(&self) -> Vec<ObjectIdentity> {
+        let named = |name: &String| ObjectIdentity::new(0, "", name);
+        match self {
+            Self::Sets(sets) => sets.iter().map(ObjectIdentity::of_set).collect(),
+            Self::Elements(rows) => rows.iter().map(|row| named(&row.name)).collect(),
+            Self::Sampled(trajectories) => trajectories.iter().map(identity).collect(),
+            Self::Tracks(tracks) => tracks.iter().map(|track| named(&track.name)).collect(),
+            Self::Mixed(parts) => parts.iter().flat_map(Self::identities).collect(),
+        }
+    }
+
+    /// The names of the satellites, unique among them, in their order.
+    #[must_use]
+    pub fn labels(&self) -> Vec<String> {
+        unique_labels(&self.identities())
+    }
+
+    /// Keeps the satellites that `filter` chooses.
+    ///
+    /// # Errors
+    /// If a pattern matches none, or no satellite is left.
+    pub fn choose(&mut self, filter: &SatelliteFilter) -> Result<(), NoSuchSatellite> {
+        let mut kept = filter
+            .choose(&self.identities(), &self.labels())?
+            .into_iter();
+        self.retain(&mut || kept.next().unwrap_or(false));
+        Ok(())
+    }
+
+    fn retain(&mut self, keep: &mut dyn FnMut() -> bool) {
+        match self {
+            Self::Sets(sets) => sets.retain(|_| keep()),
+            Self::Elements(rows) => rows.retain(|_| keep()),
+            Self::Sampled(trajectories) => trajectories.retain(|_| keep()),
+            Self::Tracks(tracks) => tracks.retain(|_| keep()),
+            Self::Mixed(parts) => {
+                parts.iter_mut().for_each(|part| part.retain(keep));
+                parts.retain(|part| !part.is_empty());
+            }
+        }
+    }
+}
+
+/// Satellites chosen by patterns: names, designators or catalogue numbers, in which `*` stands for any characters
+/// and `?` for one; case does not matter.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct SatelliteFilter {
+    /// Patterns of the satellites to keep; none keeps all.
+    pub only: Vec<String>,
+    /// Patterns of the satellites to leave out.
+    pub exclude: Vec<String>,
+}
+
+/// A choice that leaves nothing, or names what is not there.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NoSuchSatellite {
+    /// A pattern without a match.
+    #[error("no satellite matches '{pattern}'{}", did_you_mean(nearest.as_deref()))]
+    Pattern {
+        /// The pattern.
+        pattern: String,
+        /// The satellite that was most likely meant.
+        nearest: Option<String>,
+    },
+    /// Everything is left out.
+    #[error("the choice leaves none of the {0} satellites")]
+    Nothing(usize),
+}
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!("; did you mean '{name}'?"))
+}
+
+impl SatelliteFilter {
+    /// Whether it keeps everything.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.only.is_empty() && self.exclude.is_empty()
+    }
+
+    /// Which satellites are kept.
+    ///
+    /// # Errors
+    /// If a pattern matches none, or none is left.
+    fn choose(
+        &self,
+        identities: &[ObjectIdentity],
+        labels: &[String],
+    ) -> Result<Vec<bool>, NoSuchSatellite> {
+        let texts = |(identity, label): (&ObjectIdentity, &String)| {
+            let mut texts: Vec<String> = identity.texts().collect();
+            texts.push(label.clone());
+            texts
+        };
+        let texts: Vec<Vec<String>> = identities.iter().zip(labels).map(texts).collect();
+        let mut kept = vec![self.only.is_empty(); texts.len()];
+        for (patterns, keep) in [(&self.only, true), (&self.exclude, false)] {
+            for pattern in patterns {
+                let is_met = |texts: &Vec<String>| texts.iter().any(|text| matches(pattern, text));
+                let met: Vec<bool> = texts.iter().map(is_met).collect();
+                if !met.contains(&true) {
+                    let texts: Vec<&str> = texts.iter().flatten().map(String::as_str).collect();
+                    return Err(NoSuchSatellite::Pattern {
+                        pattern: pattern.clone(),
+                        nearest: nearest_text(pattern, &texts),
+                    });
+                }
+                for (kept, met) in kept.iter_mut().zip(met) {
+                    *kept = if met { keep } else { *kept };
+                }
+            }
+        }
+        if kept.contains(&true) {
+            Ok(kept)
+        } else {
+            Err(NoSuchSatellite::Nothing(kept.len()))
+        }
+    }
+}
+
+/// The text that is most like a pattern.
+fn nearest_text(pattern: &str, texts: &[&str]) -> Option<String> {
+    let lower: Vec<String> = texts
+        .iter()
+        .map(|text| text.to_lowercase().replace('_', "-"))
+        .collect();
+    let lower: Vec<&str> = lower.iter().map(String::as_str).collect();
+    let found = nearest(pattern, &lower)?;
+    let at = lower.iter().position(|text| *text == found)?;
+    Some(texts[at].to_owned())
+}
+
+/// Whether a text fits a pattern with `*` and `?`, whatever the case.
+fn matches(pattern: &str, text: &str) -> bool {
+    let lower = |text: &str| text.to_lowercase().chars().collect::<Vec<char>>();
+    let (pattern, text) = (lower(pattern), lower(text));
+    let (mut p, mut t) = (0, 0);
+    // The last star, and how much of the text it has taken.
+    let mut star: Option<(usize, usize)> = None;
+    while t < text.len() {
+        match pattern.get(p) {
+            Some('*') => {
+                star = Some((p, t));
+                p += 1;
+            }
+            Some(c) if *c == '?' || *c == text[t] => {
+                p += 1;
+                t += 1;
+            }
+            _ => match star {
+                Some((at, taken)) => {
+                    star = Some((at, taken + 1));
+                    p = at + 1;
+                    t = taken + 1;
+                }
+                None => return false,
+            },
+        }
+    }
+    pattern[p..].iter().all(|c| *c == '*')
+}
+
+#[cfg(test)]
+mod tests;
