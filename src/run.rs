@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub(crate) mod columns;
+pub mod inputs;
 mod results;
 pub(crate) mod tables;
 #[cfg(feature = "validate")]
@@ -39,13 +40,19 @@ pub const HISTORY_CSV: &str = "history.csv";
 pub const CHECKPOINT: &str = "checkpoint";
 /// The state of the search one generation earlier.
 pub const PREVIOUS_CHECKPOINT: &str = "checkpoint.previous";
+/// What a run is a run of, and its inputs with their checksums.
+pub const MANIFEST: &str = "run.json";
+/// The directory for copies of the files that the scenario names.
+pub const INPUTS: &str = "inputs";
 /// The directory for a validation of one of the designs.
 pub const VALIDATION: &str = "validation";
 /// The result of a validation, in its directory.
 pub const VALIDATION_REPORT: &str = "report.json";
 
-/// The files that a run writes; whatever else lies in its directory was put there about it.
-pub const FILES: [&str; 7] = [
+/// What a run writes; whatever else lies in its directory was put there about it.
+pub const FILES: [&str; 9] = [
+    MANIFEST,
+    INPUTS,
     CHECKPOINT,
     PREVIOUS_CHECKPOINT,
     SCENARIO,
@@ -55,18 +62,18 @@ pub const FILES: [&str; 7] = [
     HISTORY_CSV,
 ];
 
-/// The result files of a finished run: names and contents.
+/// The results of a run: names and contents of their files. A run begins with
+/// [`inputs::first_files`].
 ///
 /// # Errors
 /// Never for results in memory.
 pub fn result_files(
     scenario: &Scenario,
     result: &OptimizeResult,
-) -> std::io::Result<[(&'static str, String); 5]> {
+) -> std::io::Result<[(&'static str, String); 4]> {
     let objectives = scenario.objectives.minimize.iter();
     let objectives: Vec<String> = objectives.map(ToString::to_string).collect();
     Ok([
-        (SCENARIO, scenario.to_toml()),
         (FRONT_JSON, serde_json::to_string_pretty(result)? + "\n"),
         (FRONT_CSV, front_csv(result)?),
         (

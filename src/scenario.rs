@@ -42,6 +42,7 @@ pub use crate::orbit::Model;
 pub use crate::search::{Constraint, ConstraintError, LaunchCost, Quantity, Relation};
 pub use algorithm::Algorithm;
 pub use builtin::{builtin, builtin_names};
+pub use canonical::KeyDifference;
 pub use keys::{KeyDescription, describe_keys};
 pub use problem::{Fault, Problems, ScenarioProblem};
 pub use setup::SetupError;
@@ -72,19 +73,43 @@ impl Scenario {
         overrides: &[S],
     ) -> Result<Self, Problems> {
         let mut report = ProblemList::default();
-        let scenario = decode(label, bytes, &mut report)
-            .and_then(|text| Document::read(label, text, &mut report))
-            .and_then(|mut document| {
-                for (index, argument) in overrides.iter().enumerate() {
-                    document.override_with(index, argument.as_ref(), &mut report);
-                }
-                document.read_scenario(&mut report)
-            });
-        match scenario {
+        let document = document(label, bytes, overrides, &mut report);
+        match document.and_then(|document| document.read_scenario(&mut report)) {
             Some(scenario) if report.is_empty() => Ok(scenario),
             _ => Err(report.into()),
         }
     }
+
+    /// What `error` means in the text of this scenario: the problem at the key that is behind it.
+    /// The arguments are those of [`Scenario::parse`].
+    pub fn setup_problem<S: AsRef<str>>(
+        label: &str,
+        bytes: &[u8],
+        overrides: &[S],
+        error: &SetupError,
+    ) -> Problems {
+        let mut report = ProblemList::default();
+        if let Some(document) = document(label, bytes, overrides, &mut report) {
+            let reason = error.reason();
+            document.refuse(&error.keys(), Fault::SetUp { reason }, &mut report);
+        }
+        report.into()
+    }
+}
+
+/// The keys of a file with those of `--set` arguments over them.
+fn document<'a, S: AsRef<str>>(
+    label: &'a str,
+    bytes: &'a [u8],
+    overrides: &'a [S],
+    report: &mut ProblemList,
+) -> Option<Document<'a>> {
+    let text = decode(label, bytes, report)?;
+    let mut document = Document::read(label, text, report)?;
+    for (index, argument) in overrides.iter().enumerate() {
+        document.override_with(index, argument.as_ref(), report);
+    }
+    Some(document)
 }
 
 fn decode<'a>(label: &str, bytes: &'a [u8], report: &mut ProblemList) -> Option<&'a str> {

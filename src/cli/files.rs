@@ -35,6 +35,18 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     written.with_context(|| format!("cannot write {}", path.display()))
 }
 
+/// Writes files, by their paths from `directory`, each atomically.
+pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
+    for (path, bytes) in files {
+        let path = directory.join(path);
+        let parent = path.parent().unwrap_or(directory);
+        fs::create_dir_all(parent)
+            .with_context(|| format!("cannot create {}", parent.display()))?;
+        write_atomically(&path, bytes)?;
+    }
+    Ok(())
+}
+
 /// A name next to `path` that no other process of this program uses.
 fn beside(path: &Path) -> PathBuf {
     let name = path

@@ -1,5 +1,6 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
+use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::constellation::Design;
 use crate::optimize::{Pick, Search, Strategy};
@@ -17,43 +18,43 @@ use std::path::{Path, PathBuf};
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
-    /// What else the directory holds about the same run: a validation, a report.
-    kept: Vec<OsString>,
+    /// What the run begins with: the scenario, copies of its files, the manifest.
+    first_files: Vec<(String, Vec<u8>)>,
 }
 
 impl RunDirectory {
-    /// The directory at `path`, which is created where it is missing.
-    pub(crate) fn open(path: PathBuf, identity: Identity, force: bool) -> Result<Self> {
-        let mut run = Self {
+    /// The directory at `path` for a run of `study`, with what a run begins with in it.
+    pub(crate) fn open(path: PathBuf, study: &Study, force: bool) -> Result<Self> {
+        let run = Self {
             path,
-            identity,
-            kept: Vec::new(),
+            identity: study.identity()?,
+            first_files: study.first_files()?,
         };
-        if !files::is_vacant(&run.path)? {
-            let others = run.others()?;
-            if run.found_identity().as_ref() == Some(&run.identity) {
-                run.kept = others;
-            } else if !force {
-                bail!(
-                    "{} holds {}; choose another --out, or replace it with --force",
-                    run.path.display(),
-                    run.what_else()
-                );
-            } else if !others.is_empty() {
-                let names: Vec<_> = others.iter().map(|name| name.to_string_lossy()).collect();
-                output::warning(&format!(
-                    "{} is replaced, and with it {}",
-                    run.path.display(),
-                    names.join(", ")
-                ));
-            }
+        if files::is_vacant(&run.path)? {
+            run.begin()?;
+        } else if run.found_identity().as_ref() == Some(&run.identity) {
+            files::write_all(&run.path, &run.first_files)?;
+        } else if force {
+            run.warn_of_others()?;
+            run.begin()?;
+        } else {
+            bail!(
+                "{} holds {}; choose another --out, or replace it with --force",
+                run.path.display(),
+                run.what_else(study)
+            );
         }
-        fs::create_dir_all(&run.path)
-            .with_context(|| format!("cannot create {}", run.path.display()))?;
         Ok(run)
     }
 
-    /// What the directory holds besides the files of a run, by name.
+    /// Puts a directory with only what a run begins with in the place.
+    fn begin(&self) -> Result<()> {
+        let staged = files::StagedDirectory::new(&self.path)?;
+        files::write_all(staged.path(), &self.first_files)?;
+        staged.commit()
+    }
+
+    /// What the directory holds besides what a run writes, by name.
     fn others(&self) -> Result<Vec<OsString>> {
         let cannot = || format!("cannot read {}", self.path.display());
         let mut others = Vec::new();
@@ -67,18 +68,30 @@ impl RunDirectory {
         Ok(others)
     }
 
+    fn warn_of_others(&self) -> Result<()> {
+        let others = self.others()?;
+        if !others.is_empty() {
+            let names: Vec<_> = others.iter().map(|name| name.to_string_lossy()).collect();
+            output::warning(&format!(
+                "{} is replaced, and with it {}",
+                self.path.display(),
+                names.join(", ")
+            ));
+        }
+        Ok(())
+    }
+
     /// What the directory holds when it is not this run.
-    fn what_else(&self) -> String {
+    fn what_else(&self, study: &Study) -> String {
         match self.found_identity() {
             Some(found) if found.version != self.identity.version => {
                 let (theirs, ours) = (found.version, &self.identity.version);
                 format!("a run by version {theirs}, and this is {ours}")
             }
-            Some(found) if found.seed != self.identity.seed => {
-                let (theirs, ours) = (found.seed, self.identity.seed);
-                format!("a run with seed {theirs}, and this is seed {ours}")
-            }
-            Some(_) => "a run of another scenario".to_owned(),
+            Some(_) => match study.difference_from_run(&self.path) {
+                Some(difference) => format!("a run of another scenario: {difference}"),
+                None => "a run of another scenario".to_owned(),
+            },
             None if self.path.join(CHECKPOINT).exists() => {
                 "a run whose checkpoint is damaged, and no earlier one is intact".to_owned()
             }
@@ -86,8 +99,11 @@ impl RunDirectory {
         }
     }
 
-    /// What the directory says it is a run of, by either checkpoint.
+    /// What the directory says it is a run of, by its manifest or either checkpoint.
     fn found_identity(&self) -> Option<Identity> {
+        if let Ok(Some(manifest)) = read_manifest(&self.path) {
+            return Some(manifest.identity);
+        }
         [CHECKPOINT, PREVIOUS_CHECKPOINT]
             .into_iter()
             .find_map(|name| {
@@ -154,13 +170,14 @@ impl RunDirectory {
         result: &OptimizeResult,
     ) -> Result<()> {
         let staged = files::StagedDirectory::new(&self.path)?;
+        files::write_all(staged.path(), &self.first_files)?;
         for (name, text) in result_files(scenario, result)? {
             files::write_atomically(&staged.path().join(name), text.as_bytes())?;
         }
         Self {
             path: staged.path().to_owned(),
             identity: self.identity.clone(),
-            kept: Vec::new(),
+            first_files: Vec::new(),
         }
         .save(search)?;
         let previous = self.path.join(PREVIOUS_CHECKPOINT);
@@ -168,7 +185,7 @@ impl RunDirectory {
             fs::copy(&previous, staged.path().join(PREVIOUS_CHECKPOINT))
                 .with_context(|| format!("cannot copy {}", previous.display()))?;
         }
-        staged.commit_keeping(&self.kept)
+        staged.commit_keeping(&self.others()?)
     }
 }
 

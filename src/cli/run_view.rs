@@ -7,6 +7,7 @@ use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
+use crate::run::inputs::InputError;
 use crate::run::{
     FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
     VALIDATION_REPORT,
@@ -35,6 +36,8 @@ impl RunView {
         let mut run = Run::read(&files);
         let evaluator = match evaluator(&args.directory, &run) {
             Ok(evaluator) => evaluator,
+            // Of other inputs than the run's nothing is shown beside its results.
+            Err(error) if error.is::<InputError>() => return Err(error),
             Err(error) => {
                 run.gaps.push(format!("no maps and series: {error:#}"));
                 None

@@ -5,43 +5,71 @@ use crate::cli::{files, output, run};
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
-use crate::run::ScenarioStamp;
-use crate::scenario::{Algorithm, Scenario, builtin};
+use crate::run::checkpoint::Identity;
+use crate::run::inputs::{RunManifest, copy_paths, first_files};
+use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
+use crate::scenario::{Algorithm, KeyDifference, Scenario, SetupError, builtin};
 use anyhow::{Context, Result, bail};
+use std::cell::OnceCell;
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
-/// A scenario and where its files lie.
+/// A scenario, and the files that it names.
 #[derive(Clone)]
 pub(crate) struct Study {
     pub(crate) scenario: Scenario,
+    written: Written,
     /// Directory to which paths in the scenario are relative.
     directory: PathBuf,
+    /// What the run directory says of its files, where the scenario is that of a run.
+    manifest: Option<RunManifest>,
+    /// Contents of the files that the scenario names, once they are read.
+    contents: OnceCell<Vec<Vec<u8>>>,
+}
+
+/// A scenario as it was written, in which errors have their places.
+#[derive(Clone)]
+struct Written {
+    label: String,
+    bytes: Vec<u8>,
+    overrides: Vec<String>,
 }
 
 impl Study {
     /// The scenario that was asked for, with its overrides.
     pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
-        let overrides: Vec<&String> = args.overrides.iter().chain(further).collect();
         let name = args.name();
         let (bytes, directory) = read_scenario(name)?;
-        let scenario = Scenario::parse(name, &bytes, &overrides)?;
-        Ok(Self {
-            scenario,
+        Self::parse(
+            Written::new(name, bytes, &args.overrides, further),
             directory,
-        })
+            None,
+        )
     }
 
-    /// The scenario that a run was made with.
+    /// The scenario that a run was made with, which names the run's own copies of its files.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
-        let path = directory.join("scenario.toml");
+        let path = directory.join(SCENARIO);
         let bytes = files::read_whole(&path)
             .with_context(|| format!("{} is not a run directory", directory.display()))
             .with_context(|| format!("cannot read {}", path.display()))?;
-        let scenario = Scenario::parse(&path.to_string_lossy(), &bytes, overrides)?;
+        let written = Written::new(&path.to_string_lossy(), bytes, overrides, &[]);
+        Self::parse(written, directory.to_owned(), read_manifest(directory)?)
+    }
+
+    fn parse(written: Written, directory: PathBuf, manifest: Option<RunManifest>) -> Result<Self> {
+        let Written {
+            label,
+            bytes,
+            overrides,
+        } = &written;
         Ok(Self {
-            scenario,
-            directory: directory.to_owned(),
+            scenario: Scenario::parse(label, bytes, overrides)?,
+            written,
+            directory,
+            manifest,
+            contents: OnceCell::new(),
         })
     }
 
@@ -62,20 +90,105 @@ impl Study {
 
     /// Identifies what is computed, the contents of the scenario's files included.
     pub(crate) fn hash(&self) -> Result<String> {
-        let read = |file: &str| {
-            let path = self.directory.join(file);
-            files::read_whole(&path).with_context(|| format!("cannot read {}", path.display()))
-        };
-        let files = self.scenario.files().into_iter();
-        let contents: Vec<Vec<u8>> = files.map(read).collect::<Result<_>>()?;
-        let contents: Vec<&[u8]> = contents.iter().map(Vec::as_slice).collect();
-        Ok(self.scenario.hash(&contents))
+        let contents = self.contents()?.iter().map(Vec::as_slice);
+        Ok(self.scenario.hash(&contents.collect::<Vec<_>>()))
+    }
+
+    /// What a run of this study is a run of.
+    pub(crate) fn identity(&self) -> Result<Identity> {
+        Ok(Identity::of(&self.scenario, self.hash()?))
+    }
+
+    /// The files that a run of this study begins with.
+    pub(crate) fn first_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
+        let identity = self.identity()?;
+        Ok(first_files(&self.scenario, self.contents()?, &identity)?)
+    }
+
+    /// Contents of the files that the scenario names, in its order; read once, so that all that is
+    /// computed and kept is of the same bytes.
+    fn contents(&self) -> Result<&[Vec<u8>]> {
+        if let Some(contents) = self.contents.get() {
+            return Ok(contents);
+        }
+        let named = self.scenario.files().into_iter();
+        let contents = named.map(|file| self.read(file)).collect::<Result<_>>()?;
+        Ok(self.contents.get_or_init(|| contents))
+    }
+
+    fn read(&self, file: &str) -> Result<Vec<u8>> {
+        let bytes = files::read_whole(&self.directory.join(file))
+            .map_err(|source| self.placed(&self.scenario.unreadable(file, source)))?;
+        // A file that --set names may lie elsewhere, and is not one of the run.
+        let is_copy = file.split('/').next() == Some(INPUTS);
+        if let Some(manifest) = self.manifest.as_ref().filter(|_| is_copy) {
+            manifest
+                .check(file, &bytes)
+                .with_context(|| format!("{} is damaged", self.directory.display()))?;
+        }
+        Ok(bytes)
+    }
+
+    /// Takes the copies that the run in `directory` has of the scenario's files for the files
+    /// themselves, which may have changed since: a run that goes on is the same run.
+    pub(crate) fn take_files_of(&mut self, directory: &Path) -> Result<()> {
+        let paths = copy_paths(&self.scenario.files());
+        if paths.is_empty() || !directory.join(MANIFEST).exists() {
+            return Ok(());
+        }
+        let run = Self::of_run(directory, &[])?;
+        if run.scenario.files() != paths {
+            return Ok(());
+        }
+        let copies = run.contents()?;
+        for (file, copy) in self.scenario.files().into_iter().zip(copies) {
+            let found = files::read_whole(&self.directory.join(file));
+            if !found.is_ok_and(|bytes| bytes == *copy) {
+                output::warning(&format!(
+                    "{file} is gone or has changed since the run began; its copy in {} is used",
+                    directory.display()
+                ));
+            }
+        }
+        self.contents = OnceCell::from(copies.to_vec());
+        Ok(())
+    }
+
+    /// How the scenario of the run in `directory` differs, if that can be told.
+    pub(crate) fn difference_from_run(&self, directory: &Path) -> Option<String> {
+        let run = Self::of_run(directory, &[]).ok()?;
+        let there_and_here = run.scenario.differences(&self.scenario).into_iter();
+        let shown = |value: Option<String>| value.unwrap_or_else(|| "not given".to_owned());
+        let mut told: Vec<String> = there_and_here
+            .map(|KeyDifference { key, value, other }| {
+                format!("{key} is {} there and {} here", shown(value), shown(other))
+            })
+            .collect();
+        let (theirs, ours) = (run.scenario.files(), self.scenario.files());
+        if theirs.len() != ours.len() {
+            let (theirs, ours) = (theirs.len(), ours.len());
+            told.push(format!("it names {theirs} files there and {ours} here"));
+        }
+        let copies = &run.manifest.as_ref()?.inputs;
+        for ((file, bytes), copy) in ours.iter().zip(self.contents().ok()?).zip(copies) {
+            if !copy.is_of(bytes) {
+                told.push(format!("{file} has other contents"));
+            }
+        }
+        (!told.is_empty()).then(|| told.join(", "))
     }
 
     /// What an evaluation depends on; refuses what would not fit into memory.
     pub(crate) fn setup(&self) -> Result<Setup> {
-        let read = |file: &str| files::read_whole(&self.directory.join(file));
-        let setup = self.scenario.setup(&read)?;
+        let contents = self.contents()?;
+        let files = self.scenario.files();
+        let read = |file: &str| {
+            let at = files.iter().position(|known| *known == file);
+            let bytes = at.and_then(|at| contents.get(at)).cloned();
+            bytes.ok_or_else(|| io::ErrorKind::NotFound.into())
+        };
+        let setup = self.scenario.setup(&read);
+        let setup = setup.map_err(|error| self.placed(&error))?;
         check_memory(&setup)?;
         for system in &setup.gnss {
             if let System::Sets(sets) = system
@@ -87,9 +200,49 @@ impl Study {
         Ok(setup)
     }
 
+    /// The design that is taken when none is named.
+    pub(crate) fn reference_design(&self) -> Result<Design> {
+        let design = self.scenario.reference_design();
+        design.map_err(|error| self.placed(&error))
+    }
+
+    /// An error of the setup with its place in what was written.
+    fn placed(&self, error: &SetupError) -> anyhow::Error {
+        let Written {
+            label,
+            bytes,
+            overrides,
+        } = &self.written;
+        Scenario::setup_problem(label, bytes, overrides, error).into()
+    }
+
     /// The evaluator of the scenario.
     pub(crate) fn evaluator(&self) -> Result<Evaluator> {
         Ok(Evaluator::new(self.setup()?)?)
+    }
+}
+
+impl Written {
+    fn new(label: &str, bytes: Vec<u8>, overrides: &[String], further: &[String]) -> Self {
+        Self {
+            label: label.to_owned(),
+            bytes,
+            overrides: overrides.iter().chain(further).cloned().collect(),
+        }
+    }
+}
+
+/// What a run directory says of itself, if anything.
+pub(crate) fn read_manifest(directory: &Path) -> Result<Option<RunManifest>> {
+    let path = directory.join(MANIFEST);
+    match files::read_whole(&path) {
+        Ok(bytes) => {
+            let manifest = RunManifest::read(&bytes);
+            let manifest = manifest.with_context(|| format!("{} is damaged", path.display()))?;
+            Ok(Some(manifest))
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read {}", path.display())),
     }
 }
 
@@ -154,7 +307,7 @@ pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result
     let loaded = Study::load(study, &[])?;
     let design = match design.design {
         Some(design) => design,
-        None => loaded.scenario.reference_design()?,
+        None => loaded.reference_design()?,
     };
     Ok((loaded, design))
 }

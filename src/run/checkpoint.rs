@@ -95,7 +95,7 @@ pub fn read(bytes: &[u8]) -> Result<(Identity, Search), CheckpointError> {
     Ok((header.identity, search))
 }
 
-fn hex_sha256(bytes: &[u8]) -> String {
+pub(super) fn hex_sha256(bytes: &[u8]) -> String {
     let sum = Sha256::digest(bytes);
     sum.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,5 +1,6 @@
 //! The canonical text of a scenario, and its hash.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use sha2::{Digest, Sha256};
@@ -50,6 +51,43 @@ impl Scenario {
             .collect()
     }
 
+    /// The same scenario with other paths to its files, in the order of [`Scenario::files`]. Its
+    /// hash is the same.
+    #[must_use]
+    pub fn with_files(&self, paths: &[String]) -> Self {
+        let mut scenario = self.clone();
+        let mut paths = paths.iter().cloned();
+        let points = match &mut scenario.region {
+            Region::Grid(_) => None,
+            Region::Points { file } => Some(file),
+        };
+        let named = points.into_iter().chain(&mut scenario.gnss.files);
+        for (file, path) in named.zip(&mut paths) {
+            *file = path;
+        }
+        scenario
+    }
+
+    /// The computed keys whose values differ in `other`, paths of files left out.
+    #[must_use]
+    pub fn differences(&self, other: &Self) -> Vec<KeyDifference> {
+        let values = |scenario: &Self| {
+            let mut values = Values::default();
+            Self::walk(&mut values, Some(scenario));
+            values.0
+        };
+        let (ours, theirs) = (values(self), values(other));
+        let keys: BTreeSet<KeyPath> = ours.keys().chain(theirs.keys()).copied().collect();
+        keys.into_iter()
+            .filter(|key| is_computed(*key) && ours.get(key) != theirs.get(key))
+            .map(|key| KeyDifference {
+                key: key.to_string(),
+                value: ours.get(&key).cloned(),
+                other: theirs.get(&key).cloned(),
+            })
+            .collect()
+    }
+
     fn canonical(&self, wanted: fn(KeyPath) -> bool) -> String {
         let mut writer = Writer {
             wanted,
@@ -61,6 +99,17 @@ impl Scenario {
     }
 }
 
+/// A key whose values differ between two scenarios.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeyDifference {
+    /// The key as `section.key`.
+    pub key: String,
+    /// Its value as TOML; `None` if it has none.
+    pub value: Option<String>,
+    /// Its value in the other scenario.
+    pub other: Option<String>,
+}
+
 /// Whether results depend on the text of a key.
 fn is_computed(path: KeyPath) -> bool {
     let left_out = [
@@ -70,6 +119,19 @@ fn is_computed(path: KeyPath) -> bool {
         key!(Optimizer.generations),
     ];
     path.section != Export::SECTION && !left_out.contains(&path)
+}
+
+/// The walk that collects the values as TOML.
+#[derive(Default)]
+struct Values(BTreeMap<KeyPath, String>);
+
+impl Walk for Values {
+    fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value {
+        if let Some(value) = value.filter(|value| !key.rule.is_absent(value)) {
+            self.0.insert(key.path, key.rule.write(value));
+        }
+        key.default
+    }
 }
 
 /// The walk that writes the values.

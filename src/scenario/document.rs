@@ -142,9 +142,19 @@ impl<'a> Document<'a> {
     ///
     /// `None` only if something is wrong.
     pub(super) fn read_scenario(&self, report: &mut ProblemList) -> Option<Scenario> {
+        self.reader(report).read()
+    }
+
+    /// Adds to `report` what is wrong with some keys together, at the place of the first that was
+    /// given.
+    pub(super) fn refuse(&self, keys: &[KeyPath], fault: Fault, report: &mut ProblemList) {
+        self.reader(report).refuse(keys, fault);
+    }
+
+    fn reader<'r>(&'r self, report: &'r mut ProblemList) -> Reader<'r> {
         let given = self.entries.iter();
         let given = given.map(|(path, entry)| (*path, entry.given())).collect();
-        Reader::new(given, &self.file, report).read()
+        Reader::new(given, &self.file, report)
     }
 }
 

@@ -144,6 +144,12 @@ pub enum Fault {
         /// The highest number of planes.
         planes: u32,
     },
+    /// Values that are in range but of which nothing can be set up.
+    #[error("{reason}")]
+    SetUp {
+        /// Why not.
+        reason: String,
+    },
     /// A grid of poles alone, of which each weighs nothing.
     #[error("every point is a pole and has zero weight with \"cos-latitude\"")]
     Weightless,

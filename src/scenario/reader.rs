@@ -78,7 +78,10 @@ impl<'r> Reader<'r> {
                 self.report
                     .add(source, node.span(), &key.to_string(), fault);
             }
-            None => self.report.add(self.file, 0..0, "", fault),
+            None => {
+                let key = keys.first().map(ToString::to_string).unwrap_or_default();
+                self.report.add(self.file, 0..0, &key, fault);
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
-use super::{Algorithm, Region, Scenario};
+use super::keys::{KeyPath, key};
+use super::values::PointsFile;
+use super::{Algorithm, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
 use crate::constellation::gnss::{ElementSetError, ElementSets, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
@@ -20,10 +22,11 @@ use thiserror::Error;
 const SWEEP_BATCH: usize = 256;
 
 /// Why a scenario cannot be set up although each of its values is in range.
+/// [`Scenario::setup_problem`] adds the place in the scenario.
 #[derive(Debug, Error)]
 pub enum SetupError {
     /// A GNSS file gives no system.
-    #[error("gnss.files: {file}")]
+    #[error("gnss.files: {file}: {source}")]
     GnssFile {
         /// The path as written.
         file: String,
@@ -31,7 +34,7 @@ pub enum SetupError {
         source: GnssFileError,
     },
     /// The points file cannot be read.
-    #[error("region.points: cannot read {file}")]
+    #[error("region.points: cannot read {file}: {source}")]
     PointsFile {
         /// The path as written.
         file: String,
@@ -39,7 +42,7 @@ pub enum SetupError {
         source: io::Error,
     },
     /// The points file is not a list of points.
-    #[error("region.points: {file}")]
+    #[error("region.points: {file}: {source}")]
     Points {
         /// The path as written.
         file: String,
@@ -66,11 +69,52 @@ pub enum SetupError {
     ReferenceDesign(#[from] NotationError),
 }
 
+impl SetupError {
+    /// The keys behind it, the likeliest first.
+    pub(super) fn keys(&self) -> Vec<KeyPath> {
+        match self {
+            Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
+            Self::PointsFile { .. } | Self::Points { .. } => vec![key!(PointsFile.points)],
+            Self::Grid(GroundError::Latitudes(..)) => vec![key!(Grid.latitude_deg)],
+            Self::Grid(GroundError::Longitudes(..)) => vec![key!(Grid.longitude_deg)],
+            Self::Grid(_) => vec![
+                key!(Grid.step_deg),
+                key!(Grid.latitude_deg),
+                key!(Grid.longitude_deg),
+            ],
+            Self::Time(_) => vec![
+                key!(TimeSpan.step_s),
+                key!(TimeSpan.duration_h),
+                key!(TimeSpan.epoch),
+            ],
+            Self::Mask(_) => vec![key!(Visibility.mask_deg), key!(Visibility.gnss_mask_deg)],
+            Self::MaskTable(_) => vec![key!(Visibility.mask_table)],
+            Self::Level(_) => vec![key!(Objectives.cvar_level)],
+            Self::ReferenceDesign(_) => vec![key!(Scenario.reference_design)],
+        }
+    }
+
+    /// What is wrong, without the key.
+    pub(super) fn reason(&self) -> String {
+        match self {
+            Self::GnssFile { file, source } => format!("{file}: {source}"),
+            Self::PointsFile { file, source } => format!("cannot read {file}: {source}"),
+            Self::Points { file, source } => format!("{file}: {source}"),
+            Self::Grid(source) => source.to_string(),
+            Self::Time(source) => source.to_string(),
+            Self::Mask(source) => source.to_string(),
+            Self::MaskTable(source) => source.to_string(),
+            Self::Level(source) => source.to_string(),
+            Self::ReferenceDesign(source) => source.to_string(),
+        }
+    }
+}
+
 /// Why a file of element sets gives no system.
 #[derive(Debug, Error)]
 pub enum GnssFileError {
     /// It cannot be read.
-    #[error(transparent)]
+    #[error("cannot read it: {0}")]
     Io(#[from] io::Error),
     /// A line of it is wrong.
     #[error(transparent)]
@@ -138,6 +182,19 @@ impl Scenario {
             }))
     }
 
+    /// The error of a file, among [`Scenario::files`], that cannot be read.
+    #[must_use]
+    pub fn unreadable(&self, file: &str, source: io::Error) -> SetupError {
+        let is_points = matches!(&self.region, Region::Points { file: points } if points == file);
+        let file = file.to_owned();
+        if is_points {
+            SetupError::PointsFile { file, source }
+        } else {
+            let source = GnssFileError::Io(source);
+            SetupError::GnssFile { file, source }
+        }
+    }
+
     /// The presets, and then a system for each file, named by the file.
     fn systems(
         &self,
@@ -155,7 +212,7 @@ impl Scenario {
                 file: file.clone(),
                 source,
             };
-            let bytes = read(file).map_err(|source| error(GnssFileError::Io(source)))?;
+            let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
             let name = file.rsplit('/').next().unwrap_or(file);
             let read = Fleet::read(bytes.as_slice(), None, Some(name))
                 .map_err(|source| error(source.into()))?;
@@ -201,10 +258,7 @@ impl Scenario {
         match &self.region {
             Region::Grid(grid) => Ok(grid.sites(surface)?),
             Region::Points { file } => {
-                let bytes = read(file).map_err(|source| SetupError::PointsFile {
-                    file: file.clone(),
-                    source,
-                })?;
+                let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
                 sites_from_csv(bytes.as_slice(), surface).map_err(|source| SetupError::Points {
                     file: file.clone(),
                     source,

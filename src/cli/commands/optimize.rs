@@ -10,8 +10,7 @@ use crate::cli::{Status, chart, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::{Align, Table};
-use crate::run::checkpoint::Identity;
-use crate::run::{FrontMember, OptimizeResult, front_csv};
+use crate::run::{FrontMember, MANIFEST, OptimizeResult, front_csv};
 use crate::scenario::Algorithm;
 use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
@@ -20,27 +19,37 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
-    let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
-    let study = Study::load(&args.study, seed.as_slice())?;
     match args.seeds {
-        Some(count) => seeds::run(args, study, count),
-        None => one(args, &study),
+        Some(count) => seeds::run(args, count),
+        None => one(args),
+    }
+}
+
+/// The scenario that was asked for: with --resume and none named, that of the run in `directory`.
+pub(super) fn load(args: &OptimizeArgs, directory: Option<&Path>) -> Result<Study> {
+    let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
+    let is_unnamed = args.resume && args.study.scenario.is_none();
+    match directory.filter(|run| is_unnamed && run.join(MANIFEST).exists()) {
+        Some(run) => {
+            let overrides = args.study.overrides.iter().cloned().chain(seed);
+            Study::of_run(run, &overrides.collect::<Vec<_>>())
+        }
+        None => Study::load(&args.study, seed.as_slice()),
     }
 }
 
 /// The search with the seed of the scenario.
-fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
-    let scenario = &study.scenario;
-    let default_out = || {
-        PathBuf::from(format!(
-            "runs/{}-{}",
-            scenario.name, scenario.optimizer.seed
-        ))
-    };
+fn one(args: &OptimizeArgs) -> Result<Status> {
+    let mut study = load(args, args.out.as_deref())?;
+    let (name, seed) = (&study.scenario.name, study.scenario.optimizer.seed);
+    let default_out = || PathBuf::from(format!("runs/{name}-{seed}"));
     let out = args.out.clone().unwrap_or_else(default_out);
-    let setup = study.setup()?;
+    if args.resume {
+        study.take_files_of(&out)?;
+    }
+    let (study, scenario) = (&study, &study.scenario);
+    let evaluator = Evaluator::new(study.setup()?)?;
     let directory = open(args, study, &out)?;
-    let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;
     let sweep = match sweep(args, study, &evaluator, &out, &interrupted)? {
         Sweep::NotWanted => None,
@@ -114,8 +123,7 @@ pub(super) fn sweep(
 
 /// The run directory of a study.
 pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<RunDirectory> {
-    let identity = Identity::of(&study.scenario, study.hash()?);
-    RunDirectory::open(out.to_owned(), identity, args.force)
+    RunDirectory::open(out.to_owned(), study, args.force)
 }
 
 /// How a search ended.

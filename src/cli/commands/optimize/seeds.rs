@@ -1,8 +1,7 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{Ended, Sweep, hint_resume, interrupt_flag, open, search, status, sweep, text};
+use super::{Ended, Sweep, hint_resume, interrupt_flag, load, open, search, status, sweep, text};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
-use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
@@ -17,7 +16,8 @@ const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
 /// What the run directories of the seeds start with.
 const RUN: &str = "seed-";
 
-pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) -> Result<Status> {
+pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
+    let mut study = load(args, args.out.as_deref().and_then(first_run).as_deref())?;
     let first = study.scenario.optimizer.seed;
     let last = u64::try_from(count.get() - 1)
         .ok()
@@ -27,6 +27,9 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
     let name = &study.scenario.name;
     let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
     let out = args.out.clone().unwrap_or_else(default_out);
+    if let Some(run) = first_run(&out).filter(|_| args.resume) {
+        study.take_files_of(&run)?;
+    }
     let setup = study.setup()?;
     if !args.force {
         require_seeds(&out)?;
@@ -77,6 +80,16 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
         out.display()
     ));
     Ok(status(&result.first))
+}
+
+/// The run of the first seed in a directory, if there is one.
+fn first_run(directory: &Path) -> Option<PathBuf> {
+    let entries = fs::read_dir(directory).ok()?.filter_map(|entry| {
+        let name = entry.ok()?.file_name().to_string_lossy().into_owned();
+        name.strip_prefix(RUN)?.parse::<u64>().ok()
+    });
+    let first = entries.min()?;
+    Some(directory.join(format!("{RUN}{first}")))
 }
 
 /// Refuses a directory that holds anything but runs of seeds and their tables.
