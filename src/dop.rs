@@ -6,9 +6,14 @@
 //! and PDOP² = tr(A⁻¹) of the sum over groups ([M-24](crate::models#m-24) to
 //! [M-26](crate::models#m-26); with weights [M-27](crate::models#m-27)). The full geometry matrix is
 //! never built.
+//!
+//! Directions that leave a component of the position undetermined give an A that is singular but for
+//! rounding. Whether a sample is solved is decided by the pivots of A in one place, [`Geometry`].
 
+mod factor;
 mod family;
 
+pub(crate) use factor::{Factor, pivot_floor};
 pub use family::{DopFamily, ObservationWeights};
 
 use crate::keyword::keywords;
@@ -55,47 +60,6 @@ impl Symmetric3 {
             xz: s.x * v.z,
             yz: s.y * v.z,
         }
-    }
-
-    /// The trace of the inverse: sum of the principal 2x2 minors over the determinant
-    /// ([M-26](crate::models#m-26)).
-    ///
-    /// `None` when the matrix is not positive definite (Sylvester's criterion).
-    #[must_use]
-    pub fn trace_of_inverse(&self) -> Option<f64> {
-        let minor_zz = self.xx * self.yy - self.xy * self.xy;
-        let minor_yy = self.xx * self.zz - self.xz * self.xz;
-        let minor_xx = self.yy * self.zz - self.yz * self.yz;
-        let determinant = self.xx * minor_xx - self.xy * (self.xy * self.zz - self.yz * self.xz)
-            + self.xz * (self.xy * self.yz - self.yy * self.xz);
-        let definite = self.xx > 0.0 && minor_zz > 0.0 && determinant > 0.0;
-        definite.then(|| (minor_xx + minor_yy + minor_zz) / determinant)
-    }
-
-    /// The inverse, by cofactors; `None` if the matrix is not positive definite.
-    #[must_use]
-    pub fn inverse(&self) -> Option<Self> {
-        let cofactor_xx = self.yy * self.zz - self.yz * self.yz;
-        let cofactor_xy = self.xz * self.yz - self.xy * self.zz;
-        let cofactor_xz = self.xy * self.yz - self.xz * self.yy;
-        let minor_zz = self.xx * self.yy - self.xy * self.xy;
-        let determinant = self.xx * cofactor_xx + self.xy * cofactor_xy + self.xz * cofactor_xz;
-        let definite = self.xx > 0.0 && minor_zz > 0.0 && determinant > 0.0;
-        definite.then(|| Self {
-            xx: cofactor_xx / determinant,
-            yy: (self.xx * self.zz - self.xz * self.xz) / determinant,
-            zz: minor_zz / determinant,
-            xy: cofactor_xy / determinant,
-            xz: cofactor_xz / determinant,
-            yz: (self.xy * self.xz - self.xx * self.yz) / determinant,
-        })
-    }
-
-    /// vᵀ A v.
-    #[must_use]
-    pub fn quadratic(&self, v: Vector3<f64>) -> f64 {
-        let squares = self.xx * v.x * v.x + self.yy * v.y * v.y + self.zz * v.z * v.z;
-        squares + 2.0 * (self.xy * v.x * v.y + self.xz * v.x * v.z + self.yz * v.y * v.z)
     }
 }
 
@@ -144,35 +108,59 @@ impl AddAssign for ClockGroup {
     }
 }
 
+/// The largest cap on PDOP: beyond it rounding takes part in whether a sample is solved.
+pub const MOST_PDOP_CAP: f64 = 1e6;
+
 /// The normal matrix of the position, accumulated group by group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Geometry {
     normal: Symmetric3,
+    /// Σ w of all satellites, those included that determine no more than their clock.
+    weight: f64,
     satellites: u32,
     clocks: u32,
 }
 
+/// A geometry that is solved.
+pub(crate) struct Solution {
+    pub(crate) pdop: f64,
+    pub(crate) factor: Factor,
+}
+
 impl Geometry {
-    /// Adds the satellites of one clock; an empty group adds nothing, not even a clock state.
+    /// Adds the satellites of one clock. An empty group adds nothing, not even a clock state; a lone
+    /// satellite determines its clock and leaves the normal matrix exactly as it is.
     pub fn add(&mut self, group: &ClockGroup) {
         if group.count == 0 {
             return;
         }
-        self.normal += group.squares;
-        self.normal += Symmetric3::outer(group.sum, -1.0 / group.weight);
+        if group.count > 1 {
+            self.normal += group.squares;
+            self.normal += Symmetric3::outer(group.sum, -1.0 / group.weight);
+        }
+        self.weight += group.weight;
         self.satellites += group.count;
         self.clocks += 1;
     }
 
-    /// PDOP; `None` if unsolved: fewer satellites than states, a position block that is not
-    /// positive definite, or a value above `cap`.
+    /// PDOP; `None` if unsolved: fewer satellites than states, a pivot of the normal matrix that is
+    /// not above rounding ([M-26](crate::models#m-26)), or a value above `cap`.
     #[must_use]
     pub fn pdop(&self, cap: f64) -> Option<f64> {
+        self.solve(cap).map(|solution| solution.pdop)
+    }
+
+    /// The solution, by the rule of [`Geometry::pdop`].
+    pub(crate) fn solve(&self, cap: f64) -> Option<Solution> {
         if self.satellites < 3 + self.clocks {
             return None;
         }
-        let pdop = self.normal.trace_of_inverse()?.sqrt();
-        (pdop <= cap).then_some(pdop)
+        let factor = Factor::new(&self.normal);
+        if !factor.exceeds(pivot_floor(self.weight)) {
+            return None;
+        }
+        let pdop = factor.trace_of_inverse().sqrt();
+        (pdop <= cap).then_some(Solution { pdop, factor })
     }
 }
 

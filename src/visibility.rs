@@ -113,6 +113,21 @@ mod tests {
         }
     }
 
+    /// A satellite on the horizon plane is at a mask of 0°, and visible; one a rounding below is not.
+    #[test]
+    fn at_the_mask_is_visible() {
+        let site = LocalFrame::new(Surface::Sphere, 0.0, 0.0);
+        let mask = Mask::from_degrees(0.0).unwrap();
+        let at = |height_km: f64| {
+            let line = Vector3::new(0.0, 300.0, 400.0);
+            let origin = site.origin_km.km();
+            let target = Vector3::new(origin.x + height_km, line.y, line.z);
+            mask.line_of_sight(&site, Position::new(target))
+        };
+        assert_eq!(at(0.0), Some(Vector3::new(0.0, 0.6, 0.8)));
+        assert_eq!(at(-1e-12), None);
+    }
+
     #[test]
     fn masks_are_checked() {
         assert_eq!(Mask::from_degrees(95.0), Err(MaskError(95.0)));

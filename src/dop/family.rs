@@ -4,7 +4,7 @@
 //! matrix is projected on east, north and up, so that the horizontal and vertical parts refer to
 //! the local horizon.
 
-use super::{ClockGroup, Symmetric3};
+use super::{ClockGroup, Geometry};
 use crate::frames::LocalFrame;
 use crate::keyword::keywords;
 
@@ -51,39 +51,27 @@ pub struct DopFamily {
 impl DopFamily {
     /// The dilutions of precision of groups of observations, in the local axes of `site`.
     ///
-    /// `None` if unsolved, by the rule of [`super::Geometry::pdop`].
+    /// `None` if unsolved, by the rule of [`Geometry::pdop`].
     #[must_use]
     pub fn of(groups: &[ClockGroup], site: &LocalFrame, cap: f64) -> Option<Self> {
-        let mut normal = Symmetric3::default();
-        let (mut satellites, mut clocks) = (0, 0);
-        for group in groups.iter().filter(|group| group.count > 0) {
-            normal += group.squares;
-            normal += Symmetric3::outer(group.sum, -1.0 / group.weight);
-            satellites += group.count;
-            clocks += 1;
-        }
-        if satellites < 3 + clocks {
-            return None;
-        }
-        // The position block Q of the inverse, by the Schur complement of the clocks
-        let position = normal.inverse()?;
-        let pdop2 = position.xx + position.yy + position.zz;
-        if pdop2.sqrt() > cap {
-            return None;
-        }
+        let mut geometry = Geometry::default();
+        groups.iter().for_each(|group| geometry.add(group));
+        // The factor of the Schur complement of the clocks: its inverse is the position block
+        let solution = geometry.solve(cap)?;
+        let variance = |v| solution.factor.inverse_form(v);
         // A clock has the variance 1/W + sᵀ Q s / W², s = Σ w v, W = Σ w
         let clock2 = |group: &ClockGroup| {
-            let spread = position.quadratic(group.sum) / (group.weight * group.weight);
+            let spread = variance(group.sum) / (group.weight * group.weight);
             (group.count > 0).then(|| 1.0 / group.weight + spread)
         };
         let clocks2: Vec<_> = groups.iter().map(clock2).collect();
         let all_clocks2: f64 = clocks2.iter().flatten().sum();
-        let horizontal2 = position.quadratic(site.east) + position.quadratic(site.north);
+        let horizontal2 = variance(site.east) + variance(site.north);
         Some(Self {
-            gdop: (pdop2 + all_clocks2).sqrt(),
-            pdop: pdop2.sqrt(),
+            gdop: (solution.pdop * solution.pdop + all_clocks2).sqrt(),
+            pdop: solution.pdop,
             hdop: horizontal2.sqrt(),
-            vdop: position.quadratic(site.up).sqrt(),
+            vdop: variance(site.up).sqrt(),
             tdop: clocks2.into_iter().map(|x| x.map(f64::sqrt)).collect(),
         })
     }
@@ -91,7 +79,6 @@ impl DopFamily {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Geometry;
     use super::*;
     use crate::earth::Surface;
     use crate::keyword::Keyword;

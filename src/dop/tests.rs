@@ -83,6 +83,102 @@ fn unsolved_is_a_value_of_its_own() {
     assert_eq!(geometry(&[four.to_vec()]).pdop(pdop * 0.999), None);
 }
 
+/// A group whose normal matrix is diagonal with these elements, of eight satellites in pairs along
+/// the axes and no weight in the sum.
+fn diagonal(elements: [f64; 3], weight: f64) -> Geometry {
+    let [xx, yy, zz] = elements;
+    Geometry {
+        normal: Symmetric3 {
+            xx,
+            yy,
+            zz,
+            ..Symmetric3::default()
+        },
+        weight,
+        satellites: 8,
+        clocks: 1,
+    }
+}
+
+/// A pivot has to exceed δ = 16 · 2⁻⁵³ W, wherever on the diagonal it is.
+#[test]
+fn a_pivot_at_the_floor_is_rounding() {
+    let floor = 16.0 * 8.0 / 2_f64.powi(53);
+    for axis in 0..3 {
+        let mut elements = [3.0, 2.0, 4.0];
+        for (pivot, solved) in [
+            (floor, false),
+            (floor.next_up(), true),
+            (0.0, false),
+            (-1.0, false),
+            (f64::NAN, false),
+        ] {
+            elements[axis] = pivot;
+            let pdop = diagonal(elements, 8.0).pdop(f64::INFINITY);
+            assert_eq!(pdop.is_some(), solved, "{axis} {pivot:e}");
+        }
+        // The heavier the observations, the larger what rounding leaves.
+        elements[axis] = floor.next_up();
+        assert_eq!(diagonal(elements, 8.001).pdop(f64::INFINITY), None);
+    }
+}
+
+/// Each satellite beyond the clocks determines one component of the position.
+#[test]
+fn as_many_satellites_as_states_are_enough() {
+    let sky = [
+        (10.0, 0.0),
+        (40.0, 100.0),
+        (70.0, 200.0),
+        (20.0, 290.0),
+        (33.0, 40.0),
+    ]
+    .map(|(e, a)| direction(e, a));
+    assert!(geometry(&[sky[..4].to_vec()]).pdop(100.0).is_some());
+    assert_eq!(geometry(&[sky[..3].to_vec()]).pdop(100.0), None);
+    assert!(
+        geometry(&[sky[..3].to_vec(), sky[3..].to_vec()])
+            .pdop(1e6)
+            .is_some()
+    );
+    assert_eq!(
+        geometry(&[sky[..3].to_vec(), sky[3..4].to_vec()]).pdop(1e6),
+        None
+    );
+}
+
+/// The factor of any definite matrix gives it back, and its inverse, whatever the order of the
+/// pivots.
+#[test]
+fn factors_follow_the_largest_pivot() {
+    let matrix = nalgebra::Matrix3::new(2.0, 0.5, -0.3, 0.5, 3.0, 0.7, -0.3, 0.7, 5.0);
+    let inverse = matrix.try_inverse().unwrap();
+    for axes in [
+        [0, 1, 2],
+        [0, 2, 1],
+        [1, 0, 2],
+        [1, 2, 0],
+        [2, 0, 1],
+        [2, 1, 0],
+    ] {
+        let at = |i: usize, j: usize| matrix[(axes[i], axes[j])];
+        let factor = Factor::new(&Symmetric3 {
+            xx: at(0, 0),
+            yy: at(1, 1),
+            zz: at(2, 2),
+            xy: at(0, 1),
+            xz: at(0, 2),
+            yz: at(1, 2),
+        });
+        assert!((factor.trace_of_inverse() - inverse.trace()).abs() < 1e-15);
+        assert!(factor.exceeds(1.0) && !factor.exceeds(2.0));
+        let v = Vector3::new(0.3, -1.2, 0.8);
+        let permuted = Vector3::from_fn(|i, _| v[axes[i]]);
+        let form = (v.transpose() * inverse * v)[0];
+        assert!((factor.inverse_form(permuted) - form).abs() < 1e-15);
+    }
+}
+
 fn sky(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Vector3<f64>>> {
     prop::collection::vec(
         (5.0..89.0_f64, 0.0..360.0_f64).prop_map(|(e, a)| direction(e, a)),

@@ -1,11 +1,11 @@
 //! All dilutions of precision of a constellation with its GNSS, by the plain path.
 
-use super::{Evaluator, Setup, plain};
+use super::fixed::PlainPositions;
+use super::{Evaluator, Setup, fixed, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, LocalFrame, Position};
+use crate::frames::LocalFrame;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
-use crate::visibility::Mask;
 use serde::Serialize;
 
 /// Statistics of the dilutions of precision over the solved samples, by the weights of their
@@ -58,14 +58,6 @@ pub struct ClockDop {
     pub tdop: Option<Summary>,
 }
 
-/// Satellites that are looked at under one mask and observed with one clock.
-struct View<'a> {
-    ephemeris: &'a Ephemeris,
-    mask: Mask,
-    clock: usize,
-    positions: Vec<Position<EarthFixed>>,
-}
-
 /// The samples of each quantity.
 struct Collected {
     gdop: Vec<Weighted>,
@@ -86,29 +78,15 @@ impl Evaluator {
     /// When a satellite cannot be propagated.
     pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
         let setup = self.setup();
-        let systems: Vec<_> = setup
-            .gnss
-            .iter()
-            .map(|system| Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid))
-            .collect();
+        let systems = fixed::systems(setup);
         let clocks = self.clock_names();
-        let clock = |n: usize| n.min(clocks.len() - 1);
-        let mut views = vec![View::new(ephemeris, setup.mask, 0)];
-        let gnss = systems.iter().enumerate();
-        views.extend(gnss.map(|(n, system)| View::new(system, setup.gnss_mask, clock(n + 1))));
-
         let mut collected = Collected::new(clocks.len());
-        let mut groups = Vec::new();
-        for time in 0..setup.grid.len() {
-            for view in &mut views {
-                plain::earth_fixed(self, view.ephemeris, time, &mut view.positions)?;
-            }
+        let mut leo = Vec::with_capacity(ephemeris.satellites().len());
+        for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
+            plain::earth_fixed(ephemeris, elapsed_s, rotation, &mut leo)?;
+            let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
             for site in &setup.sites {
-                groups.clear();
-                groups.resize(clocks.len(), ClockGroup::default());
-                for view in &views {
-                    view.observe(setup, &site.local, &mut groups[view.clock]);
-                }
+                let groups = groups(setup, &site.local, &leo, &gnss);
                 let dops = DopFamily::of(&groups, &site.local, setup.pdop_cap);
                 collected.add(dops.as_ref(), site.weight);
             }
@@ -116,35 +94,37 @@ impl Evaluator {
         Ok(collected.statistics(clocks, setup.metrics.cvar_level))
     }
 
+    /// The clocks in the order of [`groups`].
     fn clock_names(&self) -> Vec<String> {
         match self.setup().clocks {
             Clocks::Shared => vec!["shared".to_owned()],
             Clocks::PerSystem => {
                 let gnss = self.setup().gnss.iter().map(|system| system.name());
-                std::iter::once("leo")
-                    .chain(gnss)
-                    .map(str::to_owned)
-                    .collect()
+                gnss.chain(["leo"]).map(str::to_owned).collect()
             }
         }
     }
 }
 
-impl<'a> View<'a> {
-    fn new(ephemeris: &'a Ephemeris, mask: Mask, clock: usize) -> Self {
-        Self {
-            ephemeris,
-            mask,
-            clock,
-            positions: Vec::with_capacity(ephemeris.satellites().len()),
-        }
-    }
-
-    fn observe(&self, setup: &Setup, site: &LocalFrame, group: &mut ClockGroup) {
-        for &position in &self.positions {
-            if let Some(unit) = setup.line_of_sight(self.mask, site, position) {
-                group.add(unit, setup.observation_weight(site, unit));
-            }
+/// The observations of each clock: the systems one by one and the LEO satellites last, or all in
+/// one. The sums are those of [`plain::geometry`], so that the decisions are the same.
+fn groups(
+    setup: &Setup,
+    site: &LocalFrame,
+    leo: &PlainPositions,
+    gnss: &[PlainPositions],
+) -> Vec<ClockGroup> {
+    let mut leo = plain::observe(setup, setup.mask, site, leo);
+    let systems = gnss
+        .iter()
+        .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions));
+    match setup.clocks {
+        Clocks::PerSystem => systems.chain([leo]).collect(),
+        Clocks::Shared => {
+            let mut shared = ClockGroup::default();
+            systems.for_each(|system| shared += system);
+            leo += shared;
+            vec![leo]
         }
     }
 }
@@ -181,12 +161,15 @@ impl Collected {
             system,
             tdop: summarize_weighted(&mut samples, level),
         };
+        let mut tdop: Vec<_> = clocks.into_iter().zip(self.tdop).map(clock).collect();
+        // The clock of the LEO satellites is named first.
+        tdop.rotate_right(1);
         DopStatistics {
             gdop: summarize_weighted(&mut self.gdop, level),
             pdop: summarize_weighted(&mut self.pdop, level),
             hdop: summarize_weighted(&mut self.hdop, level),
             vdop: summarize_weighted(&mut self.vdop, level),
-            tdop: clocks.into_iter().zip(self.tdop).map(clock).collect(),
+            tdop,
             solved_fraction: self.solved_weight / self.weight,
         }
     }

@@ -1,9 +1,11 @@
 //! The part of the geometry that no design changes: the GNSS, once per setup.
 
-use super::Setup;
+use super::{Setup, plain};
+use crate::constellation::gnss::System;
 use crate::dop::{ClockGroup, Clocks, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::EarthRotation;
+use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
+use crate::ground::Site;
 
 /// What the GNSS contribute at one point and time.
 #[derive(Debug, Clone, Copy, Default)]
@@ -14,6 +16,45 @@ pub(super) struct PlainGnssSample {
     pub(super) shared_clock: ClockGroup,
 }
 
+impl PlainGnssSample {
+    /// From the positions of the satellites of each system.
+    pub(super) fn new(setup: &Setup, site: &LocalFrame, systems: &[PlainPositions]) -> Self {
+        let mut sample = Self::default();
+        for positions in systems {
+            let group = plain::observe(setup, setup.gnss_mask, site, positions);
+            match setup.clocks {
+                Clocks::PerSystem => sample.own_clocks.add(&group),
+                Clocks::Shared => sample.shared_clock += group,
+            }
+        }
+        sample
+    }
+}
+
+/// Earth-fixed positions of the satellites of one system.
+pub(super) type PlainPositions = Vec<Position<EarthFixed>>;
+
+/// The systems of a setup, to be propagated on its grid.
+pub(super) fn systems(setup: &Setup) -> Vec<Ephemeris> {
+    let satellites =
+        |system: &System| Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid);
+    setup.gnss.iter().map(satellites).collect()
+}
+
+/// The positions of each system at one instant.
+pub(super) fn positions(
+    systems: &[Ephemeris],
+    elapsed_s: f64,
+    rotation: EarthRotation,
+) -> Result<Vec<PlainPositions>, EphemerisError> {
+    let of_system = |system: &Ephemeris| {
+        let mut positions = Vec::with_capacity(system.satellites().len());
+        plain::earth_fixed(system, elapsed_s, rotation, &mut positions)?;
+        Ok(positions)
+    };
+    systems.iter().map(of_system).collect()
+}
+
 /// The GNSS geometry of every sample, time by time.
 pub(super) struct FixedGeometry {
     samples: Vec<PlainGnssSample>,
@@ -22,10 +63,12 @@ pub(super) struct FixedGeometry {
 
 impl FixedGeometry {
     pub(super) fn new(setup: &Setup, rotations: &[EarthRotation]) -> Result<Self, EphemerisError> {
-        let mut samples = vec![PlainGnssSample::default(); setup.sample_count()];
-        for system in &setup.gnss {
-            let ephemeris = Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid);
-            add_system(setup, rotations, &ephemeris, &mut samples)?;
+        let systems = systems(setup);
+        let mut samples = Vec::with_capacity(setup.sample_count());
+        for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
+            let positions = positions(&systems, elapsed_s, *rotation)?;
+            let sample = |site: &Site| PlainGnssSample::new(setup, &site.local, &positions);
+            samples.extend(setup.sites.iter().map(sample));
         }
         Ok(Self {
             samples,
@@ -37,33 +80,4 @@ impl FixedGeometry {
     pub(super) fn at(&self, k: usize) -> &[PlainGnssSample] {
         &self.samples[k * self.sites..(k + 1) * self.sites]
     }
-}
-
-fn add_system(
-    setup: &Setup,
-    rotations: &[EarthRotation],
-    system: &Ephemeris,
-    samples: &mut [PlainGnssSample],
-) -> Result<(), EphemerisError> {
-    let rows = samples.chunks_exact_mut(setup.sites.len());
-    for ((elapsed_s, rotation), row) in setup.grid.iter().zip(rotations).zip(rows) {
-        let mut positions = Vec::with_capacity(system.satellites().len());
-        for satellite in system.satellites() {
-            let state = system.state(satellite, elapsed_s)?;
-            positions.push(rotation.to_earth_fixed(state.position_km));
-        }
-        for (site, sample) in setup.sites.iter().zip(row) {
-            let mut group = ClockGroup::default();
-            for &position in &positions {
-                if let Some(unit) = setup.line_of_sight(setup.gnss_mask, &site.local, position) {
-                    group.add(unit, setup.observation_weight(&site.local, unit));
-                }
-            }
-            match setup.clocks {
-                Clocks::PerSystem => sample.own_clocks.add(&group),
-                Clocks::Shared => sample.shared_clock += group,
-            }
-        }
-    }
-    Ok(())
 }

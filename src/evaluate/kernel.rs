@@ -24,12 +24,14 @@
 //! left to it ([`sample`]):
 //!
 //! - a decision so close to the mask that rounding might turn it is taken again with the positions
-//!   and the comparison of the plain path ([`near_mask`]), so that visible satellites are counted
+//!   and the comparison of the plain path ([`settle`]), so that visible satellites are counted
 //!   exactly;
 //! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
 //!   around each order statistic ([`refine`]).
 //!
-//! Both are counted in [`Rechecks`].
+//! Where rounding could turn even a decision of the f64 lanes, that the geometry is not singular or
+//! that PDOP is within a threshold, the sums of the plain path decide, so that both paths call the
+//! same samples solved. All three are counted in [`Rechecks`].
 //!
 //! # Statistics
 //!
@@ -39,11 +41,11 @@ mod candidates;
 mod fixed;
 mod instructions;
 mod lanes;
-mod near_mask;
 mod order_statistics;
 mod propagation;
 mod refine;
 mod sample;
+mod settle;
 mod tiles;
 
 pub use instructions::InstructionSet;
@@ -51,6 +53,7 @@ pub use instructions::InstructionSet;
 use super::Setup;
 use super::metrics::Evaluated;
 use crate::constellation::Design;
+use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
@@ -60,7 +63,8 @@ use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::PatternPropagator;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
-use sample::{Limits, Outcome, Sample, SampleContext, Workspace};
+use sample::{Doubt, Limits, Outcome, Sample, SampleContext, Workspace};
+use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
 use tiles::Tiles;
@@ -109,6 +113,9 @@ pub struct Rechecks {
     pub near_mask: u64,
     /// PDOP was large or close to a threshold.
     pub large_pdop: u64,
+    /// Of those, the ones that even the f64 of the lanes does not decide: PDOP within rounding of a
+    /// threshold, or a geometry close to a singular one.
+    pub near_limit: u64,
 }
 
 /// Where the satellites of an evaluation come from.
@@ -154,6 +161,7 @@ impl Tallies {
             rechecks: Rechecks {
                 near_mask: self.rechecks.near_mask + other.rechecks.near_mask,
                 large_pdop: self.rechecks.large_pdop + other.rechecks.large_pdop,
+                near_limit: self.rechecks.near_limit + other.rechecks.near_limit,
             },
         }
     }
@@ -184,6 +192,10 @@ impl Kernel {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,
                 available: setup.metrics.availability_pdop,
+                clocks: match setup.clocks {
+                    Clocks::PerSystem => 1 + setup.gnss.len() as u32,
+                    Clocks::Shared => 1,
+                },
             },
         };
         Ok(Self {
@@ -414,14 +426,15 @@ impl Kernel {
                 work: &mut work,
                 outcome: &mut outcome,
             });
-            tallies.rechecks.near_mask += outcome.doubts.len() as u64;
+            for undecided in &outcome.doubts {
+                match undecided.doubt {
+                    Doubt::Mask => tallies.rechecks.near_mask += 1,
+                    Doubt::Geometry => tallies.rechecks.near_limit += 1,
+                }
+            }
             tallies.rechecks.large_pdop += outcome.doubled;
-            let satellites = near_mask::Satellites {
-                ephemeris: propagation.ephemeris,
-                elapsed_s,
-                rotation,
-            };
-            near_mask::settle(&self.setup, &self.scene, &satellites, fixed, &mut outcome)?;
+            let settling = Settling::new(&self.setup, &self.scene, instant, fixed);
+            settling.settle(propagation.ephemeris, &self.fixed.systems, &mut outcome)?;
             tallies.visible += outcome.visible;
             tallies.available += outcome.available;
             take(&outcome.pdop);

@@ -1,12 +1,14 @@
 //! The plain path: one sample after the other, in f64, by the definitions. It is the reference
 //! that the kernel is tested against, and serves the setups that the kernel does not.
 
+use super::fixed::PlainGnssSample;
 use super::metrics::Evaluated;
 use super::{Evaluator, Setup};
-use crate::dop::ClockGroup;
+use crate::dop::{ClockGroup, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, Position};
+use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
+use crate::visibility::Mask;
 
 /// One point at one time.
 pub(super) struct PlainSample {
@@ -67,20 +69,16 @@ pub(super) fn visit(
     let fixed = evaluator.fixed()?;
     let mut positions = Vec::with_capacity(ephemeris.satellites().len());
     for time in 0..setup.grid.len() {
-        earth_fixed(evaluator, ephemeris, time, &mut positions)?;
-        for (site, fixed) in fixed.at(time).iter().enumerate() {
+        let elapsed_s = setup.grid.elapsed_s(time);
+        earth_fixed(
+            ephemeris,
+            elapsed_s,
+            evaluator.rotations[time],
+            &mut positions,
+        )?;
+        for (site, gnss) in fixed.at(time).iter().enumerate() {
             let local = &setup.sites[site].local;
-            let mut leo = ClockGroup::default();
-            let mut visible = 0;
-            for &position in &positions {
-                if let Some(unit) = setup.line_of_sight(setup.mask, local, position) {
-                    leo.add(unit, setup.observation_weight(local, unit));
-                    visible += 1;
-                }
-            }
-            leo += fixed.shared_clock;
-            let mut geometry = fixed.own_clocks;
-            geometry.add(&leo);
+            let (visible, geometry) = geometry(setup, local, &positions, gnss);
             see(PlainSample {
                 time,
                 site,
@@ -92,18 +90,60 @@ pub(super) fn visit(
     Ok(())
 }
 
-/// Fills `positions` with the Earth-fixed positions of the satellites at instant `time`.
+/// Visible LEO satellites and the geometry of one sample. Every path that has to decide whether a
+/// sample is solved where rounding could turn the decision makes these sums, in this order.
+pub(super) fn geometry(
+    setup: &Setup,
+    site: &LocalFrame,
+    positions: &[Position<EarthFixed>],
+    gnss: &PlainGnssSample,
+) -> (u32, Geometry) {
+    let (visible, mut leo) = observe_counted(setup, setup.mask, site, positions);
+    leo += gnss.shared_clock;
+    let mut geometry = gnss.own_clocks;
+    geometry.add(&leo);
+    (visible, geometry)
+}
+
+/// The observations of the satellites that are visible over a mask.
+pub(super) fn observe(
+    setup: &Setup,
+    mask: Mask,
+    site: &LocalFrame,
+    positions: &[Position<EarthFixed>],
+) -> ClockGroup {
+    observe_counted(setup, mask, site, positions).1
+}
+
+/// The same with the number of visible satellites, those without weight included.
+fn observe_counted(
+    setup: &Setup,
+    mask: Mask,
+    site: &LocalFrame,
+    positions: &[Position<EarthFixed>],
+) -> (u32, ClockGroup) {
+    let mut group = ClockGroup::default();
+    let mut visible = 0;
+    for &position in positions {
+        if let Some(unit) = setup.line_of_sight(mask, site, position) {
+            group.add(unit, setup.observation_weight(site, unit));
+            visible += 1;
+        }
+    }
+    (visible, group)
+}
+
+/// Fills `positions` with the Earth-fixed positions of the satellites at one instant.
 pub(super) fn earth_fixed(
-    evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-    time: usize,
+    elapsed_s: f64,
+    rotation: EarthRotation,
     positions: &mut Vec<Position<EarthFixed>>,
 ) -> Result<(), EphemerisError> {
     positions.clear();
-    let elapsed_s = evaluator.setup().grid.elapsed_s(time);
     for satellite in ephemeris.satellites() {
         let state = ephemeris.state(satellite, elapsed_s)?;
-        positions.push(evaluator.rotations[time].to_earth_fixed(state.position_km));
+        positions.push(rotation.to_earth_fixed(state.position_km));
     }
     Ok(())
 }

@@ -1,4 +1,6 @@
+mod limits;
 mod products;
+mod skies;
 
 use super::*;
 use crate::constellation::Pattern;

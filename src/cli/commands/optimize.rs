@@ -6,7 +6,7 @@ use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::progress::SearchBar;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
-use crate::cli::{Status, chart, output};
+use crate::cli::{Status, chart, coincidence, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::{Align, Table};
@@ -48,7 +48,9 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
         study.take_files_of(&out)?;
     }
     let (study, scenario) = (&study, &study.scenario);
-    let evaluator = Evaluator::new(study.setup()?)?;
+    let setup = study.setup()?;
+    coincidence::warn(&setup.gnss, setup.grid, None);
+    let evaluator = Evaluator::new(setup)?;
     let directory = open(args, study, &out)?;
     let interrupted = interrupt_flag()?;
     let sweep = match sweep(args, study, &evaluator, &out, &interrupted)? {

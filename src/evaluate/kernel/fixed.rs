@@ -14,7 +14,7 @@ use crate::frames::EarthRotation;
 
 /// The GNSS part of all samples.
 pub(super) struct Fixed {
-    systems: Vec<Ephemeris>,
+    pub(super) systems: Vec<Ephemeris>,
     clocks: Clocks,
     mask: MaskTerms<f64>,
     instructions: InstructionSet,
@@ -27,7 +27,7 @@ pub(super) struct Fixed {
 pub(super) struct FixedTiles {
     normals: Vec<Normal>,
     remainders: Vec<Normal>,
-    surpluses: Vec<[u8; LANES]>,
+    surpluses: Vec<[u16; LANES]>,
     /// Empty when all systems have clocks of their own.
     shared: Vec<SharedClock>,
 }
@@ -39,7 +39,7 @@ impl FixedTiles {
             Clocks::PerSystem => 0,
             Clocks::Shared => size_of::<SharedClock>(),
         };
-        2 * size_of::<Normal>() + LANES + shared
+        2 * size_of::<Normal>() + size_of::<[u16; LANES]>() + shared
     }
 
     fn clear(&mut self) {
@@ -100,13 +100,8 @@ impl Fixed {
         instructions: InstructionSet,
         kept_bytes: usize,
     ) -> Result<Self, EphemerisError> {
-        let epoch = setup.grid.epoch();
         let mut fixed = Self {
-            systems: setup
-                .gnss
-                .iter()
-                .map(|system| Ephemeris::of_gnss(system.satellites(epoch), setup.grid))
-                .collect(),
+            systems: super::super::fixed::systems(setup),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
             instructions,
@@ -166,7 +161,7 @@ impl Fixed {
     #[inline(always)]
     fn push_tile(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
-        let mut surplus = [0_u8; LANES];
+        let mut surplus = [0_u16; LANES];
         let together = match self.clocks {
             Clocks::PerSystem => 1,
             Clocks::Shared => systems.len(),
@@ -180,7 +175,7 @@ impl Fixed {
             match self.clocks {
                 Clocks::PerSystem => {
                     for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
-                        let spare = u8::try_from(seen.saturating_sub(1)).unwrap_or(u8::MAX);
+                        let spare = u16::try_from(seen.saturating_sub(1)).unwrap_or(u16::MAX);
                         *surplus = surplus.saturating_add(spare);
                     }
                 }
@@ -248,11 +243,10 @@ impl Work for Make<'_> {
 fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     for l in 0..LANES {
         let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
-        let zz = f64::from(count) - sums.xx.0[l] - sums.yy.0[l];
         let scale = 1.0 / f64::from(count.max(1));
         normal[0].0[l] += sums.xx.0[l] - x * x * scale;
         normal[1].0[l] += sums.yy.0[l] - y * y * scale;
-        normal[2].0[l] += zz - z * z * scale;
+        normal[2].0[l] += sums.zz(l) - z * z * scale;
         normal[3].0[l] += sums.xy.0[l] - x * y * scale;
         normal[4].0[l] += sums.xz.0[l] - x * z * scale;
         normal[5].0[l] += sums.yz.0[l] - y * z * scale;

@@ -5,6 +5,7 @@
 //! multiply-add and no approximate reciprocal: every operation is one that IEEE 754 rounds in
 //! one way, so that all instruction sets give the same bits.
 
+use crate::dop::{Factor, Symmetric3, pivot_floor};
 use crate::visibility::Mask;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
@@ -28,8 +29,9 @@ pub(super) trait Real:
 {
     const ZERO: Self;
     const ONE: Self;
-    /// Stands for a position block that is not positive definite.
-    const NO_SOLUTION: Self;
+    /// Whether Σ v_z² is summed; otherwise it is the count less the other two, which costs
+    /// nothing, but holds only as far as v is a unit vector.
+    const SUMS_ZZ: bool;
 
     fn of(value: f64) -> Self;
     /// A number of satellites.
@@ -47,7 +49,7 @@ pub(super) trait Real:
 impl Real for f32 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
-    const NO_SOLUTION: Self = Self::INFINITY;
+    const SUMS_ZZ: bool = false;
 
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -88,7 +90,7 @@ impl Real for f32 {
 impl Real for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
-    const NO_SOLUTION: Self = Self::INFINITY;
+    const SUMS_ZZ: bool = true;
 
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -111,7 +113,8 @@ impl Real for f64 {
     }
 
     /// That of f32 and one step of Newton, which squares its error of 1e-7: 2e-14, at a third of
-    /// the time of a root and a division in f64.
+    /// the time of a root and a division in f64. That stretches a line of sight and does not turn
+    /// it, so that the pivots of a singular geometry stay at zero.
     #[inline(always)]
     fn inverse_root(self) -> Self {
         let seed = f64::from((self as f32).inverse_root());
@@ -162,9 +165,11 @@ pub(super) struct SiteLanes<R> {
 /// What the visible satellites of one clock group leave at each point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sums<R> {
-    /// Σ v vᵀ without (z, z), which is the count less the other two: v is a unit vector.
+    /// Σ v vᵀ.
     pub(super) xx: Lanes<R>,
     pub(super) yy: Lanes<R>,
+    /// Zero where [`Real::SUMS_ZZ`] says so.
+    zz: Lanes<R>,
     pub(super) xy: Lanes<R>,
     pub(super) xz: Lanes<R>,
     pub(super) yz: Lanes<R>,
@@ -185,6 +190,7 @@ impl<R: Real> Sums<R> {
         Self {
             xx: zero,
             yy: zero,
+            zz: zero,
             xy: zero,
             xz: zero,
             yz: zero,
@@ -201,6 +207,9 @@ impl<R: Real> Sums<R> {
         for l in 0..LANES {
             self.xx.0[l] += other.xx.0[l];
             self.yy.0[l] += other.yy.0[l];
+            if R::SUMS_ZZ {
+                self.zz.0[l] += other.zz.0[l];
+            }
             self.xy.0[l] += other.xy.0[l];
             self.xz.0[l] += other.xz.0[l];
             self.yz.0[l] += other.yz.0[l];
@@ -209,6 +218,16 @@ impl<R: Real> Sums<R> {
             self.z.0[l] += other.z.0[l];
             self.count.0[l] += other.count.0[l];
             self.possible.0[l] += other.possible.0[l];
+        }
+    }
+
+    /// Element (z, z) of Σ v vᵀ.
+    #[inline(always)]
+    pub(super) fn zz(&self, lane: usize) -> R {
+        if R::SUMS_ZZ {
+            self.zz.0[lane]
+        } else {
+            R::count(self.count.0[lane]) - self.xx.0[lane] - self.yy.0[lane]
         }
     }
 
@@ -235,6 +254,9 @@ impl<R: Real> Sums<R> {
             self.z.0[l] += vz;
             self.xx.0[l] += vx * vx;
             self.yy.0[l] += vy * vy;
+            if R::SUMS_ZZ {
+                self.zz.0[l] += vz * vz;
+            }
             self.xy.0[l] += vx * vy;
             self.xz.0[l] += vx * vz;
             self.yz.0[l] += vy * vz;
@@ -253,7 +275,7 @@ pub(super) struct FixedTile<'a> {
     pub(super) normal: &'a Normal,
     pub(super) remainder: &'a Normal,
     /// Satellites minus clocks of the systems with clocks of their own.
-    pub(super) surplus: &'a [u8; LANES],
+    pub(super) surplus: &'a [u16; LANES],
     /// The GNSS satellites that share their clock with the design, if any do.
     pub(super) shared: Option<&'a SharedClock>,
 }
@@ -309,40 +331,28 @@ pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
     }))
 }
 
-/// PDOP at the points of a tile, and satellites minus clock states.
-pub(super) struct Solution<R> {
-    /// [`Real::NO_SOLUTION`] where the position block is not positive definite.
-    pub(super) pdop: Lanes<R>,
-    pub(super) surplus: Lanes<u32>,
-}
-
-impl<R: Real> Solution<R> {
-    /// From the sums over the design and the GNSS part.
-    #[inline(always)]
-    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
-        let mut system = NormalLanes::new(sums, fixed);
-        if let Some(shared) = fixed.shared {
-            system.join_clocks(sums, shared);
-        }
-        Self {
-            pdop: system.pdop(),
-            surplus: system.surplus,
-        }
-    }
-}
-
 /// The normal matrix of the position at the points of a tile.
-struct NormalLanes<R> {
+pub(super) struct NormalLanes<R> {
     /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
     matrix: [Lanes<R>; 6],
     /// Satellites minus clock states.
-    surplus: Lanes<u32>,
+    pub(super) surplus: Lanes<u32>,
 }
 
 impl<R: Real> NormalLanes<R> {
+    /// From the sums over the design and the GNSS part.
+    #[inline(always)]
+    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
+        let mut system = Self::of_two_clocks(sums, fixed);
+        if let Some(shared) = fixed.shared {
+            system.join_clocks(sums, shared);
+        }
+        system
+    }
+
     /// The GNSS part and Σ v vᵀ - (Σ v)(Σ v)ᵀ / n of the design.
     #[inline(always)]
-    fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
+    fn of_two_clocks(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
         let mut system = Self {
             matrix: [Lanes([R::ZERO; LANES]); 6],
             surplus: Lanes([0; LANES]),
@@ -353,8 +363,7 @@ impl<R: Real> NormalLanes<R> {
             system.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
             let scale = R::ONE / R::count(count + 1 - clocks);
             let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
-            let (xx, yy) = (sums.xx.0[l], sums.yy.0[l]);
-            let zz = R::count(count) - xx - yy;
+            let (xx, yy, zz) = (sums.xx.0[l], sums.yy.0[l], sums.zz(l));
             let matrix = &mut system.matrix;
             matrix[0].0[l] = fixed.normal::<R>(0, l) + (xx - x * x * scale);
             matrix[1].0[l] = fixed.normal::<R>(1, l) + (yy - y * y * scale);
@@ -389,11 +398,21 @@ impl<R: Real> NormalLanes<R> {
             self.matrix[5].0[l] += gain * y * z;
         }
     }
+}
 
-    /// [`Real::NO_SOLUTION`] where the matrix is not positive definite.
+/// The determinant of a geometry that f32 may take, over the cube of its trace, at least. The
+/// smallest eigenvalue is then 2⁻¹⁶ of the trace or more, and rounding 2⁻²² of it.
+const LEAST_DETERMINANT: f32 = 1.0 / 65_536.0;
+
+/// The least trace. PDOP² is 9 over it or more, so no PDOP that f32 is trusted with is lost; below,
+/// rounding may be all that there is.
+const LEAST_TRACE: f32 = 1.0;
+
+impl NormalLanes<f32> {
+    /// PDOP by the minors; infinite where the matrix is too close to a singular one for f32.
     #[inline(always)]
-    fn pdop(&self) -> Lanes<R> {
-        let mut lanes = Lanes([R::NO_SOLUTION; LANES]);
+    pub(super) fn pdop(&self) -> Lanes<f32> {
+        let mut lanes = Lanes([f32::INFINITY; LANES]);
         let matrix = &self.matrix;
         for l in 0..LANES {
             let (xx, yy, zz) = (matrix[0].0[l], matrix[1].0[l], matrix[2].0[l]);
@@ -402,10 +421,43 @@ impl<R: Real> NormalLanes<R> {
             let minor_yy = xx * zz - xz * xz;
             let minor_xx = yy * zz - yz * yz;
             let determinant = xx * minor_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-            let definite = (xx > R::ZERO) & (minor_zz > R::ZERO) & (determinant > R::ZERO);
+            let trace = xx + yy + zz;
+            let sound =
+                (trace > LEAST_TRACE) & (determinant > LEAST_DETERMINANT * trace * trace * trace);
             let pdop = ((minor_xx + minor_yy + minor_zz) / determinant).root();
-            lanes.0[l] = if definite { pdop } else { R::NO_SOLUTION };
+            lanes.0[l] = if sound { pdop } else { f32::INFINITY };
         }
         lanes
     }
+}
+
+impl NormalLanes<f64> {
+    /// PDOP by the factor of the plain path; infinite where a pivot is not clearly above rounding
+    /// for satellites of unit weight, `clocks` of them beyond the surplus at most.
+    #[inline(always)]
+    pub(super) fn pdop(&self, clocks: u32) -> Lanes<f64> {
+        let mut lanes = Lanes([f64::INFINITY; LANES]);
+        for l in 0..LANES {
+            let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| self.matrix[element].0[l]);
+            let factor = Factor::new(&Symmetric3 {
+                xx,
+                yy,
+                zz,
+                xy,
+                xz,
+                yz,
+            });
+            let clear = factor.exceeds(clear_pivot(self.surplus.0[l] + clocks));
+            let pdop = factor.trace_of_inverse().root();
+            lanes.0[l] = if clear { pdop } else { f64::INFINITY };
+        }
+        lanes
+    }
+}
+
+/// A pivot above this is above the floor of the plain path too, whose sums are made in another
+/// order: those of the lanes, with a GNSS part of 48 bits, are within one floor of it.
+#[inline(always)]
+pub(super) fn clear_pivot(satellites: u32) -> f64 {
+    4.0 * pivot_floor(f64::from(satellites))
 }

@@ -3,9 +3,10 @@
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, Real, SiteLanes, Solution, Sums};
+use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, NormalLanes, SiteLanes, Sums};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
+use crate::dop::pivot_floor;
 
 /// Stands for an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
@@ -22,11 +23,17 @@ pub(super) struct Limits {
     pub(super) cap: f64,
     /// PDOP up to which a sample is available.
     pub(super) available: f64,
+    /// Clock states at most.
+    pub(super) clocks: u32,
 }
 
 impl Limits {
     /// Relative distance from a threshold within which f32 does not decide.
     const BAND: f32 = 1e-5;
+
+    /// Relative distance from a threshold within which f64 lanes do not decide, besides what
+    /// rounding of the normal matrix by one floor of its pivots does to PDOP.
+    const DOUBLE_BAND: f64 = 1e-6;
 
     #[inline(always)]
     fn capped(self, single_below: f32) -> Self {
@@ -40,6 +47,18 @@ impl Limits {
     fn holds_in_single(&self, pdop: f32) -> bool {
         let available = self.available as f32;
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
+    }
+
+    /// Whether the sums of the lanes, or others that are as good, decide about a sample of finite
+    /// PDOP. Otherwise the sums of the plain path do, so that all paths decide alike.
+    #[inline(always)]
+    pub(super) fn decides(&self, pdop: f64, satellites: u32) -> bool {
+        let floor = pivot_floor(f64::from(satellites));
+        let is_apart = |threshold: f64| {
+            let band = Self::DOUBLE_BAND + floor * threshold * threshold;
+            (pdop - threshold).abs() > threshold * band
+        };
+        is_apart(self.cap) && is_apart(self.available)
     }
 }
 
@@ -76,10 +95,20 @@ impl Workspace {
     }
 }
 
-/// A decision that f32 cannot take: the point in a lane of a tile, and the satellites that it may
-/// see.
+/// What the lanes do not decide.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Doubt {
+    /// A satellite is too close to the mask.
+    Mask,
+    /// A pivot of the normal matrix is close to rounding, or PDOP to a threshold.
+    Geometry,
+}
+
+/// A decision that is left to the plain path: the point in a lane of a tile, and the satellites
+/// that it may see.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Undecided {
+    pub(super) doubt: Doubt,
     pub(super) tile: usize,
     pub(super) lane: usize,
     pub(super) satellites: Vec<u32>,
@@ -184,7 +213,7 @@ fn evaluate(
             }
             out.pdop[number] = verdict.pdop;
             if any(&verdict.doubtful) {
-                doubt(number, &verdict, candidates, out);
+                doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
             }
             if any(&verdict.coarse) {
                 available[0] += compute_again(
@@ -255,7 +284,8 @@ struct LaneVerdict {
 impl LaneVerdict {
     #[inline(always)]
     fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
-        let solution = Solution::new(sums, fixed);
+        let system = NormalLanes::new(sums, fixed);
+        let single = system.pdop();
         let zero = Lanes([0; LANES]);
         let mut verdict = Self {
             pdop: Lanes([UNSOLVED; LANES]),
@@ -265,9 +295,9 @@ impl LaneVerdict {
             available: zero,
         };
         for l in 0..LANES {
-            let pdop = solution.pdop.0[l];
+            let pdop = single.0[l];
             let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
-            let counted = u32::from(solution.surplus.0[l] >= POSITION_STATES);
+            let counted = u32::from(system.surplus.0[l] >= POSITION_STATES);
             let fine = u32::from(limits.holds_in_single(pdop));
             let reached = u32::from(pdop <= limits.available as f32);
             verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
@@ -280,13 +310,20 @@ impl LaneVerdict {
     }
 }
 
-/// Leaves the doubtful points of a tile to be candidates at again.
+/// Leaves points of a tile to the plain path.
 #[inline(never)]
-fn doubt(number: usize, verdict: &LaneVerdict, candidates: TileCandidates<'_>, out: &mut Outcome) {
+fn doubt(
+    number: usize,
+    doubt: Doubt,
+    lanes: &Lanes<u32>,
+    candidates: TileCandidates<'_>,
+    out: &mut Outcome,
+) {
     let satellites: Vec<u32> = candidates.satellites().map(|n| n as u32).collect();
-    for lane in (0..LANES).filter(|&lane| verdict.doubtful.0[lane] != 0) {
+    for lane in (0..LANES).filter(|&lane| lanes.0[lane] != 0) {
         out.pdop[number].0[lane] = UNSOLVED;
         out.doubts.push(Undecided {
+            doubt,
             tile: number,
             lane,
             satellites: satellites.clone(),
@@ -313,14 +350,25 @@ fn compute_again(
             sums.add(sites, positions.at(block.index(n)), &scene.double);
         }
     }
-    let solution = Solution::new(&sums, fixed);
+    let limits = &scene.limits;
+    let system = NormalLanes::new(&sums, fixed);
+    let double = system.pdop(limits.clocks);
     let mut available = 0;
+    let mut undecided = Lanes([0; LANES]);
     for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
-        let pdop = solution.pdop.0[lane];
-        let solved = pdop < f64::NO_SOLUTION && pdop <= scene.limits.cap;
-        out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
-        available += u32::from(solved && pdop <= scene.limits.available);
+        let pdop = double.0[lane];
+        let satellites = system.surplus.0[lane] + limits.clocks;
+        if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
+            let solved = pdop <= limits.cap;
+            out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
+            available += u32::from(solved && pdop <= limits.available);
+        } else {
+            undecided.0[lane] = 1;
+        }
         out.doubled += 1;
+    }
+    if any(&undecided) {
+        doubt(number, Doubt::Geometry, &undecided, candidates, out);
     }
     available
 }

@@ -2,7 +2,7 @@
 
 use super::{Ended, Sweep, hint_resume, interrupt_flag, load, open, search, status, sweep, text};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
-use crate::cli::{Status, files, output};
+use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
 use anyhow::{Context, Result, bail};
@@ -31,6 +31,7 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
         study.take_files_of(&run)?;
     }
     let setup = study.setup()?;
+    coincidence::warn(&setup.gnss, setup.grid, None);
     if !args.force {
         require_seeds(&out)?;
     }

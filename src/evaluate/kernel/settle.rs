@@ -1,0 +1,181 @@
+//! Samples that the lanes do not decide, because a satellite is too close to the mask or the
+//! geometry to a limit: once more by the definitions.
+
+use super::super::fixed::{self, PlainGnssSample, PlainPositions};
+use super::super::{Setup, plain};
+use super::fixed::{FixedSample, SampleInstant};
+use super::lanes::{FixedTile, clear_pivot};
+use super::sample::{Doubt, Outcome, POSITION_STATES, SampleContext, UNSOLVED, Undecided};
+use crate::dop::{Factor, Symmetric3};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::{EarthFixed, LocalFrame, Position};
+use nalgebra::Vector3;
+use std::cell::OnceCell;
+
+/// What all doubts of one instant are settled with.
+pub(super) struct Settling<'a> {
+    setup: &'a Setup,
+    scene: &'a SampleContext,
+    instant: SampleInstant,
+    fixed: FixedSample<'a>,
+    /// The GNSS, where it is asked for.
+    gnss: OnceCell<Vec<PlainPositions>>,
+}
+
+/// What a sample is, when all is said.
+struct Settled {
+    visible: u32,
+    pdop: Option<f64>,
+}
+
+impl<'a> Settling<'a> {
+    pub(super) fn new(
+        setup: &'a Setup,
+        scene: &'a SampleContext,
+        instant: SampleInstant,
+        fixed: FixedSample<'a>,
+    ) -> Self {
+        Self {
+            setup,
+            scene,
+            instant,
+            fixed,
+            gnss: OnceCell::new(),
+        }
+    }
+
+    /// Settles all doubts of an outcome.
+    pub(super) fn settle(
+        &self,
+        leo: &Ephemeris,
+        systems: &[Ephemeris],
+        outcome: &mut Outcome,
+    ) -> Result<(), EphemerisError> {
+        for undecided in std::mem::take(&mut outcome.doubts) {
+            let Undecided { tile, lane, .. } = undecided;
+            let site = self.scene.tiles.tiles[tile].members[lane];
+            let local = &self.setup.sites[site as usize].local;
+            let positions = self.candidates(leo, &undecided)?;
+            let by_lanes = match undecided.doubt {
+                Doubt::Mask => self.with_gnss_of_lanes(local, &positions, &undecided),
+                Doubt::Geometry => None,
+            };
+            let settled = match by_lanes {
+                Some(settled) => settled,
+                None => self.by_plain_sums(local, &positions, systems)?,
+            };
+            let available = settled
+                .pdop
+                .is_some_and(|pdop| pdop <= self.setup.metrics.availability_pdop);
+            // In the lanes the satellites of a doubtful mask are not counted yet.
+            if undecided.doubt == Doubt::Mask {
+                outcome.visible += u64::from(settled.visible);
+            }
+            outcome.available += u64::from(available);
+            outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, |pdop| pdop as f32);
+        }
+        Ok(())
+    }
+
+    /// The positions of the plain path, of the satellites that a point may see.
+    fn candidates(
+        &self,
+        leo: &Ephemeris,
+        undecided: &Undecided,
+    ) -> Result<Vec<Position<EarthFixed>>, EphemerisError> {
+        let position = |&n: &u32| {
+            let satellite = &leo.satellites()[n as usize];
+            let state = leo.state(satellite, self.instant.elapsed_s)?;
+            Ok(self.instant.rotation.to_earth_fixed(state.position_km))
+        };
+        undecided.satellites.iter().map(position).collect()
+    }
+
+    /// The sample of the plain path, to the bit.
+    fn by_plain_sums(
+        &self,
+        local: &LocalFrame,
+        positions: &[Position<EarthFixed>],
+        systems: &[Ephemeris],
+    ) -> Result<Settled, EphemerisError> {
+        let gnss = match self.gnss.get() {
+            Some(gnss) => gnss,
+            None => {
+                let SampleInstant {
+                    elapsed_s,
+                    rotation,
+                    ..
+                } = self.instant;
+                let made = fixed::positions(systems, elapsed_s, rotation)?;
+                self.gnss.get_or_init(|| made)
+            }
+        };
+        let gnss = PlainGnssSample::new(self.setup, local, gnss);
+        let (visible, geometry) = plain::geometry(self.setup, local, positions, &gnss);
+        let pdop = geometry.pdop(self.setup.pdop_cap);
+        Ok(Settled { visible, pdop })
+    }
+
+    /// The sample with the decisions of the plain path about the mask and the GNSS part of the
+    /// lanes; `None` where that does not decide whether it is solved.
+    fn with_gnss_of_lanes(
+        &self,
+        local: &LocalFrame,
+        positions: &[Position<EarthFixed>],
+        undecided: &Undecided,
+    ) -> Option<Settled> {
+        let limits = &self.scene.limits;
+        let fixed = self.fixed.tile(undecided.tile);
+        let (mut normal, mut sum, mut in_group) = gnss_part(&fixed, undecided.lane);
+        let mut visible = 0;
+        for &position in positions {
+            if let Some(unit) = self.setup.mask.line_of_sight(local, position) {
+                normal += Symmetric3::outer(unit, 1.0);
+                sum += unit;
+                visible += 1;
+            }
+        }
+        in_group += visible;
+        let mut surplus = u32::from(fixed.surplus[undecided.lane]);
+        if in_group > 0 {
+            normal += Symmetric3::outer(sum, -1.0 / f64::from(in_group));
+            surplus += in_group - 1;
+        }
+        if surplus < POSITION_STATES {
+            return Some(Settled {
+                visible,
+                pdop: None,
+            });
+        }
+        let satellites = surplus + limits.clocks;
+        let factor = Factor::new(&normal);
+        let pdop = factor.trace_of_inverse().sqrt();
+        let decided = factor.exceeds(clear_pivot(satellites)) && limits.decides(pdop, satellites);
+        decided.then(|| Settled {
+            visible,
+            pdop: (pdop <= limits.cap).then_some(pdop),
+        })
+    }
+}
+
+/// Normal matrix of the GNSS at a point of a tile, and Σ v and number of those that share their
+/// clock with the design: their elimination is undone, since the clock becomes that of the design.
+fn gnss_part(fixed: &FixedTile<'_>, lane: usize) -> (Symmetric3, Vector3<f64>, u32) {
+    let [xx, yy, zz, xy, xz, yz] =
+        std::array::from_fn(|element| fixed.normal::<f64>(element, lane));
+    let mut normal = Symmetric3 {
+        xx,
+        yy,
+        zz,
+        xy,
+        xz,
+        yz,
+    };
+    let Some(shared) = fixed.shared else {
+        return (normal, Vector3::zeros(), 0);
+    };
+    let count = shared.count.0[lane];
+    let mean = Vector3::from_fn(|axis, _| shared.mean::<f64>(axis, lane));
+    normal += Symmetric3::outer(mean, f64::from(count));
+    (normal, mean * f64::from(count), count)
+}
