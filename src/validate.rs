@@ -31,6 +31,7 @@ use distribution::Distribution;
 use residuals::BudgetLine;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
+use std::fmt;
 use thiserror::Error;
 
 /// One number of a validation, with the bound that it must keep.
@@ -49,10 +50,22 @@ pub struct Check {
     pub value: f64,
     /// The bound on its size; `None` when it is reported only.
     pub gate: Option<f64>,
-    /// Whether the value keeps its bound (true when there is none).
-    pub passed: bool,
+    /// Whether the value meets its gate; `None` when there is no gate.
+    pub passed: Option<bool>,
     /// The physical reason of the bound, or what the number shows.
     pub reason: String,
+}
+
+keywords! {
+    /// What a report says of a [`Check`].
+    Outcome {
+        /// The value meets its gate.
+        Pass = "pass",
+        /// The value misses its gate.
+        Fail = "FAIL",
+        /// There is no gate: the value is for information.
+        Info = "info",
+    }
 }
 
 /// What the number of a [`Check`] is.
@@ -83,8 +96,68 @@ impl Check {
             statistic: measure.statistic.to_owned(),
             value,
             gate,
-            passed: gate.is_none_or(|gate| value.abs() <= gate),
+            passed: gate.map(|gate| value.abs() <= gate),
             reason: reason.to_owned(),
+        }
+    }
+
+    /// What a report says of it.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        match (self.gate, self.passed) {
+            (None, _) => Outcome::Info,
+            (Some(_), Some(true)) => Outcome::Pass,
+            // A gate without a verdict is not met.
+            (Some(_), _) => Outcome::Fail,
+        }
+    }
+}
+
+/// How many checks have each outcome.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Gates that are met.
+    pub passed: usize,
+    /// Gates that are missed.
+    pub failed: usize,
+    /// Checks without a gate.
+    pub info: usize,
+}
+
+impl Tally {
+    /// The outcomes of `checks`.
+    #[must_use]
+    pub fn of(checks: &[Check]) -> Self {
+        let mut tally = Self::default();
+        for check in checks {
+            match check.outcome() {
+                Outcome::Pass => tally.passed += 1,
+                Outcome::Fail => tally.failed += 1,
+                Outcome::Info => tally.info += 1,
+            }
+        }
+        tally
+    }
+
+    /// Checks with a gate.
+    #[must_use]
+    pub fn gates(self) -> usize {
+        self.passed + self.failed
+    }
+}
+
+impl fmt::Display for Tally {
+    /// The verdict of a report in one line.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.failed, self.gates()) {
+            (_, 0) => write!(formatter, "no gates")?,
+            (0, gates) => write!(formatter, "passed: all {gates} gates")?,
+            (failed, gates) => write!(formatter, "FAILED: {failed} of {gates} gates")?,
+        }
+        match self.info {
+            0 => Ok(()),
+            1 => write!(formatter, "; 1 check has no gate (info)"),
+            info => write!(formatter, "; {info} checks have no gate (info)"),
         }
     }
 }
@@ -134,6 +207,9 @@ pub struct Findings {
     /// The checks, in the order in which they are read.
     #[serde(default)]
     pub checks: Vec<Check>,
+    /// What a target cannot judge about the model of the study, in sentences.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// The error budget by cause, for comparisons of trajectories.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetLine>,
@@ -149,15 +225,23 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Whether every gate is kept.
+    /// Whether every gate is met.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| check.passed)
+        self.failures().next().is_none()
+    }
+
+    /// The checks that miss their gate.
+    pub fn failures(&self) -> impl Iterator<Item = &Check> {
+        self.checks
+            .iter()
+            .filter(|check| check.outcome() == Outcome::Fail)
     }
 
     /// Adds what another target found.
     pub fn append(&mut self, mut other: Self) {
         self.checks.append(&mut other.checks);
+        self.notes.append(&mut other.notes);
         self.budget.append(&mut other.budget);
         self.sweep.append(&mut other.sweep);
         self.distributions.append(&mut other.distributions);
@@ -382,7 +466,7 @@ mod tests {
 
     #[test]
     fn gates_bound_the_size() {
-        let check = |value, gate| {
+        let outcome = |value, gate| {
             Check::new(
                 "a/b",
                 CheckedQuantity {
@@ -394,10 +478,11 @@ mod tests {
                 gate,
                 "",
             )
-            .passed
+            .outcome()
         };
-        assert!(check(-1.0, Some(1.0)) && !check(-1.1, Some(1.0)));
-        assert!(check(1e9, None));
-        assert!(!check(f64::NAN, Some(1.0)));
+        assert_eq!(outcome(-1.0, Some(1.0)), Outcome::Pass);
+        assert_eq!(outcome(-1.1, Some(1.0)), Outcome::Fail);
+        assert_eq!(outcome(1e9, None), Outcome::Info);
+        assert_eq!(outcome(f64::NAN, Some(1.0)), Outcome::Fail);
     }
 }

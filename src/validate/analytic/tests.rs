@@ -15,7 +15,7 @@ fn closed_forms_hold_for_every_pattern() {
     ] {
         let subject = Subject::new(notation.parse().unwrap(), &evaluator);
         let findings = against_closed_forms(&subject).unwrap();
-        let failed: Vec<_> = findings.checks.iter().filter(|c| !c.passed).collect();
+        let failed: Vec<_> = findings.failures().collect();
         assert!(failed.is_empty(), "{notation}: {failed:#?}");
     }
 }

@@ -18,7 +18,7 @@ fn validate_secular_rates_over_inclinations() {
         "delta:120:12/4/1@1500",
     ] {
         let findings = found(notation);
-        let failed: Vec<_> = findings.checks.iter().filter(|c| !c.passed).collect();
+        let failed: Vec<_> = findings.failures().collect();
         assert!(failed.is_empty(), "{notation}: {failed:#?}");
     }
 }
@@ -26,7 +26,7 @@ fn validate_secular_rates_over_inclinations() {
 #[test]
 fn validate_an_eccentric_design() {
     let findings = found("lattice:63.4:12/4/3@1200,e=0.02,w=270");
-    let failed: Vec<_> = findings.checks.iter().filter(|c| !c.passed).collect();
+    let failed: Vec<_> = findings.failures().collect();
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
