@@ -19,15 +19,17 @@ use crate::constellation::{Design, Satellite, Slot};
 use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
-use crate::evaluate::{Evaluator, Setup};
+use crate::evaluate::{Evaluator, Metrics, Setup};
+use crate::formats::tle::{self, TleFieldError};
 use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::MeanMotionSlot;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Theory};
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use distribution::Distribution;
+use numerical::integrator::{Acceleration, ZonalField};
 use residuals::BudgetLine;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
@@ -249,7 +251,11 @@ impl Findings {
     }
 }
 
-/// The parts of the library that are held against standards.
+/// Makes the propagator of a model for mean elements at an epoch.
+pub type ModelPropagator =
+    fn(Model, &MeanElements, Epoch) -> Result<Box<dyn Propagator>, PropagationError>;
+
+/// The parts of the library that are held against standards, and of the instruments that judge them.
 ///
 /// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
 #[derive(Debug, Clone, Copy)]
@@ -258,8 +264,19 @@ pub struct Parts {
     pub satellites: fn(&Design) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,
+    /// The other models that a study can propagate its design with.
+    pub propagator: ModelPropagator,
+    /// What SGP4 is run with, as the judge.
+    pub sgp4: Sgp4Theory,
+    /// The acceleration of a zonal field, km/s², as the judge integrates it.
+    pub acceleration: Acceleration,
     /// What the mean motion slot of exported element sets holds.
     pub slot: MeanMotionSlot,
+    /// Mean elements at another instant, s later: how element sets are carried to the epoch that they can
+    /// write.
+    pub carried: fn(&MeanElements, f64) -> MeanElements,
+    /// An element set as a reader of a TLE finds it.
+    pub written: fn(&::sgp4::Elements) -> Result<::sgp4::Elements, TleFieldError>,
     /// Argument of perigee at which the frozen eccentricity is cancelled in an element set, degrees.
     pub cancelling_perigee_deg: f64,
     /// Greenwich mean sidereal time some seconds after an epoch, radians.
@@ -268,6 +285,8 @@ pub struct Parts {
     pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
     /// The clock states that are solved for, by those that are meant.
     pub clocks: fn(Clocks) -> Clocks,
+    /// The metrics of an ephemeris.
+    pub evaluate: fn(&Evaluator, &Ephemeris) -> Result<Metrics, EphemerisError>,
     /// Elevation and azimuth of a position, radians.
     pub look_angles: fn(&LocalFrame, Position<EarthFixed>) -> (f64, f64),
 }
@@ -277,11 +296,17 @@ impl Default for Parts {
         Self {
             satellites: Design::satellites,
             mean_j2: SecularOrbit::j2,
+            propagator: Model::propagator,
+            sgp4: Sgp4Theory::STANDARD,
+            acceleration: ZonalField::acceleration,
             slot: MeanMotionSlot::Kozai,
+            carried: |elements, later_s| SecularOrbit::j2(elements).elements_at(later_s),
+            written: tle::as_written,
             cancelling_perigee_deg: 270.0,
             gmst_rad: Epoch::gmst_rad,
             local_frame: LocalFrame::new,
             clocks: |meant| meant,
+            evaluate: Evaluator::evaluate_ephemeris,
             look_angles: LocalFrame::look_angles,
         }
     }
@@ -383,27 +408,54 @@ impl<'a> Subject<'a> {
         (self.parts.satellites)(&self.design)
     }
 
-    /// The design propagated by a theory over the study.
-    fn propagate<P: Propagator + 'static>(
+    /// The model that the study propagates the design with, which is on trial.
+    fn model(&self) -> Model {
+        self.setup().model
+    }
+
+    /// That model as the first of a case: J2 is `mean-j2`, as secular rates of mean elements.
+    fn model_label(&self) -> &'static str {
+        match self.model() {
+            Model::J2 => MEAN_J2,
+            other => other.keyword(),
+        }
+    }
+
+    /// The propagator of the model of the study.
+    fn model_propagator(
         &self,
-        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
-    ) -> Result<Ephemeris, EphemerisError> {
-        self.propagate_on(self.grid(), theory)
+        elements: &MeanElements,
+    ) -> Result<Box<dyn Propagator>, PropagationError> {
+        match self.model() {
+            Model::J2 => Ok(Box::new((self.parts.mean_j2)(elements))),
+            other => (self.parts.propagator)(other, elements, self.epoch()),
+        }
+    }
+
+    /// The mean elements of the model after some time; SGP4 has none that compare.
+    fn mean_elements_after(&self, elements: &MeanElements, elapsed_s: f64) -> Option<MeanElements> {
+        match self.model() {
+            Model::TwoBody => Some(SecularOrbit::two_body(elements).elements_at(elapsed_s)),
+            Model::J2 | Model::J2Osculating => {
+                Some((self.parts.mean_j2)(elements).elements_at(elapsed_s))
+            }
+            Model::Sgp4 => None,
+        }
     }
 
     /// The design propagated by a theory over a grid.
-    fn propagate_on<P: Propagator + 'static>(
+    fn propagate_on(
         &self,
         grid: TimeGrid,
-        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
+        theory: impl Fn(&MeanElements) -> Result<Box<dyn Propagator>, PropagationError>,
     ) -> Result<Ephemeris, EphemerisError> {
         let one = |satellite: &Satellite| {
             let name = object_name(satellite.slot);
             match theory(&satellite.elements) {
-                Ok(propagated) => Ok(EphemerisSatellite {
+                Ok(propagator) => Ok(EphemerisSatellite {
                     name,
                     slot: Some(satellite.slot),
-                    propagator: Box::new(propagated),
+                    propagator,
                 }),
                 Err(source) => Err(EphemerisError { name, source }),
             }
@@ -414,17 +466,17 @@ impl<'a> Subject<'a> {
 
     /// The design propagated by the model of the study.
     fn propagate_model(&self) -> Result<Ephemeris, EphemerisError> {
-        match self.setup().model {
-            Model::J2 => self.propagate_mean_j2(),
-            model => Ephemeris::of_design(&self.design, model, self.grid()),
-        }
+        self.propagate_model_on(self.grid())
     }
 
-    /// The design propagated by mean J2.
-    fn propagate_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
-        self.propagate(|elements| Ok((self.parts.mean_j2)(elements)))
+    /// The same over another grid.
+    fn propagate_model_on(&self, grid: TimeGrid) -> Result<Ephemeris, EphemerisError> {
+        self.propagate_on(grid, |elements| self.model_propagator(elements))
     }
 }
+
+/// Mean J2 in the names of cases and checks.
+const MEAN_J2: &str = "mean-j2";
 
 /// Why a validation cannot be carried out.
 #[derive(Debug, Error)]
@@ -434,7 +486,7 @@ pub enum ValidateError {
     Ephemeris(#[from] EphemerisError),
     /// An element does not fit a TLE.
     #[error(transparent)]
-    Tle(#[from] crate::formats::tle::TleFieldError),
+    Tle(#[from] TleFieldError),
     /// The study of the paper cannot be repeated.
     #[error(transparent)]
     Paper(#[from] crate::study::paper::PaperError),
