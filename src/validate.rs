@@ -19,18 +19,21 @@ use crate::constellation::{Design, Satellite, Slot};
 use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
-use crate::evaluate::{Evaluator, Setup};
+use crate::evaluate::{Evaluator, Metrics, Setup};
+use crate::formats::tle::{self, TleFieldError};
 use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::MeanMotionSlot;
+use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Theory};
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use distribution::Distribution;
+use numerical::integrator::{Acceleration, ZonalField};
 use residuals::BudgetLine;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
+use std::fmt;
 use thiserror::Error;
 
 /// One number of a validation, with the bound that it must keep.
@@ -49,10 +52,22 @@ pub struct Check {
     pub value: f64,
     /// The bound on its size; `None` when it is reported only.
     pub gate: Option<f64>,
-    /// Whether the value keeps its bound (true when there is none).
-    pub passed: bool,
+    /// Whether the value meets its gate; `None` when there is no gate.
+    pub passed: Option<bool>,
     /// The physical reason of the bound, or what the number shows.
     pub reason: String,
+}
+
+keywords! {
+    /// What a report says of a [`Check`].
+    Outcome {
+        /// The value meets its gate.
+        Pass = "pass",
+        /// The value misses its gate.
+        Fail = "FAIL",
+        /// There is no gate: the value is for information.
+        Info = "info",
+    }
 }
 
 /// What the number of a [`Check`] is.
@@ -83,8 +98,68 @@ impl Check {
             statistic: measure.statistic.to_owned(),
             value,
             gate,
-            passed: gate.is_none_or(|gate| value.abs() <= gate),
+            passed: gate.map(|gate| value.abs() <= gate),
             reason: reason.to_owned(),
+        }
+    }
+
+    /// What a report says of it.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        match (self.gate, self.passed) {
+            (None, _) => Outcome::Info,
+            (Some(_), Some(true)) => Outcome::Pass,
+            // A gate without a verdict is not met.
+            (Some(_), _) => Outcome::Fail,
+        }
+    }
+}
+
+/// How many checks have each outcome.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Gates that are met.
+    pub passed: usize,
+    /// Gates that are missed.
+    pub failed: usize,
+    /// Checks without a gate.
+    pub info: usize,
+}
+
+impl Tally {
+    /// The outcomes of `checks`.
+    #[must_use]
+    pub fn of(checks: &[Check]) -> Self {
+        let mut tally = Self::default();
+        for check in checks {
+            match check.outcome() {
+                Outcome::Pass => tally.passed += 1,
+                Outcome::Fail => tally.failed += 1,
+                Outcome::Info => tally.info += 1,
+            }
+        }
+        tally
+    }
+
+    /// Checks with a gate.
+    #[must_use]
+    pub fn gates(self) -> usize {
+        self.passed + self.failed
+    }
+}
+
+impl fmt::Display for Tally {
+    /// The verdict of a report in one line.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.failed, self.gates()) {
+            (_, 0) => write!(formatter, "no gates")?,
+            (0, gates) => write!(formatter, "passed: all {gates} gates")?,
+            (failed, gates) => write!(formatter, "FAILED: {failed} of {gates} gates")?,
+        }
+        match self.info {
+            0 => Ok(()),
+            1 => write!(formatter, "; 1 check has no gate (info)"),
+            info => write!(formatter, "; {info} checks have no gate (info)"),
         }
     }
 }
@@ -134,6 +209,9 @@ pub struct Findings {
     /// The checks, in the order in which they are read.
     #[serde(default)]
     pub checks: Vec<Check>,
+    /// What a target cannot judge about the model of the study, in sentences.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// The error budget by cause, for comparisons of trajectories.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub budget: Vec<BudgetLine>,
@@ -149,15 +227,23 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Whether every gate is kept.
+    /// Whether every gate is met.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| check.passed)
+        self.failures().next().is_none()
+    }
+
+    /// The checks that miss their gate.
+    pub fn failures(&self) -> impl Iterator<Item = &Check> {
+        self.checks
+            .iter()
+            .filter(|check| check.outcome() == Outcome::Fail)
     }
 
     /// Adds what another target found.
     pub fn append(&mut self, mut other: Self) {
         self.checks.append(&mut other.checks);
+        self.notes.append(&mut other.notes);
         self.budget.append(&mut other.budget);
         self.sweep.append(&mut other.sweep);
         self.distributions.append(&mut other.distributions);
@@ -165,7 +251,11 @@ impl Findings {
     }
 }
 
-/// The parts of the library that are held against standards.
+/// Makes the propagator of a model for mean elements at an epoch.
+pub type ModelPropagator =
+    fn(Model, &MeanElements, Epoch) -> Result<Box<dyn Propagator>, PropagationError>;
+
+/// The parts of the library that are held against standards, and of the instruments that judge them.
 ///
 /// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
 #[derive(Debug, Clone, Copy)]
@@ -174,8 +264,19 @@ pub struct Parts {
     pub satellites: fn(&Design) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,
+    /// The other models that a study can propagate its design with.
+    pub propagator: ModelPropagator,
+    /// What SGP4 is run with, as the judge.
+    pub sgp4: Sgp4Theory,
+    /// The acceleration of a zonal field, km/s², as the judge integrates it.
+    pub acceleration: Acceleration,
     /// What the mean motion slot of exported element sets holds.
     pub slot: MeanMotionSlot,
+    /// Mean elements at another instant, s later: how element sets are carried to the epoch that they can
+    /// write.
+    pub carried: fn(&MeanElements, f64) -> MeanElements,
+    /// An element set as a reader of a TLE finds it.
+    pub written: fn(&::sgp4::Elements) -> Result<::sgp4::Elements, TleFieldError>,
     /// Argument of perigee at which the frozen eccentricity is cancelled in an element set, degrees.
     pub cancelling_perigee_deg: f64,
     /// Greenwich mean sidereal time some seconds after an epoch, radians.
@@ -184,6 +285,8 @@ pub struct Parts {
     pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
     /// The clock states that are solved for, by those that are meant.
     pub clocks: fn(Clocks) -> Clocks,
+    /// The metrics of an ephemeris.
+    pub evaluate: fn(&Evaluator, &Ephemeris) -> Result<Metrics, EphemerisError>,
     /// Elevation and azimuth of a position, radians.
     pub look_angles: fn(&LocalFrame, Position<EarthFixed>) -> (f64, f64),
 }
@@ -193,11 +296,17 @@ impl Default for Parts {
         Self {
             satellites: Design::satellites,
             mean_j2: SecularOrbit::j2,
+            propagator: Model::propagator,
+            sgp4: Sgp4Theory::STANDARD,
+            acceleration: ZonalField::acceleration,
             slot: MeanMotionSlot::Kozai,
+            carried: |elements, later_s| SecularOrbit::j2(elements).elements_at(later_s),
+            written: tle::as_written,
             cancelling_perigee_deg: 270.0,
             gmst_rad: Epoch::gmst_rad,
             local_frame: LocalFrame::new,
             clocks: |meant| meant,
+            evaluate: Evaluator::evaluate_ephemeris,
             look_angles: LocalFrame::look_angles,
         }
     }
@@ -299,27 +408,54 @@ impl<'a> Subject<'a> {
         (self.parts.satellites)(&self.design)
     }
 
-    /// The design propagated by a theory over the study.
-    fn propagate<P: Propagator + 'static>(
+    /// The model that the study propagates the design with, which is on trial.
+    fn model(&self) -> Model {
+        self.setup().model
+    }
+
+    /// That model as the first of a case: J2 is `mean-j2`, as secular rates of mean elements.
+    fn model_label(&self) -> &'static str {
+        match self.model() {
+            Model::J2 => MEAN_J2,
+            other => other.keyword(),
+        }
+    }
+
+    /// The propagator of the model of the study.
+    fn model_propagator(
         &self,
-        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
-    ) -> Result<Ephemeris, EphemerisError> {
-        self.propagate_on(self.grid(), theory)
+        elements: &MeanElements,
+    ) -> Result<Box<dyn Propagator>, PropagationError> {
+        match self.model() {
+            Model::J2 => Ok(Box::new((self.parts.mean_j2)(elements))),
+            other => (self.parts.propagator)(other, elements, self.epoch()),
+        }
+    }
+
+    /// The mean elements of the model after some time; SGP4 has none that compare.
+    fn mean_elements_after(&self, elements: &MeanElements, elapsed_s: f64) -> Option<MeanElements> {
+        match self.model() {
+            Model::TwoBody => Some(SecularOrbit::two_body(elements).elements_at(elapsed_s)),
+            Model::J2 | Model::J2Osculating => {
+                Some((self.parts.mean_j2)(elements).elements_at(elapsed_s))
+            }
+            Model::Sgp4 => None,
+        }
     }
 
     /// The design propagated by a theory over a grid.
-    fn propagate_on<P: Propagator + 'static>(
+    fn propagate_on(
         &self,
         grid: TimeGrid,
-        theory: impl Fn(&MeanElements) -> Result<P, PropagationError>,
+        theory: impl Fn(&MeanElements) -> Result<Box<dyn Propagator>, PropagationError>,
     ) -> Result<Ephemeris, EphemerisError> {
         let one = |satellite: &Satellite| {
             let name = object_name(satellite.slot);
             match theory(&satellite.elements) {
-                Ok(propagated) => Ok(EphemerisSatellite {
+                Ok(propagator) => Ok(EphemerisSatellite {
                     name,
                     slot: Some(satellite.slot),
-                    propagator: Box::new(propagated),
+                    propagator,
                 }),
                 Err(source) => Err(EphemerisError { name, source }),
             }
@@ -330,17 +466,17 @@ impl<'a> Subject<'a> {
 
     /// The design propagated by the model of the study.
     fn propagate_model(&self) -> Result<Ephemeris, EphemerisError> {
-        match self.setup().model {
-            Model::J2 => self.propagate_mean_j2(),
-            model => Ephemeris::of_design(&self.design, model, self.grid()),
-        }
+        self.propagate_model_on(self.grid())
     }
 
-    /// The design propagated by mean J2.
-    fn propagate_mean_j2(&self) -> Result<Ephemeris, EphemerisError> {
-        self.propagate(|elements| Ok((self.parts.mean_j2)(elements)))
+    /// The same over another grid.
+    fn propagate_model_on(&self, grid: TimeGrid) -> Result<Ephemeris, EphemerisError> {
+        self.propagate_on(grid, |elements| self.model_propagator(elements))
     }
 }
+
+/// Mean J2 in the names of cases and checks.
+const MEAN_J2: &str = "mean-j2";
 
 /// Why a validation cannot be carried out.
 #[derive(Debug, Error)]
@@ -350,7 +486,7 @@ pub enum ValidateError {
     Ephemeris(#[from] EphemerisError),
     /// An element does not fit a TLE.
     #[error(transparent)]
-    Tle(#[from] crate::formats::tle::TleFieldError),
+    Tle(#[from] TleFieldError),
     /// The study of the paper cannot be repeated.
     #[error(transparent)]
     Paper(#[from] crate::study::paper::PaperError),
@@ -382,7 +518,7 @@ mod tests {
 
     #[test]
     fn gates_bound_the_size() {
-        let check = |value, gate| {
+        let outcome = |value, gate| {
             Check::new(
                 "a/b",
                 CheckedQuantity {
@@ -394,10 +530,11 @@ mod tests {
                 gate,
                 "",
             )
-            .passed
+            .outcome()
         };
-        assert!(check(-1.0, Some(1.0)) && !check(-1.1, Some(1.0)));
-        assert!(check(1e9, None));
-        assert!(!check(f64::NAN, Some(1.0)));
+        assert_eq!(outcome(-1.0, Some(1.0)), Outcome::Pass);
+        assert_eq!(outcome(-1.1, Some(1.0)), Outcome::Fail);
+        assert_eq!(outcome(1e9, None), Outcome::Info);
+        assert_eq!(outcome(f64::NAN, Some(1.0)), Outcome::Fail);
     }
 }

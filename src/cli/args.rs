@@ -78,8 +78,9 @@ pub(crate) enum Command {
 
     /// Reproduce the paper that this program implements: its tables and figures, ours beside theirs.
     ///
-    /// Every statement of the paper is judged by a computed rule: met, met under another assumption
-    /// (one changed at a time), or not met. DIR gets the report and the data of each figure.
+    /// Every statement of the paper is judged by a computed rule: met, met-under-assumption (one changed
+    /// at a time), fitted (the assumption was found from it), input (copied), not-met or unconfirmed.
+    /// DIR gets the report and the data of each figure.
     ///
     /// Example: navwalker reproduce --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]

@@ -280,7 +280,7 @@ type ReportSection = (&'static str, &'static str, fn(&Reproduction) -> Table);
 const SECTIONS: [ReportSection; 5] = [
     (
         "Statements, judged",
-        "Met: within the tolerance under the scenario. Under another assumption: within it with the one change that is named, of those below.",
+        "met: within the tolerance under the scenario; met-under-assumption: with the one change that is named, of those below; fitted: it holds, but the assumption was found from it or from what it follows from; input: copied from the paper; not-met: under no assumption that was tried; unconfirmed: not computed. Only the first two are evidence.",
         lines_table,
     ),
     (

@@ -1,18 +1,24 @@
 //! A validation as text, Markdown and `JUnit`.
 
 use super::{Align, Table};
+use crate::keyword::Keyword;
 use crate::run::{Basis, ValidateResult};
 use crate::units::round_decimal;
-use crate::validate::Check;
 use crate::validate::distribution::Distribution;
 use crate::validate::file::FileComparison;
 use crate::validate::residuals::{BudgetLine, Ric};
 use crate::validate::sgp4::SweepCell;
+use crate::validate::{Check, Outcome, Tally};
 use quick_xml::escape::escape;
+use serde::Serialize;
 use std::fmt::Write;
 
-/// Digits that tell a number of any size apart: four significant ones, plainly written.
+/// Digits that tell a number of any size apart: four significant ones, plainly written; `none` for
+/// what is no number.
 pub(super) fn digits(value: f64) -> String {
+    if !value.is_finite() {
+        return "none".to_owned();
+    }
     let magnitude = if value == 0.0 {
         0.0
     } else {
@@ -62,14 +68,9 @@ fn check_table(checks: &[Check]) -> Table {
         ("unit", Align::Left),
     ]);
     for check in checks {
-        let verdict = match (check.gate, check.passed) {
-            (None, _) => "info",
-            (Some(_), true) => "pass",
-            (Some(_), false) => "FAIL",
-        };
         let gate = check.gate.map_or_else(String::new, digits);
         table.row([
-            verdict.to_owned(),
+            check.outcome().to_string(),
             check.name.clone(),
             digits(check.value),
             gate,
@@ -223,23 +224,7 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
 }
 
 fn verdict(result: &ValidateResult) -> String {
-    let gated = result
-        .findings
-        .checks
-        .iter()
-        .filter(|check| check.gate.is_some())
-        .count();
-    let failed = result
-        .findings
-        .checks
-        .iter()
-        .filter(|check| !check.passed)
-        .count();
-    if failed == 0 {
-        format!("passed: all {gated} gates")
-    } else {
-        format!("FAILED: {failed} of {gated} gates")
-    }
+    Tally::of(&result.findings.checks).to_string()
 }
 
 /// The budget by cause over inclination and altitude.
@@ -284,12 +269,16 @@ fn sweep_table(sweep: &[SweepCell]) -> Table {
 #[must_use]
 pub fn validation_text(result: &ValidateResult) -> String {
     let mut text = format!(
-        "{} in scenario {}, navwalker {}\n{}\n",
+        "{} in scenario {}, propagation model {}, navwalker {}\n{}\n",
         result.design.notation,
         result.scenario.name,
+        result.model,
         result.version,
         conventions(&result.basis)
     );
+    for note in &result.findings.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
     if !result.findings.budget.is_empty() {
         text +=
             "\nError budget: second minus first, radial, in-track and cross-track of the first\n";
@@ -347,14 +336,21 @@ fn reasons(checks: &[Check]) -> Vec<String> {
 #[must_use]
 pub fn validation_markdown(result: &ValidateResult) -> String {
     let mut text = format!(
-        "# Validation of `{}`\n\nScenario {} (`{}`), navwalker {}.\n\n{}.\n\n**{}**\n",
+        "# Validation of `{}`\n\nScenario {} (`{}`), propagation model `{}`, navwalker {}.\n\n{}.\n\n**{}**\n",
         result.design.notation,
         result.scenario.name,
         result.scenario.hash,
+        result.model,
         result.version,
         conventions(&result.basis),
         verdict(result)
     );
+    if !result.findings.notes.is_empty() {
+        text += "\n";
+    }
+    for note in &result.findings.notes {
+        let _ = writeln!(text, "- {note}");
+    }
     if !result.findings.budget.is_empty() {
         text += "\n## Error budget\n\nSecond minus first, in the radial, in-track and cross-track axes of the first.\n\n";
         text += &budget_table(&result.findings.budget).to_markdown();
@@ -376,7 +372,7 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; the cases are those of the budget, and the last column is the largest share of a gate.\n\n";
         text += &sweep_table(&result.findings.sweep).to_markdown();
     }
-    text += "\n## Checks\n\n";
+    text += "\n## Checks\n\nA check without a gate is reported for information (info) and counts neither as passed nor as failed.\n\n";
     text += &check_table(&result.findings.checks).to_markdown();
     text += "\nReasons of the gates:\n\n";
     for reason in reasons(&result.findings.checks) {
@@ -398,40 +394,83 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
     text
 }
 
+/// A check as a row of CSV; JSON has the same fields, without the verdict in a word.
+#[derive(Serialize)]
+struct CheckRecord<'a> {
+    name: &'a str,
+    quantity: &'a str,
+    unit: &'a str,
+    statistic: &'a str,
+    value: Option<f64>,
+    gate: Option<f64>,
+    passed: Option<bool>,
+    verdict: &'static str,
+    reason: &'a str,
+}
+
+impl<'a> CheckRecord<'a> {
+    fn of(check: &'a Check) -> Self {
+        Self {
+            name: &check.name,
+            quantity: &check.quantity,
+            unit: &check.unit,
+            statistic: &check.statistic,
+            value: check.value.is_finite().then_some(check.value),
+            gate: check.gate,
+            passed: check.passed,
+            verdict: check.outcome().keyword(),
+            reason: &check.reason,
+        }
+    }
+}
+
 /// The checks of a validation, one a row.
 ///
 /// # Errors
 /// Never for a table in memory.
 pub fn checks_csv(checks: &[Check]) -> std::io::Result<String> {
-    super::records_csv(checks)
+    let records: Vec<CheckRecord<'_>> = checks.iter().map(CheckRecord::of).collect();
+    super::records_csv(&records)
 }
 
-/// The checks as `JUnit` XML: a test case each, with the value as its output.
+/// The checks as `JUnit` XML: a test case each, with the value as its output. A check without a gate
+/// is a skipped test, which no reader counts as passed.
 #[must_use]
 pub fn checks_junit(checks: &[Check]) -> String {
-    let failures = checks.iter().filter(|check| !check.passed).count();
+    let tally = Tally::of(checks);
+    let counts = format!(
+        "tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\"",
+        checks.len(),
+        tally.failed,
+        tally.info
+    );
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let _ = writeln!(
         text,
-        "<testsuites><testsuite name=\"navwalker validate\" tests=\"{}\" failures=\"{failures}\">",
-        checks.len()
+        "<testsuites {counts}><testsuite name=\"navwalker validate\" {counts}>"
     );
     for check in checks {
-        let gate = check.gate.map_or_else(|| "none".to_owned(), digits);
+        let gate = check.gate.map_or_else(
+            || "no gate".to_owned(),
+            |gate| format!("gate {}", digits(gate)),
+        );
         let message = format!(
-            "{} {} {}, gate {gate}",
+            "{} {} {}, {gate}",
             check.quantity,
             digits(check.value),
             check.unit
         );
         let (name, message) = (escape(check.name.as_str()), escape(message.as_str()));
+        let reason = escape(check.reason.as_str());
         let _ = write!(text, "<testcase classname=\"navwalker\" name=\"{name}\">");
-        if check.passed {
-            let _ = write!(text, "<system-out>{message}</system-out>");
-        } else {
-            let reason = escape(check.reason.as_str());
-            let _ = write!(text, "<failure message=\"{message}\">{reason}</failure>");
-        }
+        let _ = match check.outcome() {
+            Outcome::Pass => write!(text, "<system-out>{message}</system-out>"),
+            Outcome::Fail => write!(text, "<failure message=\"{message}\">{reason}</failure>"),
+            Outcome::Info => write!(
+                text,
+                "<skipped message=\"info: {message}\"/><system-out>{reason}</system-out>"
+            ),
+        };
         text += "</testcase>\n";
     }
     text += "</testsuite></testsuites>\n";
@@ -441,6 +480,7 @@ pub fn checks_junit(checks: &[Check]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::validate::CheckedQuantity;
 
     #[test]
     fn digits_suit_the_size() {
@@ -451,31 +491,90 @@ mod tests {
         assert_eq!(digits(0.0), "0.000");
     }
 
-    #[test]
-    fn junit_is_well_formed_and_escaped() {
-        let check = |passed| Check {
-            name: "a<b".to_owned(),
-            quantity: "\"q\"".to_owned(),
-            unit: "km".to_owned(),
-            statistic: "max".to_owned(),
-            value: 2.0,
-            gate: Some(1.0),
-            passed,
-            reason: "x & y".to_owned(),
+    fn check(value: f64, gate: Option<f64>) -> Check {
+        let quantity = CheckedQuantity {
+            quantity: "\"q\"",
+            unit: "km",
+            statistic: "max",
         };
-        let text = checks_junit(&[check(true), check(false)]);
-        let mut reader = quick_xml::Reader::from_str(&text);
-        let mut cases = 0;
+        Check::new("a<b", quantity, value, gate, "x & y")
+    }
+
+    /// One that passes, one that fails, and two without a gate.
+    fn checks() -> [Check; 4] {
+        [
+            check(1.0, Some(1.0)),
+            check(2.0, Some(1.0)),
+            check(2.0, None),
+            check(f64::NAN, None),
+        ]
+    }
+
+    /// The elements of a name, and the values of an attribute of them.
+    fn attributes(text: &str, element: &str, attribute: &str) -> Vec<Option<String>> {
+        let mut reader = quick_xml::Reader::from_str(text);
+        let mut found = Vec::new();
         loop {
+            use quick_xml::events::Event;
             match reader.read_event().unwrap() {
-                quick_xml::events::Event::Start(start) if start.name().as_ref() == "testcase" => {
-                    cases += 1
+                Event::Start(start) | Event::Empty(start) if start.name().as_ref() == element => {
+                    let value = start.try_get_attribute(attribute).unwrap();
+                    found.push(value.map(|value| {
+                        let value = value.normalized_value(quick_xml::XmlVersion::default());
+                        value.unwrap().into_owned()
+                    }));
                 }
-                quick_xml::events::Event::Eof => break,
+                Event::Eof => return found,
                 _ => {}
             }
         }
-        assert_eq!(cases, 2);
-        assert!(text.contains("failures=\"1\"") && text.contains("x &amp; y"));
+    }
+
+    /// A line without a gate is no passed test.
+    #[test]
+    fn junit_counts_as_the_other_formats_do() {
+        let text = checks_junit(&checks());
+        assert_eq!(attributes(&text, "testcase", "name").len(), 4);
+        for (attribute, count) in [("tests", "4"), ("failures", "1"), ("skipped", "2")] {
+            let stated = attributes(&text, "testsuite", attribute);
+            assert_eq!(stated, [Some(count.to_owned())], "{attribute}");
+        }
+        assert_eq!(attributes(&text, "failure", "message").len(), 1);
+        let skipped = attributes(&text, "skipped", "message");
+        assert_eq!(skipped.len(), 2);
+        assert_eq!(skipped[0].as_deref(), Some("info: \"q\" 2.000 km, no gate"));
+        assert!(text.contains("x &amp; y") && text.contains("a&lt;b"));
+    }
+
+    #[test]
+    fn every_format_says_info_of_a_line_without_a_gate() {
+        let checks = checks();
+        assert_eq!(
+            Tally::of(&checks).to_string(),
+            "FAILED: 1 of 2 gates; 2 checks have no gate (info)"
+        );
+        let table = check_table(&checks).to_text();
+        let verdicts: Vec<&str> = table
+            .lines()
+            .filter_map(|line| line.split_whitespace().next())
+            .filter(|word| Outcome::from_keyword(word).is_ok())
+            .collect();
+        assert_eq!(verdicts, ["pass", "FAIL", "info", "info"]);
+        let csv = checks_csv(&checks).unwrap();
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let columns = reader.headers().unwrap().clone();
+        let at = |name: &str| columns.iter().position(|column| column == name).unwrap();
+        let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+        let cells = |name: &str| -> Vec<String> {
+            rows.iter().map(|row| row[at(name)].to_owned()).collect()
+        };
+        assert_eq!(cells("verdict"), ["pass", "FAIL", "info", "info"]);
+        assert_eq!(cells("passed"), ["true", "false", "", ""]);
+        let json = serde_json::to_value(checks).unwrap();
+        let passed: Vec<&serde_json::Value> = (json.as_array().unwrap().iter())
+            .map(|check| &check["passed"])
+            .collect();
+        assert!(passed[0] == true && passed[1] == false);
+        assert!(passed[2].is_null() && passed[3].is_null() && json[3]["gate"].is_null());
     }
 }

@@ -3,6 +3,7 @@
 use super::{DesignSummary, ScenarioStamp, VERSION};
 use crate::constellation::Design;
 use crate::earth;
+use crate::orbit::Model;
 use crate::validate::{Findings, JUDGES, Judge};
 use serde::{Deserialize, Serialize};
 
@@ -11,10 +12,12 @@ use serde::{Deserialize, Serialize};
 pub struct ValidateResult {
     /// The design.
     pub design: DesignSummary,
+    /// The propagation model of the study, as a scenario spells it.
+    pub model: String,
     /// The checks, and the budget of sgp4.
     #[serde(flatten)]
     pub findings: Findings,
-    /// Whether every gate is kept.
+    /// Whether every gate is met.
     pub passed: bool,
     /// The study.
     pub scenario: ScenarioStamp,
@@ -54,16 +57,18 @@ impl Default for Basis {
 }
 
 impl ValidateResult {
-    /// The result of validating one design.
+    /// The result of validating one design that `model` propagates.
     #[must_use]
     pub fn new(
         design: &Design,
+        model: Model,
         against: Vec<String>,
         findings: Findings,
         scenario: ScenarioStamp,
     ) -> Self {
         Self {
             design: design.into(),
+            model: model.to_string(),
             passed: findings.passed(),
             findings,
             scenario,

@@ -9,26 +9,28 @@ mod figures;
 mod fit;
 mod judge;
 mod lines;
+mod measured;
 mod searches;
 mod table;
 
 pub use figures::{Curve, Figures, PlacedDesign};
 pub use fit::{MaskFit, RowMask};
 pub use judge::{Expected, Statement, Verdict};
-pub use lines::{PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
+pub use lines::{JudgedRow, PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
+pub use measured::{Measured, RowValue};
 pub use searches::{FoundMember, FoundSet};
 pub use table::{PERCENTAGES, Percentage, Printable, Scheme, TABLE1, TableRow, table2};
 
 use crate::constellation::{Design, DesignError, DesignParameters, NotationError};
 use crate::ephemeris::EphemerisError;
-use crate::evaluate::{Evaluator, Metrics, Setup};
+use crate::evaluate::{Evaluator, Setup};
 use crate::ground::GroundError;
 use crate::keyword::UnknownKeyword;
 use crate::optimize::{DecisionError, Nsga2Config, OptimizeError};
 use crate::search::DesignSpace;
 use crate::time::TimeError;
 use crate::visibility::MaskError;
-use rayon::prelude::*;
+use measured::Measurements;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -81,39 +83,6 @@ pub struct PaperStudy {
     pub nsga2: Nsga2Config,
     /// Seed of all searches.
     pub seed: u64,
-}
-
-/// One design under one set of assumptions.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct RowValue {
-    /// N̄.
-    pub mean_visible: f64,
-    /// Mean PDOP.
-    pub mean_pdop: Option<f64>,
-    /// Equation (8).
-    pub j_pos: Option<f64>,
-    /// Equation (9).
-    pub j_cost: Option<f64>,
-}
-
-impl From<Metrics> for RowValue {
-    fn from(metrics: Metrics) -> Self {
-        Self {
-            mean_visible: metrics.mean_visible,
-            mean_pdop: metrics.mean_pdop,
-            j_pos: metrics.j_pos,
-            j_cost: metrics.j_cost,
-        }
-    }
-}
-
-/// All rows of Table II under one set of assumptions, in its order.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Measured {
-    /// What is assumed, in words.
-    pub assumption: String,
-    /// Row by row.
-    pub values: Vec<RowValue>,
 }
 
 /// A row of Table II, the paper's and ours.
@@ -175,40 +144,26 @@ pub struct Reproduction {
 /// When a design cannot be propagated or a search cannot run under the given setup.
 pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     let setup = &study.setup;
-    let rows = table2()?;
-    let mask_fit = fit::fit_mask(setup, &rows)?;
     let evaluator = Evaluator::new(setup.clone())?;
-    let fitted = fitted_rows(setup, &rows)?;
-    let printed = measure(&evaluator, "as in the scenario", designs(&rows))?;
-    let moved: Vec<Design> = (rows.iter().zip(&fitted))
-        .map(|(row, fit)| fit.map_or(Ok(row.design), |i| fit::inclined(&row.design, i)))
-        .collect::<Result<_, _>>()?;
-    let at_fitting = measure(&evaluator, "the inclination that fits N̄", moved.clone())?;
-
-    let mut sensitivity = vec![printed.clone()];
-    for alternative in assumptions::alternatives(setup)? {
-        let evaluator = Evaluator::new(alternative.setup)?;
-        sensitivity.push(measure(&evaluator, &alternative.name, designs(&rows))?);
-    }
+    let table = Measurements::new(&evaluator)?;
+    let mask_fit = fit::fit_mask(setup, &table.rows)?;
     let searches = searches::all(&evaluator, study)?;
-    let figures = figures::figures(&evaluator, &rows, &printed, &searches)?;
-    let alternative_figures = figures::compared(&evaluator, &rows, &moved)?;
+    let figures = figures::figures(&evaluator, &table.rows, &table.printed, &searches)?;
+    let alternative_figures = figures::compared(&evaluator, &table.rows, &table.moved)?;
     let lines = lines::lines(&lines::Evidence {
         setup,
-        rows: &rows,
+        table: &table,
         mask_fit: &mask_fit,
-        printed: &printed,
-        fitted: &fitted,
-        at_fitting: &at_fitting,
-        alternatives: &sensitivity[1..],
         searches: &searches,
         curves: [&figures.constellations, &alternative_figures],
     })?;
     Ok(Reproduction {
         mask_deg: setup.mask.degrees(),
         mask_fit,
-        rows: row_results(&rows, &printed, &fitted, &at_fitting),
-        sensitivity,
+        rows: row_results(&table),
+        sensitivity: std::iter::once(table.printed)
+            .chain(table.alternatives)
+            .collect(),
         cost_of_size: cost_of_size(&evaluator, study)?,
         searches,
         figures,
@@ -216,58 +171,17 @@ pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     })
 }
 
-fn designs(rows: &[TableRow]) -> Vec<Design> {
-    rows.iter().map(|row| row.design).collect()
-}
-
-/// Table II measured under `setup`, each row at its printed inclination, or where the table's
-/// file names one that fits, at that.
+/// Table II alone, judged under `setup`: the same verdicts that the whole study gives its rows.
 ///
 /// # Errors
 /// When a design cannot be propagated under the given setup.
-pub fn fitted_table(setup: &Setup) -> Result<Vec<(TableRow, RowValue)>, PaperError> {
-    let rows = table2()?;
-    let design = |row: &TableRow| match row.fitting_inclination_deg {
-        Some(inclination_deg) => fit::inclined(&row.design, inclination_deg),
-        None => Ok(row.design),
-    };
-    let designs: Vec<Design> = rows.iter().map(design).collect::<Result<_, _>>()?;
-    let measured = measure(&Evaluator::new(setup.clone())?, "", designs)?;
-    Ok(rows.into_iter().zip(measured.values).collect())
+pub fn judged_table2(setup: &Setup) -> Result<Vec<JudgedRow>, PaperError> {
+    let evaluator = Evaluator::new(setup.clone())?;
+    Ok(lines::judged_rows(&Measurements::new(&evaluator)?))
 }
 
-fn measure(
-    evaluator: &Evaluator,
-    assumption: &str,
-    designs: Vec<Design>,
-) -> Result<Measured, PaperError> {
-    let value = |design: &Design| Ok::<RowValue, PaperError>(evaluator.evaluate(design)?.into());
-    Ok(Measured {
-        assumption: assumption.to_owned(),
-        values: designs.par_iter().map(value).collect::<Result<_, _>>()?,
-    })
-}
-
-/// The inclination that fits each row, where the printed one does not give its N̄.
-fn fitted_rows(setup: &Setup, rows: &[TableRow]) -> Result<Vec<Option<f64>>, PaperError> {
-    let sky = Evaluator::new(fit::sky(setup))?;
-    let fit = |row: &TableRow| {
-        let printed = sky.evaluate(&row.design)?.mean_visible;
-        if (printed - row.mean_visible).abs() <= lines::VISIBLE_TOLERANCE {
-            return Ok(None);
-        }
-        fit::fitting_inclination(&sky, row)
-    };
-    rows.par_iter().map(fit).collect()
-}
-
-fn row_results(
-    rows: &[TableRow],
-    printed: &Measured,
-    fitted: &[Option<f64>],
-    at_fitting: &Measured,
-) -> Vec<RowResult> {
-    let ours = printed.values.iter().zip(&at_fitting.values);
+fn row_results(table: &Measurements) -> Vec<RowResult> {
+    let ours = table.printed.values.iter().zip(&table.at_fitting.values);
     let row = |((row, fit), (as_printed, at_fitting)): (
         (&TableRow, &Option<f64>),
         (&RowValue, &RowValue),
@@ -283,7 +197,13 @@ fn row_results(
             at_fitting: *at_fitting,
         }
     };
-    rows.iter().zip(fitted).zip(ours).map(row).collect()
+    table
+        .rows
+        .iter()
+        .zip(&table.fitted)
+        .zip(ours)
+        .map(row)
+        .collect()
 }
 
 fn cost_of_size(evaluator: &Evaluator, study: &PaperStudy) -> Result<CostOfSize, PaperError> {

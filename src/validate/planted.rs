@@ -29,8 +29,8 @@ fn failures(parts: Parts) -> Vec<String> {
     findings.append(against_geodesics(&subject).unwrap());
     findings.append(against_integration(&subject).unwrap());
     findings.append(against_closed_forms(&subject).unwrap());
-    let failed = findings.checks.into_iter().filter(|check| !check.passed);
-    failed.map(|check| check.name).collect()
+    let failed = findings.failures();
+    failed.map(|check| check.name.clone()).collect()
 }
 
 /// All failures are of these kinds, and each of these checks fails.

@@ -3,6 +3,7 @@
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};
 use crate::ground::{Grid, PointWeights};
+use crate::orbit::Model;
 use crate::time::TimeGrid;
 
 /// Twelve points on WGS 84 with BeiDou-3, at 10°.
@@ -18,4 +19,13 @@ pub(super) fn setup(grid: TimeGrid) -> Setup {
 
 pub(super) fn evaluator(grid: TimeGrid) -> Evaluator {
     Evaluator::new(setup(grid)).unwrap()
+}
+
+/// The same with the design propagated by a model.
+pub(super) fn evaluator_of(model: Model, grid: TimeGrid) -> Evaluator {
+    Evaluator::new(Setup {
+        model,
+        ..setup(grid)
+    })
+    .unwrap()
 }

@@ -210,7 +210,14 @@ fn the_paper_is_repeated_into_a_directory() {
     assert_eq!(one.status, 0, "{}", one.stderr);
     let value: Value = serde_json::from_str(&one.stdout).unwrap();
     assert_eq!(value["rows"].as_array().unwrap().len(), 11);
-    let verdicts = ["met", "met under another assumption", "not met"];
+    let verdicts = [
+        "met",
+        "met-under-assumption",
+        "fitted",
+        "input",
+        "not-met",
+        "unconfirmed",
+    ];
     for line in value["lines"].as_array().unwrap() {
         assert!(
             verdicts.contains(&line["verdict"].as_str().unwrap()),

@@ -65,7 +65,9 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
             }
         }
     }
-    let result = ValidateResult::new(&design, args.against.clone(), findings, study.stamp()?);
+    let model = evaluator.setup().model;
+    let against = args.against.clone();
+    let result = ValidateResult::new(&design, model, against, findings, study.stamp()?);
     if let Some(directory) = &out {
         write_reports(directory, &result)?;
     }

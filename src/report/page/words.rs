@@ -2,12 +2,14 @@
 
 use super::Page;
 use crate::earth;
+use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::run::{FrontMember, Hypervolume, Run, VERSION};
-use crate::scenario::{Algorithm, Keyword, Quantity, Region, Scenario};
+use crate::scenario::{Algorithm, Quantity, Region, Scenario};
 use crate::time::leap_seconds_note;
 use crate::units::round_decimal;
+use crate::validate::Tally;
 
 /// The beginning of the page.
 pub(super) struct PageSummary {
@@ -277,21 +279,12 @@ fn row(place: usize, member: &FrontMember) -> MemberRow {
 /// The verdict of the validation.
 pub(super) fn validated(run: &Run) -> Option<String> {
     let validation = run.validation.as_ref()?;
-    let gated = validation
-        .findings
-        .checks
-        .iter()
-        .filter(|check| check.gate.is_some());
-    let (gated, failed) = gated.fold((0, 0), |(n, f), check| {
-        (n + 1, f + usize::from(!check.passed))
-    });
-    Some(match failed {
-        0 => format!("{}: all {gated} gates passed.", validation.design.notation),
-        _ => format!(
-            "{}: {failed} of {gated} gates failed.",
-            validation.design.notation
-        ),
-    })
+    Some(format!(
+        "{}, model {}: {}.",
+        validation.design.notation,
+        validation.model,
+        Tally::of(&validation.findings.checks)
+    ))
 }
 
 /// The checks of the validation.
@@ -302,16 +295,8 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
         .flat_map(|validation| &validation.findings.checks);
     let row = checks.map(|check| CheckRow {
         name: check.name.clone(),
-        verdict: match (check.gate, check.passed) {
-            (None, _) => "info",
-            (Some(_), true) => "pass",
-            (Some(_), false) => "FAIL",
-        },
-        value: if check.value.is_finite() {
-            digits(check.value)
-        } else {
-            "none".to_owned()
-        },
+        verdict: check.outcome().keyword(),
+        value: digits(check.value),
         gate: check.gate.map_or_else(String::new, digits),
         unit: check.unit.clone(),
         reason: check.reason.clone(),

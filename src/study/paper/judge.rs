@@ -6,13 +6,30 @@ use serde::{Serialize, Serializer};
 keywords! {
     /// Verdict on a statement.
     Verdict {
-        /// It holds under the assumptions of the scenario.
+        /// It holds under the assumptions of the scenario, none of which was found from it.
         Met = "met",
-        /// It holds with one assumption changed.
-        MetOtherwise = "met under another assumption",
-        /// It holds under none that was tried.
-        NotMet = "not met",
+        /// It holds with one assumption changed, which was not found from it.
+        MetUnderAssumption = "met-under-assumption",
+        /// It holds, but it was used to find an assumption under which it does: no evidence.
+        Fitted = "fitted",
+        /// It is a parameter that was copied from the paper: no evidence either.
+        Input = "input",
+        /// It holds under no assumption that was tried.
+        NotMet = "not-met",
+        /// Nothing could be computed to hold it against.
+        Unconfirmed = "unconfirmed",
     }
+}
+
+/// How the study came by what a statement is judged with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Provenance {
+    /// Copied from the paper.
+    Input,
+    /// Assumptions were fitted to the quantity, or to what it follows from.
+    Fitted,
+    /// Computed, without a look at the paper's number.
+    Computed,
 }
 
 impl Serialize for Verdict {
@@ -76,11 +93,12 @@ pub(super) struct OtherAssumption<'a> {
     pub(super) found: Option<f64>,
 }
 
-/// Judges a statement: met if it holds as the scenario stands; else met under another assumption if
-/// it holds under any of `others`, of which the one with the smallest difference is named (the
-/// first of equals); else not met.
+/// Judges a statement. It holds if it does as the scenario stands, else under any of `others`, of
+/// which the one with the smallest difference is named (the first of equals). What holds is met,
+/// unless its provenance makes it no evidence; what has no number at all is unconfirmed.
 pub(super) fn judge(
     [place, statement, unit]: [&str; 3],
+    provenance: Provenance,
     expected: Expected,
     ours: Option<f64>,
     others: &[OtherAssumption<'_>],
@@ -91,12 +109,22 @@ pub(super) fn judge(
         // All values past the bound count equally.
         _ => 0.0,
     };
-    let holds = others.iter().filter(|other| right(other.found));
-    let nearest = holds.min_by(|a, b| away(a).total_cmp(&away(b)));
-    let (verdict, there) = match (right(ours), nearest) {
-        (true, _) => (Verdict::Met, None),
-        (false, Some(other)) => (Verdict::MetOtherwise, Some(other)),
-        (false, None) => (Verdict::NotMet, None),
+    let there = if right(ours) {
+        None
+    } else {
+        let holds = others.iter().filter(|other| right(other.found));
+        holds.min_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    let is_number = |found: Option<f64>| found.is_some_and(f64::is_finite);
+    let verdict = match (right(ours), there, provenance) {
+        (false, None, _) if !is_number(ours) && !others.iter().any(|o| is_number(o.found)) => {
+            Verdict::Unconfirmed
+        }
+        (false, None, _) => Verdict::NotMet,
+        (_, _, Provenance::Input) => Verdict::Input,
+        (_, _, Provenance::Fitted) => Verdict::Fitted,
+        (true, _, Provenance::Computed) => Verdict::Met,
+        (false, Some(_), Provenance::Computed) => Verdict::MetUnderAssumption,
     };
     Statement {
         place: place.to_owned(),
@@ -119,25 +147,55 @@ mod tests {
         tolerance: 0.1,
     };
 
-    fn judged(expected: Expected, ours: Option<f64>, others: &[Option<f64>]) -> Statement {
+    fn judged_as(
+        provenance: Provenance,
+        expected: Expected,
+        ours: Option<f64>,
+        others: &[Option<f64>],
+    ) -> Statement {
         let names = ["a", "b", "c"];
         let others: Vec<_> = (names.iter().zip(others))
             .map(|(assumption, &found)| OtherAssumption { assumption, found })
             .collect();
-        judge(["", "", ""], expected, ours, &others)
+        judge(["", "", ""], provenance, expected, ours, &others)
+    }
+
+    fn judged(expected: Expected, ours: Option<f64>, others: &[Option<f64>]) -> Statement {
+        judged_as(Provenance::Computed, expected, ours, others)
     }
 
     #[test]
     fn verdicts_follow_the_numbers() {
         assert_eq!(judged(ABOUT_TWO, Some(2.05), &[]).verdict, Verdict::Met);
         let line = judged(ABOUT_TWO, Some(2.2), &[None, Some(2.09), Some(2.01)]);
-        assert_eq!(line.verdict, Verdict::MetOtherwise);
+        assert_eq!(line.verdict, Verdict::MetUnderAssumption);
         assert_eq!(
             (line.assumption.as_deref(), line.ours_there),
             (Some("c"), Some(2.01))
         );
         let line = judged(ABOUT_TWO, None, &[Some(2.2), Some(f64::NAN)]);
         assert_eq!((line.verdict, line.assumption), (Verdict::NotMet, None));
+    }
+
+    /// What was copied or fitted is told from what was computed, and from what does not hold.
+    #[test]
+    fn verdicts_follow_the_provenance() {
+        let verdict = |provenance, ours, others: &[Option<f64>]| {
+            judged_as(provenance, ABOUT_TWO, ours, others).verdict
+        };
+        for (provenance, verdict_if_it_holds) in [
+            (Provenance::Input, Verdict::Input),
+            (Provenance::Fitted, Verdict::Fitted),
+            (Provenance::Computed, Verdict::Met),
+        ] {
+            assert_eq!(verdict(provenance, Some(2.05), &[]), verdict_if_it_holds);
+            assert_eq!(verdict(provenance, Some(2.2), &[]), Verdict::NotMet);
+            assert_eq!(verdict(provenance, None, &[None]), Verdict::Unconfirmed);
+        }
+        let elsewhere = verdict(Provenance::Fitted, Some(2.2), &[Some(2.0)]);
+        assert_eq!(elsewhere, Verdict::Fitted);
+        let nowhere = verdict(Provenance::Computed, Some(f64::NAN), &[]);
+        assert_eq!(nowhere, Verdict::Unconfirmed);
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! The statements of the paper, one by one.
 
-use super::judge::{OtherAssumption, judge};
+use super::judge::{OtherAssumption, Provenance, judge};
+use super::measured::Measurements;
 use super::searches::{PROPOSED, SATELLITES, SINGLE};
 use super::table::{PERCENTAGES, Printable, TABLE1};
 use super::{
-    Curve, Expected, FoundSet, MaskFit, Measured, PaperError, RowValue, Scheme, Statement, TableRow,
+    Curve, Expected, FoundSet, MaskFit, PaperError, RowValue, Scheme, Statement, TableRow,
 };
 use crate::constellation::gnss::GnssSatellite;
 use crate::earth::RADIUS_KM;
@@ -43,19 +44,14 @@ const TABLE1_TOLERANCE: f64 = 0.5;
 /// What the lines are judged by.
 pub(super) struct Evidence<'a> {
     pub(super) setup: &'a Setup,
-    pub(super) rows: &'a [TableRow],
+    pub(super) table: &'a Measurements,
     pub(super) mask_fit: &'a MaskFit,
-    pub(super) printed: &'a Measured,
-    /// Inclination that fits each row, where the printed one does not, degrees.
-    pub(super) fitted: &'a [Option<f64>],
-    pub(super) at_fitting: &'a Measured,
-    pub(super) alternatives: &'a [Measured],
     pub(super) searches: &'a [FoundSet],
     /// Figure 3 as printed, and at the inclinations that fit.
     pub(super) curves: [&'a [Curve]; 2],
 }
 
-impl Evidence<'_> {
+impl Measurements {
     fn index(&self, name: &str) -> Result<usize, PaperError> {
         let found = self.rows.iter().position(|row| row.name() == name);
         found.ok_or_else(|| PaperError::NoRow(name.to_owned()))
@@ -65,31 +61,42 @@ impl Evidence<'_> {
     fn judge(
         &self,
         texts: [&str; 3],
+        provenance: Provenance,
         expected: Expected,
         of: impl Fn(&[RowValue]) -> Option<f64>,
     ) -> Statement {
-        self.judge_fitted(texts, expected, &self.at_fitting.assumption, of)
+        let fitting = OtherAssumption {
+            assumption: &self.at_fitting.assumption,
+            found: of(&self.at_fitting.values),
+        };
+        self.judge_fitted(texts, provenance, expected, fitting, of)
     }
 
-    /// The same, with other words for the inclinations that fit.
-    fn judge_fitted(
-        &self,
+    /// The same, with the inclinations that fit in other words, or without them.
+    fn judge_fitted<'a>(
+        &'a self,
         texts: [&str; 3],
+        provenance: Provenance,
         expected: Expected,
-        fitting: &str,
+        fitting: impl Into<Option<OtherAssumption<'a>>>,
         of: impl Fn(&[RowValue]) -> Option<f64>,
     ) -> Statement {
-        let mut others = vec![OtherAssumption {
-            assumption: fitting,
-            found: of(&self.at_fitting.values),
-        }];
+        let mut others: Vec<OtherAssumption<'_>> = fitting.into().into_iter().collect();
         others.extend(self.alternatives.iter().map(|measured| OtherAssumption {
             assumption: &measured.assumption,
             found: of(&measured.values),
         }));
-        judge(texts, expected, of(&self.printed.values), &others)
+        judge(
+            texts,
+            provenance,
+            expected,
+            of(&self.printed.values),
+            &others,
+        )
     }
+}
 
+impl Evidence<'_> {
     fn set(&self, name: &str) -> Option<&FoundSet> {
         self.searches.iter().find(|set| set.name == name)
     }
@@ -99,8 +106,10 @@ impl Evidence<'_> {
 pub(super) fn lines(evidence: &Evidence<'_>) -> Result<Vec<Statement>, PaperError> {
     let mut lines = table1(evidence);
     lines.extend(mask(evidence));
-    lines.extend(table2(evidence));
-    lines.extend(whole_table2(evidence));
+    for row in judged_rows(evidence.table) {
+        lines.extend([row.mean_visible, row.mean_pdop]);
+    }
+    lines.extend(whole_table2(evidence.table));
     lines.extend(pareto(evidence));
     lines.extend(percentages(evidence)?);
     lines.extend(figure2(evidence));
@@ -138,7 +147,8 @@ fn table1(evidence: &Evidence<'_>) -> Vec<Statement> {
             let tolerance = TABLE1_TOLERANCE;
             let expected = Expected::Value { value, tolerance };
             let statement = format!("{kind} {what}");
-            lines.push(judge(["Table I", &statement, unit], expected, ours, &[]));
+            let texts = ["Table I", statement.as_str(), unit];
+            lines.push(judge(texts, Provenance::Input, expected, ours, &[]));
         }
     }
     lines
@@ -152,7 +162,7 @@ fn mask(evidence: &Evidence<'_>) -> Option<Statement> {
     };
     let ours = Some(evidence.setup.mask.degrees());
     let texts = ["Table II", "mask that its visibility implies", "deg"];
-    Some(judge(texts, expected, ours, &[]))
+    Some(judge(texts, Provenance::Fitted, expected, ours, &[]))
 }
 
 /// What a row prints: N̄ and mean PDOP.
@@ -168,42 +178,79 @@ fn printed(row: &TableRow) -> [Expected; 2] {
     [visible, pdop]
 }
 
-fn table2(evidence: &Evidence<'_>) -> Vec<Statement> {
-    let mut lines = Vec::new();
-    for (n, (row, fitted)) in evidence.rows.iter().zip(evidence.fitted).enumerate() {
-        let [visible, pdop] = printed(row);
+/// A row of Table II and the verdicts on its two numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JudgedRow {
+    /// The row.
+    pub row: TableRow,
+    /// N̄: the mask of the built-in scenario was found from this column, and so were the
+    /// inclinations that fit.
+    pub mean_visible: Statement,
+    /// Mean PDOP, which nothing was fitted to.
+    pub mean_pdop: Statement,
+}
+
+/// Every row of Table II, judged.
+pub(super) fn judged_rows(table: &Measurements) -> Vec<JudgedRow> {
+    let judged = |(n, (row, fitted)): (usize, (&TableRow, &Option<f64>))| {
         let name = row.name();
-        let inclination_deg = fitted.unwrap_or(row.design.inclination_deg());
-        let fitting = format!("inclination {inclination_deg}°");
-        let judge = |what: &str, expected, of: fn(&RowValue) -> Option<f64>| {
+        let fitting = fitted.map(|inclination_deg| format!("inclination {inclination_deg}°"));
+        let judge = |what: &str, provenance, expected, of: fn(&RowValue) -> Option<f64>| {
             let statement = format!("{name} {what}");
-            let texts = ["Table II", &statement, ""];
-            evidence.judge_fitted(texts, expected, &fitting, |values| of(&values[n]))
+            let texts = ["Table II", statement.as_str(), ""];
+            let fitting = fitting.as_deref().map(|assumption| OtherAssumption {
+                assumption,
+                found: of(&table.at_fitting.values[n]),
+            });
+            table.judge_fitted(
+                texts,
+                provenance,
+                expected,
+                fitting,
+                |values| of(&values[n]),
+            )
         };
-        lines.push(judge("visible", visible, |value| Some(value.mean_visible)));
-        lines.push(judge("mean PDOP", pdop, |value| value.mean_pdop));
-    }
-    lines
+        let [visible, pdop] = printed(row);
+        JudgedRow {
+            row: *row,
+            mean_visible: judge("visible", Provenance::Fitted, visible, |value| {
+                Some(value.mean_visible)
+            }),
+            mean_pdop: judge("mean PDOP", Provenance::Computed, pdop, |value| {
+                value.mean_pdop
+            }),
+        }
+    };
+    let rows = table.rows.iter().zip(&table.fitted);
+    rows.enumerate().map(judged).collect()
 }
 
 /// Whether one assumption gives a whole column: an assumption that suits one row may fail another.
-fn whole_table2(evidence: &Evidence<'_>) -> [Statement; 2] {
+fn whole_table2(table: &Measurements) -> [Statement; 2] {
     let share = |values: &[RowValue], which: usize| {
-        let rows = evidence.rows.iter().zip(values);
+        let rows = table.rows.iter().zip(values);
         percent(rows.map(|(row, value)| {
             let found = [Some(value.mean_visible), value.mean_pdop][which];
             found.is_some_and(|found| printed(row)[which].holds(found))
         }))
     };
-    let line = |statement, which| {
+    let line = |statement, provenance, which| {
         let texts = ["Table II", statement, "%"];
-        evidence.judge(texts, Expected::AtLeast(100.0), |values| {
+        table.judge(texts, provenance, Expected::AtLeast(100.0), |values| {
             share(values, which)
         })
     };
     [
-        line("rows whose visible satellites come out together", 0),
-        line("rows whose mean PDOP comes out together", 1),
+        line(
+            "rows whose visible satellites come out together",
+            Provenance::Fitted,
+            0,
+        ),
+        line(
+            "rows whose mean PDOP comes out together",
+            Provenance::Computed,
+            1,
+        ),
     ]
 }
 
@@ -214,24 +261,30 @@ fn pareto(evidence: &Evidence<'_>) -> Option<Statement> {
         .collect();
     let own = |row: &TableRow| row.scheme == Scheme::Proposed;
     let share = |values: &[RowValue]| {
-        let points = evidence.rows.iter().zip(values).filter(|(row, _)| own(row));
+        let points = evidence
+            .table
+            .rows
+            .iter()
+            .zip(values)
+            .filter(|(row, _)| own(row));
         let points = points.filter_map(|(_, value)| Some([value.j_pos?, value.j_cost?]));
         percent(points.map(|point| !front.iter().any(|member| dominates(member, &point))))
     };
     // The front is that of the scenario: only there can its members be compared.
-    let ours = share(&evidence.printed.values);
-    let there = share(&evidence.at_fitting.values);
+    let ours = share(&evidence.table.printed.values);
+    let there = share(&evidence.table.at_fitting.values);
     let texts = [
         "Table II",
         "proposed rows that no design found here dominates",
         "%",
     ];
     let others = [OtherAssumption {
-        assumption: &evidence.at_fitting.assumption,
+        assumption: &evidence.table.at_fitting.assumption,
         found: there,
     }];
     Some(judge(
         texts,
+        Provenance::Computed,
         Expected::AtLeast(CONSISTENTLY_PERCENT),
         ours,
         &others,
@@ -241,10 +294,12 @@ fn pareto(evidence: &Evidence<'_>) -> Option<Statement> {
 fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Statement>, PaperError> {
     let mut lines = Vec::new();
     for stated in PERCENTAGES {
-        let (row, with) = (evidence.index(stated.row)?, evidence.index(stated.with)?);
-        let tolerance = match stated.of {
-            Printable::MeanVisible => PERCENTAGE_TOLERANCE,
-            Printable::MeanPdop => PDOP_PERCENTAGE_TOLERANCE,
+        let table = evidence.table;
+        let (row, with) = (table.index(stated.row)?, table.index(stated.with)?);
+        // A ratio of two N̄ follows from what the mask and the inclinations were fitted to.
+        let (tolerance, provenance) = match stated.of {
+            Printable::MeanVisible => (PERCENTAGE_TOLERANCE, Provenance::Fitted),
+            Printable::MeanPdop => (PDOP_PERCENTAGE_TOLERANCE, Provenance::Computed),
         };
         let value = |value: &RowValue| match stated.of {
             Printable::MeanVisible => Some(value.mean_visible),
@@ -258,13 +313,14 @@ fn percentages(evidence: &Evidence<'_>) -> Result<Vec<Statement>, PaperError> {
             value: stated.percent,
             tolerance,
         };
-        lines.push(evidence.judge(["abstract, IV-B", stated.name, "%"], expected, change));
+        let texts = ["abstract, IV-B", stated.name, "%"];
+        lines.push(table.judge(texts, provenance, expected, change));
     }
     Ok(lines)
 }
 
 fn figure2(evidence: &Evidence<'_>) -> Vec<Statement> {
-    let own = |n: usize| evidence.rows[n].scheme == Scheme::Proposed;
+    let own = |n: usize| evidence.table.rows[n].scheme == Scheme::Proposed;
     let points = |values: &[RowValue]| -> Option<Vec<[f64; 2]>> {
         (values.iter())
             .map(|value| Some([value.j_pos?, value.j_cost?]))
@@ -290,21 +346,23 @@ fn figure2(evidence: &Evidence<'_>) -> Vec<Statement> {
         Some(highest(true)? - highest(false)?)
     };
     vec![
-        evidence.judge(
+        evidence.table.judge(
             [
                 "Fig. 2(a)",
                 "baseline rows that a proposed row dominates",
                 "%",
             ],
+            Provenance::Computed,
             Expected::AtLeast(CONSISTENTLY_PERCENT),
             dominated,
         ),
-        evidence.judge(
+        evidence.table.judge(
             [
                 "Fig. 2(b)",
                 "lead of the proposed rows in fuzzy membership",
                 "",
             ],
+            Provenance::Computed,
             Expected::MoreThan(0.0),
             lead,
         ),
@@ -315,10 +373,11 @@ fn figure3(evidence: &Evidence<'_>) -> Vec<Statement> {
     let consistently = Expected::AtLeast(CONSISTENTLY_PERCENT);
     let line = |texts, of: fn(&[Curve]) -> Option<f64>| {
         let others = [OtherAssumption {
-            assumption: &evidence.at_fitting.assumption,
+            assumption: &evidence.table.at_fitting.assumption,
             found: of(evidence.curves[1]),
         }];
-        judge(texts, consistently, of(evidence.curves[0]), &others)
+        let found = of(evidence.curves[0]);
+        judge(texts, Provenance::Computed, consistently, found, &others)
     };
     vec![
         line(
@@ -362,11 +421,12 @@ fn lowest_max(curves: &[Curve]) -> Option<f64> {
 fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
     let pick = |name: &str| Some(*evidence.set(name)?.pick()?);
     let (proposed, single, fewest) = (pick(PROPOSED), pick(SINGLE), pick(SATELLITES));
-    let Some(reference) = evidence.rows.iter().position(|row| row.name() == REFERENCE) else {
+    let table = evidence.table;
+    let Ok(reference) = table.index(REFERENCE) else {
         return Vec::new();
     };
-    let printed = evidence.printed.values[reference];
-    let row_size = evidence.rows[reference].design.satellite_count() as f64;
+    let printed = table.printed.values[reference];
+    let row_size = table.rows[reference].design.satellite_count() as f64;
     let change = |to: Option<f64>, from: Option<f64>| Some(100.0 * (to? / from? - 1.0));
     let ours = |of: fn(&super::FoundMember) -> Option<f64>, other: &Option<super::FoundMember>| {
         (other.as_ref().and_then(of), proposed.as_ref().and_then(of))
@@ -381,6 +441,7 @@ fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
             }];
             judge(
                 ["Fig. 4", statement, "%"],
+                Provenance::Computed,
                 expected,
                 signed(change(other, own)),
                 &others,

@@ -7,8 +7,9 @@
 
 use crate::evaluate::Setup;
 use crate::ground::Site;
-use crate::orbit::MeanElements;
 use crate::orbit::kepler::eccentric_anomaly;
+use crate::orbit::osculating::{frozen_eccentricity, radius_shift_km};
+use crate::orbit::{MeanElements, Model};
 use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use std::f64::consts::{PI, TAU};
 
@@ -91,16 +92,36 @@ fn rows(setup: &Setup) -> Vec<(Site, f64)> {
 ///
 /// The discrepancy of one satellite over D days is that of a sequence of N = 15 D revolutions:
 /// each passes the site at some longitude, and the count is off by at most one pass in N. Satellites
-/// that are spread evenly share it.
+/// that are spread evenly over all places interleave their passes, and are off by one pass in all of theirs.
 fn finite_span(subject: &Subject<'_>) -> f64 {
     let revolutions = subject.days() * 86_400.0 * subject.orbit().kepler_mean_motion_rad_s() / TAU;
     let satellites = subject.design.satellite_count() as f64;
-    2.0 / revolutions.max(1.0) / satellites.sqrt()
+    2.0 / revolutions.max(1.0) / satellites
+}
+
+/// The mean figure of the orbit that the model propagates: the ellipse of the elements, with the radius
+/// that short-period terms shift, and with the frozen eccentricity that J3 forces on SGP4's circles.
+fn figure(subject: &Subject<'_>) -> MeanElements {
+    let orbit = subject.orbit();
+    let shifted = MeanElements {
+        semi_major_axis_km: orbit.semi_major_axis_km + radius_shift_km(&orbit),
+        ..orbit
+    };
+    match subject.model() {
+        Model::TwoBody | Model::J2 => orbit,
+        Model::J2Osculating => shifted,
+        Model::Sgp4 if orbit.eccentricity > 0.0 => shifted,
+        Model::Sgp4 => MeanElements {
+            eccentricity: frozen_eccentricity(&orbit),
+            arg_perigee_rad: 0.25 * TAU,
+            ..shifted
+        },
+    }
 }
 
 pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
     let setup = subject.setup();
-    let orbit = subject.orbit();
+    let orbit = figure(subject);
     let rows = rows(setup);
     // A list of points has as many latitudes as points; some tell enough.
     if rows.len() > 200 {
@@ -113,10 +134,8 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         .sum::<f64>()
         / weight;
     let expected = share * subject.design.satellite_count() as f64;
-    let found = subject
-        .evaluator
-        .evaluate_ephemeris(&subject.propagate_mean_j2()?)?
-        .mean_visible;
+    let propagated = subject.propagate_model()?;
+    let found = (subject.parts.evaluate)(subject.evaluator, &propagated)?.mean_visible;
     Ok(vec![
         Check::new(
             "analytic/mean-visible/quadrature",

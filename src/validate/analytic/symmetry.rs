@@ -1,11 +1,12 @@
 //! What does not change when a pattern is turned, satellites are reordered, or the mask is raised.
 
 use crate::constellation::{Pattern, Satellite};
-use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::ephemeris::{Ephemeris, EphemerisError, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::frames::EarthRotation;
-use crate::orbit::MeanElements;
+use crate::orbit::{MeanElements, Model};
 use crate::units::wrap_two_pi;
+use crate::validate::sgp4::causes::is_deep_space;
 use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::Vector3;
@@ -19,7 +20,7 @@ const MOST_MATCHED: usize = 2_000;
 
 pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
     let mut checks = Vec::new();
-    checks.extend(turn_check(subject));
+    checks.extend(turn_check(subject)?);
     checks.push(order_check(subject)?);
     checks.extend(mask_check(subject)?);
     Ok(checks)
@@ -39,56 +40,72 @@ fn symmetry(subject: &Subject<'_>) -> (f64, f64) {
 }
 
 /// Largest distance of a turned place from the nearest place of the pattern, km.
-fn turn_check(subject: &Subject<'_>) -> Option<Check> {
+fn turn_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let satellites = subject.satellites();
     if satellites.len() > MOST_MATCHED {
-        return None;
+        return Ok(None);
     }
     let (turn, shift) = symmetry(subject);
-    let theory = subject.parts.mean_j2;
     let at_s = 0.37 * subject.days() * crate::units::SECONDS_PER_DAY;
-    let position = |elements: &MeanElements| theory(elements).state(at_s).position_km.km();
-    let places: Vec<Vector3<f64>> = satellites.iter().map(|s| position(&s.elements)).collect();
+    let position = |satellite: &Satellite, elements: &MeanElements| {
+        let state = subject.model_propagator(elements);
+        match state.and_then(|propagator| propagator.state_at(at_s)) {
+            Ok(state) => Ok(state.position_km.km()),
+            Err(source) => Err(EphemerisError {
+                name: object_name(satellite.slot),
+                source,
+            }),
+        }
+    };
+    let places: Vec<Vector3<f64>> = satellites
+        .iter()
+        .map(|satellite| position(satellite, &satellite.elements))
+        .collect::<Result<_, _>>()?;
     let rotation = EarthRotation::from_gmst(turn);
     let is_last = |satellite: &Satellite| satellite.slot.plane + 1 == subject.design.planes();
-    let moved = satellites
-        .iter()
-        .filter(|satellite| subject.design.pattern() != Pattern::Star || !is_last(satellite))
-        .map(|satellite| {
-            let elements = &satellite.elements;
-            let shifted = MeanElements {
-                mean_anomaly_rad: wrap_two_pi(elements.mean_anomaly_rad + shift),
-                ..*elements
-            };
-            // Turned forwards about the pole by the angle.
-            rotation.direction_to_teme(position(&shifted))
-        });
-    let nearest = |place: Vector3<f64>| {
+    let mut largest = 0.0_f64;
+    for satellite in &satellites {
+        if subject.design.pattern() == Pattern::Star && is_last(satellite) {
+            continue;
+        }
+        let elements = &satellite.elements;
+        let shifted = MeanElements {
+            mean_anomaly_rad: wrap_two_pi(elements.mean_anomaly_rad + shift),
+            ..*elements
+        };
+        // Turned forwards about the pole by the angle.
+        let place: Vector3<f64> = rotation.direction_to_teme(position(satellite, &shifted)?);
         let distances = places.iter().map(|other| (other - place).norm());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    Some(Check::new(
+        largest = largest.max(distances.fold(f64::INFINITY, f64::min));
+    }
+    // Sun and Moon, which SGP4 has far out, do not turn with the pattern.
+    let orbit = subject.orbit();
+    let turns = subject.model() != Model::Sgp4 || !is_deep_space(&orbit);
+    // Angles of whole turns are rounded, some times over.
+    let angle_rad = TAU + orbit.kepler_mean_motion_rad_s() * at_s;
+    let gate_km = 16.0 * f64::EPSILON * angle_rad * orbit.semi_major_axis_km;
+    Ok(Some(Check::new(
         "analytic/symmetry/turn",
         CheckedQuantity {
             quantity: "distance of the pattern, turned and shifted, from itself",
             unit: "km",
             statistic: "max",
         },
-        moved.map(nearest).fold(0.0, f64::max),
-        Some(1e-6),
+        largest,
+        turns.then_some(gate_km),
         "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
-    ))
+    )))
 }
 
 fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
-    let forwards = subject
-        .evaluator
-        .evaluate_ephemeris(&subject.propagate_mean_j2()?)?;
-    let mut satellites = subject.propagate_mean_j2()?.into_satellites();
+    let evaluate = subject.parts.evaluate;
+    let forwards = evaluate(subject.evaluator, &subject.propagate_model()?)?;
+    let mut satellites = subject.propagate_model()?.into_satellites();
     satellites.reverse();
-    let backwards = subject
-        .evaluator
-        .evaluate_ephemeris(&Ephemeris::new(subject.grid(), satellites))?;
+    let backwards = evaluate(
+        subject.evaluator,
+        &Ephemeris::new(subject.grid(), satellites),
+    )?;
     let pairs = [
         (Some(forwards.mean_visible), Some(backwards.mean_visible)),
         (forwards.mean_pdop, backwards.mean_pdop),
@@ -115,15 +132,14 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
 /// The largest gain of mean visible satellites when the mask is raised, which must not be.
 fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let setup = subject.setup();
-    let propagated = subject.propagate_mean_j2()?;
+    let propagated = subject.propagate_model()?;
     let mut before = None;
     let mut largest_gain = f64::NEG_INFINITY;
     let raised = MASK_STEPS_DEG.map(|step| setup.mask.degrees() + step);
     let masks = std::iter::once(setup.mask.degrees()).chain(raised);
     for mask in masks.filter_map(|degrees| Mask::from_degrees(degrees).ok()) {
-        let visible = Evaluator::new(without_gnss(setup, mask))?
-            .evaluate_ephemeris(&propagated)?
-            .mean_visible;
+        let evaluator = Evaluator::new(without_gnss(setup, mask))?;
+        let visible = (subject.parts.evaluate)(&evaluator, &propagated)?.mean_visible;
         if let Some(before) = before {
             largest_gain = largest_gain.max(visible - before);
         }

@@ -36,7 +36,7 @@ fn setup_with(setup: &Setup, frame: Frames) -> Setup {
 
 /// The change of the metrics by the surface, against WGS 84.
 pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
-    let propagated = subject.propagate_mean_j2()?;
+    let propagated = subject.propagate_model()?;
     let metrics = |frame: Frames| {
         let evaluator = Evaluator::new(setup_with(subject.setup(), frame))?;
         evaluator.evaluate_ephemeris(&propagated)

@@ -83,11 +83,7 @@ fn validate_look_angles_and_footprints() {
     let evaluator = testing::evaluator(hour());
     let subject = Subject::new("delta:55:30/6/1@925".parse().unwrap(), &evaluator);
     let findings = against_geodesics(&subject).unwrap();
-    let failed: Vec<_> = findings
-        .checks
-        .iter()
-        .filter(|check| !check.passed)
-        .collect();
+    let failed: Vec<_> = findings.failures().collect();
     assert!(failed.is_empty(), "{failed:#?}");
     // The limits of the curvature method show: at geosynchronous height it is off by more than its gate.
     let high = findings

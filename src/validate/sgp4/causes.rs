@@ -1,5 +1,6 @@
 //! Closed forms of what mean J2 leaves out, from which the gates are made.
 
+use crate::constellation::Satellite;
 use crate::earth::{J2, RADIUS_KM};
 use crate::orbit::sgp4::ZonalHarmonics;
 use crate::orbit::{MeanElements, osculating};
@@ -13,9 +14,44 @@ const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
 /// -J3/J2 of WGS-72, the constants of SGP4 (Vallado et al., AIAA 2006-6753, table 1).
 const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
-/// Share by which a closed form at e = 0 and first order may be exceeded: terms of order e and
+/// Factor by which a closed form at e = 0 and first order may be exceeded: terms of order e and
 /// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
+
+/// Secular rates that SGP4 has beyond first-order J2, rad/s (Hoots and Roehrich, *Spacetrack Report*
+/// 3 (1980), section 6: the terms of the node, of ω and of M in J2² and J4).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct SecularExcess {
+    /// Of the node.
+    node: f64,
+    /// Of the argument of latitude, ω + M.
+    latitude: f64,
+}
+
+impl SecularExcess {
+    /// The terms of J2² and those of J4.
+    fn of(orbit: &MeanElements) -> [Self; 2] {
+        let eta2 = 1.0 - orbit.eccentricity * orbit.eccentricity;
+        let ratio2 = (RADIUS_KM / (orbit.semi_major_axis_km * eta2)).powi(2);
+        let n = orbit.kepler_mean_motion_rad_s();
+        let c = orbit.inclination_rad.cos();
+        let (c2, c4) = (c.powi(2), c.powi(4));
+        let second = 0.75 * J2 * J2 * ratio2 * ratio2 * n;
+        let perigee = 7.0 - 114.0 * c2 + 395.0 * c4;
+        let anomaly = eta2.sqrt() * (13.0 - 78.0 * c2 + 137.0 * c4);
+        let fourth = -0.46875 * ::sgp4::WGS72.j4 * ratio2 * ratio2 * n;
+        [
+            Self {
+                node: 0.5 * second * (4.0 - 19.0 * c2) * c,
+                latitude: 0.0625 * second * (perigee + anomaly),
+            },
+            Self {
+                node: 2.0 * fourth * (3.0 - 7.0 * c2) * c,
+                latitude: fourth * (3.0 - 36.0 * c2 + 49.0 * c4),
+            },
+        ]
+    }
+}
 
 /// Closed forms of the causes, for one orbit; all at e = 0 ([M-40](crate::models#m-40) to
 /// [M-45](crate::models#m-45)).
@@ -27,8 +63,14 @@ pub(in crate::validate) struct Causes {
     pub(in crate::validate) short_period_km: [f64; 3],
     /// Amplitude of the radial effect of the frozen eccentricity, km; in-track is twice that.
     pub(in crate::validate) frozen_km: f64,
-    /// Bound on the in-track rate of second-order terms, km/day.
+    /// Bound on the in-track rate of second-order terms, km/day: a scale for what is of higher order.
     pub(in crate::validate) second_order_km_per_day: f64,
+    /// Second-order secular rates of J2, and first-order ones of J4.
+    secular: [SecularExcess; 2],
+    /// Semi-major axis, km.
+    a_km: f64,
+    /// Sine and cosine of the inclination.
+    inclination: [f64; 2],
     /// In-track rate of sqrt(μ/a³) in the Kozai slot, km/day.
     pub(in crate::validate) kepler_slot_km_per_day: f64,
     /// Share of first-order sizes that the eccentricity adds.
@@ -72,7 +114,28 @@ impl Causes {
                 * (1.0 - 1.5 * sin_i * sin_i)
                 * km_per_day,
             eccentric_factor: 1.0 + 8.0 * e,
+            secular: SecularExcess::of(orbit),
+            a_km: a,
+            inclination: [sin_i, cos_i],
         }
+    }
+
+    /// Rates of the node and of ω + M beyond first-order J2, rad/s.
+    pub(in crate::validate) fn excess_rad_s(&self, zonals: ZonalHarmonics) -> [f64; 2] {
+        let [second, fourth] = self.secular;
+        match zonals {
+            ZonalHarmonics::J2Only => [second.node, second.latitude],
+            ZonalHarmonics::Full | ZonalHarmonics::WithoutJ3 => {
+                [second.node + fourth.node, second.latitude + fourth.latitude]
+            }
+        }
+    }
+
+    /// The same as drifts in-track, and cross-track at the largest, km/day.
+    pub(in crate::validate) fn drifts_km_per_day(&self, zonals: ZonalHarmonics) -> [f64; 2] {
+        let [node, latitude] = self.excess_rad_s(zonals);
+        let [sin_i, cos_i] = self.inclination;
+        [latitude + cos_i * node, sin_i * node].map(|rate| rate * self.a_km * SECONDS_PER_DAY)
     }
 
     /// Bounds on the RMS of mean J2 against SGP4 over a span, km.
@@ -82,15 +145,18 @@ impl Causes {
             ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
         };
         let periodic = self.short_period_km.map(|amplitude| amplitude / SQRT_2);
-        let drift = self.second_order_km_per_day * days / 3_f64.sqrt();
         let first_order = [
             self.radius_shift_km.hypot(periodic[0]).hypot(frozen),
             periodic[1].hypot(2.0 * frozen),
             periodic[2],
         ];
-        let second_order = [0.05 * drift, drift, drift];
+        let [along, across] = self.drifts_km_per_day(zonals);
+        // RMS of a ramp; across the track it swings with the argument of latitude.
+        let ramp_days = days / 3_f64.sqrt();
+        let second_order = [0.0, along * ramp_days, across * ramp_days / SQRT_2];
         std::array::from_fn(|axis| {
-            FIRST_ORDER_MARGIN * self.eccentric_factor * first_order[axis].hypot(second_order[axis])
+            let size = first_order[axis].hypot(second_order[axis]);
+            FIRST_ORDER_MARGIN * self.eccentric_factor * size + HIGHER_ORDER_KM
         })
     }
 
@@ -101,22 +167,58 @@ impl Causes {
         days: f64,
     ) -> [f64; 3] {
         let mut without = *self;
-        // SGP4 floors the eccentricity at 1e-6, 7 m; first-order terms are good to J2 of their size.
-        without.radius_shift_km = 0.02;
+        // First-order terms are good to J2 of their size, with coefficients of a few.
+        without.radius_shift_km = 3e-3 * self.radius_shift_km;
         without.short_period_km = self
             .short_period_km
-            .map(|amplitude| 0.01 * amplitude + 0.02);
+            .map(|amplitude| 0.01 * amplitude + HIGHER_ORDER_KM);
         without.rms_gates_km(zonals, days)
     }
 
-    /// Bound on the slope of the mean in-track difference, km/day: second order, and for spans so
-    /// short that the mean over the constellation is not yet a mean over the orbit, the periodic
-    /// part.
-    pub(in crate::validate) fn growth_gate_km_per_day(&self, days: f64) -> f64 {
-        let periodic = self.short_period_km[1] + 2.0 * self.frozen_km;
-        let leftover = 0.02 * periodic / days.min(1.0);
-        self.eccentric_factor * (self.second_order_km_per_day + leftover)
+    /// Bound on the slope of the mean in-track difference less its closed form, km/day: what is of
+    /// third order in J2, the eccentricity, the constants (5 m/day), and what the periodic terms
+    /// leave of a slope, as shares of amplitudes that go once and twice around.
+    pub(in crate::validate) fn growth_gate_km_per_day(
+        &self,
+        zonals: ZonalHarmonics,
+        leftover_per_day: [f64; 2],
+    ) -> f64 {
+        let once = match zonals {
+            ZonalHarmonics::Full => 2.0 * self.frozen_km,
+            ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
+        };
+        let twice = self.short_period_km[1];
+        let periodic = once * leftover_per_day[0] + twice * leftover_per_day[1];
+        let higher = (self.eccentric_factor - 1.0 + 0.02) * self.second_order_km_per_day;
+        higher + self.eccentric_factor * periodic + 0.01
     }
+}
+
+/// Sizes of second-order periodic terms, of SGP4's floor of the eccentricity (1e-6, 15 m in-track) and
+/// of the difference of the gravity constants (5 m), km.
+const HIGHER_ORDER_KM: f64 = 0.01;
+
+/// The slope that a difference which goes once or twice around leaves in the mean over a
+/// constellation, per day and unit of amplitude.
+///
+/// The least-squares slope of a sine of amplitude A over N of its periods in D days is at most
+/// 12 A/(2π N D), and never above the steepest of the sine, 2π N A/D; satellites that are spread evenly
+/// cancel each other.
+pub(in crate::validate) fn leftover_per_day(satellites: &[Satellite], days: f64) -> [f64; 2] {
+    let Some(first) = satellites.first() else {
+        return [0.0; 2];
+    };
+    let turns = days * SECONDS_PER_DAY * first.elements.kepler_mean_motion_rad_s() / TAU;
+    [1.0, 2.0].map(|harmonic| {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for satellite in satellites {
+            let (s, c) = (harmonic * satellite.elements.mean_argument_of_latitude_rad()).sin_cos();
+            (sine, cosine) = (sine + s, cosine + c);
+        }
+        let left = f64::hypot(sine, cosine) / satellites.len() as f64;
+        let radians = TAU * harmonic * turns;
+        left * (12.0 / radians).min(radians) / days
+    })
 }
 
 /// Whether SGP4 uses its deep-space theory for an orbit.

@@ -57,8 +57,9 @@ pub(super) fn checks(
         return Ok(Vec::new());
     };
     let frozen = scale.causes.frozen_km / orbit.semi_major_axis_km;
-    // SGP4's floor of the eccentricity, and terms of order J2 of the forced one.
-    let floor = 3e-6;
+    // SGP4's floor of the eccentricity, 1e-6, in either propagation, and terms of order J2 of the forced
+    // one with coefficients of a few.
+    let gate = 0.005 * frozen + 2e-6;
     Ok(vec![
         Check::new(
             "sgp4/frozen-eccentricity",
@@ -79,8 +80,8 @@ pub(super) fn checks(
                 statistic: "fit",
             },
             forced[1] - frozen,
-            Some(0.02 * frozen + floor),
-            "first order in J3/J2; SGP4 floors the eccentricity at 1e-6",
+            Some(gate),
+            "first order in J3/J2, up to some J2 of its size; SGP4 floors the eccentricity at 1e-6",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
@@ -90,7 +91,7 @@ pub(super) fn checks(
                 statistic: "fit",
             },
             left[0].hypot(left[1]),
-            Some(0.1 * frozen + floor),
+            Some(gate),
             "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",
         ),
     ])
@@ -105,7 +106,8 @@ fn eccentricities(
 ) -> Result<Option<[[f64; 2]; 2]>, PropagationError> {
     let slot = subject.parts.slot;
     let propagate = |elements: &MeanElements, zonals| {
-        Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, zonals)
+        let theory = subject.sgp4_theory(zonals);
+        Sgp4Orbit::from_mean_elements_with(elements, subject.epoch(), slot, theory)
     };
     let plain = propagate(orbit, ZonalHarmonics::J2Only)?;
     let perigee_rad = subject.parts.cancelling_perigee_deg.to_radians();

@@ -19,9 +19,6 @@ const ALTITUDES_KM: [f64; 3] = [400.0, 925.0, 1500.0];
 /// Time between samples, s: eleven or so in a revolution.
 const STEP_S: f64 = 480.0;
 
-/// Cases of the budget that are swept: those of J2 against SGP4.
-const CASES: usize = 5;
-
 /// A case of the budget in a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepLine {
@@ -40,7 +37,7 @@ pub struct SweepCell {
     pub inclination_deg: f64,
     /// Altitude, km.
     pub altitude_km: f64,
-    /// The cases of J2 against SGP4.
+    /// The cases of the model of the study and of J2 against SGP4.
     pub budget: Vec<SweepLine>,
     /// The largest share of a gate that a number of this cell takes.
     pub share_of_gate: f64,
@@ -71,7 +68,8 @@ pub(super) fn over_inclination_and_altitude(
             shares.extend(found);
         }
     }
-    let name = "sgp4/mean-j2/sweep";
+    let name = format!("sgp4/{}/sweep", subject.model_label());
+    let name = name.as_str();
     let worst = shares.iter().map(|one| one.value).fold(0.0, f64::max);
     findings.checks.push(Check::new(
         name,
@@ -97,7 +95,7 @@ fn cell(subject: &Subject<'_>) -> Result<(SweepCell, Vec<Share>), ValidateError>
     let span_s = subject.days() * SECONDS_PER_DAY;
     let step_s = STEP_S.max(subject.grid().step_s()).min(span_s);
     let grid = TimeGrid::new(subject.epoch(), span_s, step_s)?;
-    let budget = Propagations::new(subject, grid)?.budget(CASES)?;
+    let budget = Propagations::new(subject, grid)?.budget()?;
     let at = (
         subject.design.inclination_deg(),
         subject.design.altitude_km(),

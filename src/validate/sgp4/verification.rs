@@ -97,11 +97,7 @@ fn row(number: u64, fields: [&str; 4]) -> Option<PublishedState> {
 }
 
 /// Distances of the crate's states from a list, km; a state that the crate refuses is infinitely far.
-fn distances(expected: &[PublishedState], mode: Sgp4Mode) -> Vec<Residual<(u64, f64)>> {
-    let theory = Sgp4Theory {
-        mode,
-        ..Sgp4Theory::STANDARD
-    };
+fn distances(expected: &[PublishedState], theory: Sgp4Theory) -> Vec<Residual<(u64, f64)>> {
     let sets = sets();
     let distance = |case: &PublishedState| -> Result<f64, PropagationError> {
         let Some(set) = sets.get(&case.number) else {
@@ -121,15 +117,15 @@ fn distances(expected: &[PublishedState], mode: Sgp4Mode) -> Vec<Residual<(u64, 
         .collect()
 }
 
-/// The `sgp4` crate against the published states, and against the C++ code in both modes.
+/// SGP4 by the `sgp4` crate against the published states, and against the C++ code in both modes.
 #[must_use]
-pub fn against_the_verification_set() -> Findings {
+pub fn against_the_verification_set(sgp4: Sgp4Theory) -> Findings {
     let mut findings = Findings::default();
-    let rounding = "the same theory in the same constants: rounding of doubles over years of mean anomaly, and the printed 1e-8 km";
+    let rounding = "the same theory in the same constants: after 3.5 years a geosynchronous mean anomaly of 8e3 rad is rounded to 1e-12 rad, 4e-8 km, some times over; and the printed 1e-8 km";
     let sidereal = "the crate's improved mode has a later expression of sidereal time, which resonant and deep-space terms see";
     for (name, expected, mode, gate, reason) in [
         ("published", published(), Sgp4Mode::Improved, 1e-5, sidereal),
-        ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 1e-6, rounding),
+        ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 4e-7, rounding),
         (
             "improved",
             of_mode("improved"),
@@ -140,7 +136,7 @@ pub fn against_the_verification_set() -> Findings {
     ] {
         let name = format!("sgp4/verification/{name}");
         let name = name.as_str();
-        let residuals = distances(&expected, mode);
+        let residuals = distances(&expected, Sgp4Theory { mode, ..sgp4 });
         let max = residuals.iter().map(|one| one.value).fold(0.0, f64::max);
         findings.checks.push(Check::new(
             name,

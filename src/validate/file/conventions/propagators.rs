@@ -1,7 +1,6 @@
 //! Propagators that are more than other elements: mislabelled states, another pole, an integration.
 
 use super::{OtherPropagator, propagate_each};
-use crate::earth::J2;
 use crate::frames::{
     Eme2000, Frame, FromTeme, Position, State, Teme, from_teme, teme_to_eme2000, to_teme,
 };
@@ -10,7 +9,7 @@ use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::time::Epoch;
 use crate::units::wrap_two_pi;
 use crate::validate::Subject;
-use crate::validate::numerical::integrator::Zonals;
+use crate::validate::numerical::integrator::ZonalField;
 
 /// A propagation whose states are seen through another clock or frame.
 struct Mislabelled<P> {
@@ -133,10 +132,11 @@ pub(super) fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, OtherPr
     let grid = subject.grid();
     let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
     let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
-    let zonals = Zonals { j2: J2, j3: 0.0 };
     propagate_each(&subject.design.satellites(), |elements| {
         let start = SecularOrbit::two_body(elements).state(0.0);
-        let states = zonals.integrate(&start, &times).ok()?;
+        let states = ZonalField::J2
+            .integrate(ZonalField::acceleration, &start, &times)
+            .ok()?;
         Some(Integrated { states, step_s })
     })
 }
