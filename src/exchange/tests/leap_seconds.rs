@@ -226,7 +226,7 @@ fn sets_hold_at_their_instant_inside_a_leap_second() {
     let grid = grid("2016-12-31T23:59:60.75Z");
     let check = |product, choices, at: Epoch| {
         for bytes in exported(grid, product, choices).values() {
-            let Fleet::Sets(sets) = Fleet::read(bytes.as_slice(), None, None).unwrap().1 else {
+            let Fleet::Sets(sets) = Fleet::read(bytes.as_slice(), None, None).unwrap().fleet else {
                 panic!("{product}");
             };
             for set in sets {
@@ -250,7 +250,7 @@ fn sets_hold_at_their_instant_inside_a_leap_second() {
 fn apart_km(files: &Files, grid: TimeGrid) -> f64 {
     let mut fleets = files.iter().map(|(path, bytes)| {
         let name = path.rsplit('/').next();
-        Fleet::read(bytes.as_slice(), None, name).unwrap().1
+        Fleet::read(bytes.as_slice(), None, name).unwrap().fleet
     });
     let mut fleet = fleets.next().unwrap();
     fleets.for_each(|next| fleet.append(next).unwrap());
@@ -286,7 +286,7 @@ fn validate_an_sp3_of_gps_time_over_a_leap_second() {
         ));
     }
     lines.push("EOF\n".to_owned());
-    let (_, fleet) = Fleet::read(lines.join("\n").as_bytes(), None, None).unwrap();
+    let fleet = Fleet::read(lines.join("\n").as_bytes(), None, None).unwrap().fleet;
     let grid = TimeGrid::new(
         Epoch::from_utc("2016-12-31T23:59:43Z".parse().unwrap()),
         60.0,
