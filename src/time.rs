@@ -168,6 +168,19 @@ impl Epoch {
         leap::tai_minus_utc_s(self.utc().date_naive()) as f64
     }
 
+    /// Seconds from this instant to the beginning of each leap second within the next `duration_s`.
+    #[must_use]
+    pub fn leap_seconds_within(self, duration_s: f64) -> Vec<f64> {
+        let last = self.plus_seconds(duration_s).utc().date_naive();
+        let days = self.utc().date_naive().iter_days();
+        days.take_while(|day| *day <= last)
+            .filter(|day| ends_with_leap_second(*day))
+            .filter_map(|day| day.and_hms_opt(23, 59, 59))
+            .map(|before| Self::from_utc(before.and_utc()).seconds_since(self) + 1.0)
+            .filter(|start_s| (0.0..duration_s).contains(start_s))
+            .collect()
+    }
+
     /// Greenwich mean sidereal time (IAU 1982) `elapsed_s` after this epoch, in [0, 2π) radians.
     ///
     /// UT1 is UTC at this epoch and advances with SI seconds, over a leap second too: within a
@@ -344,6 +357,19 @@ mod tests {
         // An ordinary day has 86 400 s.
         let ordinary = epoch("2016-12-30T23:59:59Z").plus_seconds(1.0);
         assert_eq!(ordinary, epoch("2016-12-31T00:00:00Z"));
+    }
+
+    #[test]
+    fn leap_seconds_of_a_span_are_found() {
+        let year_s = 366.0 * SECONDS_PER_DAY;
+        let start = epoch("2016-12-31T22:00:00Z");
+        assert_eq!(start.leap_seconds_within(year_s), [7_200.0]);
+        assert_eq!(start.leap_seconds_within(7_200.0), [0.0; 0]);
+        let inside = epoch("2016-12-31T23:59:60.5Z");
+        assert_eq!(inside.leap_seconds_within(year_s), [0.0; 0]);
+        let both = epoch("2015-06-30T23:59:59Z").leap_seconds_within(2.0 * year_s);
+        // 550 days from one to the other, and the first leap second itself.
+        assert_eq!(both, [1.0, 550.0 * SECONDS_PER_DAY + 2.0]);
     }
 
     /// TAI and TT go on evenly over a leap second, and so does the Earth.

@@ -108,6 +108,8 @@ fn validate_labels_of_products_over_a_leap_second() {
     let stk = text(&files, "stk/NW-P01-S01.e");
     assert!(stk.contains("ScenarioEpoch 31 Dec 2016 23:59:00.000000000\n"));
     assert_eq!(first_words(stk), ["0", "30", "60", "90", "120", "150"]);
+    let connect = text(&files, "stk-scenario/connect.txt");
+    assert!(connect.contains("\"31 Dec 2016 23:59:00.000000\" \"1 Jan 2017 00:01:59.000000\"\n"));
     let files = exported(grid, Product::Czml, Choices::default());
     assert!(text(&files, "scene.czml").contains("2016-12-31T23:59:00Z/2017-01-01T00:01:59Z"));
 }
@@ -217,6 +219,11 @@ fn readers_count_seconds_over_a_leap_second() {
         check(Product::Stk, Choices::default(), 1e-8);
         check(Product::Sp3, Choices::default(), 1e-6);
         check(Product::Czml, Choices::default(), 2.2e-3);
+        let mut elements = exported(grid, Product::Csv, Choices::default());
+        let states = elements.remove("states.csv").unwrap();
+        for table in [elements, Files::from([("states.csv".to_owned(), states)])] {
+            assert!(apart_km(&table, grid) < 1e-8, "{epoch}");
+        }
     }
 }
 

@@ -249,6 +249,8 @@ const Globe = (() => {
   const caption = document.getElementById("sky-caption");
   const clock = document.getElementById("clock");
   const epoch = Date.parse(world.epoch);
+  // The clock of a browser has no leap seconds: it stands still during one.
+  const ofBrowser = (elapsed) => elapsed - world.leap_seconds_s.filter((start) => start <= elapsed).length;
 
   function tell(seen) {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
@@ -256,7 +258,7 @@ const Globe = (() => {
     const text = "Sky at " + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
       + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°.";
     if (caption.textContent !== text) caption.textContent = text;
-    const now = new Date(epoch + 1000 * time.elapsed).toISOString().slice(0, 16).replace("T", " ") + " UTC";
+    const now = new Date(epoch + 1000 * ofBrowser(time.elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
     if (clock.textContent !== now) clock.textContent = now;
   }
 

@@ -12,6 +12,7 @@ use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_labe
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity, Region, Scenario};
+use chrono::{DateTime, Timelike, Utc};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -135,7 +136,10 @@ struct RegionData {
 #[derive(Serialize)]
 struct World {
     coast: Vec<Vec<i32>>,
+    /// UTC; inside a leap second the second before, which a browser can read.
     epoch: String,
+    /// Seconds from the epoch to the beginning of each leap second of the span.
+    leap_seconds_s: Vec<f64>,
     gmst_deg: f64,
     gmst_rate_deg_s: f64,
     radius_km: f64,
@@ -433,12 +437,24 @@ impl RegionData {
     }
 }
 
+/// A UTC date and time with seconds up to 59, since browsers read no 60: chrono keeps a leap second as a
+/// nanosecond count past 1e9.
+fn readable_by_browsers(utc: DateTime<Utc>) -> String {
+    let within_second = utc.with_nanosecond(utc.nanosecond() % 1_000_000_000);
+    let format = "%Y-%m-%dT%H:%M:%S%.3fZ";
+    within_second.unwrap_or(utc).format(format).to_string()
+}
+
 impl World {
     fn new(setup: &Setup, scenario: &Scenario) -> Self {
+        let grid = setup.grid;
         Self {
             coast: hundredths(coastline::world()),
-            epoch: scenario.time.epoch.format("%Y-%m-%dT%H:%M:%SZ").to_string(),
-            gmst_deg: setup.grid.epoch().gmst_rad(0.0).to_degrees(),
+            epoch: readable_by_browsers(scenario.time.epoch),
+            leap_seconds_s: grid
+                .epoch()
+                .leap_seconds_within(grid.step_s() * grid.len() as f64),
+            gmst_deg: grid.epoch().gmst_rad(0.0).to_degrees(),
             gmst_rate_deg_s: GMST_RATE_RAD_S.to_degrees(),
             radius_km: RADIUS_KM,
             flattening: scenario.earth.surface.flattening(),
