@@ -18,8 +18,8 @@ const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 /// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
-/// Secular rates that SGP4 has beyond first-order J2, rad/s (Hoots and Roehrich, *Spacetrack Report*
-/// 3 (1980), section 6: the terms of the node, of ω and of M in J2² and J4).
+/// Secular rates that SGP4 has beyond first-order J2, rad/s ([M-46](crate::models#m-46)): Hoots and
+/// Roehrich, *Spacetrack Report* 3 (1980), section 6, the terms of the node, of ω and of M in J2² and J4.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct SecularExcess {
     /// Of the node.

@@ -3,7 +3,7 @@ use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
-use crate::validate::{Outcome, testing};
+use crate::validate::testing;
 
 const INCLINATIONS_DEG: [f64; 6] = [40.0, 50.0, 55.0, 60.0, 86.4, 90.0];
 
