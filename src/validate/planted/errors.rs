@@ -10,8 +10,8 @@ use crate::frames::LocalFrame;
 use crate::orbit::j2::{SecularOrbit, SecularRates};
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
 use crate::orbit::{MeanElements, Model};
-use crate::validate::Parts;
 use crate::validate::numerical::integrator::ZonalField;
+use crate::validate::{Parts, Target};
 use crate::visibility::Mask;
 
 /// What an error of the secular theory touches.
@@ -30,12 +30,16 @@ const SECULAR: &[&str] = &[
 /// What an error of the element sets or of the judge touches.
 const SGP4: &[&str] = &["sgp4/"];
 
+/// The targets that propagate the design by the model of the study.
+const MODEL: &[Target] = &[Target::Sgp4, Target::Numerical, Target::Analytic];
+
 /// The table.
 pub(super) const PLANTED: &[PlantedError] = &[
     PlantedError {
         error: "two bodies, where J2 acts",
         model: Model::TwoBody,
         parts: Parts::default,
+        reaches: MODEL,
         fails: &[
             "sgp4/two-body/sgp4/in-track-rms",
             "sgp4/two-body/sgp4/cross-track-rms",
@@ -60,6 +64,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/mean-j2/sgp4/in-track-rms",
             "sgp4/mean-j2/sgp4/in-track-growth",
@@ -82,6 +87,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             slot: MeanMotionSlot::Kepler,
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &[
             "sgp4/mean-j2/sgp4/in-track-growth",
             "sgp4/rates/argument-of-latitude/sgp4",
@@ -100,6 +106,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/sgp4/sgp4/in-track-rms",
             "sgp4/sgp4/sgp4/in-track-growth",
@@ -114,6 +121,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             propagator: |_, elements, _| Ok(Box::new(SecularOrbit::j2(elements))),
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/j2-osculating/sgp4-no-j3j4/radial-rms",
             "sgp4/j2-osculating/sgp4-no-j3j4/cross-track-rms",
@@ -138,6 +146,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/mean-j2/sgp4/in-track-growth",
             "sgp4/mean-j2/sgp4/cross-track-rms",
@@ -163,6 +172,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/mean-j2/sgp4/cross-track-rms",
             "sgp4/mean-j2/sgp4-no-j3j4/cross-track-rms",
@@ -185,12 +195,12 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &[
             "sgp4/mean-j2/sgp4/radial-rms",
             "sgp4/mean-j2/sgp4-no-j3j4/radial-rms",
             "sgp4/mean-j2/sgp4/in-track-growth",
             "sgp4/radius-shift/closed-form",
-            "analytic/mean-visible",
         ],
         related: SECULAR,
     },
@@ -208,6 +218,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &["sgp4/rates/node/sgp4", "sgp4/rates/node/mean-j2"],
         related: &["sgp4/", "numerical/", "analytic/"],
     },
@@ -225,6 +236,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: MODEL,
         fails: &["analytic/symmetry/turn"],
         related: &["analytic/symmetry/turn", "analytic/mean-visible"],
     },
@@ -238,6 +250,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &[
             "sgp4/verification/published",
             "sgp4/verification/afspc",
@@ -255,6 +268,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &[
             "sgp4/verification/afspc",
             "sgp4/frozen-eccentricity/closed-form",
@@ -269,6 +283,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             cancelling_perigee_deg: 90.0,
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &["sgp4/frozen-eccentricity/cancelled"],
         related: &["sgp4/frozen-eccentricity/cancelled"],
     },
@@ -283,6 +298,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &["sgp4/tle/digits"],
         related: &["sgp4/tle/digits"],
     },
@@ -293,6 +309,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             carried: |elements, _| *elements,
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4],
         fails: &["sgp4/tle/epoch"],
         related: &["sgp4/tle/epoch"],
     },
@@ -303,6 +320,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             gmst_rad: |epoch, elapsed_s| epoch.gmst_rad(elapsed_s + 1.0),
             ..Parts::default()
         },
+        reaches: &[Target::Sgp4, Target::Analytic],
         fails: &["sgp4/sidereal-time"],
         related: &["sgp4/sidereal-time", "analytic/geometry"],
     },
@@ -321,6 +339,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::GeographicLib],
         fails: &[
             "geographiclib/elevation",
             "geographiclib/curvature-method/low",
@@ -336,6 +355,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::GeographicLib],
         fails: &["geographiclib/elevation"],
         related: &["geographiclib/"],
     },
@@ -350,6 +370,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::GeographicLib],
         fails: &[
             "geographiclib/elevation",
             "geographiclib/footprint/geodesic-polygon",
@@ -370,6 +391,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::GeographicLib],
         fails: &["geographiclib/azimuth"],
         related: &["geographiclib/azimuth"],
     },
@@ -387,6 +409,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Numerical],
         fails: &[
             "numerical/conserved/energy",
             "numerical/1-days/in-track-drift",
@@ -405,6 +428,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Numerical],
         fails: &[
             "numerical/conserved/polar-momentum",
             "numerical/1-days/in-track-after-fit",
@@ -425,6 +449,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Numerical],
         fails: &["numerical/j3/frozen-eccentricity"],
         related: &["numerical/j3/frozen-eccentricity"],
     },
@@ -438,6 +463,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Analytic],
         fails: &["analytic/geometry/mean-pdop", "analytic/geometry/max-pdop"],
         related: &["analytic/geometry/mean-pdop", "analytic/geometry/max-pdop"],
     },
@@ -456,6 +482,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Analytic],
         fails: &[
             "analytic/mask",
             "analytic/mean-visible",
@@ -475,6 +502,7 @@ pub(super) const PLANTED: &[PlantedError] = &[
             },
             ..Parts::default()
         },
+        reaches: &[Target::Analytic],
         fails: &["analytic/symmetry/order"],
         related: &["analytic/"],
     },
