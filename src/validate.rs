@@ -4,6 +4,7 @@
 //! the parts that propagate and see it. A target (a standard) takes a subject and gives [`Findings`].
 
 pub mod analytic;
+mod check;
 mod decisions;
 pub mod distribution;
 mod eccentricity;
@@ -11,162 +12,28 @@ pub mod file;
 pub mod geodesic;
 pub mod numerical;
 mod paper;
+mod parts;
 pub mod residuals;
 pub mod sgp4;
 
+pub use check::{Check, CheckedQuantity, Outcome, Tally};
+pub use parts::{ModelPropagator, Parts};
+
 use self::sgp4::SweepCell;
 use crate::constellation::{Design, Satellite, Slot};
-use crate::dop::Clocks;
-use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
-use crate::evaluate::{Evaluator, Metrics, Setup};
-use crate::formats::tle::{self, TleFieldError};
-use crate::frames::{EarthFixed, LocalFrame, Position};
+use crate::evaluate::{Evaluator, Setup};
+use crate::formats::tle::TleFieldError;
 use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Theory};
 use crate::orbit::{MeanElements, Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use distribution::Distribution;
-use numerical::integrator::{Acceleration, ZonalField};
 use residuals::BudgetLine;
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
-use std::fmt;
 use thiserror::Error;
-
-/// One number of a validation, with the bound that it must keep.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Check {
-    /// Unique name, `target/case/quantity`.
-    pub name: String,
-    /// What was measured.
-    pub quantity: String,
-    /// Its unit.
-    pub unit: String,
-    /// Which statistic of it.
-    pub statistic: String,
-    /// The value; JSON has `null` for one that is not finite.
-    #[serde(deserialize_with = "null_is_nan")]
-    pub value: f64,
-    /// The bound on its size; `None` when it is reported only.
-    pub gate: Option<f64>,
-    /// Whether the value meets its gate; `None` when there is no gate.
-    pub passed: Option<bool>,
-    /// The physical reason of the bound, or what the number shows.
-    pub reason: String,
-}
-
-keywords! {
-    /// What a report says of a [`Check`].
-    Outcome {
-        /// The value meets its gate.
-        Pass = "pass",
-        /// The value misses its gate.
-        Fail = "FAIL",
-        /// There is no gate: the value is for information.
-        Info = "info",
-    }
-}
-
-/// What the number of a [`Check`] is.
-#[derive(Debug, Clone, Copy)]
-pub struct CheckedQuantity<'a> {
-    /// What was measured.
-    pub quantity: &'a str,
-    /// Its unit.
-    pub unit: &'a str,
-    /// Which statistic of it.
-    pub statistic: &'a str,
-}
-
-impl Check {
-    /// A check whose gate bounds |value|; a value that is not a number never passes a gate.
-    #[must_use]
-    pub fn new(
-        name: &str,
-        measure: CheckedQuantity<'_>,
-        value: f64,
-        gate: Option<f64>,
-        reason: &str,
-    ) -> Self {
-        Self {
-            name: name.to_owned(),
-            quantity: measure.quantity.to_owned(),
-            unit: measure.unit.to_owned(),
-            statistic: measure.statistic.to_owned(),
-            value,
-            gate,
-            passed: gate.map(|gate| value.abs() <= gate),
-            reason: reason.to_owned(),
-        }
-    }
-
-    /// What a report says of it.
-    #[must_use]
-    pub fn outcome(&self) -> Outcome {
-        match (self.gate, self.passed) {
-            (None, _) => Outcome::Info,
-            (Some(_), Some(true)) => Outcome::Pass,
-            // A gate without a verdict is not met.
-            (Some(_), _) => Outcome::Fail,
-        }
-    }
-}
-
-/// How many checks have each outcome.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Tally {
-    /// Gates that are met.
-    pub passed: usize,
-    /// Gates that are missed.
-    pub failed: usize,
-    /// Checks without a gate.
-    pub info: usize,
-}
-
-impl Tally {
-    /// The outcomes of `checks`.
-    #[must_use]
-    pub fn of(checks: &[Check]) -> Self {
-        let mut tally = Self::default();
-        for check in checks {
-            match check.outcome() {
-                Outcome::Pass => tally.passed += 1,
-                Outcome::Fail => tally.failed += 1,
-                Outcome::Info => tally.info += 1,
-            }
-        }
-        tally
-    }
-
-    /// Checks with a gate.
-    #[must_use]
-    pub fn gates(self) -> usize {
-        self.passed + self.failed
-    }
-}
-
-impl fmt::Display for Tally {
-    /// The verdict of a report in one line.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match (self.failed, self.gates()) {
-            (_, 0) => write!(formatter, "no gates")?,
-            (0, gates) => write!(formatter, "passed: all {gates} gates")?,
-            (failed, gates) => write!(formatter, "FAILED: {failed} of {gates} gates")?,
-        }
-        match self.info {
-            0 => Ok(()),
-            1 => write!(formatter, "; 1 check has no gate (info)"),
-            info => write!(formatter, "; {info} checks have no gate (info)"),
-        }
-    }
-}
-
-fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
-}
 
 /// A crate that validations lean on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -248,67 +115,6 @@ impl Findings {
         self.sweep.append(&mut other.sweep);
         self.distributions.append(&mut other.distributions);
         self.files.append(&mut other.files);
-    }
-}
-
-/// Makes the propagator of a model for mean elements at an epoch.
-pub type ModelPropagator =
-    fn(Model, &MeanElements, Epoch) -> Result<Box<dyn Propagator>, PropagationError>;
-
-/// The parts of the library that are held against standards, and of the instruments that judge them.
-///
-/// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
-#[derive(Debug, Clone, Copy)]
-pub struct Parts {
-    /// Satellites and their slots.
-    pub satellites: fn(&Design) -> Vec<Satellite>,
-    /// The secular J2 theory.
-    pub mean_j2: fn(&MeanElements) -> SecularOrbit,
-    /// The other models that a study can propagate its design with.
-    pub propagator: ModelPropagator,
-    /// What SGP4 is run with, as the judge.
-    pub sgp4: Sgp4Theory,
-    /// The acceleration of a zonal field, km/s², as the judge integrates it.
-    pub acceleration: Acceleration,
-    /// What the mean motion slot of exported element sets holds.
-    pub slot: MeanMotionSlot,
-    /// Mean elements at another instant, s later: how element sets are carried to the epoch that they can
-    /// write.
-    pub carried: fn(&MeanElements, f64) -> MeanElements,
-    /// An element set as a reader of a TLE finds it.
-    pub written: fn(&::sgp4::Elements) -> Result<::sgp4::Elements, TleFieldError>,
-    /// Argument of perigee at which the frozen eccentricity is cancelled in an element set, degrees.
-    pub cancelling_perigee_deg: f64,
-    /// Greenwich mean sidereal time some seconds after an epoch, radians.
-    pub gmst_rad: fn(Epoch, f64) -> f64,
-    /// East, north and up at a latitude and longitude, radians.
-    pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
-    /// The clock states that are solved for, by those that are meant.
-    pub clocks: fn(Clocks) -> Clocks,
-    /// The metrics of an ephemeris.
-    pub evaluate: fn(&Evaluator, &Ephemeris) -> Result<Metrics, EphemerisError>,
-    /// Elevation and azimuth of a position, radians.
-    pub look_angles: fn(&LocalFrame, Position<EarthFixed>) -> (f64, f64),
-}
-
-impl Default for Parts {
-    fn default() -> Self {
-        Self {
-            satellites: Design::satellites,
-            mean_j2: SecularOrbit::j2,
-            propagator: Model::propagator,
-            sgp4: Sgp4Theory::STANDARD,
-            acceleration: ZonalField::acceleration,
-            slot: MeanMotionSlot::Kozai,
-            carried: |elements, later_s| SecularOrbit::j2(elements).elements_at(later_s),
-            written: tle::as_written,
-            cancelling_perigee_deg: 270.0,
-            gmst_rad: Epoch::gmst_rad,
-            local_frame: LocalFrame::new,
-            clocks: |meant| meant,
-            evaluate: Evaluator::evaluate_ephemeris,
-            look_angles: LocalFrame::look_angles,
-        }
     }
 }
 
@@ -511,30 +317,3 @@ pub enum ValidateError {
 mod planted;
 #[cfg(test)]
 mod testing;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn gates_bound_the_size() {
-        let outcome = |value, gate| {
-            Check::new(
-                "a/b",
-                CheckedQuantity {
-                    quantity: "q",
-                    unit: "km",
-                    statistic: "max",
-                },
-                value,
-                gate,
-                "",
-            )
-            .outcome()
-        };
-        assert_eq!(outcome(-1.0, Some(1.0)), Outcome::Pass);
-        assert_eq!(outcome(-1.1, Some(1.0)), Outcome::Fail);
-        assert_eq!(outcome(1e9, None), Outcome::Info);
-        assert_eq!(outcome(f64::NAN, Some(1.0)), Outcome::Fail);
-    }
-}

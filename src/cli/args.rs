@@ -94,6 +94,9 @@ pub(crate) enum Command {
 
     /// Check a design's propagation against independent standards, with gates that have reasons.
     ///
+    /// On trial is the model that the scenario propagates (`propagation.model`): it is the first of each
+    /// case. Checks without a gate are for information. The exit status is 1 if a gate fails.
+    ///
     /// Example: navwalker validate --design star:86.4:66/6/2@780 --against sgp4
     #[command(verbatim_doc_comment)]
     Validate(ValidateArgs),

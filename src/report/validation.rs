@@ -227,36 +227,46 @@ fn verdict(result: &ValidateResult) -> String {
     Tally::of(&result.findings.checks).to_string()
 }
 
+/// The cases of the swept budget that a table shows, after that of the model of the study.
+const SWEPT: [(&str, &str); 2] = [
+    ("mean-j2/sgp4-no-j3j4", "no J3, J4: R"),
+    ("osculating-j2/sgp4-no-j3j4", "osculating: R"),
+];
+
 /// The budget by cause over inclination and altitude.
 fn sweep_table(sweep: &[SweepCell]) -> Table {
     let right = Align::Right;
+    let model = sweep.first().and_then(|cell| cell.budget.first());
+    let of_model = model.map_or_else(String::new, |line| format!("{} R", line.case));
     let mut table = Table::new(&[
         ("i (deg)", right),
         ("h (km)", right),
-        ("mean-j2/sgp4 R", right),
+        (of_model.as_str(), right),
         ("I", right),
         ("C", right),
-        ("no J3, J4: R", right),
+        (SWEPT[0].1, right),
         ("I", right),
         ("C", right),
-        ("osculating: R", right),
+        (SWEPT[1].1, right),
         ("I", right),
         ("C (km rms)", right),
         ("Keplerian mean motion (km/day)", right),
         ("of gate", right),
     ]);
     for cell in sweep {
+        let case = |name: &str| cell.budget.iter().find(|line| line.case == name);
         let mut cells = vec![
             cell.inclination_deg.to_string(),
             cell.altitude_km.to_string(),
         ];
-        for line in cell.budget.iter().take(3) {
-            let ric = &line.rms_km;
-            let rms = [ric.radial, ric.in_track, ric.cross_track];
-            cells.extend(rms.map(|km| format!("{km:.3}")));
+        let shown = [cell.budget.first(), case(SWEPT[0].0), case(SWEPT[1].0)];
+        for line in shown {
+            cells.extend(match line {
+                Some(line) => line.rms_km.axes().map(|km| format!("{km:.3}")),
+                None => [const { String::new() }; 3],
+            });
         }
-        let kepler = cell.budget.iter().find(|line| line.case == "kepler-slot");
-        cells.push(kepler.map_or_else(String::new, |line| {
+        cells.push(case("kepler-slot").map_or_else(String::new, |line| {
             format!("{:.1}", line.growth_km_per_day.in_track)
         }));
         cells.push(format!("{:.2}", cell.share_of_gate));

@@ -36,11 +36,12 @@ const SATELLITES: usize = 8;
 const PER_REVOLUTION: usize = 24;
 
 /// Relative change of a conserved quantity that the integration may make in 30 days: 60 000 steps with
-/// a relative tolerance of 1e-13, which add up at random to 2e-11.
-const CONSERVED: f64 = 5e-11;
+/// a relative tolerance of 1e-13 add up to 6e-9 if all err to one side, and at random to 2e-11; an
+/// eccentric orbit takes longer steps at apogee.
+const CONSERVED: f64 = 1e-10;
 
 /// Share of its size by which the frozen eccentricity vector may move in a week.
-const FROZEN_SHARE: f64 = 0.02;
+const FROZEN_SHARE: f64 = 0.04;
 
 /// Days after which the frozen eccentricity is looked at again.
 const FROZEN_DAYS: f64 = 7.0;
@@ -185,7 +186,7 @@ fn conservation_checks(tracks: &[RevolutionMeans]) -> Vec<Check> {
                 },
                 largest(n),
                 Some(CONSERVED),
-                "a zonal field conserves both: 5e-11 of the energy is 4e-7 km of semi-major axis",
+                "a zonal field conserves both: 1e-10 of the energy is 1e-6 km of semi-major axis",
             )
         })
         .to_vec()
@@ -335,7 +336,7 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
             },
             (first[0] - last[0]).hypot(first[1] - last[1]) / frozen,
             Some(FROZEN_SHARE),
-            "under J2 and J3 the vector circles the frozen one; started there to first order it stays within some J2 of its size over sin i, and away from the critical inclination",
+            "under J2 and J3 the vector circles the frozen one; started there to first order it stays within some percent of its size from 20 deg on, and a tenth of that at 55 deg",
         )
     }))
 }

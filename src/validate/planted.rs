@@ -1,275 +1,121 @@
-//! Each check proves that it can fail: mistakes are put in the place of parts of the library, and
-//! the checks that are made for them, and only related ones, notice.
+//! Each gate proves that it can fail: errors are put in the place of parts of the library, and the
+//! gates that are made for them, and only related ones, notice.
+//!
+//! The table in `errors` is the one of `validation/README.md`, which a test holds against it.
 
-use super::analytic::against_closed_forms;
-use super::geodesic::against_geodesics;
-use super::numerical::against_integration;
-use super::sgp4::against_sgp4;
-use super::{Findings, Parts, Subject, testing};
-use crate::constellation::{Design, DesignParameters, Pattern};
-use crate::dop::Clocks;
-use crate::earth::Surface;
-use crate::frames::LocalFrame;
-use crate::orbit::MeanElements;
-use crate::orbit::j2::{SecularOrbit, SecularRates};
-use crate::orbit::sgp4::MeanMotionSlot;
+mod errors;
+
+use super::{Findings, Parts, Subject, Target, testing};
+use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
+use errors::PLANTED;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 
-/// Everything but files, on a design at 40°, where no mistake hides.
-fn failures(parts: Parts) -> Vec<String> {
-    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-    let evaluator = testing::evaluator(TimeGrid::new(epoch, 86_400.0, 600.0).unwrap());
+/// A planted error.
+struct PlantedError {
+    /// The error, as the table of the documentation names it.
+    error: &'static str,
+    /// The model of the study.
+    model: Model,
+    /// The library with the error in it.
+    parts: fn() -> Parts,
+    /// The targets that use the part.
+    reaches: &'static [Target],
+    /// Gates that fail.
+    fails: &'static [&'static str],
+    /// Parts of the names of all gates that may fail.
+    related: &'static [&'static str],
+}
+
+/// All targets but the paper, which is about other designs.
+const TARGETS: [Target; 4] = [
+    Target::Sgp4,
+    Target::GeographicLib,
+    Target::Numerical,
+    Target::Analytic,
+];
+
+/// What targets say of a design at 40°, where no error hides, at an epoch that a TLE cannot write.
+fn findings(model: Model, parts: Parts, targets: &[Target]) -> Findings {
+    let epoch = Epoch::from_utc("2025-03-20T11:22:33.4444444Z".parse().unwrap());
+    let grid = TimeGrid::new(epoch, 86_400.0, 600.0).unwrap();
+    let evaluator = testing::evaluator_of(model, grid);
     let subject = Subject {
         design: "delta:40:30/6/1@925".parse().unwrap(),
         evaluator: &evaluator,
         parts,
     };
     let mut findings = Findings::default();
-    findings.append(against_sgp4(&subject).unwrap());
-    findings.append(against_geodesics(&subject).unwrap());
-    findings.append(against_integration(&subject).unwrap());
-    findings.append(against_closed_forms(&subject).unwrap());
-    let failed = findings.failures();
-    failed.map(|check| check.name.clone()).collect()
+    for target in targets {
+        findings.append(target.findings(&subject).unwrap());
+    }
+    findings
 }
 
-/// All failures are of these kinds, and each of these checks fails.
-fn assert_fails(parts: Parts, checks: &[&str], kinds: &[&str]) {
-    let failed = failures(parts);
-    for check in checks {
-        assert!(
-            failed.iter().any(|name| name == check),
-            "{check} kept quiet: {failed:?}"
+fn failures(model: Model, parts: Parts, targets: &[Target]) -> BTreeSet<String> {
+    let found = findings(model, parts, targets);
+    found.failures().map(|check| check.name.clone()).collect()
+}
+
+/// Every error fails the gates that the table lists and no unrelated one, and every gate of the default
+/// model is failed by some error.
+#[test]
+fn each_error_fails_its_gates_and_each_gate_can_fail() {
+    let mut missed: BTreeSet<String> = BTreeSet::new();
+    let failed: Vec<BTreeSet<String>> = PLANTED
+        .par_iter()
+        .map(|planted| failures(planted.model, (planted.parts)(), planted.reaches))
+        .collect();
+    let mut complaints = Vec::new();
+    for (planted, failed) in PLANTED.iter().zip(failed) {
+        let quiet = planted.fails.iter().filter(|gate| !failed.contains(**gate));
+        complaints.extend(quiet.map(|gate| format!("{}: {gate} kept quiet", planted.error)));
+        let related = |name: &&String| planted.related.iter().any(|kind| name.contains(kind));
+        let unrelated = failed.iter().filter(|name| !related(name));
+        complaints.extend(unrelated.map(|gate| format!("{}: {gate} cried", planted.error)));
+        missed.extend(failed);
+    }
+    let gates = findings(Model::J2, Parts::default(), &TARGETS).checks;
+    let gates = gates.into_iter().filter(|check| check.gate.is_some());
+    let never = gates.filter(|check| !missed.contains(&check.name));
+    complaints.extend(never.map(|check| format!("{} is failed by no error", check.name)));
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn nothing_fails_without_an_error() {
+    for model in [Model::J2, Model::J2Osculating, Model::Sgp4] {
+        assert_eq!(
+            failures(model, Parts::default(), &TARGETS),
+            BTreeSet::new(),
+            "{model}"
         );
     }
-    for name in &failed {
-        assert!(
-            kinds.iter().any(|kind| name.contains(kind)),
-            "{name} cried: {failed:?}"
-        );
-    }
 }
 
+/// The documentation has the rows of the table, and no others.
 #[test]
-fn nothing_fails_without_a_mistake() {
-    assert_eq!(failures(Parts::default()), Vec::<String>::new());
-}
-
-/// What a mistake of the secular theory touches.
-const SECULAR: [&str; 7] = [
-    "sgp4/mean-j2",
-    "sgp4/rates",
-    "sgp4/kepler-slot",
-    // Far ahead on its circle a satellite is lower, seen from the other.
-    "sgp4/radius-shift",
-    "decisions",
-    "numerical/",
-    "analytic/rates",
-];
-
-#[test]
-fn a_missing_mean_anomaly_rate() {
-    let parts = Parts {
-        mean_j2: |elements| {
-            let rates = SecularRates {
-                mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
-                ..SecularRates::j2(elements)
-            };
-            SecularOrbit::new(elements, rates)
-        },
-        ..Parts::default()
-    };
-    let checks = [
-        "sgp4/mean-j2/sgp4/in-track-growth",
-        "sgp4/rates/argument-of-latitude/mean-j2",
-        "numerical/1-days/in-track-drift",
-        "analytic/rates/argument-of-latitude",
-    ];
-    assert_fails(parts, &checks, &SECULAR);
-}
-
-/// Kepler's mean motion in the element sets that are written: the theory itself is right.
-#[test]
-fn kepler_in_the_mean_motion_slot() {
-    let parts = Parts {
-        slot: MeanMotionSlot::Kepler,
-        ..Parts::default()
-    };
-    let checks = [
-        "sgp4/mean-j2/sgp4/in-track-growth",
-        "sgp4/rates/argument-of-latitude/sgp4",
-    ];
-    // Every comparison in which SGP4 uses that slot.
-    assert_fails(parts, &checks, &["sgp4/"]);
-}
-
-#[test]
-fn the_sign_of_j2() {
-    let parts = Parts {
-        mean_j2: |elements| {
-            let right = SecularRates::j2(elements);
-            let n = elements.kepler_mean_motion_rad_s();
-            let rates = SecularRates {
-                raan_rad_s: -right.raan_rad_s,
-                arg_perigee_rad_s: -right.arg_perigee_rad_s,
-                mean_anomaly_rad_s: 2.0 * n - right.mean_anomaly_rad_s,
-            };
-            SecularOrbit::new(elements, rates)
-        },
-        ..Parts::default()
-    };
-    let checks = [
-        "sgp4/mean-j2/sgp4/in-track-growth",
-        "sgp4/mean-j2/sgp4/cross-track-rms",
-        "sgp4/rates/node/mean-j2",
-        "numerical/1-days/in-track-drift",
-        "analytic/rates/node",
-        "analytic/rates/argument-of-latitude",
-    ];
-    assert_fails(parts, &checks, &SECULAR);
-}
-
-#[test]
-fn the_sign_of_the_node_rate() {
-    let parts = Parts {
-        mean_j2: |elements| {
-            let right = SecularRates::j2(elements);
-            let rates = SecularRates {
-                raan_rad_s: -right.raan_rad_s,
-                ..right
-            };
-            SecularOrbit::new(elements, rates)
-        },
-        ..Parts::default()
-    };
-    let checks = [
-        "sgp4/mean-j2/sgp4/cross-track-rms",
-        "sgp4/rates/node/mean-j2",
-        "analytic/rates/node",
-    ];
-    assert_fails(parts, &checks, &SECULAR);
-}
-
-#[test]
-fn another_reference_radius() {
-    let parts = Parts {
-        mean_j2: |elements| {
-            SecularOrbit::j2(&MeanElements {
-                semi_major_axis_km: elements.semi_major_axis_km - 7.137,
-                ..*elements
-            })
-        },
-        ..Parts::default()
-    };
-    let checks = [
-        "sgp4/mean-j2/sgp4/radial-rms",
-        "sgp4/mean-j2/sgp4/in-track-growth",
-    ];
-    assert_fails(parts, &checks, &SECULAR);
-}
-
-#[test]
-fn a_geocentric_vertical() {
-    let parts = Parts {
-        local_frame: |surface, latitude, longitude| {
-            let right = LocalFrame::new(surface, latitude, longitude);
-            let up = right.origin_km.km().normalize();
-            LocalFrame {
-                up,
-                north: up.cross(&right.east),
-                ..right
-            }
-        },
-        ..Parts::default()
-    };
-    assert_fails(parts, &["geographiclib/elevation"], &["geographiclib/"]);
-}
-
-#[test]
-fn a_spherical_earth() {
-    let parts = Parts {
-        local_frame: |_, latitude, longitude| LocalFrame::new(Surface::Sphere, latitude, longitude),
-        ..Parts::default()
-    };
-    assert_fails(parts, &["geographiclib/elevation"], &["geographiclib/"]);
-}
-
-#[test]
-fn swapped_azimuth_axes() {
-    let parts = Parts {
-        look_angles: |local, target| {
-            let swapped = LocalFrame {
-                east: local.north,
-                north: local.east,
-                ..*local
-            };
-            swapped.look_angles(target)
-        },
-        ..Parts::default()
-    };
-    assert_fails(
-        parts,
-        &["geographiclib/azimuth"],
-        &["geographiclib/azimuth"],
-    );
-}
-
-#[test]
-fn sidereal_time_off_by_a_minute() {
-    let parts = Parts {
-        gmst_rad: |epoch, elapsed_s| epoch.gmst_rad(elapsed_s + 60.0),
-        ..Parts::default()
-    };
-    assert_fails(
-        parts,
-        &["sgp4/sidereal-time"],
-        &["sgp4/sidereal-time", "analytic/geometry"],
-    );
-}
-
-#[test]
-fn star_for_delta() {
-    let parts = Parts {
-        satellites: |design| {
-            Design::new(DesignParameters {
-                pattern: Pattern::Star,
-                ..design.parameters()
-            })
-            .unwrap()
-            .satellites()
-        },
-        ..Parts::default()
-    };
-    assert_fails(
-        parts,
-        &["analytic/symmetry/turn"],
-        &["analytic/symmetry/turn", "analytic/mean-visible"],
-    );
-}
-
-#[test]
-fn a_wrong_number_of_clocks() {
-    let parts = Parts {
-        clocks: |meant| match meant {
-            Clocks::PerSystem => Clocks::Shared,
-            Clocks::Shared => Clocks::PerSystem,
-        },
-        ..Parts::default()
-    };
-    assert_fails(
-        parts,
-        &["analytic/geometry/mean-pdop"],
-        &["analytic/geometry/mean-pdop", "analytic/geometry/max-pdop"],
-    );
-}
-
-/// The frozen eccentricity at ω = 90° is doubled, not cancelled.
-#[test]
-fn the_frozen_eccentricity_at_90_degrees() {
-    let parts = Parts {
-        cancelling_perigee_deg: 90.0,
-        ..Parts::default()
-    };
-    let check = "sgp4/frozen-eccentricity/cancelled";
-    assert_fails(parts, &[check], &[check]);
+fn the_documented_table_is_this_one() {
+    let text = include_str!("../../validation/README.md");
+    let section = text.split("## Planted errors").nth(1).unwrap();
+    let section = section.split("\n## ").next().unwrap();
+    let documented: Vec<&str> = section
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .skip(2)
+        .collect();
+    let rows: Vec<String> = PLANTED
+        .iter()
+        .map(|planted| {
+            let gates: Vec<String> = planted
+                .fails
+                .iter()
+                .map(|gate| format!("`{gate}`"))
+                .collect();
+            let model = planted.model;
+            format!("| {} | `{model}` | {} |", planted.error, gates.join(", "))
+        })
+        .collect();
+    assert_eq!(documented, rows, "the rows are:\n{}", rows.join("\n"));
 }

@@ -454,7 +454,7 @@ impl GateScale {
                 // The chord of a drift of some degrees, and its own second order.
                 self.gate(
                     self.growth_gate_km_per_day(ZonalHarmonics::Full)
-                        + 2e-3 * self.causes.kepler_slot_km_per_day.abs(),
+                        + 3e-3 * self.causes.kepler_slot_km_per_day.abs(),
                 ),
                 self.reason("the drift is the J2 term of dM/dt, up to second order"),
             ),

@@ -91,12 +91,12 @@ fn rows(setup: &Setup) -> Vec<(Site, f64)> {
 /// Relative difference that a finite span may leave.
 ///
 /// The discrepancy of one satellite over D days is that of a sequence of N = 15 D revolutions:
-/// each passes the site at some longitude, and the count is off by at most one pass in N. Satellites
-/// that are spread evenly over all places interleave their passes, and are off by one pass in all of theirs.
+/// each passes the site at some longitude, and the count is off by at most one pass in N, 0.6 of one
+/// at random. T satellites share it; twice the deviation is 1.2/(N √T).
 fn finite_span(subject: &Subject<'_>) -> f64 {
     let revolutions = subject.days() * 86_400.0 * subject.orbit().kepler_mean_motion_rad_s() / TAU;
     let satellites = subject.design.satellite_count() as f64;
-    2.0 / revolutions.max(1.0) / satellites
+    1.2 / revolutions.max(1.0) / satellites.sqrt()
 }
 
 /// The mean figure of the orbit that the model propagates: the ellipse of the elements, with the radius

@@ -18,8 +18,9 @@ const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 /// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
-/// Secular rates that SGP4 has beyond first-order J2, rad/s (Hoots and Roehrich, *Spacetrack Report*
-/// 3 (1980), section 6: the terms of the node, of ω and of M in J2² and J4).
+/// Secular rates that SGP4 has beyond first-order J2, rad/s ([M-46](crate::models#m-46)): Hoots and
+/// Roehrich, *Spacetrack Report* 3 (1980), section 6, the terms of the node, of ω and of M in J2² and J4,
+/// and what recovering the mean motion from Kozai's leaves of second order.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct SecularExcess {
     /// Of the node.
@@ -39,11 +40,13 @@ impl SecularExcess {
         let second = 0.75 * J2 * J2 * ratio2 * ratio2 * n;
         let perigee = 7.0 - 114.0 * c2 + 395.0 * c4;
         let anomaly = eta2.sqrt() * (13.0 - 78.0 * c2 + 137.0 * c4);
+        // SGP4 unfolds the mean motion δ of its slot at a semi-major axis that is δ smaller: n (1 - 2 δ²).
+        let slot = -2.0 * (0.75 * J2 * ratio2 * eta2.sqrt() * (3.0 * c2 - 1.0)).powi(2) * n;
         let fourth = -0.46875 * ::sgp4::WGS72.j4 * ratio2 * ratio2 * n;
         [
             Self {
                 node: 0.5 * second * (4.0 - 19.0 * c2) * c,
-                latitude: 0.0625 * second * (perigee + anomaly),
+                latitude: 0.0625 * second * (perigee + anomaly) + slot,
             },
             Self {
                 node: 2.0 * fourth * (3.0 - 7.0 * c2) * c,

@@ -106,10 +106,11 @@ fn validate_the_sweep() {
 /// has them to hold.
 #[test]
 fn gates_follow_inclination_and_altitude() {
+    let mut failed = Vec::new();
     for model in [Model::J2, Model::J2Osculating, Model::Sgp4] {
         let evaluator = testing::evaluator_of(model, day());
         for inclination_deg in (0..=18).map(|n| f64::from(n) * 10.0) {
-            for altitude_km in [400.0, 925.0, 2000.0] {
+            for altitude_km in [400.0, 2000.0] {
                 let subject = Subject::new(design(inclination_deg, altitude_km), &evaluator);
                 let scale = GateScale::of(&subject);
                 let budget = Propagations::new(&subject, day())
@@ -124,14 +125,17 @@ fn gates_follow_inclination_and_altitude() {
                 findings
                     .checks
                     .extend(frozen::checks(&subject, &scale).unwrap());
-                let failed: Vec<_> = findings.failures().collect();
-                assert!(
-                    failed.is_empty(),
-                    "{model} {inclination_deg}° {altitude_km} km: {failed:#?}"
-                );
+                failed.extend(findings.failures().map(|check| {
+                    let gate = check.gate.unwrap_or(f64::NAN);
+                    let (name, value) = (&check.name, check.value);
+                    format!(
+                        "{model} {inclination_deg}° {altitude_km} km {name} {value:e} of {gate:e}"
+                    )
+                }));
             }
         }
     }
+    assert!(failed.is_empty(), "{failed:#?}");
 }
 
 /// The model of the study is the first of the first case and is held to its gates; mean J2 stands
