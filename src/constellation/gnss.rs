@@ -3,6 +3,7 @@
 mod nominal;
 mod sets;
 
+pub(crate) use sets::satellite_name;
 pub use sets::{ElementSetError, ElementSets, StaleElements};
 
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S};

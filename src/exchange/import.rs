@@ -7,6 +7,7 @@ mod propagation;
 
 pub use propagation::FleetError;
 
+use crate::constellation::gnss::{StaleElements, satellite_name};
 use crate::ephemeris::derivative::velocities;
 use crate::exchange::lint::Format;
 use crate::formats::ccsds::omm::OmmSyntax;
@@ -18,7 +19,7 @@ use crate::formats::{ReadError, csv};
 use crate::formats::{sp3, stk, tle};
 use crate::frames::{Frame, Position, State};
 use crate::keyword::UnknownKeyword;
-use crate::time::Epoch;
+use crate::time::{Epoch, TimeGrid};
 use std::io::BufRead;
 use thiserror::Error;
 
@@ -209,6 +210,20 @@ impl Fleet {
             }
         }
         Ok(())
+    }
+
+    /// The element set, of those of this file or these files called `name`, that is too far from an
+    /// instant of `grid` to be propagated well; as for GNSS.
+    #[must_use]
+    pub fn stale(&self, name: &str, grid: TimeGrid) -> Option<StaleElements> {
+        let Self::Sets(sets) = self else {
+            return None;
+        };
+        let sets = sets.iter().map(|set| {
+            let epoch = Epoch::from_utc(set.datetime.and_utc());
+            (satellite_name(set), epoch)
+        });
+        StaleElements::among(name, sets, grid)
     }
 
     /// What it holds, in words.

@@ -56,17 +56,21 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     let (format, fleet) = read_constellation::read(&args.constellation)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
-    let ephemeris = fleet.propagate(setup.grid, setup.model)?;
-    let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
-    let dops = further(args, &evaluator, &ephemeris)?;
     let name = |path: &PathBuf| {
         path.file_name()
             .map(|name| name.to_string_lossy().into_owned())
     };
     let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
+    let name = names.join("+");
+    if let Some(stale) = fleet.stale(&name, setup.grid) {
+        output::warning(&stale.to_string());
+    }
+    let ephemeris = fleet.propagate(setup.grid, setup.model)?;
+    let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris)?;
     let result = ConstellationResult {
         constellation: ConstellationSummary {
-            name: names.join("+"),
+            name,
             format: format.to_string(),
             content: fleet.content().to_owned(),
             satellites: fleet.len(),
