@@ -1,12 +1,15 @@
 //! Ground points, from the grid of a region or from a list, with their verticals and weights.
 
+mod points;
 pub(crate) mod shapes;
+
+pub use points::{ignored_columns, sites_from_csv};
 
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
 use crate::keyword::keywords;
 use crate::units::wrap_360;
-use std::io::Read;
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a region is rejected.
@@ -15,8 +18,8 @@ pub enum GroundError {
     /// Latitudes outside [-90°, 90°] or in the wrong order.
     #[error("latitudes [{0}, {1}] must run from south to north within -90 to 90 degrees")]
     Latitudes(f64, f64),
-    /// Longitudes outside [-360°, 360°] or more than a full turn.
-    #[error("longitudes [{0}, {1}] must lie within -360 to 360 degrees and span at most 360")]
+    /// Longitudes outside [`LONGITUDES_DEG`] or more than a full turn.
+    #[error("longitudes [{0}, {1}] must lie within {range} and span at most 360", range = longitude_range())]
     Longitudes(f64, f64),
     /// A step that is not a positive number of degrees.
     #[error("grid step {0} is not a positive number of degrees")]
@@ -29,7 +32,8 @@ pub enum GroundError {
     },
     /// A point that is not on the Earth.
     #[error(
-        "latitude {latitude_deg}, longitude {longitude_deg} is not on the Earth: latitudes are -90 to 90, longitudes -360 to 360 degrees"
+        "latitude {latitude_deg}, longitude {longitude_deg} is not on the Earth: latitudes are -90 to 90, longitudes {}",
+        longitude_range()
     )]
     Point {
         /// Latitude, degrees.
@@ -53,6 +57,19 @@ pub enum GroundError {
     Empty,
 }
 
+/// The longitudes that are accepted, of a grid as of a point, degrees: one turn more on either side
+/// than anyone writes, so that an interval over the date line can be written in rising order.
+pub const LONGITUDES_DEG: [f64; 2] = [-360.0, 720.0];
+
+fn longitude_range() -> String {
+    let [lowest, highest] = LONGITUDES_DEG;
+    format!("{lowest} to {highest} degrees")
+}
+
+fn is_longitude(degrees: f64) -> bool {
+    (LONGITUDES_DEG[0]..=LONGITUDES_DEG[1]).contains(&degrees)
+}
+
 /// Maximum number of points of a region: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
 
@@ -67,8 +84,10 @@ keywords! {
 }
 
 /// A ground point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Site {
+    /// What it is called, if anything.
+    pub name: Option<Arc<str>>,
     /// Latitude of the surface model (geodetic on WGS 84), degrees.
     pub latitude_deg: f64,
     /// East longitude, degrees, as given (not wrapped).
@@ -90,7 +109,7 @@ impl Site {
         longitude_deg: f64,
         weight: f64,
     ) -> Result<Self, GroundError> {
-        if !((-90.0..=90.0).contains(&latitude_deg) && (-360.0..=360.0).contains(&longitude_deg)) {
+        if !((-90.0..=90.0).contains(&latitude_deg) && is_longitude(longitude_deg)) {
             return Err(GroundError::Point {
                 latitude_deg,
                 longitude_deg,
@@ -99,12 +118,18 @@ impl Site {
         if !(weight > 0.0 && weight.is_finite()) {
             return Err(GroundError::Weight(weight));
         }
+        let within_a_turn_deg = if longitude_deg > 360.0 {
+            longitude_deg - 360.0
+        } else {
+            longitude_deg
+        };
         let local = LocalFrame::new(
             surface,
             latitude_deg.to_radians(),
-            longitude_deg.to_radians(),
+            within_a_turn_deg.to_radians(),
         );
         Ok(Self {
+            name: None,
             latitude_deg,
             longitude_deg,
             weight,
@@ -146,14 +171,19 @@ impl Grid {
     pub fn longitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
         let [west, east] = self.longitude_deg;
         let error = GroundError::Longitudes(west, east);
-        let in_range = |x: f64| (-360.0..=360.0).contains(&x);
-        if !(in_range(west) && in_range(east)) || east - west > 360.0 {
+        if !(is_longitude(west) && is_longitude(east)) || east - west > 360.0 {
             return Err(error);
         }
         let span = if east >= west {
             east - west
         } else {
             wrap_360(east - west)
+        };
+        // An interval that is written with its east below its west may end beyond the range.
+        let west = if west + span > LONGITUDES_DEG[1] {
+            west - 360.0
+        } else {
+            west
         };
         let mut values = steps(west, span, self.step_deg[1])?;
         // A full turn would count its first meridian twice.
@@ -188,15 +218,7 @@ impl Grid {
                     .max((self.step_deg[0] / 4.0).to_radians().sin()),
             };
             for &longitude in &longitudes {
-                // Eastward grids may reach 540°; reduce that to a valid longitude.
-                let on_earth = if longitude > 360.0 {
-                    longitude - 360.0
-                } else {
-                    longitude
-                };
-                let mut site = Site::new(surface, latitude, on_earth, weight)?;
-                site.longitude_deg = longitude;
-                sites.push(site);
+                sites.push(Site::new(surface, latitude, longitude, weight)?);
             }
         }
         Ok(sites)
@@ -216,52 +238,6 @@ fn steps(start: f64, span: f64, step: f64) -> Result<Vec<f64>, GroundError> {
     Ok((0..count as usize)
         .map(|n| start + n as f64 * step)
         .collect())
-}
-
-/// Points from CSV with the header `latitude_deg,longitude_deg[,weight]`.
-///
-/// # Errors
-/// If a line cannot be read, with its number, or there is no point.
-pub fn sites_from_csv(source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
-    #[derive(serde::Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct PointRow {
-        latitude_deg: f64,
-        longitude_deg: f64,
-        weight: Option<f64>,
-    }
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .from_reader(source);
-    let mut sites = Vec::new();
-    for row in reader.deserialize::<PointRow>() {
-        let line_of = |position: Option<&csv::Position>| position.map_or(1, csv::Position::line);
-        let row = row.map_err(|error| GroundError::Line {
-            line: line_of(error.position()),
-            reason: error.to_string(),
-        })?;
-        let site = Site::new(
-            surface,
-            row.latitude_deg,
-            row.longitude_deg,
-            row.weight.unwrap_or(1.0),
-        )
-        .map_err(|error| GroundError::Line {
-            line: sites.len() as u64 + 2,
-            reason: error.to_string(),
-        })?;
-        if sites.len() == MAX_POINTS {
-            return Err(GroundError::TooMany {
-                points: MAX_POINTS as f64 + 1.0,
-            });
-        }
-        sites.push(site);
-    }
-    if sites.is_empty() {
-        Err(GroundError::Empty)
-    } else {
-        Ok(sites)
-    }
 }
 
 #[cfg(test)]
@@ -306,6 +282,32 @@ mod tests {
         assert_eq!(far[2].longitude_deg, 370.0);
     }
 
+    /// One rule for grids and points: what a scenario accepts is accepted here, and a turn more or
+    /// less is the same place.
+    #[test]
+    fn longitudes_reach_from_minus_360_to_720() {
+        for (longitude_deg, first) in [
+            ([350.0, 370.0], 350.0),
+            ([-360.0, -340.0], -360.0),
+            ([700.0, 720.0], 700.0),
+            ([715.0, 375.0], 355.0),
+        ] {
+            let sites = grid([0.0, 0.0], longitude_deg, 10.0).sites(Surface::Sphere);
+            let sites = sites.unwrap();
+            assert_eq!((sites.len(), sites[0].longitude_deg), (3, first));
+        }
+        let near = Site::new(Surface::Wgs84, 50.0, 10.0, 1.0).unwrap();
+        for turns in [-1.0, 1.0] {
+            let far = Site::new(Surface::Wgs84, 50.0, 10.0 + 360.0 * turns, 1.0).unwrap();
+            let apart = far.local.origin_km.km() - near.local.origin_km.km();
+            // A rounding of 2 pi, times the radius.
+            assert!(apart.norm() < 1e-11, "{apart}");
+        }
+        for longitude_deg in [-360.1, 720.1] {
+            assert!(Site::new(Surface::Wgs84, 0.0, longitude_deg, 1.0).is_err());
+        }
+    }
+
     #[test]
     fn bad_grids_are_named() {
         let error = |g: Grid| g.sites(Surface::Wgs84).unwrap_err();
@@ -316,6 +318,10 @@ mod tests {
         assert_eq!(
             error(grid([0.0, 1.0], [0.0, 361.0], 1.0)),
             GroundError::Longitudes(0.0, 361.0)
+        );
+        assert_eq!(
+            error(grid([0.0, 1.0], [700.0, 721.0], 1.0)),
+            GroundError::Longitudes(700.0, 721.0)
         );
         assert_eq!(
             error(grid([0.0, 1.0], [0.0, 1.0], 0.0)),
@@ -329,28 +335,5 @@ mod tests {
             error(grid([f64::NAN, 1.0], [0.0, 1.0], 1.0)),
             GroundError::Latitudes(..)
         ));
-    }
-
-    #[test]
-    fn points_come_from_csv() {
-        let text = "latitude_deg,longitude_deg,weight\n 40.1, 116.6, 2\n-33.9,151.2,\n";
-        let sites = sites_from_csv(text.as_bytes(), Surface::Wgs84).unwrap();
-        assert_eq!(
-            (sites.len(), sites[0].weight, sites[1].weight),
-            (2, 2.0, 1.0)
-        );
-        let bad = "latitude_deg,longitude_deg\n40,116\n95,0\n";
-        let error = sites_from_csv(bad.as_bytes(), Surface::Wgs84).unwrap_err();
-        assert!(
-            error.to_string().starts_with("line 3: latitude 95"),
-            "{error}"
-        );
-        let bad = "latitude_deg,longitude_deg\n40,x\n";
-        let error = sites_from_csv(bad.as_bytes(), Surface::Wgs84)
-            .unwrap_err()
-            .to_string();
-        assert!(error.starts_with("line 2:"), "{error}");
-        let empty = sites_from_csv("latitude_deg,longitude_deg\n".as_bytes(), Surface::Wgs84);
-        assert_eq!(empty.unwrap_err(), GroundError::Empty);
     }
 }

@@ -5,10 +5,11 @@ use crate::cli::{files, output, run};
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
+use crate::ground::ignored_columns;
 use crate::run::checkpoint::Identity;
 use crate::run::inputs::{RunManifest, copy_paths, first_files};
 use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
-use crate::scenario::{Algorithm, KeyDifference, Scenario, SetupError, builtin};
+use crate::scenario::{Algorithm, KeyDifference, Region, Scenario, SetupError, builtin};
 use anyhow::{Context, Result, bail};
 use std::cell::OnceCell;
 use std::fs;
@@ -190,6 +191,7 @@ impl Study {
         let setup = self.scenario.setup(&read);
         let setup = setup.map_err(|error| self.placed(&error))?;
         check_memory(&setup)?;
+        self.warn_of_columns(contents);
         for system in &setup.gnss {
             if let System::Sets(sets) = system
                 && let Some(stale) = sets.stale(setup.grid)
@@ -198,6 +200,16 @@ impl Study {
             }
         }
         Ok(setup)
+    }
+
+    /// Says which columns of the points file mean nothing here: one of them may be misspelt.
+    fn warn_of_columns(&self, contents: &[Vec<u8>]) {
+        if let (Region::Points { file }, Some(points)) = (&self.scenario.region, contents.first()) {
+            let ignored = ignored_columns(points.as_slice());
+            if !ignored.is_empty() {
+                output::warning(&format!("{file}: columns ignored: {}", ignored.join(", ")));
+            }
+        }
     }
 
     /// The design that is taken when none is named.

@@ -3,8 +3,10 @@
 use super::Evaluator;
 use super::plain::{self, PlainSample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::ground::Site;
 use crate::stats::{Level, Weighted, quantile};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
+use std::sync::Arc;
 
 /// One instant, over all points; every point counts with its weight ([M-31](crate::models#m-31)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -22,7 +24,7 @@ pub struct EpochMetrics {
 }
 
 /// One point, over all instants.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PointMetrics {
     /// Latitude of the surface model, degrees.
     pub latitude_deg: f64,
@@ -40,6 +42,24 @@ pub struct PointMetrics {
     pub solved_fraction: f64,
     /// Share of the instants that are solved with PDOP at most the availability threshold.
     pub availability: f64,
+    /// What the point is called, if anything.
+    #[serde(serialize_with = "name")]
+    pub name: Option<Arc<str>>,
+}
+
+fn name<S: Serializer>(name: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
+    name.as_deref().serialize(serializer)
+}
+
+impl PointMetrics {
+    /// How the point is called where it is shown: by its name, or else by its place.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match &self.name {
+            Some(name) => name.to_string(),
+            None => format!("{}°, {}°", self.latitude_deg, self.longitude_deg),
+        }
+    }
 }
 
 /// The cuts through the samples of an evaluation.
@@ -100,8 +120,7 @@ impl Evaluator {
         pdop.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
         let sites = setup.sites.iter();
         let points = points.into_iter().zip(sites).map(|(sums, site)| {
-            let place = (site.latitude_deg, site.longitude_deg);
-            sums.metrics(place, setup.grid.len(), setup.metrics.availability_pdop)
+            sums.metrics(site, setup.grid.len(), setup.metrics.availability_pdop)
         });
         Ok(Series {
             epochs: epochs.collect(),
@@ -134,12 +153,7 @@ impl EpochSums {
 }
 
 impl PointSums {
-    fn metrics(
-        mut self,
-        (latitude_deg, longitude_deg): (f64, f64),
-        instants: usize,
-        availability_pdop: f64,
-    ) -> PointMetrics {
+    fn metrics(mut self, site: &Site, instants: usize, availability_pdop: f64) -> PointMetrics {
         let count = instants as f64;
         let solved = self.pdop.len();
         let sum: f64 = self.pdop.iter().sum();
@@ -147,14 +161,15 @@ impl PointSums {
         let available = available.count();
         let p95 = Level::new(0.95).ok();
         PointMetrics {
-            latitude_deg,
-            longitude_deg,
+            latitude_deg: site.latitude_deg,
+            longitude_deg: site.longitude_deg,
             mean_visible: self.visible as f64 / count,
             mean_pdop: (solved > 0).then(|| sum / solved as f64),
             p95_pdop: p95.and_then(|level| quantile(&mut self.pdop, level)),
             max_pdop: self.pdop.iter().copied().max_by(f64::total_cmp),
             solved_fraction: solved as f64 / count,
             availability: available as f64 / count,
+            name: site.name.clone(),
         }
     }
 }

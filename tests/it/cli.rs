@@ -266,6 +266,7 @@ fn the_run_directory_is_whole_and_repeatable() {
         "front.json",
         "history.csv",
         "history.json",
+        "run.json",
         "scenario.toml",
     ];
     assert_eq!(names, expected);

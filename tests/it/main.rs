@@ -9,6 +9,7 @@ mod interchange;
 mod look;
 mod names;
 mod reference;
+mod runs;
 mod scenes;
 mod singular;
 mod study;

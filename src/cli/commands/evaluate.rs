@@ -63,21 +63,22 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     fleet.choose(&filter)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
-    if let Some(stale) = fleet.stale(setup.grid) {
+    let name = |path: &PathBuf| {
+        path.file_name()
+            .map(|name| name.to_string_lossy().into_owned())
+    };
+    let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
+    let name = names.join("+");
+    if let Some(stale) = fleet.stale(&name, setup.grid) {
         output::warning(&stale.to_string());
     }
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
-    let name = |path: &PathBuf| {
-        path.file_name()
-            .map(|name| name.to_string_lossy().into_owned())
-    };
-    let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
     let result = ConstellationResult {
         constellation: ConstellationSummary {
-            name: names.join("+"),
+            name,
             format: format.to_string(),
             content: fleet.content(),
             satellites: fleet.len(),

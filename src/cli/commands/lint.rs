@@ -28,19 +28,30 @@ struct FindingRow {
 pub(crate) fn run(args: &LintArgs) -> Result<Status> {
     let mut rows = Vec::new();
     let mut clean = String::new();
+    let mut unread = Vec::new();
     for path in &args.files {
-        let report = check(path, args)?;
+        let report = match check(path, args) {
+            Ok(report) => report,
+            Err(error) => {
+                unread.push(error);
+                continue;
+            }
+        };
         if report.findings.is_empty() {
             clean += &format!("{}: no findings as {}\n", path.display(), report.format);
         }
         rows.extend(rows_of(path, report));
     }
     match args.output {
+        OutputFormat::Text if rows.is_empty() && clean.is_empty() => {}
         OutputFormat::Text => output::result(&(text(&rows) + &clean))?,
         OutputFormat::Json => output::result(&serde_json::to_string_pretty(&rows)?)?,
         OutputFormat::Csv => output::result(&crate::report::records_csv(&rows)?)?,
     }
-    Ok(if rows.is_empty() {
+    unread.iter().for_each(output::error);
+    Ok(if !unread.is_empty() {
+        Status::CouldNotRun
+    } else if rows.is_empty() {
         Status::Done
     } else {
         Status::Failed

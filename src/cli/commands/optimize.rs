@@ -5,12 +5,13 @@ mod seeds;
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::progress::SearchBar;
 use crate::cli::run::RunDirectory;
-use crate::cli::study::Study;
+use crate::cli::study::{Study, read_manifest};
 use crate::cli::{Status, chart, coincidence, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::{Align, Table};
-use crate::run::{FrontMember, MANIFEST, OptimizeResult, front_csv};
+use crate::run::inputs::InputError;
+use crate::run::{FrontMember, OptimizeResult, front_csv};
 use crate::scenario::Algorithm;
 use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
@@ -25,28 +26,46 @@ pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     }
 }
 
-/// The scenario that was asked for: with --resume and none named, that of the run in `directory`.
-pub(super) fn load(args: &OptimizeArgs, directory: Option<&Path>) -> Result<Study> {
+/// The scenario that was asked for.
+pub(super) fn load(args: &OptimizeArgs) -> Result<Study> {
+    Study::load(&args.study, &overrides_of_seed(args))
+}
+
+fn overrides_of_seed(args: &OptimizeArgs) -> Vec<String> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
-    let is_unnamed = args.resume && args.study.scenario.is_none();
-    match directory.filter(|run| is_unnamed && run.join(MANIFEST).exists()) {
-        Some(run) => {
-            let overrides = args.study.overrides.iter().cloned().chain(seed);
-            Study::of_run(run, &overrides.collect::<Vec<_>>())
-        }
-        None => Study::load(&args.study, seed.as_slice()),
+    seed.into_iter().collect()
+}
+
+/// With --resume, the study as the run in `directory` goes on with it: with its copies of the
+/// files, and where no scenario is named, with its scenario if the default is another.
+pub(super) fn resumed(args: &OptimizeArgs, mut study: Study, directory: &Path) -> Result<Study> {
+    let manifest = read_manifest(directory).ok().flatten();
+    let Some(manifest) = manifest.filter(|_| args.resume) else {
+        return Ok(study);
+    };
+    study.take_files_of(directory)?;
+    let is_named = args.study.scenario.is_some();
+    if is_named || study.identity().is_ok_and(|ours| ours == manifest.identity) {
+        return Ok(study);
+    }
+    let overrides = args.study.overrides.iter().cloned();
+    let overrides: Vec<String> = overrides.chain(overrides_of_seed(args)).collect();
+    let own = Study::of_run(directory, &overrides)?;
+    match own.identity() {
+        Err(error) if error.is::<InputError>() => Err(error),
+        // A file that --set names is not in the directory of the run.
+        Err(_) => Ok(study),
+        Ok(_) => Ok(own),
     }
 }
 
 /// The search with the seed of the scenario.
 fn one(args: &OptimizeArgs) -> Result<Status> {
-    let mut study = load(args, args.out.as_deref())?;
+    let study = load(args)?;
     let (name, seed) = (&study.scenario.name, study.scenario.optimizer.seed);
     let default_out = || PathBuf::from(format!("runs/{name}-{seed}"));
     let out = args.out.clone().unwrap_or_else(default_out);
-    if args.resume {
-        study.take_files_of(&out)?;
-    }
+    let study = resumed(args, study, &out)?;
     let (study, scenario) = (&study, &study.scenario);
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);

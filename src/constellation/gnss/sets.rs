@@ -78,9 +78,6 @@ impl fmt::Display for StaleElements {
 }
 
 impl ElementSets {
-    /// Age beyond which sets are [`StaleElements`], days.
-    pub const MAX_AGE_DAYS: f64 = 14.0;
-
     /// The system `name` from the sets of its satellites.
     ///
     /// A satellite is named as in its set, or by its designator or catalogue number.
@@ -144,24 +141,39 @@ impl ElementSets {
     }
 
     /// The set that is farthest from an instant of `grid`, when that is more than
-    /// [`Self::MAX_AGE_DAYS`].
+    /// [`StaleElements::MAX_AGE_DAYS`].
     #[must_use]
     pub fn stale(&self, grid: TimeGrid) -> Option<StaleElements> {
+        let members = self.members.iter();
+        let members = members.map(|member| (member.name.clone(), member.epoch));
+        StaleElements::among(&self.name, members, grid)
+    }
+}
+
+impl StaleElements {
+    /// Age beyond which sets are stale, days.
+    pub const MAX_AGE_DAYS: f64 = 14.0;
+
+    /// The set of `system` that is farthest from an instant of `grid`, when that is more than
+    /// [`Self::MAX_AGE_DAYS`]; sets by their satellite and epoch.
+    pub fn among(
+        system: &str,
+        sets: impl IntoIterator<Item = (String, Epoch)>,
+        grid: TimeGrid,
+    ) -> Option<Self> {
         let last_s = grid.elapsed_s(grid.len() - 1);
-        let age_days = |member: &ElementSetMember| {
-            let to_first_s = grid.epoch().seconds_since(member.epoch);
+        let age_days = |epoch: Epoch| {
+            let to_first_s = grid.epoch().seconds_since(epoch);
             to_first_s.abs().max((to_first_s + last_s).abs()) / SECONDS_PER_DAY
         };
-        self.members
-            .iter()
-            .map(|member| (age_days(member), member))
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|(age_days, _)| *age_days > Self::MAX_AGE_DAYS)
-            .map(|(age_days, member)| StaleElements {
-                system: self.name.clone(),
-                satellite: member.name.clone(),
-                age_days,
+        sets.into_iter()
+            .map(|(satellite, epoch)| Self {
+                system: system.to_owned(),
+                satellite,
+                age_days: age_days(epoch),
             })
+            .max_by(|a, b| a.age_days.total_cmp(&b.age_days))
+            .filter(|oldest| oldest.age_days > Self::MAX_AGE_DAYS)
     }
 }
 

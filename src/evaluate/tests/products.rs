@@ -140,13 +140,13 @@ fn a_point_of_the_series_is_an_evaluation_of_that_point() {
     let all = small([1.0; 3]);
     let ephemeris = Ephemeris::of_design(&design, Model::J2, all.grid).unwrap();
     let alone = Setup {
-        sites: vec![all.sites[1]],
+        sites: vec![all.sites[1].clone()],
         ..all.clone()
     };
     let series = Evaluator::new(all).unwrap().series(&ephemeris).unwrap();
     let evaluator = Evaluator::new(alone).unwrap();
     let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
-    let point = series.points[1];
+    let point = &series.points[1];
     assert_eq!(point.p95_pdop, metrics.p95_pdop);
     assert_eq!(point.mean_visible, metrics.mean_visible);
     assert_eq!(point.mean_pdop, metrics.mean_pdop);

@@ -2,7 +2,7 @@
 
 use super::Fleet;
 use crate::constellation::gnss::{ElementSetError, ElementSets, StaleElements};
-use crate::constellation::identity::{first_repeated, unique_labels};
+use crate::constellation::identity::{ObjectIdentity, first_repeated, unique_labels};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, FromTeme, State, Teme};
@@ -166,13 +166,21 @@ impl Fleet {
         }
     }
 
-    /// The element set that is farthest from an instant of `grid`, if it is old, or not yet valid.
+    /// The element set, of those of the files called `name`, that is farthest from an instant of
+    /// `grid`, if it is old, or not yet valid; as for GNSS.
     #[must_use]
-    pub fn stale(&self, grid: TimeGrid) -> Option<StaleElements> {
+    pub fn stale(&self, name: &str, grid: TimeGrid) -> Option<StaleElements> {
         match self {
-            Self::Sets(sets) => ElementSets::new("constellation", sets).ok()?.stale(grid),
+            Self::Sets(sets) => {
+                let identities: Vec<_> = sets.iter().map(ObjectIdentity::of_set).collect();
+                let epochs = sets
+                    .iter()
+                    .map(|set| Epoch::from_utc(set.datetime.and_utc()));
+                let labelled = unique_labels(&identities).into_iter().zip(epochs);
+                StaleElements::among(name, labelled, grid)
+            }
             Self::Mixed(parts) => {
-                let stale = parts.iter().filter_map(|part| part.stale(grid));
+                let stale = parts.iter().filter_map(|part| part.stale(name, grid));
                 stale.max_by(|a, b| a.age_days.total_cmp(&b.age_days))
             }
             Self::Elements(_) | Self::Sampled(_) | Self::Tracks(_) => None,

@@ -260,7 +260,7 @@ fn apart_km(files: &Files, grid: TimeGrid) -> f64 {
         Fleet::read(bytes.as_slice(), None, name).unwrap().fleet
     });
     let mut fleet = fleets.next().unwrap();
-    fleets.for_each(|next| fleet.append(next).unwrap());
+    fleets.for_each(|next| fleet.append(next));
     let read = fleet.propagate(grid, Model::J2).unwrap();
     let truth = Ephemeris::of_design(&design(), Model::J2, grid).unwrap();
     let mut worst_km = 0.0_f64;

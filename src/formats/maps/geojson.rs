@@ -76,7 +76,7 @@ fn areas(rings: &[Vec<LonLat>]) -> Value {
 /// `fill` is the colour by mean PDOP, as viewers that follow simplestyle show it.
 fn point_properties(point: &PointMetrics, scale: Option<&ColourScale>) -> Value {
     let [red, green, blue] = colour_of(scale, point.mean_pdop);
-    json!({
+    let mut properties = json!({
         "latitude_deg": point.latitude_deg,
         "longitude_deg": point.longitude_deg,
         "mean_visible": shown(point.mean_visible),
@@ -87,7 +87,11 @@ fn point_properties(point: &PointMetrics, scale: Option<&ColourScale>) -> Value 
         "availability": shown(point.availability),
         "fill": format!("#{red:02x}{green:02x}{blue:02x}"),
         "fill-opacity": 0.5,
-    })
+    });
+    if let Some(name) = &point.name {
+        properties["name"] = Value::from(&**name);
+    }
+    properties
 }
 
 fn collection(out: &mut impl Write, features: impl Iterator<Item = Value>) -> io::Result<()> {

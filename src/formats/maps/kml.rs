@@ -138,9 +138,9 @@ fn place(
     let (line, area) = (hex(colour, 0xff), hex(colour, CELL_OPACITY));
     write!(
         out,
-        "<Placemark><name>{}°, {}°</name><Style><IconStyle><color>{line}</color></IconStyle>\
+        "<Placemark><name>{}</name><Style><IconStyle><color>{line}</color></IconStyle>\
          <LineStyle><width>0</width></LineStyle><PolyStyle><color>{area}</color></PolyStyle></Style>",
-        point.latitude_deg, point.longitude_deg
+        escape(point.label())
     )?;
     let number =
         |value: Option<f64>| value.map_or_else(|| "unsolved".to_owned(), |x| shown(x).to_string());

@@ -73,6 +73,7 @@ fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
         "max_pdop",
         "solved_fraction",
         "availability",
+        "name",
     ])?;
     for p in points {
         csv.row([
@@ -84,6 +85,7 @@ fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
             optional(p.max_pdop),
             p.solved_fraction.to_string(),
             p.availability.to_string(),
+            p.name.as_deref().unwrap_or_default().to_owned(),
         ])?;
     }
     csv.text()

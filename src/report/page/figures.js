@@ -139,7 +139,7 @@
         traces.push({ type: "scatter", mode: "markers", x: region.longitude_deg, y: region.latitude_deg,
           marker: { size: 12, color: values, colorscale: "Viridis", colorbar: bar, cmin: range?.[0], cmax: range?.[1],
             line: { width: 1, color: colours.ink } },
-          text: values.map((v) => digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
+          text: values.map((v, n) => (region.name[n] ? plain(region.name[n]) + "<br>" : "") + digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
       }
       traces.push({ type: "scatter", mode: "lines", x: coast.x, y: coast.y, hoverinfo: "skip",
         line: { color: region.step_deg ? "rgba(0,0,0,0.75)" : colours.coast, width: 1 } });

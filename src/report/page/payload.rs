@@ -5,6 +5,7 @@ use super::pack::{Packed, short};
 use crate::constellation::Design;
 use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
 use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
+use crate::ground::Site;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use crate::report::coastline::{self, Bounds};
@@ -125,6 +126,8 @@ struct Orbit {
 struct RegionData {
     latitude_deg: Vec<f64>,
     longitude_deg: Vec<f64>,
+    /// Names of the points; empty for those without one.
+    name: Vec<String>,
     /// Steps in latitude and longitude, of a grid.
     step_deg: Option<[f64; 2]>,
     bounds: [f64; 4],
@@ -406,6 +409,10 @@ impl Orbit {
     }
 }
 
+fn name_of(site: &Site) -> String {
+    site.name.as_deref().unwrap_or_default().to_owned()
+}
+
 impl RegionData {
     fn new(setup: &Setup, scenario: &Scenario) -> Option<Self> {
         let step_deg = match &scenario.region {
@@ -423,6 +430,10 @@ impl RegionData {
         Some(Self {
             latitude_deg: setup.sites.iter().map(|s| short(s.latitude_deg)).collect(),
             longitude_deg: setup.sites.iter().map(|s| short(s.longitude_deg)).collect(),
+            name: match step_deg {
+                Some(_) => Vec::new(),
+                None => setup.sites.iter().map(name_of).collect(),
+            },
             step_deg,
             bounds: [
                 bounds.latitude_deg[0],

@@ -7,6 +7,7 @@ use serde_json::{Map, Value as Json, json};
 use toml::de::DeValue;
 
 use super::{Node, Reading, Rule};
+use crate::ground::LONGITUDES_DEG;
 use crate::scenario::number::toml_number;
 use crate::scenario::problem::Fault;
 
@@ -234,8 +235,7 @@ impl<R: Rule<Value: Copy + PartialOrd>> Rule for Interval<R> {
 pub(in crate::scenario) struct Eastward;
 
 impl Eastward {
-    /// One turn more on either side than anyone writes, so that a resolved interval reads back.
-    const EACH: Number = Number::from_to(-360.0, 720.0);
+    const EACH: Number = Number::from_to(LONGITUDES_DEG[0], LONGITUDES_DEG[1]);
 }
 
 impl Rule for Eastward {
@@ -244,6 +244,12 @@ impl Rule for Eastward {
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<[f64; 2]> {
         let [west, east] = read_pair([&Self::EACH; 2], node, reading)?;
         let east = if east < west { east + 360.0 } else { east };
+        // What is resolved is written, and read back.
+        let [west, east] = if east > LONGITUDES_DEG[1] {
+            [west - 360.0, east - 360.0]
+        } else {
+            [west, east]
+        };
         let within = east >= west && east - west <= 360.0;
         if !within {
             let found = reading.written(node);

@@ -184,6 +184,8 @@ fn longitudes_run_eastwards() {
     assert_eq!(longitudes("longitude-deg = [160, 205]"), [160.0, 205.0]);
     assert_eq!(longitudes("longitude-deg = [-180, 180]"), [-180.0, 180.0]);
     assert_eq!(longitudes("longitude-deg = [350, 10]"), [350.0, 370.0]);
+    assert_eq!(longitudes("longitude-deg = [350, 370]"), [350.0, 370.0]);
+    assert_eq!(longitudes("longitude-deg = [719, 365]"), [359.0, 365.0]);
     let wide = "found [-180, 180.5], expected a span eastwards of 0 to 360 degrees";
     refuses(
         "region",

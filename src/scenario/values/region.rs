@@ -40,8 +40,8 @@ section! {
 section! {
     /// What names a file of points in place of a grid.
     pub(in crate::scenario) struct PointsFile in "region" {
-        /// CSV file latitude_deg,longitude_deg[,weight] in place of the grid, path relative to this
-        /// file.
+        /// CSV file with the columns latitude_deg, longitude_deg and, if wanted, weight and name, in
+        /// place of the grid; path relative to this file.
         pub points: String = Text::Any, follows "the grid", example "points.csv".to_owned();
     }
 }

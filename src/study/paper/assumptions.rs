@@ -171,7 +171,7 @@ fn reweighted(base: &Setup) -> Result<Option<(&'static str, Vec<Site>)>, PaperEr
     let by = |weight: fn(&Site) -> f64| {
         let site = |site: &Site| Site {
             weight: weight(site),
-            ..*site
+            ..site.clone()
         };
         base.sites.iter().map(site).collect::<Vec<_>>()
     };

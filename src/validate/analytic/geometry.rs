@@ -41,7 +41,7 @@ impl Again {
             sites: sites
                 .map(|site| Site {
                     weight: 1.0,
-                    ..*site
+                    ..site.clone()
                 })
                 .collect(),
             ..full.clone()

@@ -82,7 +82,7 @@ fn rows(setup: &Setup) -> Vec<(Site, f64)> {
             .find(|(row, _)| row.latitude_deg == site.latitude_deg)
         {
             Some((_, weight)) => *weight += site.weight,
-            None => rows.push((*site, site.weight)),
+            None => rows.push((site.clone(), site.weight)),
         }
     }
     rows

@@ -26,7 +26,7 @@ fn setup_with(setup: &Setup, frame: Frames) -> Setup {
             site.latitude_deg.to_radians(),
             site.longitude_deg.to_radians(),
         ),
-        ..*site
+        ..site.clone()
     };
     Setup {
         sites: setup.sites.iter().map(moved).collect(),

@@ -1,6 +1,8 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{Ended, Sweep, hint_resume, interrupt_flag, load, open, search, status, sweep, text};
+use super::{
+    Ended, Sweep, hint_resume, interrupt_flag, load, open, resumed, search, status, sweep, text,
+};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
@@ -17,7 +19,7 @@ const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
 const RUN: &str = "seed-";
 
 pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
-    let mut study = load(args, args.out.as_deref().and_then(first_run).as_deref())?;
+    let mut study = load(args)?;
     let first = study.scenario.optimizer.seed;
     let last = u64::try_from(count.get() - 1)
         .ok()
@@ -27,8 +29,8 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
     let name = &study.scenario.name;
     let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
     let out = args.out.clone().unwrap_or_else(default_out);
-    if let Some(run) = first_run(&out).filter(|_| args.resume) {
-        study.take_files_of(&run)?;
+    if let Some(run) = first_run(&out) {
+        study = resumed(args, study, &run)?;
     }
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);

@@ -356,7 +356,7 @@ fn place(
     let colour = colour_of(scale, point.mean_pdop);
     let mut packet = json!({
         "id": format!("point:{}", n + 1),
-        "name": format!("{}°, {}°", point.latitude_deg, point.longitude_deg),
+        "name": point.label(),
         "parent": "region",
         "description": format!(
             "<table><tr><td>mean PDOP</td><td>{}</td></tr><tr><td>95 % PDOP</td><td>{}</td></tr>\
