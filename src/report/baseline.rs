@@ -36,6 +36,15 @@ impl Baseline {
         })
     }
 
+    /// Its name and notation in a sentence; one that is named by its notation has it once.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.name == self.notation {
+            return self.notation.clone();
+        }
+        format!("the {} {}", self.name, self.notation)
+    }
+
     /// Whether it meets the constraints and dominates a member of the front: no worse in any
     /// objective and better in one.
     #[must_use]
@@ -53,10 +62,9 @@ impl Baseline {
             Diagnostic::new(
                 Self::DOMINATES,
                 format!(
-                    "the {} {} ({}) dominates the pick {} ({}): take it, or give the search more \
-                     generations, a larger population or wider bounds",
-                    self.name,
-                    self.notation,
+                    "{} ({}) dominates the pick {} ({}): take it, or give the search more generations, a \
+                     larger population or wider bounds",
+                    self.label(),
                     super::shown::pairs(values),
                     pick.design.notation,
                     super::shown::objectives(pick)

@@ -138,7 +138,7 @@ impl SeedsResult {
             first.search.certificate = Some(Certificate::new(&first, sweep, objectives));
         }
         let (what, judged) = match (best_spread, objectives) {
-            (Some(best), [objective]) => (format!("best {objective}"), Some(best)),
+            (Some(best), [objective]) => (format!("best value of {objective}"), Some(best)),
             _ => ("hypervolume".to_owned(), hypervolume_spread),
         };
         let told = judged.and_then(|s| seed_spread(&what, s.mean, s.std_dev, seeds.len()));
@@ -479,7 +479,7 @@ mod tests {
         assert_eq!(seeds.best_spread.unwrap().mean, 2.25);
         let told = &seeds.first.search.diagnostics.last().unwrap().message;
         assert!(
-            told.contains("the best max-pdop spreads by 15.71 %"),
+            told.contains("the best value of max-pdop spreads by 15.71 %"),
             "{told}"
         );
         assert!(

@@ -82,7 +82,15 @@ pub(crate) fn counted(count: usize, noun: &str) -> String {
 /// A reference point: `(2, 22)`.
 #[must_use]
 pub(crate) fn point(coordinates: &[f64]) -> String {
-    let cells: Vec<String> = coordinates.iter().map(|x| significant(*x)).collect();
+    let short = |x: &f64| {
+        let text = significant(*x);
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
+        }
+    };
+    let cells: Vec<String> = coordinates.iter().map(short).collect();
     format!("({})", cells.join(", "))
 }
 
@@ -166,7 +174,7 @@ mod tests {
         assert_eq!(named("availability", Some(0.999_96)), "0.99996");
         assert_eq!(named("max-pdop", Some(2.201_449_9)), "2.2014");
         assert_eq!(named("max-pdop", None), "none");
-        assert_eq!(point(&[2.0, 22.5]), "(2, 22.500)");
+        assert_eq!(point(&[2.0, 22.5, 220.0]), "(2, 22.5, 220)");
     }
 
     #[test]

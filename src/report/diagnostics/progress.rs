@@ -37,7 +37,7 @@ impl Course {
         if let ([objective], Some(ideal)) = (objectives, &last.ideal) {
             let best = |record: &Record| -record.ideal.as_ref().map_or(f64::INFINITY, |i| i[0]);
             return Some(Self {
-                what: format!("best {objective}"),
+                what: format!("best value of {objective}"),
                 verb: ["improved", "improved"],
                 values: history.iter().map(best).collect(),
                 scale: if ideal[0] == 0.0 { 1.0 } else { ideal[0].abs() },
@@ -158,7 +158,9 @@ mod tests {
         assert_eq!(found.code, "still-improving");
         // From 2.3 to 2.1 in two generations.
         assert!(
-            found.message.contains("best max-pdop improved by 9.52 %"),
+            found
+                .message
+                .contains("best value of max-pdop improved by 9.52 %"),
             "{}",
             found.message
         );

@@ -293,7 +293,7 @@ fn a_pick_that_is_dominated_is_said_to_be_so() {
         ..page(&run, Some(&evaluator))
     };
     let html = written(&beside);
-    assert!(html.contains("It is dominated by reference design."));
+    assert!(html.contains("It is dominated by the reference design delta:50:225/15/1@1000."));
     assert!(html.contains("dominates the pick delta:40.001:12/3/1@900"));
     assert!(!written(&page(&run, Some(&evaluator))).contains("dominated by"));
 }

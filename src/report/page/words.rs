@@ -201,11 +201,11 @@ fn choice(page: &Page<'_>) -> Option<String> {
         shown::objectives(member),
         shown::membership(member.membership),
     );
-    let better: Vec<&str> = page
+    let better: Vec<String> = page
         .baselines
         .iter()
         .filter(|baseline| baseline.outdoes(member))
-        .map(|baseline| baseline.name.as_str())
+        .map(Baseline::label)
         .collect();
     if !better.is_empty() {
         text += &format!(" It is dominated by {}.", better.join(" and by "));
