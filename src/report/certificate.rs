@@ -165,11 +165,53 @@ fn worse_by(point: &[f64], target: &[f64], ranges: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::{Hypervolume, SearchSummary, testing};
 
     #[test]
     fn only_what_is_worse_counts() {
         assert_eq!(worse_by(&[1.0, 3.0], &[2.0, 1.0], &[1.0, 4.0]), [0.0, 0.5]);
         assert_eq!(ranges(&[vec![1.0, 5.0], vec![3.0, 5.0]], 2), [2.0, 1.0]);
         assert_eq!(ranges(&[], 1), [1.0]);
+    }
+
+    fn result(points: &[[f64; 2]], reference: [f64; 2]) -> OptimizeResult {
+        let objectives = [Quantity::MeanPdop, Quantity::Satellites];
+        let member = |(n, [a, b]): (usize, &[f64; 2])| FrontMember {
+            objectives: vec![("mean-pdop".to_owned(), *a), ("satellites".to_owned(), *b)],
+            ..testing::member(n + 1, "delta:45:225/15/1@1000")
+        };
+        OptimizeResult {
+            front: points.iter().enumerate().map(member).collect(),
+            search: SearchSummary {
+                hypervolume: Hypervolume::of(points, None, Some(&reference), &objectives),
+                ..testing::summary()
+            },
+            history: Vec::new(),
+            chosen_reference: None,
+        }
+    }
+
+    /// By hand at the search's point (4, 4), whatever the sweep chose: the grid has 2 by 2 and 3 by 1
+    /// with 2 by 1 in common, the search 2.5 by 2.
+    #[test]
+    fn a_search_may_beat_the_grid() {
+        let found = result(&[[1.5, 2.0]], [4.0, 4.0]);
+        let sweep = result(&[[1.0, 3.0], [2.0, 2.0]], [9.0, 9.0]);
+        let certificate =
+            Certificate::new(&found, &sweep, &[Quantity::MeanPdop, Quantity::Satellites]);
+        assert_eq!(certificate.grid_hypervolume, Some(5.0));
+        assert_eq!(certificate.found_hypervolume, Some(5.0));
+        assert_eq!(certificate.grid_members_dominated, 1);
+        assert_eq!(certificate.distances, [0.0]);
+        let text = certificate.to_text();
+        assert!(
+            text.contains("the grid sweep of 900 designs has a front of 2 members"),
+            "{text}"
+        );
+        assert!(
+            text.contains("dominates 1 of the 2 members of the grid's front"),
+            "{text}"
+        );
+        assert!(!text.contains("exact"), "{text}");
     }
 }
