@@ -43,6 +43,7 @@ mod decision;
 mod error;
 mod exhaustive;
 mod generator;
+mod history;
 mod hypervolume;
 mod method;
 mod mopso;

@@ -1,28 +1,32 @@
 //! Results as people and programs read them.
 
+mod baseline;
 mod certificate;
 pub mod coastline;
 mod csv;
 mod diagnostics;
 #[cfg(feature = "figures")]
 pub mod figures;
+pub(crate) mod front_table;
 #[cfg(feature = "figures")]
 pub mod page;
 pub mod profile;
 mod reproduction;
 mod results;
 mod seeds;
+pub(crate) mod shown;
 mod table;
 #[cfg(feature = "validate")]
 mod validation;
 
+pub use baseline::Baseline;
 pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
 };
-pub use results::{ConstellationResult, ConstellationSummary, EvaluateResult};
-pub use seeds::{SeedRun, SeedsResult, Spread};
+pub use results::{ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult};
+pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]
 pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};

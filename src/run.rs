@@ -12,7 +12,7 @@ mod validation;
 
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FrontMember, Hypervolume, Missed, OptimizeResult,
-    ScenarioStamp, SearchSummary,
+    ScenarioStamp, SearchSummary, VolumeAt,
 };
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]
@@ -75,7 +75,7 @@ pub fn result_files(
     let objectives: Vec<String> = objectives.map(ToString::to_string).collect();
     Ok([
         (FRONT_JSON, serde_json::to_string_pretty(result)? + "\n"),
-        (FRONT_CSV, front_csv(result)?),
+        (FRONT_CSV, front_csv(&result.front)?),
         (
             HISTORY_JSON,
             serde_json::to_string_pretty(&result.history)? + "\n",
@@ -147,10 +147,23 @@ impl Run {
         self.front.iter().position(|member| member.chosen)
     }
 
-    /// The reference point of the hypervolume.
+    /// The reference point at which the history measures the hypervolume.
     #[must_use]
-    pub fn reference(&self) -> Option<&[f64]> {
-        self.search.as_ref()?.hypervolume.reference.as_deref()
+    pub fn reference(&self) -> Option<Vec<f64>> {
+        let hypervolume = &self.search.as_ref()?.hypervolume;
+        let measured = hypervolume.measured().map(|measured| measured.reference);
+        measured.or_else(|| hypervolume.reference.clone())
+    }
+
+    /// The names of the quantities under constraints that are no objectives, in the order of the
+    /// scenario.
+    #[must_use]
+    pub fn constraint_names(&self) -> Vec<String> {
+        let Some(scenario) = &self.scenario else {
+            return Vec::new();
+        };
+        let constrained = scenario.goals().constrained();
+        constrained.iter().map(ToString::to_string).collect()
     }
 
     /// The objectives' names, in the order of the scenario.

@@ -182,6 +182,20 @@ pub struct Goals {
     pub launch_cost: LaunchCost,
 }
 
+impl Goals {
+    /// The quantities under constraints that are no objectives, each once.
+    #[must_use]
+    pub fn constrained(&self) -> Vec<Quantity> {
+        let mut found: Vec<Quantity> = Vec::new();
+        for Constraint { quantity, .. } in &self.constraints {
+            if !self.objectives.contains(quantity) && !found.contains(quantity) {
+                found.push(*quantity);
+            }
+        }
+        found
+    }
+}
+
 /// A design problem as the optimisers see it.
 pub struct DesignProblem<'a> {
     evaluator: &'a Evaluator,
@@ -240,7 +254,20 @@ impl<'a> DesignProblem<'a> {
                 violation: 2.0,
             };
         };
-        let value = |quantity: Quantity| quantity.value(&design, &metrics, &self.goals.launch_cost);
+        self.judge(&design, &metrics)
+    }
+
+    /// The metrics of a design, which need not be in the space, and what an optimiser makes of
+    /// them; `None` when it cannot be propagated.
+    #[must_use]
+    pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
+        let metrics = self.evaluator.evaluate(design).ok()?;
+        let evaluation = self.judge(design, &metrics);
+        Some((metrics, evaluation))
+    }
+
+    fn judge(&self, design: &Design, metrics: &Metrics) -> Evaluation {
+        let value = |quantity: Quantity| quantity.value(design, metrics, &self.goals.launch_cost);
         let mut violation: f64 = self
             .goals
             .constraints

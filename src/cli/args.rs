@@ -204,10 +204,12 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Run this many consecutive seeds, starting with the scenario's, and report their spread.
+    /// Run this many consecutive seeds, starting with the scenario's, and report their spread and
+    /// joint front.
     ///
-    /// Each seed has its own run in DIR/seed-N; the summary is in DIR/seeds.csv and DIR/seeds.json.
-    /// The front of the first seed and the summary are printed.
+    /// Each seed has its own run in DIR/seed-N; the summary is in DIR/seeds.csv and DIR/seeds.json, what
+    /// no seed's front dominates in DIR/joint-front.csv. The front of the first seed and the summary are
+    /// printed. All hypervolumes are at one reference point, which is printed too.
     #[arg(long, value_name = "N")]
     pub(crate) seeds: Option<NonZeroUsize>,
 

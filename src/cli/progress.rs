@@ -2,6 +2,7 @@
 
 use crate::cli::output;
 use crate::optimize::Strategy;
+use crate::report::shown;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar, or nothing where nobody would see it.
@@ -30,9 +31,10 @@ impl SearchBar {
         let hypervolume = search
             .history()
             .last()
-            .and_then(|record| record.hypervolume);
-        let hypervolume =
-            hypervolume.map_or(String::new(), |value| format!(", hypervolume {value:.4}"));
+            .and_then(|record| record.hypervolume_at_chosen.or(record.hypervolume));
+        let hypervolume = hypervolume.map_or(String::new(), |value| {
+            format!(", hypervolume {}", shown::significant(value))
+        });
         bar.set_message(format!("{} evaluations{hypervolume}", progress.evaluations));
         bar.set_position(progress.step);
     }

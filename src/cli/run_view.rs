@@ -12,6 +12,7 @@ use crate::run::{
     FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
     VALIDATION_REPORT,
 };
+use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::io;
@@ -63,9 +64,12 @@ impl RunView {
         let (Some(evaluator), Some(scenario)) = (&self.evaluator, &self.run.scenario) else {
             return Vec::new();
         };
-        let goals = scenario.goals();
+        let designs = scenario.search.designs;
+        let Ok(problem) = DesignProblem::new(evaluator, designs, scenario.goals()) else {
+            return Vec::new();
+        };
         let evaluated =
-            |(name, design): &(String, Design)| Baseline::evaluate(name, design, evaluator, &goals);
+            |(name, design): &(String, Design)| Baseline::evaluate(name, design, &problem);
         self.beside.iter().filter_map(evaluated).collect()
     }
 

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::archive::offer;
 use super::error::OptimizeError;
+use super::history::History;
 use super::problem::{Individual, Problem, Variable, VariableKind, admit, evaluate};
 use super::sorting::feasible_front;
 use super::strategy::{
@@ -128,7 +129,7 @@ pub struct Exhaustive {
     step: u64,
     evaluations: u64,
     archive: Vec<Individual>,
-    history: Vec<Record>,
+    history: History,
 }
 
 impl Exhaustive {
@@ -147,7 +148,7 @@ impl Exhaustive {
             step: 0,
             evaluations: 0,
             archive: Vec::new(),
-            history: Vec::new(),
+            history: History::default(),
         })
     }
 
@@ -155,7 +156,7 @@ impl Exhaustive {
         self.config.check(problem)?;
         let points = GridPoints::new(problem, &self.config.steps).points()?;
         check_equal("grid points", self.points, points)?;
-        check_equal("history", self.history.len() as u64, self.step)?;
+        self.history.check(problem, self.step)?;
         check_at_most("archive", self.archive.len() as u64, self.evaluations)?;
         check_at_most("evaluations", self.evaluations, self.passed(self.step))?;
         self.archive.iter().try_for_each(|a| a.check(problem))
@@ -192,12 +193,14 @@ impl Strategy for Exhaustive {
         let answers = evaluate(problem, self.batch(problem)?)?;
         self.evaluations += answers.len() as u64;
         self.step += 1;
+        self.history.learn(&answers);
         for candidate in &answers {
             offer(&mut self.archive, candidate);
         }
         let reference = self.config.hypervolume_reference.as_deref();
-        let record = Record::of_archive(self.progress(), &self.archive, reference);
-        self.history.push(record);
+        let progress = self.progress();
+        self.history
+            .record_archive(progress, &self.archive, reference);
         Ok(())
     }
 
@@ -214,7 +217,11 @@ impl Strategy for Exhaustive {
     }
 
     fn history(&self) -> &[Record] {
-        &self.history
+        self.history.records()
+    }
+
+    fn chosen_reference(&self) -> Option<&[f64]> {
+        self.history.chosen_reference()
     }
 }
 
@@ -254,7 +261,7 @@ mod tests {
             .flat_map(|&n| [0.0, 0.1, 0.2, 0.3].map(|x| vec![n, x]))
             .collect();
         assert_eq!(visited, expected);
-        let counts: Vec<u64> = search.history.iter().map(|r| r.evaluations).collect();
+        let counts: Vec<u64> = search.history().iter().map(|r| r.evaluations).collect();
         assert_eq!(counts, [3, 6, 8]);
     }
 

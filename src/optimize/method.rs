@@ -106,6 +106,10 @@ impl Strategy for Search {
     fn history(&self) -> &[Record] {
         self.strategy().history()
     }
+
+    fn chosen_reference(&self) -> Option<&[f64]> {
+        self.strategy().chosen_reference()
+    }
 }
 
 #[cfg(test)]

@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 use super::archive::offer;
 use super::error::OptimizeError;
 use super::generator::Generator;
+use super::history::History;
 use super::problem::{Individual, Problem, Space, admit, evaluate};
 use super::sorting::{constraint_dominates, crowding_distance, feasible_front, prune_one_by_one};
 use super::strategy::{
@@ -147,7 +148,7 @@ pub struct Mopso {
     iteration: u64,
     swarm: Vec<Particle>,
     archive: Vec<Individual>,
-    history: Vec<Record>,
+    history: History,
 }
 
 impl Mopso {
@@ -169,7 +170,7 @@ impl Mopso {
             iteration: 0,
             swarm: Vec::new(),
             archive: Vec::new(),
-            history: Vec::new(),
+            history: History::default(),
         })
     }
 
@@ -183,7 +184,7 @@ impl Mopso {
         let begun = self.iteration.min(1);
         let swarm = begun * self.config.particles as u64;
         check_equal("swarm", self.swarm.len() as u64, swarm)?;
-        check_equal("history", self.history.len() as u64, self.iteration)?;
+        self.history.check(problem, self.iteration)?;
         let archive = self.archive.len() as u64;
         check_at_most("archive", archive, self.config.archive as u64)?;
         check_equal("archive", archive.min(1), begun)?;
@@ -234,6 +235,7 @@ impl Strategy for Mopso {
         let genome = |(position, _): &(Vec<f64>, Vec<f64>)| admit(problem, position.clone());
         let batch = moves.iter().map(genome).collect::<Result<_, _>>()?;
         let found = evaluate(problem, batch)?;
+        self.history.learn(&found);
         for candidate in &found {
             offer(&mut self.archive, candidate);
         }
@@ -254,8 +256,9 @@ impl Strategy for Mopso {
         }
         self.iteration += 1;
         let reference = self.config.hypervolume_reference.as_deref();
-        let record = Record::of_archive(self.progress(), &self.archive, reference);
-        self.history.push(record);
+        let progress = self.progress();
+        self.history
+            .record_archive(progress, &self.archive, reference);
         Ok(())
     }
 
@@ -272,7 +275,11 @@ impl Strategy for Mopso {
     }
 
     fn history(&self) -> &[Record] {
-        &self.history
+        self.history.records()
+    }
+
+    fn chosen_reference(&self) -> Option<&[f64]> {
+        self.history.chosen_reference()
     }
 }
 

@@ -22,6 +22,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::OptimizeError;
 use super::generator::Generator;
+use super::history::History;
 use super::problem::{Individual, Problem, admit, evaluate};
 use super::sorting::{crowding_distance, feasible_front, non_dominated_sort, prune_one_by_one};
 use super::strategy::{
@@ -98,7 +99,7 @@ pub struct Nsga2 {
     generation: u64,
     evaluations: u64,
     population: Vec<Individual>,
-    history: Vec<Record>,
+    history: History,
 }
 
 impl Nsga2 {
@@ -120,7 +121,7 @@ impl Nsga2 {
             generation: 0,
             evaluations: 0,
             population: Vec::new(),
-            history: Vec::new(),
+            history: History::default(),
         })
     }
 
@@ -152,7 +153,7 @@ impl Nsga2 {
         self.config.check(problem)?;
         let held = self.population.len() as u64;
         check_at_most("population", held, self.config.population as u64)?;
-        check_equal("history", self.history.len() as u64, self.generation)?;
+        self.history.check(problem, self.generation)?;
         let evaluations = self
             .generation
             .saturating_mul(self.config.population as u64);
@@ -222,14 +223,13 @@ impl Strategy for Nsga2 {
         let children = evaluate(problem, self.offspring(problem)?)?;
         self.evaluations += children.len() as u64;
         self.generation += 1;
+        self.history.learn(&children);
         self.population.extend(children);
         select(&mut self.population, self.config.population);
-        self.history.push(Record::new(
-            self.progress(),
-            &self.front(),
-            self.population.iter().filter(|a| a.is_feasible()).count(),
-            self.config.hypervolume_reference.as_deref(),
-        ));
+        let feasible = self.population.iter().filter(|a| a.is_feasible()).count();
+        let (progress, front) = (self.progress(), self.front());
+        let reference = self.config.hypervolume_reference.as_deref();
+        self.history.record(progress, &front, feasible, reference);
         Ok(())
     }
 
@@ -246,7 +246,11 @@ impl Strategy for Nsga2 {
     }
 
     fn history(&self) -> &[Record] {
-        &self.history
+        self.history.records()
+    }
+
+    fn chosen_reference(&self) -> Option<&[f64]> {
+        self.history.chosen_reference()
     }
 }
 

@@ -6,11 +6,10 @@ use serde::{Deserialize, Serialize};
 use super::archive::offer;
 use super::error::OptimizeError;
 use super::generator::Generator;
+use super::history::History;
 use super::problem::{Individual, Problem, admit, evaluate};
 use super::sorting::feasible_front;
-use super::strategy::{
-    Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
-};
+use super::strategy::{Progress, Record, Strategy, check_at_most, check_count, check_objectives};
 
 /// The settings of random search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -55,7 +54,7 @@ pub struct RandomSearch {
     seed: u64,
     step: u64,
     archive: Vec<Individual>,
-    history: Vec<Record>,
+    history: History,
 }
 
 impl RandomSearch {
@@ -76,7 +75,7 @@ impl RandomSearch {
             seed,
             step: 0,
             archive: Vec::new(),
-            history: Vec::new(),
+            history: History::default(),
         })
     }
 
@@ -87,7 +86,7 @@ impl RandomSearch {
 
     fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
-        check_equal("history", self.history.len() as u64, self.step)?;
+        self.history.check(problem, self.step)?;
         let evaluations = self.config.evaluated(self.step);
         check_at_most("archive", self.archive.len() as u64, evaluations)?;
         self.archive.iter().try_for_each(|a| a.check(problem))
@@ -107,13 +106,16 @@ impl Strategy for RandomSearch {
         );
         let draws = (before..after).map(|_| admit(problem, problem.space().draw(&mut generator)));
         let batch = draws.collect::<Result<_, _>>()?;
-        for candidate in evaluate(problem, batch)? {
-            offer(&mut self.archive, &candidate);
+        let found = evaluate(problem, batch)?;
+        self.history.learn(&found);
+        for candidate in &found {
+            offer(&mut self.archive, candidate);
         }
         self.step += 1;
         let reference = self.config.hypervolume_reference.as_deref();
-        let record = Record::of_archive(self.progress(), &self.archive, reference);
-        self.history.push(record);
+        let progress = self.progress();
+        self.history
+            .record_archive(progress, &self.archive, reference);
         Ok(())
     }
 
@@ -130,7 +132,11 @@ impl Strategy for RandomSearch {
     }
 
     fn history(&self) -> &[Record] {
-        &self.history
+        self.history.records()
+    }
+
+    fn chosen_reference(&self) -> Option<&[f64]> {
+        self.history.chosen_reference()
     }
 }
 
@@ -155,10 +161,10 @@ mod tests {
             hypervolume_reference: Some(vec![140.0, 50.0]),
         };
         let search = run(&binh_korn(), &config, 1);
-        let counts: Vec<u64> = search.history.iter().map(|r| r.evaluations).collect();
+        let counts: Vec<u64> = search.history().iter().map(|r| r.evaluations).collect();
         assert_eq!(counts, [30, 60, 90, 100]);
         let volumes: Vec<f64> = search
-            .history
+            .history()
             .iter()
             .filter_map(|r| r.hypervolume)
             .collect();

@@ -32,6 +32,10 @@ pub trait Strategy {
     /// One record per step so far.
     fn history(&self) -> &[Record];
 
+    /// The hypervolume reference chosen from the first step that evaluated anything feasible: per
+    /// objective the worst feasible value plus 10 % of the range.
+    fn chosen_reference(&self) -> Option<&[f64]>;
+
     /// Whether no step is left.
     fn is_done(&self) -> bool {
         let progress = self.progress();
@@ -57,8 +61,12 @@ pub struct Record {
     pub generation: u64,
     /// Designs evaluated so far.
     pub evaluations: u64,
-    /// Hypervolume of the feasible front, where a reference was given.
+    /// Hypervolume of the feasible front, at the reference that was given or, without one, at the
+    /// chosen one, once there is one.
     pub hypervolume: Option<f64>,
+    /// Hypervolume at the chosen reference, while no member dominates the one that was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hypervolume_at_chosen: Option<f64>,
     /// The least feasible value of each objective, where anything is feasible.
     pub ideal: Option<Vec<f64>>,
     /// Members of the feasible front.
@@ -106,6 +114,7 @@ impl Record {
             generation: progress.step,
             evaluations: progress.evaluations,
             hypervolume: reference.map(|reference| hypervolume(&points, reference)),
+            hypervolume_at_chosen: None,
             ideal: points
                 .split_first()
                 .map(|(first, rest)| rest.iter().fold(first.to_vec(), |a, b| least(a, b))),
@@ -119,16 +128,20 @@ impl Record {
         }
     }
 
-    /// Describes a strategy that holds an archive: all of it is the front, unless
-    /// nothing feasible is known.
-    pub(super) fn of_archive(
-        progress: Progress,
-        archive: &[Individual],
-        reference: Option<&[f64]>,
-    ) -> Self {
-        let feasible = archive.iter().filter(|a| a.is_feasible()).count();
-        let front = if feasible > 0 { archive } else { &[] };
-        Self::new(progress, front, feasible, reference)
+    /// The hypervolumes of a history, all at one reference: the one that was given if the last
+    /// front has a member that dominates it, else the chosen one.
+    #[must_use]
+    pub fn volumes(history: &[Self]) -> Vec<Option<f64>> {
+        let last = history.last();
+        let at_chosen = last.is_some_and(|record| record.hypervolume_at_chosen.is_some());
+        let volume = |record: &Self| {
+            if at_chosen {
+                record.hypervolume_at_chosen
+            } else {
+                record.hypervolume
+            }
+        };
+        history.iter().map(volume).collect()
     }
 }
 

@@ -1,21 +1,26 @@
-//! A front against the exact front of a lattice: how good it is, and what it missed.
+//! A front against that of a grid sweep: how good it is, and what it missed.
+//!
+//! The sweep is exact for its grid alone; a search may find better designs between the points.
 
+use super::shown;
+use crate::optimize::{dominates, hypervolume};
 use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
 use crate::search::Quantity;
 
 /// A swept design counts as found when a front member is no worse than it by more than this share
-/// of the exact front's range in every objective: the spacing of thirty members along a front.
+/// of the range of the grid's front in every objective: the spacing of thirty members along a front.
 const FOUND_WITHIN: f64 = 1.0 / 30.0;
 
 impl Certificate {
     /// Holds a front against the result of a sweep of the same problem.
     ///
-    /// The distance of a member is IGD+'s (Ishibuchi et al., EMO 2015): over the exact members, the
-    /// least root of the sum of squares of what it is worse by, each objective in units of the
-    /// exact front's range. It is 0 for a member that no exact member beats.
+    /// Both hypervolumes are at the reference point of the certified front. The distance of a member
+    /// is IGD+'s (Ishibuchi et al., EMO 2015): over the members of the grid's front, the least root of
+    /// the sum of squares of what it is worse by, each objective in units of the range of the grid's
+    /// front. It is 0 for a member that is no worse than one of them.
     #[must_use]
     pub fn new(found: &OptimizeResult, sweep: &OptimizeResult, objectives: &[Quantity]) -> Self {
-        let exact: Vec<Vec<f64>> = sweep
+        let grid: Vec<Vec<f64>> = sweep
             .front
             .iter()
             .map(|m| minimised(m, objectives))
@@ -25,9 +30,9 @@ impl Certificate {
             .iter()
             .map(|m| minimised(m, objectives))
             .collect();
-        let ranges = ranges(&exact, objectives.len());
+        let ranges = ranges(&grid, objectives.len());
         let nearest = |point: &Vec<f64>| {
-            let worse = exact.iter().map(|target| worse_by(point, target, &ranges));
+            let worse = grid.iter().map(|target| worse_by(point, target, &ranges));
             worse
                 .map(|w| w.iter().map(|x| x * x).sum::<f64>().sqrt())
                 .reduce(f64::min)
@@ -39,17 +44,24 @@ impl Certificate {
                     .all(|&worse| worse <= FOUND_WITHIN)
             })
         };
+        let is_beaten = |target: &Vec<f64>| front.iter().any(|point| dominates(point, target));
+        let measured = found.search.hypervolume.measured();
         let missed: Vec<&FrontMember> = sweep
             .front
             .iter()
-            .zip(&exact)
+            .zip(&grid)
             .filter_map(|(member, target)| (!is_found(target)).then_some(member))
             .collect();
         Self {
             evaluations: sweep.search.evaluations,
-            exact_members: exact.len(),
-            exact_hypervolume: sweep.search.hypervolume.value,
-            found_hypervolume: found.search.hypervolume.value,
+            grid_members: grid.len(),
+            grid_hypervolume: measured.as_ref().map(|at| {
+                let pairs = objectives.iter().zip(&at.reference);
+                let reference: Vec<f64> = pairs.map(|(q, x)| q.minimised(*x)).collect();
+                hypervolume(&grid, &reference)
+            }),
+            found_hypervolume: measured.map(|at| at.value),
+            grid_members_dominated: grid.iter().filter(|target| is_beaten(target)).count(),
             distances: front.iter().filter_map(nearest).collect(),
             missed: Missed::of(&missed),
         }
@@ -59,23 +71,31 @@ impl Certificate {
     #[must_use]
     pub fn to_text(&self) -> String {
         let volume =
-            |value: Option<f64>| value.map_or_else(|| "none".to_owned(), |v| format!("{v:.4}"));
+            |value: Option<f64>| value.map_or_else(|| shown::NONE.to_owned(), shown::significant);
         let worst = self.distances.iter().copied().fold(0.0, f64::max);
         let mean = self.distances.iter().sum::<f64>() / self.distances.len().max(1) as f64;
         let mut text = format!(
-            "certificate: a sweep of {} designs has an exact front of {} members, hypervolume {}; found {}\n\
-             distance to the exact front, as a share of its range: mean {:.2} %, worst {:.2} %\n",
+            "certificate: the grid sweep of {} designs has a front of {} members, hypervolume {}; the \
+             search's front {}\n\
+             distance to the grid's front, as a share of its range: mean {:.2} %, worst {:.2} %\n",
             self.evaluations,
-            self.exact_members,
-            volume(self.exact_hypervolume),
+            self.grid_members,
+            volume(self.grid_hypervolume),
             volume(self.found_hypervolume),
             100.0 * mean,
             100.0 * worst,
         );
+        if self.grid_members_dominated > 0 {
+            text += &format!(
+                "the search dominates {} of the {} members of the grid's front, with designs between \
+                 the points of the grid\n",
+                self.grid_members_dominated, self.grid_members
+            );
+        }
         text += &match &self.missed {
-            None => "no part of the exact front was missed\n".to_owned(),
+            None => "no part of the grid's front was missed\n".to_owned(),
             Some(missed) => format!(
-                "missed: {} exact members with planes {} to {}, satellites per plane {} to {}, \
+                "missed: {} members of the grid's front with planes {} to {}, satellites per plane {} to {}, \
                  inclination {} to {} deg, altitude {} to {} km\n",
                 missed.members,
                 missed.planes[0],
@@ -119,7 +139,7 @@ fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {
         .collect()
 }
 
-/// Width of the exact front in each objective; 1 where it has none.
+/// Width of the grid's front in each objective; 1 where it has none.
 fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
     let range = |n: usize| {
         let values = || points.iter().map(|point| point[n]);
@@ -145,11 +165,53 @@ fn worse_by(point: &[f64], target: &[f64], ranges: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::{Hypervolume, SearchSummary, testing};
 
     #[test]
     fn only_what_is_worse_counts() {
         assert_eq!(worse_by(&[1.0, 3.0], &[2.0, 1.0], &[1.0, 4.0]), [0.0, 0.5]);
         assert_eq!(ranges(&[vec![1.0, 5.0], vec![3.0, 5.0]], 2), [2.0, 1.0]);
         assert_eq!(ranges(&[], 1), [1.0]);
+    }
+
+    fn result(points: &[[f64; 2]], reference: [f64; 2]) -> OptimizeResult {
+        let objectives = [Quantity::MeanPdop, Quantity::Satellites];
+        let member = |(n, [a, b]): (usize, &[f64; 2])| FrontMember {
+            objectives: vec![("mean-pdop".to_owned(), *a), ("satellites".to_owned(), *b)],
+            ..testing::member(n + 1, "delta:45:225/15/1@1000")
+        };
+        OptimizeResult {
+            front: points.iter().enumerate().map(member).collect(),
+            search: SearchSummary {
+                hypervolume: Hypervolume::of(points, None, Some(&reference), &objectives),
+                ..testing::summary()
+            },
+            history: Vec::new(),
+            chosen_reference: None,
+        }
+    }
+
+    /// By hand at the search's point (4, 4), whatever the sweep chose: the grid has 2 by 2 and 3 by 1
+    /// with 2 by 1 in common, the search 2.5 by 2.
+    #[test]
+    fn a_search_may_beat_the_grid() {
+        let found = result(&[[1.5, 2.0]], [4.0, 4.0]);
+        let sweep = result(&[[1.0, 3.0], [2.0, 2.0]], [9.0, 9.0]);
+        let certificate =
+            Certificate::new(&found, &sweep, &[Quantity::MeanPdop, Quantity::Satellites]);
+        assert_eq!(certificate.grid_hypervolume, Some(5.0));
+        assert_eq!(certificate.found_hypervolume, Some(5.0));
+        assert_eq!(certificate.grid_members_dominated, 1);
+        assert_eq!(certificate.distances, [0.0]);
+        let text = certificate.to_text();
+        assert!(
+            text.contains("the grid sweep of 900 designs has a front of 2 members"),
+            "{text}"
+        );
+        assert!(
+            text.contains("dominates 1 of the 2 members of the grid's front"),
+            "{text}"
+        );
+        assert!(!text.contains("exact"), "{text}");
     }
 }

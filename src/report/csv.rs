@@ -1,31 +1,36 @@
 //! Results as CSV, with the unit of each column in its header.
 
-use super::{ConstellationResult, ConstellationSummary};
+use super::{ConstellationResult, ConstellationSummary, EvaluateResult};
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
-use crate::run::columns::{cells, fields};
+use crate::run::columns::{cells, fields, optional};
 use crate::run::tables::text;
 use crate::stats::Summary;
 use ::csv::Writer;
 use serde::Serialize;
 use std::io;
 
-/// Designs and their metrics, one a row.
+/// A design and its metrics in one row, with the quantities under constraints that are neither.
 ///
 /// # Errors
 /// Never for a table in memory.
-pub fn metrics_csv<'a>(
-    rows: impl IntoIterator<Item = (&'a DesignSummary, &'a Metrics)>,
-) -> io::Result<String> {
+pub fn metrics_csv(result: &EvaluateResult) -> io::Result<String> {
     let (of_design, of_metrics) = (fields::<DesignSummary>(), fields::<Metrics>());
-    let mut writer = Writer::from_writer(Vec::new());
-    writer.write_record(of_design.iter().chain(of_metrics))?;
-    for (design, metrics) in rows {
-        let mut row = cells(design, of_design)?;
-        row.extend(cells(metrics, of_metrics)?);
-        writer.write_record(row)?;
+    let columns = of_design.iter().chain(of_metrics).copied();
+    let mut header: Vec<String> = columns.map(str::to_owned).collect();
+    let mut row = cells(&result.design, of_design)?;
+    row.extend(cells(&result.metrics, of_metrics)?);
+    for check in &result.constraints {
+        let column = check.quantity.replace('-', "_");
+        if !header.contains(&column) {
+            header.push(column);
+            row.push(optional(check.value));
+        }
     }
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(header)?;
+    writer.write_record(row)?;
     text(writer)
 }
 

@@ -33,7 +33,10 @@ pub fn diagnose(
     }
     // A sweep makes its way through a grid; how fast its front grows says nothing.
     if !matches!(search, Search::Exhaustive(_)) {
-        found.extend(progress::of_history(search.history()));
+        found.extend(progress::of_history(
+            search.history(),
+            &problem.goals().objectives,
+        ));
     }
     found
 }

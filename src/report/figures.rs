@@ -10,9 +10,10 @@ mod front;
 mod map;
 mod table;
 
+pub use super::Baseline;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
-pub use front::{Baseline, NamedFront, pareto};
+pub use front::{NamedFront, pareto};
 pub use map::map;
 
 pub(in crate::report) use curves::at_epoch;

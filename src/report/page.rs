@@ -9,7 +9,8 @@ mod pack;
 mod payload;
 mod words;
 
-use super::figures::{Baseline, NamedFront};
+use super::Baseline;
+use super::figures::NamedFront;
 use super::profile::Profile;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
@@ -71,6 +72,7 @@ struct Html<'a> {
     members: Vec<MemberRow>,
     members_left_out: usize,
     objectives: Vec<String>,
+    constraints: Vec<String>,
     checks: Vec<CheckRow>,
     validated: Option<String>,
     conventions: Vec<(&'static str, String)>,
@@ -113,6 +115,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         members: words::members(page.run, MOST_ROWS),
         members_left_out: members.len().saturating_sub(MOST_ROWS),
         objectives: page.run.objective_names(),
+        constraints: words::further(page.run),
         checks: words::checks(page.run),
         validated: words::validated(page.run),
         conventions: words::conventions(page.run),

@@ -1,15 +1,15 @@
 //! The objects that `--format json` prints, made from what was computed.
 
-use super::{diagnose, dominated_by};
+use super::{Baseline, diagnose, dominated_by, shown};
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
     Certificate, DesignSummary, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
-    SearchSummary, VERSION,
+    SearchSummary, VERSION, VolumeAt,
 };
 use crate::scenario::Scenario;
-use crate::search::{DesignProblem, Quantity};
+use crate::search::{Constraint, DesignProblem, Goals, Quantity};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -23,10 +23,45 @@ pub struct EvaluateResult {
     /// All dilutions of precision, when they were asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
+    /// The constraints of the scenario, and whether the design keeps them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<ConstraintCheck>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
     pub version: &'static str,
+}
+
+/// A constraint of the scenario, held against a design.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstraintCheck {
+    /// The constraint as it is written: `max-pdop <= 2.5`.
+    pub constraint: String,
+    /// The quantity under it.
+    pub quantity: String,
+    /// Its value; `None` where it has none.
+    pub value: Option<f64>,
+    /// Whether the design keeps it.
+    pub met: bool,
+}
+
+impl ConstraintCheck {
+    /// The constraints of `goals` held against a design.
+    #[must_use]
+    pub fn of(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<Self> {
+        let check = |constraint: &Constraint| {
+            let value = constraint
+                .quantity
+                .value(design, metrics, &goals.launch_cost);
+            Self {
+                constraint: constraint.to_string(),
+                quantity: constraint.quantity.to_string(),
+                value,
+                met: constraint.violation(value, metrics.solved_fraction) == 0.0,
+            }
+        };
+        goals.constraints.iter().map(check).collect()
+    }
 }
 
 impl EvaluateResult {
@@ -36,9 +71,11 @@ impl EvaluateResult {
         design: &Design,
         metrics: Metrics,
         dops: Option<DopStatistics>,
+        goals: &Goals,
         scenario: ScenarioStamp,
     ) -> Self {
         Self {
+            constraints: ConstraintCheck::of(design, &metrics, goals),
             design: design.into(),
             metrics,
             dops,
@@ -93,17 +130,28 @@ impl OptimizeResult {
             .collect();
         let front = front_members(problem, &individuals, &points);
         let progress = search.progress();
-        let reference = scenario.minimised_reference();
+        let objectives = &scenario.objectives.minimize;
+        let written = scenario.minimised_reference();
+        let volume = Hypervolume::of(
+            &points,
+            written.as_deref(),
+            search.chosen_reference(),
+            objectives,
+        );
+        let mut diagnostics = diagnose(problem, search, &front, &individuals);
+        diagnostics.extend(shown::unused_reference(&volume));
+        let reference = scenario.reference_design().ok();
+        let reference =
+            reference.and_then(|design| Baseline::evaluate("reference design", &design, problem));
+        let pick = front.iter().find(|member| member.chosen);
+        diagnostics.extend(reference.zip(pick).and_then(|(r, pick)| r.diagnose(pick)));
         let summary = SearchSummary {
             evaluations: progress.evaluations,
-            hypervolume: Hypervolume {
-                value: reference.map(|reference| hypervolume(&points, &reference)),
-                reference: scenario.objectives.hypervolume_reference.clone(),
-            },
+            hypervolume: volume,
             seed: scenario.optimizer.seed,
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
-            diagnostics: diagnose(problem, search, &front, &individuals),
+            diagnostics,
             certificate: None,
             scenario: stamp,
             version: VERSION.to_owned(),
@@ -112,6 +160,7 @@ impl OptimizeResult {
             front,
             search: summary,
             history: search.history().to_vec(),
+            chosen_reference: search.chosen_reference().map(<[f64]>::to_vec),
         }
     }
 
@@ -128,6 +177,45 @@ impl OptimizeResult {
             .diagnostics
             .extend(dominated_by(&points(self), &points(sweep)));
         self.search.certificate = Some(Certificate::new(self, sweep, objectives));
+    }
+}
+
+impl Hypervolume {
+    /// The volume of a front, points and references as they are minimised: at the written reference
+    /// or, where there is none, or none of use, at the chosen one.
+    pub(super) fn of<P: AsRef<[f64]>>(
+        points: &[P],
+        written: Option<&[f64]>,
+        chosen: Option<&[f64]>,
+        objectives: &[Quantity],
+    ) -> Self {
+        let own = |reference: &[f64]| -> Vec<f64> {
+            let pairs = objectives.iter().zip(reference);
+            pairs.map(|(q, x)| q.minimised(*x)).collect()
+        };
+        let volume =
+            |reference: &[f64]| Some(hypervolume(points, reference)).filter(|volume| *volume > 0.0);
+        let Some(written) = written else {
+            return Self {
+                value: chosen.and_then(volume),
+                reference: chosen.map(own),
+                chosen: chosen.is_some(),
+                at_chosen: None,
+            };
+        };
+        let value = volume(written);
+        let at_chosen = || {
+            Some(VolumeAt {
+                value: volume(chosen?)?,
+                reference: own(chosen?),
+            })
+        };
+        Self {
+            value,
+            reference: Some(own(written)),
+            chosen: false,
+            at_chosen: if value.is_none() { at_chosen() } else { None },
+        }
     }
 }
 
@@ -152,20 +240,28 @@ fn front_members(
             .map(|(q, &v)| (q.to_string(), q.minimised(v)))
             .collect()
     };
+    let member = |(n, evaluated): (usize, Option<(Design, Metrics)>)| {
+        let (design, metrics) = evaluated?;
+        Some(FrontMember {
+            index: n + 1,
+            design: (&design).into(),
+            objectives: objectives(&individuals[n]),
+            constraints: constrained(&design, &metrics, problem.goals()),
+            membership: memberships.minimum[n],
+            membership_sum: memberships.share[n],
+            chosen: chosen == Some(n),
+            metrics,
+        })
+    };
     evaluated
         .into_iter()
         .enumerate()
-        .filter_map(|(n, evaluated)| {
-            let (design, metrics) = evaluated?;
-            Some(FrontMember {
-                index: n + 1,
-                design: (&design).into(),
-                metrics,
-                objectives: objectives(&individuals[n]),
-                membership: memberships.minimum[n],
-                membership_sum: memberships.share[n],
-                chosen: chosen == Some(n),
-            })
-        })
+        .filter_map(member)
         .collect()
+}
+
+/// The quantities under constraints that are no objectives, by name.
+fn constrained(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<(String, Option<f64>)> {
+    let value = |q: Quantity| (q.to_string(), q.value(design, metrics, &goals.launch_cost));
+    goals.constrained().into_iter().map(value).collect()
 }

@@ -78,6 +78,10 @@ pub struct FrontMember {
     /// Value of each objective by name, in its own direction.
     #[serde(with = "by_name")]
     pub objectives: Vec<(String, f64)>,
+    /// Value of each quantity under a constraint that is no objective, by name; `None` where it
+    /// has none.
+    #[serde(default, with = "by_name", skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<(String, Option<f64>)>,
     /// Fuzzy membership: the least over the objectives.
     pub membership: f64,
     /// Fuzzy membership: the normalised sum over the objectives.
@@ -94,6 +98,13 @@ impl FrontMember {
         found.map(|(_, value)| *value)
     }
 
+    /// The quantity of an objective or a constraint, by its name.
+    #[must_use]
+    pub fn quantity(&self, name: &str) -> Option<f64> {
+        let constrained = || self.constraints.iter().find(|(n, _)| n == name)?.1;
+        self.objective(name).or_else(constrained)
+    }
+
     /// The objectives as the optimiser minimises them; one of another name is taken as it is.
     #[must_use]
     pub fn minimised(&self) -> Vec<f64> {
@@ -104,23 +115,23 @@ impl FrontMember {
     }
 }
 
-/// Objectives as a map from name to value.
+/// Quantities as a map from name to value.
 mod by_name {
     use serde::de::{Deserialize, Deserializer};
-    use serde::ser::Serializer;
+    use serde::ser::{Serialize, Serializer};
     use std::collections::BTreeMap;
 
-    pub(super) fn serialize<S: Serializer>(
-        pairs: &[(String, f64)],
+    pub(super) fn serialize<V: Serialize, S: Serializer>(
+        pairs: &[(String, V)],
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
         serializer.collect_map(pairs.iter().map(|(name, value)| (name, value)))
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+    pub(super) fn deserialize<'de, V: Deserialize<'de>, D: Deserializer<'de>>(
         deserializer: D,
-    ) -> Result<Vec<(String, f64)>, D::Error> {
-        let map = BTreeMap::<String, f64>::deserialize(deserializer)?;
+    ) -> Result<Vec<(String, V)>, D::Error> {
+        let map = BTreeMap::<String, V>::deserialize(deserializer)?;
         Ok(map.into_iter().collect())
     }
 }
@@ -128,10 +139,43 @@ mod by_name {
 /// The volume that a front dominates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hypervolume {
-    /// The volume, in the product of the objectives' units; `None` without a reference point.
+    /// The volume, in the product of the objectives' units; `None` where no member dominates the
+    /// reference point, and without one.
     pub value: Option<f64>,
-    /// The reference point, one coordinate per objective.
+    /// The reference point, one coordinate per objective, each in its own direction: that of the
+    /// scenario or, where it has none, the one that the search chose.
     pub reference: Option<Vec<f64>>,
+    /// Whether the search chose the reference point.
+    #[serde(default)]
+    pub chosen: bool,
+    /// The volume at the reference point that the search chose, where no member dominates that of
+    /// the scenario.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_chosen: Option<VolumeAt>,
+}
+
+/// A volume and its reference point.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VolumeAt {
+    /// The volume, in the product of the objectives' units.
+    pub value: f64,
+    /// The reference point, one coordinate per objective, each in its own direction.
+    pub reference: Vec<f64>,
+}
+
+impl Hypervolume {
+    /// What measures the front: the volume at the reference point of the scenario, or else at the
+    /// chosen one.
+    #[must_use]
+    pub fn measured(&self) -> Option<VolumeAt> {
+        let here = || {
+            Some(VolumeAt {
+                value: self.value?,
+                reference: self.reference.clone()?,
+            })
+        };
+        self.at_chosen.clone().or_else(here)
+    }
 }
 
 /// How a search went: what a front comes with.
@@ -170,6 +214,10 @@ pub struct OptimizeResult {
     /// One record per generation; goes to the history files.
     #[serde(skip)]
     pub history: Vec<Record>,
+    /// The hypervolume reference that the search chose, objectives as they are minimised; is kept
+    /// in the checkpoint.
+    #[serde(skip)]
+    pub chosen_reference: Option<Vec<f64>>,
 }
 
 impl OptimizeResult {
@@ -185,22 +233,25 @@ impl OptimizeResult {
 pub struct Certificate {
     /// Designs that the sweep evaluated.
     pub evaluations: u64,
-    /// Members of the exact front of the lattice.
-    pub exact_members: usize,
-    /// Hypervolume of the exact front of the lattice.
-    pub exact_hypervolume: Option<f64>,
+    /// Members of the front of the grid.
+    pub grid_members: usize,
+    /// Hypervolume of the front of the grid, at the reference point of the certified front.
+    pub grid_hypervolume: Option<f64>,
     /// Hypervolume of the certified front.
     pub found_hypervolume: Option<f64>,
-    /// Distance of each front member to the exact front, in the order of the front.
+    /// Members of the grid's front that the certified front dominates: it holds designs between
+    /// the points of the grid.
+    pub grid_members_dominated: usize,
+    /// Distance of each front member to the front of the grid, in the order of the front.
     pub distances: Vec<f64>,
-    /// The exact members that no front member comes near to, if any.
+    /// The members of the grid's front that no front member comes near to, if any.
     pub missed: Option<Missed>,
 }
 
-/// A part of the exact front that a search did not find, by the ranges of its designs.
+/// A part of the grid's front that a search did not find, by the ranges of its designs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Missed {
-    /// Exact members that were not found.
+    /// Members that were not found.
     pub members: usize,
     /// Planes, lowest and highest.
     pub planes: [usize; 2],

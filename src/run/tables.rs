@@ -1,39 +1,67 @@
 //! The tables of a run, with the unit of each column in its header.
 
 use super::columns::{cells, fields, optional};
-use super::{DesignSummary, FrontMember, OptimizeResult};
+use super::{DesignSummary, FrontMember};
 use crate::evaluate::Metrics;
 use crate::optimize::Record;
 use csv::Writer;
 use std::io;
 
-/// The front of a search, one member a row: its fields, those of its design and metrics among them.
+/// The front of a search, one member a row: its fields, those of its design and metrics among
+/// them, and the objectives and quantities under constraints that are neither.
 ///
 /// # Errors
 /// Never for a table in memory.
-pub fn front_csv(result: &OptimizeResult) -> io::Result<String> {
+pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
+    let further = further_quantities(front);
     let header = fields::<FrontMember>().iter().flat_map(|name| match *name {
-        "design" => fields::<DesignSummary>(),
-        "metrics" => fields::<Metrics>(),
-        // Objectives are metrics by another name.
-        "objectives" => &[],
-        _ => std::slice::from_ref(name),
+        "design" => fields::<DesignSummary>()
+            .iter()
+            .map(|n| column(n))
+            .collect(),
+        "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
+        "objectives" => further.iter().map(|name| column(name)).collect(),
+        "constraints" => Vec::new(),
+        _ => vec![column(name)],
     });
     writer.write_record(header)?;
-    for member in &result.front {
+    for member in front {
         let mut row = Vec::new();
         for name in fields::<FrontMember>() {
             row.extend(match *name {
                 "design" => cells(&member.design, fields::<DesignSummary>())?,
                 "metrics" => cells(&member.metrics, fields::<Metrics>())?,
-                "objectives" => Vec::new(),
+                "objectives" => {
+                    let values = further.iter().map(|name| member.quantity(name));
+                    values.map(optional).collect()
+                }
+                "constraints" => Vec::new(),
                 _ => cells(member, &[name])?,
             });
         }
         writer.write_record(row)?;
     }
     text(writer)
+}
+
+/// The name of a quantity as a column.
+fn column(name: &str) -> String {
+    name.replace('-', "_")
+}
+
+/// Objectives and quantities under constraints that are no columns of the design or the metrics.
+fn further_quantities(front: &[FrontMember]) -> Vec<String> {
+    let columns = [fields::<DesignSummary>(), fields::<Metrics>()].concat();
+    let first = front.first().into_iter();
+    let names = first.flat_map(|member| {
+        let objectives = member.objectives.iter().map(|(name, _)| name);
+        objectives.chain(member.constraints.iter().map(|(name, _)| name))
+    });
+    names
+        .filter(|name| !columns.contains(&column(name).as_str()))
+        .cloned()
+        .collect()
 }
 
 /// The generations of a search, one a row; `best_<objective>` as the optimiser minimises it.

@@ -25,6 +25,7 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
             j_cost: None,
         },
         objectives: Vec::new(),
+        constraints: Vec::new(),
         membership: 0.5,
         membership_sum: 0.5,
         chosen: false,
@@ -38,6 +39,8 @@ pub(crate) fn summary() -> SearchSummary {
         hypervolume: Hypervolume {
             value: Some(0.6),
             reference: Some(vec![2.0, 22.0]),
+            chosen: false,
+            at_chosen: None,
         },
         seed: 7,
         algorithm: "nsga2".to_owned(),

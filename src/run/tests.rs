@@ -28,6 +28,7 @@ fn front_json() -> Value {
         ],
         search: testing::summary(),
         history: Vec::new(),
+        chosen_reference: None,
     };
     let mut value = serde_json::to_value(result).unwrap();
     value["front"][3]["index"] = "four".into();
@@ -83,6 +84,7 @@ fn results_are_read_back_as_they_were_written() {
         front: vec![testing::member(1, "delta:45:225/15/1@1000")],
         search: testing::summary(),
         history: Vec::new(),
+        chosen_reference: None,
     };
     let text = serde_json::to_string_pretty(&result).unwrap();
     let read = OptimizeResult::read(text.as_bytes()).unwrap();

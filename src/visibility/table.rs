@@ -88,6 +88,12 @@ impl MaskTable {
         Ok(Self { vertices })
     }
 
+    /// The vertices (azimuth, mask), degrees; azimuths increase from 0 to 360.
+    #[must_use]
+    pub fn vertices(&self) -> &[(f64, f64)] {
+        &self.vertices
+    }
+
     /// The mask at an azimuth from 0 to 360 degrees, degrees.
     #[must_use]
     pub fn degrees_at(&self, azimuth_deg: f64) -> f64 {

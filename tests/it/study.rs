@@ -89,7 +89,7 @@ fn a_front_is_certified_by_a_sweep() {
     );
     let certificate = &value["certificate"];
     let number = |name: &str| certificate[name].as_f64().unwrap();
-    assert!(number("exact_hypervolume") > number("found_hypervolume"));
+    assert!(number("grid_hypervolume") > number("found_hypervolume"));
     let distances = certificate["distances"].as_array().unwrap();
     assert_eq!(distances.len(), value["front"].as_array().unwrap().len());
     assert!(
@@ -101,6 +101,142 @@ fn a_front_is_certified_by_a_sweep() {
     // The sweep is a run of its own, which a second certificate takes up again.
     assert!(place.join("random-sweep/front.json").exists());
     assert_eq!(ran(place, &optimize(&certified)).stdout, random.stdout);
+}
+
+/// Without a reference, and with one that nothing dominates: front, history, seeds, certificate and a
+/// resumed search measure at the point that the search chose.
+#[test]
+fn a_search_chooses_its_reference_and_keeps_it() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let minimize = "objectives.minimize=[\"mean-visible\", \"satellites\", \"launch-cost\"]";
+    let json = |further: &[&str]| -> Value {
+        let common = ["--force", "--format", "json", "--set", minimize];
+        let ran = ran(place, &optimize(&[&common[..], further].concat()));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let last = |run: &str| -> Value {
+        let text = fs::read(place.join(run).join("history.json")).unwrap();
+        let history: Vec<Value> = serde_json::from_slice(&text).unwrap();
+        history.last().unwrap().clone()
+    };
+
+    let free = json(&["--out", "free"]);
+    let (volume, at) = (
+        &free["hypervolume"]["value"],
+        &free["hypervolume"]["reference"],
+    );
+    assert!(volume.as_f64().unwrap() > 0.0);
+    assert_eq!(free["hypervolume"]["chosen"], true);
+    assert_eq!(&last("free")["hypervolume"], volume);
+
+    let written = "objectives.hypervolume-reference=[1e6, 1, 1]";
+    let useless = json(&["--out", "useless", "--set", written]);
+    let told = &useless["hypervolume"];
+    assert!(told["value"].is_null() && told["reference"][1] == 1.0);
+    assert_eq!(
+        (&told["at_chosen"]["value"], &told["at_chosen"]["reference"]),
+        (volume, at)
+    );
+    assert_eq!(&last("useless")["hypervolume_at_chosen"], volume);
+    assert!(codes(&useless).contains(&"reference-not-dominated"));
+
+    // Seven generations at once, and as many after a stop.
+    let seven = ["--set", "optimizer.generations=7"];
+    let longer = json(&[&["--out", "longer"], &seven[..]].concat());
+    let resumed = json(&[&["--out", "free", "--resume"], &seven[..]].concat());
+    assert_eq!(longer["hypervolume"], resumed["hypervolume"]);
+    assert_eq!(&longer["hypervolume"]["reference"], at);
+
+    let steps = [
+        "search.altitude-step-km=300",
+        "search.inclination-step-deg=5",
+    ];
+    let seeds = json(&[
+        "--out",
+        "seeds",
+        "--seeds",
+        "2",
+        "--certify",
+        "--set",
+        steps[0],
+        "--set",
+        steps[1],
+    ]);
+    let certificate = &seeds["certificate"];
+    assert_eq!(
+        seeds["hypervolume"]["value"],
+        seeds["seeds"][0]["hypervolume"]
+    );
+    assert_eq!(
+        seeds["hypervolume"]["value"],
+        certificate["found_hypervolume"]
+    );
+    assert!(certificate["grid_hypervolume"].as_f64().unwrap() > 0.0);
+    assert!(seeds["hypervolume_spread"]["mean"].is_number());
+    let joint = seeds["joint_front"].as_array().unwrap();
+    assert!(joint.iter().any(|member| member["seed"] == 2), "{joint:?}");
+    let table = fs::read_to_string(place.join("seeds/joint-front.csv")).unwrap();
+    assert_eq!(table.lines().count(), joint.len() + 1);
+    assert!(
+        table.lines().next().unwrap().contains(",launch_cost,"),
+        "{table}"
+    );
+}
+
+/// Beside objectives that do not show it, a quantity under a constraint is in every output.
+#[test]
+fn a_constrained_quantity_is_in_every_output() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let sets = [
+        "--set",
+        "objectives.minimize=[\"satellites\"]",
+        "--set",
+        "objectives.constraints=[\"launch-cost <= 400\", \"mean-visible >= 0.1\"]",
+    ];
+    let output = |format: &str| {
+        let further = [&["--force", "--out", "run", "--format", format], &sets[..]].concat();
+        let ran = ran(place, &optimize(&further));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        ran.stdout
+    };
+    let value: Value = serde_json::from_str(&output("json")).unwrap();
+    let costs = &value["front"][0]["constraints"];
+    assert!(costs["launch-cost"].as_f64().unwrap() <= 400.0);
+    assert!(costs["mean-visible"].as_f64().unwrap() >= 0.1);
+    assert!(output("text").contains("J_cost  launch-cost  membership"));
+    assert!(output("csv").contains("launch_cost"));
+    let evaluate = |format: &str| {
+        let mut arguments = vec![
+            "evaluate",
+            "--design",
+            "delta:55:182/13/1@925",
+            "--format",
+            format,
+        ];
+        arguments.extend(["--set", "time.step-s=7200", "--set", "region.step-deg=20"]);
+        arguments.extend(sets);
+        ran(place, &arguments).stdout
+    };
+    let csv = evaluate("csv");
+    // 182 (1 + 0.2 0.925) + 5 13.
+    assert!(
+        csv.contains(",launch_cost") && csv.contains(",280.67"),
+        "{csv}"
+    );
+    let value: Value = serde_json::from_str(&evaluate("json")).unwrap();
+    assert_eq!(value["constraints"][1]["constraint"], "mean-visible >= 0.1");
+    assert_eq!(value["constraints"][1]["met"], true);
+    let text = evaluate("text");
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("launch-cost <= 400"));
+    assert!(
+        line.is_some_and(|line| line.ends_with("280.67  met")),
+        "{text}"
+    );
 }
 
 #[test]

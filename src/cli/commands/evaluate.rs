@@ -8,8 +8,8 @@ use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
 use crate::exchange::import::SatelliteFilter;
 use crate::report::{
-    Align, ConstellationResult, ConstellationSummary, EvaluateResult, Table, constellation_csv,
-    dops_csv, metrics_csv, records_csv,
+    Align, ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult, Table,
+    constellation_csv, dops_csv, metrics_csv, records_csv, shown,
 };
 use crate::run::VERSION;
 use anyhow::Result;
@@ -47,11 +47,19 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate(design)?;
     let dops = further(args, &evaluator, &ephemeris)?;
-    let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
-    let csv = || metrics_csv([(&result.design, &result.metrics)]);
+    let result = EvaluateResult::new(
+        design,
+        metrics,
+        dops,
+        &study.scenario.goals(),
+        study.stamp()?,
+    );
+    let csv = || metrics_csv(&result);
     let notation = &result.design.notation;
     let dops = result.dops.as_ref();
-    print(args, study, notation, &result.metrics, dops, &result, csv)
+    let constraints = constraint_lines(&result.constraints);
+    let text = text(study, notation, &result.metrics, dops) + &constraints;
+    print(args, &text, dops, &result, csv)
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
@@ -93,9 +101,8 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         result.constellation.name, result.constellation.satellites, result.constellation.content
     );
     let dops = result.dops.as_ref();
-    print(args, study, &title, &result.metrics, dops, &result, || {
-        constellation_csv(&result)
-    })
+    let text = text(study, &title, &result.metrics, dops);
+    print(args, &text, dops, &result, || constellation_csv(&result))
 }
 
 /// All dilutions and the series, as far as they were asked for.
@@ -113,15 +120,13 @@ fn further(
 
 fn print(
     args: &EvaluateArgs,
-    study: &Study,
-    title: &str,
-    metrics: &Metrics,
+    text: &str,
     dops: Option<&DopStatistics>,
     result: &impl Serialize,
     csv: impl Fn() -> std::io::Result<String>,
 ) -> Result<()> {
     match args.format {
-        OutputFormat::Text => output::result(&text(study, title, metrics, dops)),
+        OutputFormat::Text => output::result(text),
         OutputFormat::Json => output::result(&serde_json::to_string_pretty(result)?),
         OutputFormat::Csv => {
             output::result(&csv()?)?;
@@ -200,6 +205,24 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
         scenario.name,
         table.to_text()
     )
+}
+
+/// The constraints of the scenario, one a line: the value, and whether it keeps the bound.
+fn constraint_lines(checks: &[ConstraintCheck]) -> String {
+    if checks.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&[
+        ("constraint", Align::Left),
+        ("value", Align::Right),
+        ("", Align::Left),
+    ]);
+    for check in checks {
+        let verdict = if check.met { "met" } else { "violated" };
+        let value = shown::named(&check.quantity, check.value);
+        table.row([check.constraint.clone(), value, verdict.to_owned()]);
+    }
+    format!("\n{}", table.to_text())
 }
 
 fn dops_table(dops: &DopStatistics) -> String {

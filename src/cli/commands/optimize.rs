@@ -9,7 +9,8 @@ use crate::cli::study::{Study, read_manifest};
 use crate::cli::{Status, chart, coincidence, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
-use crate::report::{Align, Table};
+use crate::report::front_table::front_table;
+use crate::report::shown;
 use crate::run::inputs::InputError;
 use crate::run::{FrontMember, OptimizeResult, front_csv};
 use crate::scenario::Algorithm;
@@ -89,7 +90,7 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     output::result(&match args.format {
         OutputFormat::Text => text(result, &scenario.name),
         OutputFormat::Json => serde_json::to_string_pretty(result)?,
-        OutputFormat::Csv => front_csv(result)?,
+        OutputFormat::Csv => front_csv(&result.front)?,
     })?;
     let shown = out.display().to_string();
     if args.report {
@@ -253,29 +254,12 @@ pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>> {
 }
 
 pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
-    let right = Align::Right;
-    let mut table = Table::new(&[
-        ("", Align::Left),
-        ("#", right),
-        ("design", Align::Left),
-        ("T", right),
-        ("i (deg)", right),
-        ("h (km)", right),
-        ("N visible", right),
-        ("E[PDOP]", right),
-        ("CVaR", right),
-        ("max PDOP", right),
-        ("J_pos", right),
-        ("J_cost", right),
-        ("membership", right),
-    ]);
-    for member in &result.front {
-        table.row(row(member));
-    }
+    let members = result.front.iter();
+    let table = front_table("#", members.map(|m| (m.index.to_string(), m)));
     let [done, of] = result.search.generations;
     let mut text = format!(
-        "Pareto set of scenario {scenario}: {} designs, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
-        result.front.len(),
+        "Pareto set of scenario {scenario}: {}, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
+        shown::counted(result.front.len(), "design"),
         result.search.evaluations,
         result.search.algorithm,
         result.search.seed,
@@ -284,17 +268,14 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     if let Some(chart) = chart::front(result) {
         text += &format!("\n{chart}");
     }
-    if let (Some(value), Some(reference)) = (
-        result.search.hypervolume.value,
-        &result.search.hypervolume.reference,
-    ) {
-        let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
-        text += &format!("\nhypervolume {value:.4} at ({})\n", at.join(", "));
+    if let Some(volume) = shown::hypervolume(&result.search.hypervolume) {
+        text += &format!("\n{volume}\n");
     }
     if let Some(chosen) = result.chosen() {
         text += &format!(
-            "* chosen by fuzzy decision: {}, the best worst-case membership ({:.3}) over the objectives\n",
-            chosen.design.notation, chosen.membership
+            "* chosen by fuzzy decision: {}, the best worst-case membership ({}) over the objectives\n",
+            chosen.design.notation,
+            shown::membership(chosen.membership)
         );
     }
     text += &other_picks(result);
@@ -327,26 +308,6 @@ fn other_picks(result: &OptimizeResult) -> String {
         }
     }
     text
-}
-
-fn row(member: &FrontMember) -> Vec<String> {
-    let metrics = &member.metrics;
-    let number = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.4}"));
-    vec![
-        if member.chosen { "*" } else { "" }.to_owned(),
-        member.index.to_string(),
-        member.design.notation.clone(),
-        member.design.satellites.to_string(),
-        format!("{:.2}", member.design.inclination_deg),
-        format!("{:.1}", member.design.altitude_km),
-        format!("{:.3}", metrics.mean_visible),
-        number(metrics.mean_pdop),
-        number(metrics.cvar_pdop),
-        number(metrics.max_pdop),
-        number(metrics.j_pos),
-        number(metrics.j_cost),
-        format!("{:.3}", member.membership),
-    ]
 }
 
 fn hint_what_next(result: &OptimizeResult, out: &str) {

@@ -386,7 +386,7 @@ fn a_damaged_checkpoint_is_refused_before_anything_is_evaluated() {
         "the checkpoint does not match: population is 0, expected 1"
     );
     assert_eq!(
-        refused(|s| s.history.clear()),
+        refused(|s| s.history = History::default()),
         "the checkpoint does not match: history is 0, expected 1"
     );
     assert_eq!(

@@ -4,6 +4,7 @@ use super::listed;
 use crate::optimize::{Individual, Problem};
 use crate::run::Diagnostic;
 use crate::search::{DesignProblem, Quantity};
+use rayon::prelude::*;
 
 /// Relative change of an objective, over the whole interval of a variable, below which it does
 /// not depend on it in practice.
@@ -12,27 +13,22 @@ const NEGLIGIBLE: f64 = 1e-3;
 /// One variable moved to both ends of its interval, all others as chosen.
 struct Variation {
     variable: String,
-    /// Relative change of each objective.
+    /// Relative change of each watched quantity.
     changes: Vec<f64>,
 }
 
-/// Objectives that some variables leave as they are, and variables that none depends on.
+/// Objectives that some variables leave as they are, variables that no objective depends on but a
+/// constraint does, and variables that nothing depends on.
 pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> Vec<Diagnostic> {
-    let variations = variations(problem, chosen);
-    let mut found = Vec::new();
-    let idle = |v: &&Variation| v.changes.iter().all(|change| *change < NEGLIGIBLE);
-    for variation in variations.iter().filter(idle) {
-        let name = &variation.variable;
-        found.push(Diagnostic::new(
-            &format!("idle:{name}"),
-            format!(
-                "no objective depends on {name}: over its whole interval, the rest as chosen, none \
-                 changes by {} %",
-                100.0 * NEGLIGIBLE
-            ),
-        ));
-    }
-    for (m, objective) in problem.goals().objectives.iter().enumerate() {
+    let goals = problem.goals();
+    let constrained = goals.constrained();
+    let watched = [goals.objectives.as_slice(), &constrained].concat();
+    let variations = variations(problem, chosen, &watched);
+    let mut found: Vec<Diagnostic> = variations
+        .iter()
+        .filter_map(|variation| without_objective(variation, goals.objectives.len(), &constrained))
+        .collect();
+    for (m, objective) in goals.objectives.iter().enumerate() {
         // What is counted or computed from few variables by definition is not a discovery.
         if matches!(
             objective,
@@ -40,9 +36,10 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         ) {
             continue;
         }
+        let told = |v: &Variation| moved(&v.changes[..goals.objectives.len()]);
         let still = variations
             .iter()
-            .filter(|v| !idle(v) && v.changes[m] < NEGLIGIBLE);
+            .filter(|v| told(v) && v.changes[m] < NEGLIGIBLE);
         let names: Vec<&str> = still.map(|v| v.variable.as_str()).collect();
         if names.is_empty() {
             continue;
@@ -61,6 +58,56 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
     found
 }
 
+/// Whether one of the changes counts.
+fn moved(changes: &[f64]) -> bool {
+    changes.iter().any(|change| *change >= NEGLIGIBLE)
+}
+
+/// What to say of a variable that no objective depends on; of the changes the objectives come first,
+/// then the quantities under constraints.
+fn without_objective(
+    variation: &Variation,
+    objectives: usize,
+    constrained: &[Quantity],
+) -> Option<Diagnostic> {
+    let (of_objectives, of_constraints) = variation.changes.split_at(objectives);
+    if moved(of_objectives) {
+        return None;
+    }
+    let name = &variation.variable;
+    let percent = 100.0 * NEGLIGIBLE;
+    let bound: Vec<String> = constrained
+        .iter()
+        .zip(of_constraints)
+        .filter(|(_, change)| **change >= NEGLIGIBLE)
+        .map(|(quantity, _)| quantity.to_string())
+        .collect();
+    if bound.is_empty() {
+        let none = if constrained.is_empty() {
+            "no objective depends"
+        } else {
+            "no objective and no constraint depends"
+        };
+        return Some(Diagnostic::new(
+            &format!("idle:{name}"),
+            format!(
+                "{none} on {name}: over its whole interval, the rest as chosen, none changes by \
+                 {percent} %"
+            ),
+        ));
+    }
+    let bound: Vec<&str> = bound.iter().map(String::as_str).collect();
+    Some(Diagnostic::new(
+        &format!("only-constrained:{name}"),
+        format!(
+            "{name} matters to the constraints alone: over its whole interval, the rest as chosen, \
+             {} moves and no objective changes by {percent} %, so that designs which differ in it \
+             tie; add an objective that depends on it to choose among them",
+            listed(&bound)
+        ),
+    ))
+}
+
 /// The consequence of a cost that does not rise with the number of satellites.
 fn free_satellites(objective: Quantity, names: &[&str]) -> &'static str {
     let sizes = ["planes", "satellites-per-plane"];
@@ -72,36 +119,69 @@ fn free_satellites(objective: Quantity, names: &[&str]) -> &'static str {
     }
 }
 
-fn variations(problem: &DesignProblem<'_>, chosen: &Individual) -> Vec<Variation> {
-    let variables = problem.space().variables();
-    let mut moved = Vec::new();
-    for (k, variable) in variables.iter().enumerate() {
-        let (lo, hi) = variable.kind.bounds();
-        if lo < hi {
-            moved.push((k, [lo, hi].map(|end| at(problem, chosen, k, end))));
-        }
+/// Each variable that varies, with the relative changes of the watched quantities.
+fn variations(
+    problem: &DesignProblem<'_>,
+    chosen: &Individual,
+    watched: &[Quantity],
+) -> Vec<Variation> {
+    let variables = problem.space().variables().iter().enumerate();
+    let varied: Vec<(usize, [f64; 2])> = variables
+        .map(|(k, variable)| (k, variable.kind.bounds()))
+        .filter(|(_, (lo, hi))| lo < hi)
+        .map(|(k, (lo, hi))| (k, [lo, hi]))
+        .collect();
+    let ends = varied
+        .iter()
+        .flat_map(|&(k, ends)| ends.map(|end| at(problem, chosen, k, end)));
+    let genomes: Vec<Vec<f64>> = std::iter::once(chosen.genome.clone()).chain(ends).collect();
+    let values: Vec<Vec<Option<f64>>> = genomes
+        .par_iter()
+        .map(|genome| quantities(problem, genome, watched))
+        .collect();
+    let Some((here, values)) = values.split_first() else {
+        return Vec::new();
+    };
+    let variation = |(&(k, _), ends): (&(usize, _), &[Vec<Option<f64>>])| Variation {
+        variable: problem.space().variables()[k].name.clone(),
+        changes: (0..watched.len())
+            .map(|m| change([here[m], ends[0][m], ends[1][m]]))
+            .collect(),
+    };
+    varied
+        .iter()
+        .zip(values.chunks_exact(2))
+        .map(variation)
+        .collect()
+}
+
+/// The watched quantities of a vector; `None` for one without a value.
+fn quantities(
+    problem: &DesignProblem<'_>,
+    genome: &[f64],
+    watched: &[Quantity],
+) -> Vec<Option<f64>> {
+    let evaluated = problem.evaluated(genome);
+    let cost = &problem.goals().launch_cost;
+    let value = |quantity: &Quantity| {
+        let (design, metrics) = evaluated.as_ref()?;
+        quantity.value(design, metrics, cost)
+    };
+    watched.iter().map(value).collect()
+}
+
+/// Width of three values relative to the first. A first value of 0, or a missing one, counts as a
+/// change.
+fn change(values: [Option<f64>; 3]) -> f64 {
+    let [Some(here), Some(one), Some(other)] = values else {
+        return f64::INFINITY;
+    };
+    let relative = (here.max(one).max(other) - here.min(one).min(other)) / here.abs();
+    if relative.is_finite() {
+        relative
+    } else {
+        f64::INFINITY
     }
-    let batch: Vec<Vec<f64>> = moved.iter().flat_map(|(_, ends)| ends.clone()).collect();
-    let answers = problem.evaluate(&batch);
-    let pairs = answers.chunks_exact(2);
-    let change = |ends: &[crate::optimize::Evaluation], m: usize| {
-        let here = chosen.objectives[m];
-        let values = ends.iter().map(|end| end.objectives[m]);
-        let (least, greatest) = values.fold((here, here), |(a, b), x| (a.min(x), b.max(x)));
-        // An objective of 0, or one without a value at an end, counts as changed.
-        let relative = (greatest - least) / here.abs();
-        if relative.is_finite() {
-            relative
-        } else {
-            f64::INFINITY
-        }
-    };
-    let objectives = chosen.objectives.len();
-    let variation = |((k, _), ends): (&(usize, _), &[crate::optimize::Evaluation])| Variation {
-        variable: variables[*k].name.clone(),
-        changes: (0..objectives).map(|m| change(ends, m)).collect(),
-    };
-    moved.iter().zip(pairs).map(variation).collect()
 }
 
 /// The chosen genome with one value replaced, made consistent.
@@ -110,4 +190,41 @@ fn at(problem: &DesignProblem<'_>, chosen: &Individual, k: usize, value: f64) ->
     genome[k] = value;
     problem.repair(&mut genome);
     genome
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two objectives, then maximum PDOP under a constraint.
+    #[test]
+    fn constraints_are_looked_at_too() {
+        let told = |changes: [f64; 3], constrained: &[Quantity]| {
+            let variation = Variation {
+                variable: "altitude-km".to_owned(),
+                changes: changes[..2 + constrained.len()].to_vec(),
+            };
+            without_objective(&variation, 2, constrained)
+        };
+        let bound = [Quantity::MaxPdop];
+        assert_eq!(told([0.0, 0.1, 0.0], &bound), None);
+        let found = told([0.0, 0.0, 0.1], &bound).unwrap();
+        assert_eq!(found.code, "only-constrained:altitude-km");
+        assert!(
+            found.message.contains("max-pdop moves"),
+            "{}",
+            found.message
+        );
+        let found = told([0.0, 0.0, 1e-4], &bound).unwrap();
+        assert_eq!(found.code, "idle:altitude-km");
+        assert!(found.message.contains("no constraint"), "{}", found.message);
+        assert_eq!(told([0.0, 0.0, 0.0], &[]).unwrap().code, "idle:altitude-km");
+    }
+
+    #[test]
+    fn a_change_is_relative_and_a_missing_value_is_one() {
+        assert_eq!(change([Some(2.0), Some(1.0), Some(4.0)]), 1.5);
+        assert_eq!(change([Some(2.0), None, Some(2.0)]), f64::INFINITY);
+        assert_eq!(change([Some(0.0); 3]), f64::INFINITY);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::optimize::dominates;
 use crate::run::Diagnostic;
 
-/// Relative standard deviation of the hypervolume up to which the seed does not matter.
+/// Relative standard deviation up to which the seed does not matter.
 const STEADY: f64 = 0.005;
 
 /// How many members of a front a sweep dominates, objectives as they are minimised; `None` when
@@ -18,7 +18,7 @@ pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic
     let (code, consequence) = if count == 0 {
         (
             "not-dominated-by-sweep",
-            "the search found nothing worse than the sweep",
+            "nothing that the search found is worse than a design of the grid",
         )
     } else {
         (
@@ -29,19 +29,20 @@ pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic
     Some(Diagnostic::new(
         code,
         format!(
-            "the sweep dominates {count} of {} front members: {consequence}",
+            "the grid sweep dominates {count} of {} front members: {consequence}",
             front.len()
         ),
     ))
 }
 
-/// What the spread of the hypervolume over several seeds says.
+/// What the spread over several seeds says: of the hypervolume, or of the best value of a single
+/// objective.
 #[must_use]
-pub fn seed_spread(mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> {
-    if seeds < 2 || mean <= 0.0 {
+pub fn seed_spread(what: &str, mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> {
+    if seeds < 2 || mean == 0.0 {
         return None;
     }
-    let relative = std_dev / mean;
+    let relative = std_dev / mean.abs();
     let (code, consequence) = if relative <= STEADY {
         ("seeds-agree", "one of them is as good as another")
     } else {
@@ -53,7 +54,7 @@ pub fn seed_spread(mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> 
     Some(Diagnostic::new(
         code,
         format!(
-            "over {seeds} seeds the hypervolume spreads by {:.2} % of its mean (standard \
+            "over {seeds} seeds the {what} spreads by {:.2} % of its mean (standard \
              deviation): {consequence}",
             100.0 * relative
         ),
@@ -78,7 +79,9 @@ mod tests {
 
     #[test]
     fn seeds_agree_or_differ() {
-        let code = |mean, deviation, seeds| seed_spread(mean, deviation, seeds).map(|d| d.code);
+        let code = |mean, deviation, seeds| {
+            seed_spread("hypervolume", mean, deviation, seeds).map(|d| d.code)
+        };
         assert_eq!(code(1.0, 0.004, 9).as_deref(), Some("seeds-agree"));
         assert_eq!(code(1.0, 0.006, 9).as_deref(), Some("seeds-differ"));
         assert_eq!(code(1.0, 0.0, 1), None);

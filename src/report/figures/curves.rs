@@ -3,7 +3,9 @@
 use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style};
 use crate::evaluate::EpochMetrics;
+use crate::optimize::Record;
 use crate::report::profile::{Profile, Quantile, quantiles_of};
+use crate::report::shown;
 use crate::run::Run;
 use crate::units::{SECONDS_PER_HOUR, round_decimal};
 
@@ -114,10 +116,13 @@ fn tail_marks(profile: &Profile) -> Vec<Layer> {
     let percent = round_decimal(100.0 * tail.level, 6);
     vec![
         line(
-            format!("{percent} % quantile {:.4}", tail.value_at_risk),
+            format!(
+                "{percent} % quantile {}",
+                shown::pdop(Some(tail.value_at_risk))
+            ),
             tail.value_at_risk,
         ),
-        line(format!("CVaR {:.4}", tail.cvar), tail.cvar),
+        line(format!("CVaR {}", shown::pdop(Some(tail.cvar))), tail.cvar),
     ]
 }
 
@@ -205,27 +210,28 @@ pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
         "feasible",
     ];
     let mut csv = Csv::new(&header)?;
-    for record in &run.history {
+    let volumes = Record::volumes(&run.history);
+    for (record, volume) in run.history.iter().zip(&volumes) {
         csv.row([
             record.generation.to_string(),
             record.evaluations.to_string(),
-            optional(record.hypervolume),
+            optional(*volume),
             record.front_size.to_string(),
             record.feasible.to_string(),
         ])?;
     }
-    let has_volume = run
+    let has_volume = volumes.iter().any(Option::is_some);
+    let points = run
         .history
         .iter()
-        .any(|record| record.hypervolume.is_some());
-    let points = run.history.iter().filter_map(|record| {
-        let size = (!has_volume).then_some(record.front_size as f64);
-        Some((record.evaluations as f64, record.hypervolume.or(size)?))
-    });
+        .zip(&volumes)
+        .filter_map(|(record, volume)| {
+            let size = (!has_volume).then_some(record.front_size as f64);
+            Some((record.evaluations as f64, volume.or(size)?))
+        });
     let y = match (has_volume, run.reference()) {
         (true, Some(reference)) => {
-            let at: Vec<_> = reference.iter().map(ToString::to_string).collect();
-            format!("hypervolume at ({})", at.join(", "))
+            format!("hypervolume at {}", shown::point(&reference))
         }
         (true, None) => "hypervolume".to_owned(),
         (false, _) => "designs in the front".to_owned(),

@@ -2,41 +2,9 @@
 
 use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantity_label};
-use crate::constellation::Design;
-use crate::evaluate::Evaluator;
+use crate::report::Baseline;
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
-use crate::search::Goals;
-
-/// A design that is shown beside the front.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Baseline {
-    /// What it is called.
-    pub name: String,
-    /// Walker notation.
-    pub notation: String,
-    /// The objectives of the run, in their own directions; `None` for one without a value.
-    pub objectives: Vec<Option<f64>>,
-}
-
-impl Baseline {
-    /// A design with its objectives; `None` when it cannot be propagated.
-    #[must_use]
-    pub fn evaluate(
-        name: &str,
-        design: &Design,
-        evaluator: &Evaluator,
-        goals: &Goals,
-    ) -> Option<Self> {
-        let metrics = evaluator.evaluate(design).ok()?;
-        let value = |quantity: &Quantity| quantity.value(design, &metrics, &goals.launch_cost);
-        Some(Self {
-            name: name.to_owned(),
-            notation: design.to_string(),
-            objectives: goals.objectives.iter().map(value).collect(),
-        })
-    }
-}
 
 /// The front of another run.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,13 +15,15 @@ pub struct NamedFront {
     pub front: Vec<FrontMember>,
 }
 
-/// Rows of the plane: name of the set, generation, index, notation, objectives, membership.
+/// Rows of the plane: name of the set, generation, index, notation, objectives, quantities under
+/// constraints, membership.
 struct FrontRow<'a> {
     set: &'a str,
     generation: Option<u64>,
     index: Option<usize>,
     notation: &'a str,
     objectives: Vec<Option<f64>>,
+    constraints: Vec<Option<f64>>,
     membership: Option<f64>,
 }
 
@@ -124,7 +94,7 @@ pub fn pareto(
         layers,
     };
     Ok(Plate {
-        csv: table(&rows, &names)?,
+        csv: table(&rows, &[names.clone(), run.constraint_names()].concat())?,
         chart: Chart::Plane(chart),
     })
 }
@@ -136,13 +106,14 @@ fn rows<'a>(
     fronts: &'a [NamedFront],
 ) -> Vec<FrontRow<'a>> {
     let of_front = |set: &'a str, front: &'a [FrontMember]| {
-        let names = names.to_vec();
+        let (names, constrained) = (names.to_vec(), run.constraint_names());
         front.iter().map(move |member| FrontRow {
             set,
             generation: None,
             index: Some(member.index),
             notation: &member.design.notation,
             objectives: names.iter().map(|name| member.objective(name)).collect(),
+            constraints: constrained.iter().map(|n| member.quantity(n)).collect(),
             membership: Some(member.membership),
         })
     };
@@ -156,6 +127,7 @@ fn rows<'a>(
         index: None,
         notation: &baseline.notation,
         objectives: baseline.objectives.clone(),
+        constraints: baseline.constraints.clone(),
         membership: None,
     }));
     for (generation, objectives) in earlier(run, names) {
@@ -165,6 +137,7 @@ fn rows<'a>(
             index: None,
             notation: "",
             objectives: objectives.into_iter().map(Some).collect(),
+            constraints: vec![None; run.constraint_names().len()],
             membership: None,
         });
     }
@@ -210,7 +183,8 @@ fn table(rows: &[FrontRow<'_>], names: &[String]) -> Result<String, FigureError>
             number(row.index),
             row.notation.to_owned(),
         ];
-        cells.extend(row.objectives.iter().copied().map(optional));
+        let quantities = row.objectives.iter().chain(&row.constraints);
+        cells.extend(quantities.copied().map(optional));
         cells.push(optional(row.membership));
         csv.row(cells)?;
     }

@@ -31,6 +31,7 @@ const Core = (() => {
         overTime: rows(cuts.over_time),
         pdop: unpack(cuts.pdop),
         tail: cuts.tail,
+        tailShown: cuts.tail_shown,
         orbit: { ...cuts.orbit, meanAnomalyDeg: unpack(cuts.orbit.mean_anomaly_deg) },
       });
     }
@@ -55,8 +56,8 @@ const Core = (() => {
     return String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
   }
 
-  /** A number to read. */
-  function digits(value, significant = 5) {
+  /** A number to read, with the six digits in which the page carries it: rounded once. */
+  function digits(value, significant = 6) {
     if (value === null || value === undefined) return "none";
     return String(Number(value.toPrecision(significant)));
   }

@@ -48,7 +48,7 @@
         marker: { size: 6, color: colours.third, symbol: "x-thin", line: { width: 1.5, color: colours.third } } });
     }
     traces.push({ type: "scatter", mode: "markers", name: "front", x: front.objectives[x], y: second,
-      customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + digits(front.membership[n], 3)),
+      customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + front.memberships_shown[n]),
       hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: { size: 9, color: colours.accent } });
     data.baselines.forEach((b, n) => traces.push({ type: "scatter", mode: "markers", name: plain(b.name),
       x: [b.objectives[x]], y: [at(b.objectives)], text: [plain(b.notation)],
@@ -188,8 +188,8 @@
         annotations.push({ x, y: yanchor === "top" ? 0.98 : 0.02, yref: "paper", text, showarrow: false, xanchor, yanchor,
           font: { size: 11, color } });
       };
-      upright(atRisk, digits(100 * level, 4) + " % quantile " + digits(atRisk, 4) + " ", "dot", colours.soft, ["right", "bottom"]);
-      upright(cvar, " CVaR " + digits(cvar, 4), "dash", colours.second, ["left", "top"]);
+      upright(atRisk, digits(100 * level) + " % quantile " + selected.tailShown[0] + " ", "dot", colours.soft, ["right", "bottom"]);
+      upright(cvar, " CVaR " + selected.tailShown[1], "dash", colours.second, ["left", "top"]);
     }
     return { data: traces, layout: layout(colours, { shapes, annotations, xaxis: { title: { text: "PDOP" } },
       yaxis: { title: { text: "share with a higher PDOP" }, type: "log", dtick: 1 } }) };
@@ -197,7 +197,7 @@
 
   function convergence(colours) {
     const volume = data.history.some((record) => record.hypervolume !== null);
-    const at = data.reference ? " at (" + data.reference.join(", ") + ")" : "";
+    const at = data.reference ? " at " + data.reference : "";
     const traces = [{ type: "scatter", mode: "lines+markers", x: data.history.map((r) => r.generation),
       y: data.history.map((r) => (volume ? r.hypervolume : r.front_size)), marker: { size: 5, color: colours.accent },
       line: { color: colours.accent }, text: data.history.map((r) => r.evaluations + " designs, front of " + r.front_size),

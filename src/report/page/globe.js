@@ -115,6 +115,19 @@ const Globe = (() => {
       north: [-Math.sin(b) * Math.cos(l), -Math.sin(b) * Math.sin(l), Math.cos(b)] };
   }
 
+  /** Elevation of the skyline at an azimuth, linear between its points, degrees; 0 without one. */
+  function skyline(azimuth) {
+    const points = world.skyline_deg;
+    const n = points.findIndex((point) => point[0] > azimuth);
+    if (points.length === 0) return 0;
+    if (n < 0) return points[points.length - 1][1];
+    const [[a0, e0], [a1, e1]] = [points[n - 1], points[n]];
+    return e0 + (e1 - e0) * (azimuth - a0) / (a1 - a0);
+  }
+
+  /** The lowest elevation at which a satellite counts: its mask or the skyline, degrees. */
+  const lowest = (mask, azimuth) => Math.max(mask, skyline(azimuth));
+
   /** Azimuth and elevation of the satellites over the horizon of the place, radians. */
   function overhead(found) {
     const { position, up, east, north } = site();
@@ -125,7 +138,9 @@ const Globe = (() => {
       const height = along(up);
       if (height <= 0) continue;
       const elevation = Math.asin(height / Math.hypot(...d));
-      seen.push({ n, elevation, azimuth: Math.atan2(along(east), along(north)), visible: elevation >= world.mask_deg * RAD });
+      const azimuth = Math.atan2(along(east), along(north));
+      const degrees = (azimuth / RAD + 360) % 360;
+      seen.push({ n, elevation, azimuth, visible: elevation >= lowest(world.mask_deg, degrees) * RAD });
     }
     return seen;
   }
@@ -234,7 +249,19 @@ const Globe = (() => {
     c.fillStyle = colours.panel;
     c.beginPath(); c.arc(x0, y0, radius, 0, 2 * Math.PI); c.fill();
     for (const elevation of [0, 30, 60]) ring(elevation, [], colours.line);
-    ring(world.mask_deg, [5, 4], colours.second);
+    const outline = (mask, dash, color) => {
+      // Every degree and the corners of the skyline.
+      const azimuths = [...Array(361).keys(), ...world.skyline_deg.map((point) => point[0])].sort((a, b) => a - b);
+      c.setLineDash(dash); c.strokeStyle = color;
+      c.beginPath();
+      for (const azimuth of azimuths) {
+        const r = radius * (1 - lowest(mask, azimuth) / 90);
+        c.lineTo(x0 + r * Math.sin(azimuth * RAD), y0 - r * Math.cos(azimuth * RAD));
+      }
+      c.stroke();
+    };
+    outline(world.mask_deg, [5, 4], colours.second);
+    if (world.gnss_mask_deg !== world.mask_deg) outline(world.gnss_mask_deg, [2, 3], colours.third);
     c.setLineDash([]);
     c.fillStyle = colours.soft; c.font = "12px system-ui, sans-serif"; c.textAlign = "center"; c.textBaseline = "middle";
     ["N", "E", "S", "W"].forEach((name, n) => c.fillText(name, x0 + (radius + 14) * Math.sin(n * Math.PI / 2), y0 - (radius + 14) * Math.cos(n * Math.PI / 2)));
@@ -247,6 +274,10 @@ const Globe = (() => {
   }
 
   const caption = document.getElementById("sky-caption");
+  const highest = Math.max(...world.skyline_deg.map((point) => point[1]));
+  const beyond = (world.skyline_deg.length > 0 ? " and the skyline of up to " + highest + "° (dashed)" : " (dashed)")
+    + (world.gnss_mask_deg !== world.mask_deg ? "; the mask of GNSS satellites, which are not drawn, is "
+      + world.gnss_mask_deg + "° (dotted)" : "") + ".";
   const clock = document.getElementById("clock");
   const epoch = Date.parse(world.epoch);
   // The clock of a browser has no leap seconds: it stands still during one.
@@ -256,7 +287,7 @@ const Globe = (() => {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
     const side = (value, plus, minus) => digits(Math.abs(value), 4) + "° " + (value < 0 ? minus : plus);
     const text = "Sky at " + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
-      + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°.";
+      + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond;
     if (caption.textContent !== text) caption.textContent = text;
     const now = new Date(epoch + 1000 * ofBrowser(time.elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
     if (clock.textContent !== now) clock.textContent = now;

@@ -1,6 +1,6 @@
 // The bar of the selected design, and what else can be clicked.
 (() => {
-  const { data, state, count, select, digits } = Core;
+  const { data, state, count, select } = Core;
   const front = data.front;
   const choose = document.getElementById("choose");
 
@@ -17,10 +17,7 @@
     choose.value = String(place);
     document.getElementById("badge").hidden = place !== data.chosen;
     document.getElementById("no-cuts").hidden = data.region === null || data.cuts[place] !== undefined;
-    const tiles = data.objectives.map((o, n) => tile(o.name, digits(front.objectives[n][place])));
-    for (const [name, values] of front.metrics) {
-      if (values[place] !== null) tiles.push(tile(name, digits(values[place])));
-    }
+    const tiles = front.tiles.map(([name, values]) => tile(name, values[place]));
     document.getElementById("tiles").replaceChildren(...tiles);
     for (const row of document.querySelectorAll("#members tr[data-place]")) {
       row.classList.toggle("current", Number(row.dataset.place) === place);

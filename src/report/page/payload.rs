@@ -6,11 +6,13 @@ use crate::constellation::Design;
 use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
 use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
 use crate::ground::Site;
+use crate::optimize::Record;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use crate::report::coastline::{self, Bounds};
 use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_label};
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
+use crate::report::shown;
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity, Region, Scenario};
 use chrono::{DateTime, Timelike, Utc};
@@ -42,7 +44,7 @@ pub(super) struct Payload {
     baselines: Vec<Beside>,
     fronts: Vec<OtherFront>,
     history: Vec<Generation>,
-    reference: Option<Vec<f64>>,
+    reference: Option<String>,
     levels: Vec<f64>,
     /// By place in the front.
     cuts: BTreeMap<usize, Cuts>,
@@ -66,7 +68,9 @@ struct Front {
     objectives: Vec<Vec<f64>>,
     membership: Vec<Option<f64>>,
     membership_sum: Vec<Option<f64>>,
-    metrics: Vec<(&'static str, Vec<Option<f64>>)>,
+    /// What the strip of the selected design shows, with the digits of the table.
+    tiles: Vec<(String, Vec<String>)>,
+    memberships_shown: Vec<String>,
     variables: Vec<(&'static str, Vec<Option<f64>>)>,
 }
 
@@ -104,7 +108,10 @@ struct Cuts {
     over_time: Vec<(&'static str, Packed)>,
     /// Quantiles of PDOP over all samples.
     pdop: Packed,
+    /// Level, quantile and CVaR.
     tail: Option<[f64; 3]>,
+    /// Quantile and CVaR with the digits of the table.
+    tail_shown: Option<[String; 2]>,
     orbit: Orbit,
 }
 
@@ -148,6 +155,9 @@ struct World {
     radius_km: f64,
     flattening: f64,
     mask_deg: f64,
+    gnss_mask_deg: f64,
+    /// Azimuth and elevation of the skyline, degrees, once around; empty without one.
+    skyline_deg: Vec<[f64; 2]>,
 }
 
 #[derive(Serialize)]
@@ -181,7 +191,7 @@ impl Payload {
         let generations = earlier(run, &names).into_iter();
         Self {
             objectives: names.iter().map(|name| Objective::new(name)).collect(),
-            front: Front::new(&run.front, &names),
+            front: Front::new(run, &names),
             chosen: run.chosen(),
             generations: generations
                 .map(|(g, x)| (g, x.into_iter().map(short).collect()))
@@ -193,7 +203,7 @@ impl Payload {
                 .map(|f| OtherFront::new(&f.name, &f.front, &names))
                 .collect(),
             history: history(run),
-            reference: run.reference().map(<[f64]>::to_vec),
+            reference: run.reference().map(|reference| shown::point(&reference)),
             levels: drawn_levels().into_iter().map(short).collect(),
             cuts: of_members.collect(),
             region: setup
@@ -226,12 +236,17 @@ fn baselines(
 }
 
 fn history(run: &Run) -> Vec<Generation> {
-    let records = run.history.iter().map(|record| Generation {
-        generation: record.generation,
-        evaluations: record.evaluations,
-        hypervolume: record.hypervolume.map(short),
-        front_size: record.front_size,
-    });
+    let volumes = Record::volumes(&run.history);
+    let records = run
+        .history
+        .iter()
+        .zip(volumes)
+        .map(|(record, volume)| Generation {
+            generation: record.generation,
+            evaluations: record.evaluations,
+            hypervolume: volume.map(short),
+            front_size: record.front_size,
+        });
     records.collect()
 }
 
@@ -265,7 +280,8 @@ impl Objective {
 }
 
 impl Front {
-    fn new(members: &[FrontMember], names: &[String]) -> Self {
+    fn new(run: &Run, names: &[String]) -> Self {
+        let members = &run.front;
         let column = |value: &dyn Fn(&FrontMember) -> Option<f64>| {
             members
                 .iter()
@@ -289,15 +305,11 @@ impl Front {
                 .collect(),
             membership: column(&|m| Some(m.membership)),
             membership_sum: column(&|m| Some(m.membership_sum)),
-            metrics: vec![
-                ("mean visible", column(&|m| Some(m.metrics.mean_visible))),
-                ("mean PDOP", column(&|m| m.metrics.mean_pdop)),
-                ("CVaR of PDOP", column(&|m| m.metrics.cvar_pdop)),
-                ("95 % PDOP", column(&|m| m.metrics.p95_pdop)),
-                ("maximum PDOP", column(&|m| m.metrics.max_pdop)),
-                ("availability", column(&|m| Some(m.metrics.availability))),
-                ("solved", column(&|m| Some(m.metrics.solved_fraction))),
-            ],
+            tiles: tiles(run, names),
+            memberships_shown: members
+                .iter()
+                .map(|m| shown::membership(m.membership))
+                .collect(),
             variables: vec![
                 ("satellites", of_design(|d| d.satellite_count() as f64)),
                 ("planes", of_design(|d| d.planes() as f64)),
@@ -308,6 +320,38 @@ impl Front {
             ],
         }
     }
+}
+
+/// What the strip shows of each design: objectives, metrics, and quantities under constraints that
+/// are neither.
+fn tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
+    let tile = |name: &str, text: &dyn Fn(&FrontMember) -> String| {
+        (name.to_owned(), run.front.iter().map(text).collect())
+    };
+    let quantity = |name: &String| tile(name, &|m| shown::named(name, m.quantity(name)));
+    let mut tiles: Vec<_> = names.iter().map(quantity).collect();
+    type Value = fn(&FrontMember) -> Option<f64>;
+    let metrics: [(&str, &str, Value); 5] = [
+        ("mean visible", "mean-visible", |m| {
+            Some(m.metrics.mean_visible)
+        }),
+        ("mean PDOP", "mean-pdop", |m| m.metrics.mean_pdop),
+        ("CVaR of PDOP", "cvar-pdop", |m| m.metrics.cvar_pdop),
+        ("maximum PDOP", "max-pdop", |m| m.metrics.max_pdop),
+        ("availability", "availability", |m| {
+            Some(m.metrics.availability)
+        }),
+    ];
+    for (label, name, value) in metrics {
+        if !names.iter().any(|objective| objective == name) {
+            tiles.push(tile(label, &|m| shown::named(name, value(m))));
+        }
+    }
+    tiles.push(tile("95 % PDOP", &|m| shown::pdop(m.metrics.p95_pdop)));
+    let solved = |m: &FrontMember| shown::share(Some(m.metrics.solved_fraction));
+    tiles.push(tile("solved", &solved));
+    tiles.extend(super::words::further(run).iter().map(quantity));
+    tiles
 }
 
 impl OtherFront {
@@ -346,6 +390,9 @@ impl Cuts {
             tail: profile
                 .tail
                 .map(|tail| [tail.level, tail.value_at_risk, tail.cvar].map(short)),
+            tail_shown: profile
+                .tail
+                .map(|tail| [tail.value_at_risk, tail.cvar].map(|x| shown::pdop(Some(x)))),
             orbit: Orbit::new(&profile.design, setup.model),
         }
     }
@@ -469,7 +516,11 @@ impl World {
             gmst_rate_deg_s: GMST_RATE_RAD_S.to_degrees(),
             radius_km: RADIUS_KM,
             flattening: scenario.earth.surface.flattening(),
-            mask_deg: scenario.visibility.mask_deg,
+            mask_deg: setup.mask.degrees(),
+            gnss_mask_deg: setup.gnss_mask.degrees(),
+            skyline_deg: setup.skyline.as_ref().map_or_else(Vec::new, |skyline| {
+                skyline.vertices().iter().map(|&(a, e)| [a, e]).collect()
+            }),
         }
     }
 }

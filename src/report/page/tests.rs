@@ -2,6 +2,7 @@ use super::*;
 use crate::report::figures::Baseline;
 use crate::run::{Diagnostic, FrontMember, RunFiles, testing};
 use crate::scenario::Scenario;
+use crate::search::DesignProblem;
 
 const SCENARIO: &str = include_str!("../../../data/scenarios/paper.toml");
 
@@ -156,7 +157,9 @@ fn cuts_are_those_of_the_design() {
     let run = run(Some(scenario.clone()), 2);
     let design: Design = "delta:50:12/3/1@900".parse().unwrap();
     let beside = vec![("beside".to_owned(), design)];
-    let baselines: Vec<_> = Baseline::evaluate("beside", &design, &evaluator, &scenario.goals())
+    let problem =
+        DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals()).unwrap();
+    let baselines: Vec<_> = Baseline::evaluate("beside", &design, &problem)
         .into_iter()
         .collect();
     let page = Page {
@@ -183,4 +186,114 @@ fn cuts_are_those_of_the_design() {
         (Some(120.0), Some(4))
     );
     assert!(data["cuts"]["0"].is_object() && data["cuts"]["1"].is_object());
+}
+
+/// Skyline and masks of each system, as the sky plot draws them and the words tell them.
+#[test]
+fn skyline_and_masks_are_shown() {
+    let keys = [
+        "region.step-deg=20",
+        "time.step-s=7200",
+        "visibility.mask-deg=7",
+        "visibility.gnss-mask-deg=12",
+        "visibility.mask-table=[[0, 5], [90, 40], [180, 5], [360, 5]]",
+    ];
+    let scenario = Scenario::parse("paper", SCENARIO.as_bytes(), &keys).unwrap();
+    let setup = scenario
+        .setup(&|_| Err(std::io::ErrorKind::NotFound.into()))
+        .unwrap();
+    let evaluator = Evaluator::new(setup).unwrap();
+    let run = run(Some(scenario), 1);
+    let html = written(&page(&run, Some(&evaluator)));
+    let world = &data(&html)["world"];
+    assert_eq!(world["mask_deg"], 7.0);
+    assert_eq!(world["gnss_mask_deg"], 12.0);
+    assert_eq!(world["skyline_deg"][1], serde_json::json!([90.0, 40.0]));
+    for told in [
+        "elevation masks 7\u{b0} (LEO) and 12\u{b0} (GNSS), under a skyline of up to 40\u{b0}",
+        "LEO 7\u{b0}, GNSS 12\u{b0}; skyline at every point",
+        "5\u{b0} at 0\u{b0}, 40\u{b0} at 90\u{b0}, 5\u{b0} at 180\u{b0}",
+    ] {
+        assert!(html.contains(told), "{told}");
+    }
+}
+
+/// 1.23445 lies between: six digits first and five then would give 1.2345.
+#[test]
+fn numbers_are_rounded_once_and_the_same_everywhere() {
+    let (scenario, _) = evaluator();
+    let mut run = run(Some(scenario), 2);
+    for member in &mut run.front {
+        member.objectives[0].1 = 1.234_449_6;
+        member.metrics.mean_pdop = Some(1.234_449_6);
+        member.membership = 0.123_449_6;
+    }
+    let page = page(&run, None);
+    let html = written(&page);
+    let rows = words::members(&run, MOST_ROWS);
+    let prose = PageSummary::new(&page, &[]).paragraphs.concat();
+    let front = data(&html)["front"].clone();
+    let tile = |name: &str| {
+        let tiles = front["tiles"].as_array().unwrap();
+        let found = tiles.iter().find(|tile| tile[0] == name).unwrap();
+        found[1][1].as_str().unwrap().to_owned()
+    };
+    for text in [
+        &tile("j-pos"),
+        &tile("mean PDOP"),
+        &rows[1].cells[0],
+        &rows[1].cells[3],
+    ] {
+        assert_eq!(text, "1.2344");
+    }
+    assert!(
+        prose.contains("j-pos 1.2344,") && prose.contains("mean 1.2344,"),
+        "{prose}"
+    );
+    assert!(prose.contains("front, 0.123."), "{prose}");
+    assert_eq!(rows[1].cells.last().unwrap(), "0.123");
+    assert_eq!(front["memberships_shown"][1], "0.123");
+}
+
+/// A quantity under a constraint is in the table, the strip and the prose.
+#[test]
+fn constraints_are_shown() {
+    let keys = ["objectives.constraints=[\"max-pdop <= 2.5\", \"planes <= 14\"]"];
+    let scenario = Scenario::parse("paper", SCENARIO.as_bytes(), &keys).unwrap();
+    let mut run = run(Some(scenario), 2);
+    for member in &mut run.front {
+        member.constraints = vec![
+            ("max-pdop".to_owned(), Some(2.25)),
+            ("planes".to_owned(), Some(3.0)),
+        ];
+    }
+    let page = page(&run, None);
+    let html = written(&page);
+    assert!(html.contains("<th class=\"number\">planes</th>"));
+    assert!(html.contains("max-pdop &#60;= 2.5, planes &#60;= 14"));
+    assert!(html.contains("Under constraints: max-pdop 2.2500, planes 3."));
+    let tiles = data(&html)["front"]["tiles"].to_string();
+    assert!(tiles.contains("[\"planes\",[\"3\",\"3\"]]"), "{tiles}");
+}
+
+/// The prose and a note name the design that dominates the pick.
+#[test]
+fn a_pick_that_is_dominated_is_said_to_be_so() {
+    let (scenario, evaluator) = evaluator();
+    let problem =
+        DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals()).unwrap();
+    let design: Design = "delta:50:225/15/1@1000".parse().unwrap();
+    let baselines: Vec<_> = Baseline::evaluate("reference design", &design, &problem)
+        .into_iter()
+        .collect();
+    let mut run = run(Some(scenario), 2);
+    run.front[1].objectives = vec![("j-pos".to_owned(), 99.0), ("j-cost".to_owned(), 99.0)];
+    let beside = Page {
+        baselines: &baselines,
+        ..page(&run, Some(&evaluator))
+    };
+    let html = written(&beside);
+    assert!(html.contains("It is dominated by the reference design delta:50:225/15/1@1000."));
+    assert!(html.contains("dominates the pick delta:40.001:12/3/1@900"));
+    assert!(!written(&page(&run, Some(&evaluator))).contains("dominated by"));
 }

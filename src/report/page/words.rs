@@ -5,8 +5,9 @@ use crate::earth;
 use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
-use crate::run::{FrontMember, Hypervolume, Run, VERSION};
-use crate::scenario::{Algorithm, Quantity, Region, Scenario};
+use crate::report::{Baseline, shown};
+use crate::run::{FrontMember, Run, VERSION};
+use crate::scenario::{Algorithm, ObservationWeights, Quantity, Region, Scenario, Visibility};
 use crate::time::leap_seconds_note;
 use crate::units::round_decimal;
 use crate::validate::Tally;
@@ -68,19 +69,21 @@ fn algorithm_title(word: &str) -> &str {
     }
 }
 
-fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "none".to_owned(), |value| format!("{value:.4}"))
-}
-
 impl PageSummary {
     pub(super) fn new(page: &Page<'_>, places_with_cuts: &[usize]) -> Self {
         let run = page.run;
         let mut paragraphs = Vec::new();
         paragraphs.extend(run.scenario.as_ref().map(setting));
         paragraphs.push(found(run));
-        paragraphs.extend(choice(run));
+        paragraphs.extend(choice(page));
         let notes = run.search.iter().flat_map(|search| &search.diagnostics);
-        let notes = notes.map(|d| d.message.clone()).collect();
+        // Those of designs beside the front are told anew, of all that the page shows.
+        let beside = !page.baselines.is_empty();
+        let notes = notes.filter(|d| !beside || d.code != Baseline::DOMINATES);
+        let mut notes: Vec<String> = notes.map(|d| d.message.clone()).collect();
+        let pick = run.chosen().map(|n| &run.front[n]);
+        let outdone = page.baselines.iter().filter_map(|b| b.diagnose(pick?));
+        notes.extend(outdone.map(|d| d.message));
         let mut gaps = run.gaps.clone();
         let (cut, all) = (places_with_cuts.len(), run.front.len());
         if page.evaluator.is_some() && cut < all {
@@ -131,11 +134,11 @@ fn setting(scenario: &Scenario) -> String {
     };
     format!(
         "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
-         {}; elevation mask {}\u{b0}.",
+         {}; {}.",
         scenario.time.step_s,
         scenario.time.duration_h,
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
-        scenario.visibility.mask_deg
+        mask_clause(&scenario.visibility)
     )
 }
 
@@ -183,34 +186,47 @@ fn found(run: &Run) -> String {
     if done < of {
         text += &format!(" It was stopped after generation {done} of {of}.");
     }
-    let Hypervolume { value, reference } = &search.hypervolume;
-    if let (Some(value), Some(reference)) = (value, reference) {
-        let at: Vec<String> = reference.iter().map(ToString::to_string).collect();
-        text += &format!(" The hypervolume at ({}) is {value:.4}.", at.join(", "));
+    if let Some(volume) = shown::hypervolume(&search.hypervolume) {
+        text += &format!(" Its front has the {volume}.");
     }
     text
 }
 
-/// The chosen design and why.
-fn choice(run: &Run) -> Option<String> {
+/// The chosen design and why, and what outdoes it.
+fn choice(page: &Page<'_>) -> Option<String> {
+    let run = page.run;
     let member = &run.front[run.chosen()?];
-    let objectives: Vec<String> = member
-        .objectives
-        .iter()
-        .map(|(name, value)| format!("{name} {value:.4}"))
-        .collect();
-    let metrics = &member.metrics;
-    Some(format!(
-        "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}. \
-         On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
+    let mut text = format!(
+        "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}.",
         member.design.notation,
-        objectives.join(", "),
-        number(Some(member.membership)),
-        number(Some(metrics.mean_visible)),
-        number(metrics.mean_pdop),
-        number(metrics.cvar_pdop),
-        number(metrics.max_pdop)
-    ))
+        shown::objectives(member),
+        shown::membership(member.membership),
+    );
+    let better: Vec<String> = page
+        .baselines
+        .iter()
+        .filter(|baseline| baseline.outdoes(member))
+        .map(Baseline::label)
+        .collect();
+    if !better.is_empty() {
+        text += &format!(" It is dominated by {}.", better.join(" and by "));
+    }
+    let metrics = &member.metrics;
+    text += &format!(
+        " On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
+        shown::named("mean-visible", Some(metrics.mean_visible)),
+        shown::pdop(metrics.mean_pdop),
+        shown::pdop(metrics.cvar_pdop),
+        shown::pdop(metrics.max_pdop)
+    );
+    let constrained = member
+        .constraints
+        .iter()
+        .map(|(name, v)| (name.as_str(), *v));
+    if !member.constraints.is_empty() {
+        text += &format!(" Under constraints: {}.", shown::pairs(constrained));
+    }
+    Some(text)
 }
 
 /// The best design by each objective.
@@ -227,7 +243,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
             objective: quantity_label(name),
             place,
             notation: member.design.notation.clone(),
-            value: number(member.objective(name)),
+            value: shown::named(name, member.objective(name)),
         })
     };
     run.objective_names().iter().filter_map(of).collect()
@@ -236,6 +252,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
 /// The members of the table: at most `most`, evenly over the front, and the chosen one.
 pub(super) fn members(run: &Run, most: usize) -> Vec<MemberRow> {
     let all = &run.front;
+    let further = further(run);
     let shown = all.len().min(most);
     let at = |k: usize| k * (all.len() - 1) / (shown - 1).max(1);
     let mut places: Vec<usize> = (0..shown).map(at).collect();
@@ -245,28 +262,42 @@ pub(super) fn members(run: &Run, most: usize) -> Vec<MemberRow> {
     }
     places
         .into_iter()
-        .map(|place| row(place, &all[place]))
+        .map(|place| row(place, &all[place], &further))
         .collect()
 }
 
-fn row(place: usize, member: &FrontMember) -> MemberRow {
+/// Metrics with a column of their own in the table of members.
+const ALWAYS: [&str; 5] = [
+    "mean-visible",
+    "mean-pdop",
+    "cvar-pdop",
+    "max-pdop",
+    "availability",
+];
+
+/// Quantities under constraints that have no other column.
+pub(super) fn further(run: &Run) -> Vec<String> {
+    let mut names = run.constraint_names();
+    names.retain(|name| !ALWAYS.contains(&name.as_str()));
+    names
+}
+
+fn row(place: usize, member: &FrontMember, further: &[String]) -> MemberRow {
     let metrics = &member.metrics;
-    let mut cells: Vec<String> = member
-        .objectives
-        .iter()
-        .map(|o| number(Some(o.1)))
-        .collect();
-    cells.extend(
-        [
-            Some(metrics.mean_visible),
-            metrics.mean_pdop,
-            metrics.cvar_pdop,
-            metrics.max_pdop,
-            Some(metrics.availability),
-            Some(member.membership),
-        ]
-        .map(number),
-    );
+    let objectives = member.objectives.iter();
+    let mut cells: Vec<String> = objectives.map(|(n, v)| shown::named(n, Some(*v))).collect();
+    let values = [
+        Some(metrics.mean_visible),
+        metrics.mean_pdop,
+        metrics.cvar_pdop,
+        metrics.max_pdop,
+        Some(metrics.availability),
+    ];
+    let of_metrics = ALWAYS.iter().zip(values);
+    cells.extend(of_metrics.map(|(name, value)| shown::named(name, value)));
+    let of_constraints = further.iter();
+    cells.extend(of_constraints.map(|name| shown::named(name, member.quantity(name))));
+    cells.push(shown::membership(member.membership));
     MemberRow {
         place,
         index: member.index,
@@ -331,8 +362,10 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         ),
         (
             "PDOP",
-            "unit-weight least squares; samples without a solution are excluded"
-                .to_owned(),
+            match run.scenario.as_ref().map(|s| s.visibility.weighting) {
+                None | Some(ObservationWeights::Unit) => "unit-weight least squares".to_owned(),
+                Some(weighting) => format!("least squares with weights {weighting}"),
+            } + "; samples without a solution are excluded",
         ),
         (
             "Quantiles and CVaR",
@@ -368,15 +401,12 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         ("Surface", scenario.earth.surface.to_string()),
         ("LEO propagation", scenario.propagation.model.to_string()),
         ("Receiver clocks", scenario.gnss.clocks.to_string()),
+        ("Masks", masks(&scenario.visibility)),
         (
-            "Masks",
-            format!(
-                "LEO {}\u{b0}, GNSS {}\u{b0}; PDOP above {} counts as unsolved",
-                scenario.visibility.mask_deg,
-                scenario.visibility.gnss_mask_deg,
-                scenario.visibility.pdop_cap
-            ),
+            "Unsolved",
+            format!("PDOP above {}", scenario.visibility.pdop_cap),
         ),
+        ("Constraints", constraints(scenario)),
         (
             "Objectives",
             format!(
@@ -388,6 +418,49 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
             ),
         ),
     ]
+}
+
+/// The lowest elevations at which satellites count, per system and by azimuth.
+fn masks(visibility: &Visibility) -> String {
+    let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
+    let mut text = format!("LEO {leo}\u{b0}, GNSS {gnss}\u{b0}");
+    let table = &visibility.mask_table;
+    if !table.is_empty() {
+        let points: Vec<String> = table
+            .iter()
+            .map(|point| format!("{}\u{b0} at {}\u{b0}", point.mask_deg, point.azimuth_deg))
+            .collect();
+        text += &format!(
+            "; skyline at every point, where it is higher: elevation by azimuth from north over \
+             east, linear between {}",
+            points.join(", ")
+        );
+    }
+    text
+}
+
+fn constraints(scenario: &Scenario) -> String {
+    let texts = scenario.objectives.constraints.iter();
+    let texts: Vec<String> = texts.map(ToString::to_string).collect();
+    if texts.is_empty() {
+        return "none".to_owned();
+    }
+    texts.join(", ")
+}
+
+/// The masks in a sentence: one where both are alike.
+fn mask_clause(visibility: &Visibility) -> String {
+    let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
+    let mut text = if leo == gnss {
+        format!("elevation mask {leo}\u{b0}")
+    } else {
+        format!("elevation masks {leo}\u{b0} (LEO) and {gnss}\u{b0} (GNSS)")
+    };
+    let heights = visibility.mask_table.iter().map(|point| point.mask_deg);
+    if let Some(highest) = heights.reduce(f64::max) {
+        text += &format!(", under a skyline of up to {highest}\u{b0}");
+    }
+    text
 }
 
 fn run_names(scenario: &Scenario) -> String {

@@ -23,9 +23,10 @@ section! {
         pub availability_pdop: f64 = Number::above(0.0), default 6.0;
         /// Parameters of `launch-cost`.
         pub launch_cost: LaunchCost;
-        /// Reference point of the hypervolume, one number for each objective.
+        /// Reference point of the hypervolume, one number for each objective; where no design of the
+        /// front dominates it, the run chooses its own.
         pub hypervolume_reference: Option<Vec<f64>> = Optional(Numbers),
-            follows "2 for j-pos, 22 for j-cost, none with other objectives",
+            follows "2 for j-pos, 22 for j-cost, chosen from the run with other objectives",
             example Some(vec![2.0, 22.0]);
     }
 }

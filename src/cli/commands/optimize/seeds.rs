@@ -13,7 +13,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Tables of all seeds.
-const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
+const TABLE: [&str; 3] = ["seeds.csv", "seeds.json", "joint-front.csv"];
 
 /// What the run directories of the seeds start with.
 const RUN: &str = "seed-";
@@ -63,9 +63,11 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
         }
         results.push(result);
     }
-    let result = SeedsResult::new(results).context("no seed was run")?;
+    let objectives = &study.scenario.objectives.minimize;
+    let result =
+        SeedsResult::new(results, sweep.as_deref(), objectives).context("no seed was run")?;
     let json = serde_json::to_string_pretty(&result)? + "\n";
-    let contents = [result.to_csv()?, json.clone()];
+    let contents = [result.to_csv()?, json.clone(), result.joint_csv()?];
     for (name, text) in TABLE.iter().zip(&contents) {
         files::write_atomically(&out.join(name), text.as_bytes())?;
     }

@@ -1,0 +1,111 @@
+//! A design that is shown beside a front.
+
+use crate::constellation::Design;
+use crate::optimize::dominates;
+use crate::run::{Diagnostic, FrontMember};
+use crate::search::{DesignProblem, Quantity};
+
+/// A design that is shown beside the front.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baseline {
+    /// What it is called.
+    pub name: String,
+    /// Walker notation.
+    pub notation: String,
+    /// The objectives of the run, in their own directions; `None` for one without a value.
+    pub objectives: Vec<Option<f64>>,
+    /// The quantities under constraints that are no objectives; `None` for one without a value.
+    pub constraints: Vec<Option<f64>>,
+    /// The objectives as they are minimised, of a design that meets the constraints.
+    feasible: Option<Vec<f64>>,
+}
+
+impl Baseline {
+    /// A design with its objectives; `None` when it cannot be propagated.
+    #[must_use]
+    pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
+        let (metrics, evaluation) = problem.judged(design)?;
+        let goals = problem.goals();
+        let value = |quantity: &Quantity| quantity.value(design, &metrics, &goals.launch_cost);
+        Some(Self {
+            name: name.to_owned(),
+            notation: design.to_string(),
+            objectives: goals.objectives.iter().map(value).collect(),
+            constraints: goals.constrained().iter().map(value).collect(),
+            feasible: (evaluation.violation == 0.0).then_some(evaluation.objectives),
+        })
+    }
+
+    /// Its name and notation in a sentence; one that is named by its notation has it once.
+    #[must_use]
+    pub fn label(&self) -> String {
+        if self.name == self.notation {
+            return self.notation.clone();
+        }
+        format!("the {} {}", self.name, self.notation)
+    }
+
+    /// Whether it meets the constraints and dominates a member of the front: no worse in any
+    /// objective and better in one.
+    #[must_use]
+    pub fn outdoes(&self, member: &FrontMember) -> bool {
+        let own = self.feasible.as_ref();
+        own.is_some_and(|own| dominates(own, &member.minimised()))
+    }
+
+    /// Says so if it dominates the pick.
+    #[must_use]
+    pub fn diagnose(&self, pick: &FrontMember) -> Option<Diagnostic> {
+        self.outdoes(pick).then(|| {
+            let names = pick.objectives.iter().map(|(name, _)| name.as_str());
+            let values = names.zip(self.objectives.iter().copied());
+            Diagnostic::new(
+                Self::DOMINATES,
+                format!(
+                    "{} ({}) dominates the pick {} ({}): take it, or give the search more generations, a \
+                     larger population or wider bounds",
+                    self.label(),
+                    super::shown::pairs(values),
+                    pick.design.notation,
+                    super::shown::objectives(pick)
+                ),
+            )
+        })
+    }
+
+    /// Code of the diagnostic of a pick that a design beside it dominates.
+    pub const DOMINATES: &'static str = "pick-dominated";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::testing;
+
+    #[test]
+    fn only_what_is_feasible_and_no_worse_outdoes_a_pick() {
+        let pick = FrontMember {
+            objectives: vec![
+                ("max-pdop".to_owned(), 2.0),
+                ("mean-visible".to_owned(), 8.0),
+            ],
+            ..testing::member(1, "delta:45:225/15/1@1000")
+        };
+        let beside = |feasible: Option<[f64; 2]>| Baseline {
+            name: "reference design".to_owned(),
+            notation: "delta:55:182/13/1@925".to_owned(),
+            objectives: vec![Some(2.0), Some(9.0)],
+            constraints: Vec::new(),
+            feasible: feasible.map(|x| x.to_vec()),
+        };
+        // More in view is better: as it is minimised, -9 is better than -8.
+        let found = beside(Some([2.0, -9.0])).diagnose(&pick).unwrap();
+        assert_eq!(found.code, "pick-dominated");
+        let told =
+            "(max-pdop 2.0000, mean-visible 9.0000) dominates the pick delta:45:225/15/1@1000";
+        assert!(found.message.contains(told), "{}", found.message);
+        for other in [Some([2.0, -8.0]), Some([2.1, -9.0]), None] {
+            assert_eq!(beside(other).diagnose(&pick), None);
+        }
+    }
+}
