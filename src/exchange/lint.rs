@@ -2,7 +2,8 @@
 //! standard forbids it.
 
 use crate::formats::ccsds::omm::OmmSyntax;
-use crate::formats::ccsds::{oem, omm, opm};
+use crate::formats::ccsds::xml::first_message;
+use crate::formats::ccsds::{ndm, oem, omm, opm};
 use crate::formats::csv;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{Finding, FindingList};
@@ -50,13 +51,13 @@ impl Format {
     /// The format that the beginning of a file shows, or else its name.
     #[must_use]
     pub fn of(beginning: &[u8], file_name: Option<&str>) -> Self {
+        let whole = beginning;
         let beginning = &beginning[..beginning.len().min(PROBE)];
         let text = String::from_utf8_lossy(beginning);
         let text = text.trim_start_matches('\u{feff}').trim_start();
         let first_line = text.lines().next().unwrap_or_default();
         let by_content = match text.as_bytes() {
-            [b'<', ..] if text.contains("<oem") => Some(Self::OemXml),
-            [b'<', ..] => Some(Self::OmmXml),
+            [b'<', ..] => Some(Self::of_xml(whole)),
             [b'[', ..] if text.contains("\"document\"") => Some(Self::Czml),
             [b'[' | b'{', ..] => Some(Self::OmmJson),
             [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Sp3),
@@ -74,6 +75,14 @@ impl Format {
         by_content
             .or_else(|| Self::of_name(file_name?))
             .unwrap_or(Self::Tle)
+    }
+
+    /// The notation of the first message, however long the comments before it are.
+    fn of_xml(beginning: &[u8]) -> Self {
+        match first_message(&String::from_utf8_lossy(beginning)) {
+            Some("oem") => Self::OemXml,
+            _ => Self::OmmXml,
+        }
     }
 
     fn of_name(file_name: &str) -> Option<Self> {
@@ -113,6 +122,7 @@ pub fn lint(
     file_name: Option<&str>,
     limit: usize,
 ) -> io::Result<LintReport> {
+    let kinds = xml_kinds(format);
     let format = match format {
         Some(format) => format,
         None => Format::of(input.fill_buf()?, file_name),
@@ -121,9 +131,8 @@ pub fn lint(
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
         Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
-        Format::OemXml => oem::parse_xml(input, &mut findings, |_| ())?,
+        Format::OemXml | Format::OmmXml => ndm::parse(input, kinds, &mut findings, |_| ())?,
         Format::Omm => omm::parse(input, OmmSyntax::Kvn, &mut findings, |_| ())?,
-        Format::OmmXml => omm::parse(input, OmmSyntax::Xml, &mut findings, |_| ())?,
         Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
         Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
         Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
@@ -135,6 +144,15 @@ pub fn lint(
     }
     let findings = findings.into_vec();
     Ok(LintReport { format, findings })
+}
+
+/// The messages that are read from XML: those of the format that is asked for, or else all kinds.
+pub(super) fn xml_kinds(asked: Option<Format>) -> &'static [&'static str] {
+    match asked {
+        Some(Format::OemXml) => &["oem"],
+        Some(Format::OmmXml) => &["omm"],
+        _ => ndm::READ,
+    }
 }
 
 /// Element sets, none of which may stand twice.

@@ -2,6 +2,7 @@
 
 mod foreign;
 mod hostile;
+mod kinds;
 mod leap_seconds;
 
 use crate::exchange::export::testing::{in_memory, is_read, subject};

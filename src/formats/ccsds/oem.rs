@@ -6,11 +6,13 @@
 //! XML (505.0-B-2) a combined instantiation holds the messages of several objects.
 
 mod read;
+mod rules;
 mod write;
 mod xml;
 
 pub use read::{parse, read};
 pub use write::OemWriter;
+pub(super) use xml::XmlMessage;
 pub use xml::{parse_xml, read_xml};
 
 use crate::ephemeris::hermite::Hermite;
@@ -142,7 +144,8 @@ impl Segment {
             .fold(SecondDigits::FEWEST, Ord::max)
     }
 
-    /// The states in the library's terms.
+    /// The states in the library's terms: those of the usable span, since the others are there to interpolate and
+    /// need not be where the satellite was (table 5-3).
     ///
     /// # Errors
     /// When the centre is not the Earth, or the frame or the time system is unknown.
@@ -155,12 +158,14 @@ impl Segment {
             });
         }
         let time_system = time_system_of_name(&metadata.time_system)?;
+        let (first, last) = metadata.useable_span();
+        let is_useable = |line: &&StateLine| (first..=last).contains(&line.epoch);
         let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
         Ok(Trajectory {
             name: metadata.object_name.clone(),
             id: metadata.object_id.clone(),
             frame: frame_of_name(&metadata.ref_frame)?,
-            states: self.states.iter().map(instant).collect(),
+            states: self.states.iter().filter(is_useable).map(instant).collect(),
         })
     }
 }
@@ -220,6 +225,15 @@ fn write_metadata(
 }
 
 impl SegmentMetadata {
+    /// The first and the last instant for which the segment holds.
+    #[must_use]
+    pub fn useable_span(&self) -> (NaiveDateTime, NaiveDateTime) {
+        (
+            self.useable_start_time.unwrap_or(self.start_time),
+            self.useable_stop_time.unwrap_or(self.stop_time),
+        )
+    }
+
     /// The keywords and their values in the order of table 5-3.
     pub(crate) fn pairs(&self, digits: SecondDigits) -> Vec<(&'static str, String)> {
         let time = |stamp| calendar(stamp, digits);

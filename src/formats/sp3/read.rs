@@ -5,7 +5,7 @@ use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::timestamp::{TimeSystem, stamp};
-use crate::formats::trajectory::time_system_of_name;
+use crate::formats::trajectory::{frame_of_sp3_name, time_system_of_name};
 use crate::frames::Position;
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
@@ -109,6 +109,10 @@ impl Sp3Parser {
         };
         self.file.version = char::from(*version);
         self.file.frame = line.text[46..51].trim().to_owned();
+        if let Err(unknown) = frame_of_sp3_name(&self.file.frame) {
+            let message = format!("coordinate system: {unknown}");
+            findings.error((line.number, 47), "sp3-frame", message);
+        }
         match line.text[32..39].trim().parse() {
             Ok(epochs) => self.announced.1 = epochs,
             Err(_) => {

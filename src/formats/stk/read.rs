@@ -3,9 +3,10 @@
 use super::{MONTHS, StkEphemeris};
 use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
-use crate::formats::ccsds::kvn::{read_number, words};
+use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::number;
 use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
@@ -189,7 +190,7 @@ impl StkParser {
         }
         let mut values = [0.0; 7];
         for (value, (column, text)) in values.iter_mut().zip(fields) {
-            match read_number(text, (line.number, column), findings) {
+            match number::read(text, (line.number, column), "stk-number", findings) {
                 Some(number) => *value = number,
                 None => return,
             }

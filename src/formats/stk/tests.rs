@@ -106,7 +106,7 @@ fn broken_rules_are_named_with_their_place() {
         ("CoordinateSystem Fixed\n", "", (9, 1, "stk-missing")),
         ("TimePosVel\n", "LLATimePos\n", (10, 1, "stk-keyword")),
         ("\n60 ", "\n0 ", (12, 1, "stk-time-order")),
-        ("\n60 ", "\nNaN ", (12, 1, "ccsds-number")),
+        ("\n60 ", "\nNaN ", (12, 1, "stk-number")),
         ("\n60 ", "\n", (12, 1, "stk-fields")),
         ("END Ephemeris\n", "", (12, 1, "stk-truncated")),
         (

@@ -13,7 +13,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(crate) struct Line {
     /// Number, from 1.
     pub(crate) number: usize,
-    /// Text: printable ASCII.
+    /// Text: printable ASCII, but in free text.
     pub(crate) text: String,
 }
 
@@ -24,6 +24,8 @@ pub(crate) struct Lines<R> {
     after_carriage_return: bool,
     /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
     takes_tabs: bool,
+    /// Lines whose text means nothing to the reader, or is a name: they may hold any characters.
+    is_comment: fn(&[u8]) -> bool,
 }
 
 /// How the bytes of a line were taken.
@@ -40,7 +42,14 @@ impl<R: BufRead> Lines<R> {
             number: 0,
             after_carriage_return: false,
             takes_tabs: false,
+            is_comment: |_| false,
         }
+    }
+
+    /// The same, with lines that may hold more than printable ASCII: comments and names. `is_comment` sees the
+    /// bytes of a line.
+    pub(crate) fn with_comments(self, is_comment: fn(&[u8]) -> bool) -> Self {
+        Self { is_comment, ..self }
     }
 
     /// Lines of a format that separates its words by tabs too.
@@ -67,8 +76,12 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             if matches!(taken, Taken::TooLong) {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
-                findings.error((self.number, MAX_LINE + 1), "line-length", message);
-                continue;
+                let place = (self.number, MAX_LINE + 1);
+                if !(self.is_comment)(&bytes) {
+                    findings.error(place, "line-length", message);
+                    continue;
+                }
+                findings.warning(place, "line-length", message);
             }
             if self.number == 1 && bytes.starts_with(BYTE_ORDER_MARK) {
                 bytes.drain(..BYTE_ORDER_MARK.len());
@@ -78,7 +91,13 @@ impl<R: BufRead> Lines<R> {
                 None => return Ok(Some(self.line(&bytes))),
                 Some(at) => {
                     let message = format!("byte 0x{:02X} is not printable ASCII", bytes[at]);
-                    findings.error((self.number, at + 1), "character", message);
+                    let place = (self.number, at + 1);
+                    let has_control = bytes.iter().any(|b| b.is_ascii_control());
+                    if (self.is_comment)(&bytes) && !has_control {
+                        findings.warning(place, "character", message);
+                        return Ok(Some(self.line(&bytes)));
+                    }
+                    findings.error(place, "character", message);
                 }
             }
         }
@@ -88,7 +107,7 @@ impl<R: BufRead> Lines<R> {
     fn line(&self, bytes: &[u8]) -> Line {
         Line {
             number: self.number,
-            text: bytes.iter().map(|byte| char::from(*byte)).collect(),
+            text: String::from_utf8_lossy(bytes).into_owned(),
         }
     }
 
@@ -189,6 +208,27 @@ mod tests {
         assert_eq!(places, [(2, 2), (3, 1), (4, 2)]);
         assert_eq!(findings[0].rule, "tab");
         assert_eq!(findings[0].severity, Severity::Warning);
+    }
+
+    #[test]
+    fn comments_may_hold_any_text() {
+        let bytes = "COMMENT \u{d6}BB\nX = \u{d6}\n".as_bytes();
+        let latin_1 = b"COMMENT \xd6BB\nCOMMENT \0\n";
+        let bytes = [bytes, latin_1].concat();
+        let mut findings = FindingList::of_linter(10);
+        let mut reader = Lines::new(&bytes[..]).with_comments(|line| line.starts_with(b"COMMENT"));
+        let mut texts = Vec::new();
+        while let Some(line) = reader.next(&mut findings).unwrap() {
+            texts.push(line.text);
+        }
+        assert_eq!(texts, ["COMMENT \u{d6}BB", "COMMENT \u{fffd}BB"]);
+        let found: Vec<_> = findings
+            .into_vec()
+            .iter()
+            .map(|f| (f.line, f.severity))
+            .collect();
+        let (warning, error) = (Severity::Warning, Severity::Error);
+        assert_eq!(found, [(1, warning), (2, error), (3, warning), (4, error)]);
     }
 
     #[test]
