@@ -3,7 +3,6 @@
 use crate::cli::args::{DesignArgs, StudyArgs};
 use crate::cli::{files, output, run};
 use crate::constellation::Design;
-use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
 use crate::run::ScenarioStamp;
 use crate::scenario::{Algorithm, Scenario, builtin};
@@ -75,14 +74,10 @@ impl Study {
     /// What an evaluation depends on; refuses what would not fit into memory.
     pub(crate) fn setup(&self) -> Result<Setup> {
         let read = |file: &str| files::read_whole(&self.directory.join(file));
-        let setup = self.scenario.setup(&read)?;
+        let (setup, notes) = self.scenario.setup_with_notes(&read)?;
         check_memory(&setup)?;
-        for system in &setup.gnss {
-            if let System::Sets(sets) = system
-                && let Some(stale) = sets.stale(setup.grid)
-            {
-                output::warning(&stale.to_string());
-            }
+        for note in &notes {
+            output::warning(note);
         }
         Ok(setup)
     }

@@ -49,8 +49,9 @@ fn add_system(
     for ((elapsed_s, rotation), row) in setup.grid.iter().zip(rotations).zip(rows) {
         let mut positions = Vec::with_capacity(system.satellites().len());
         for satellite in system.satellites() {
-            let state = system.state(satellite, elapsed_s)?;
-            positions.push(rotation.to_earth_fixed(state.position_km));
+            if let Some(state) = system.state_or_gap(satellite, elapsed_s)? {
+                positions.push(rotation.to_earth_fixed(state.position_km));
+            }
         }
         for (site, sample) in setup.sites.iter().zip(row) {
             let mut group = ClockGroup::default();

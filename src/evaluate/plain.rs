@@ -92,7 +92,7 @@ pub(super) fn visit(
     Ok(())
 }
 
-/// Fills `positions` with the Earth-fixed positions of the satellites at instant `time`.
+/// Fills `positions` with the Earth-fixed positions of the satellites that have one at instant `time`.
 pub(super) fn earth_fixed(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
@@ -102,8 +102,9 @@ pub(super) fn earth_fixed(
     positions.clear();
     let elapsed_s = evaluator.setup().grid.elapsed_s(time);
     for satellite in ephemeris.satellites() {
-        let state = ephemeris.state(satellite, elapsed_s)?;
-        positions.push(evaluator.rotations[time].to_earth_fixed(state.position_km));
+        if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {
+            positions.push(evaluator.rotations[time].to_earth_fixed(state.position_km));
+        }
     }
     Ok(())
 }

@@ -3,4 +3,5 @@
 pub mod finding;
 pub(crate) mod json;
 pub(crate) mod lines;
+pub(crate) mod number;
 pub mod timestamp;

@@ -54,7 +54,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
-    let (format, mut fleet) = read_constellation::read(&args.constellation)?;
+    let (formats, mut fleet) = read_constellation::read(&args.constellation, args.input_format)?;
     let filter = SatelliteFilter {
         only: args.only.clone(),
         exclude: args.exclude.clone(),
@@ -66,6 +66,9 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         output::warning(&stale.to_string());
     }
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
+    for note in fleet.sampling_notes(setup.grid) {
+        output::warning(&note.to_string());
+    }
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let name = |path: &PathBuf| {
@@ -76,7 +79,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     let result = ConstellationResult {
         constellation: ConstellationSummary {
             name: names.join("+"),
-            format: format.to_string(),
+            format: read_constellation::names(&formats),
             content: fleet.content(),
             satellites: fleet.len(),
         },

@@ -13,6 +13,7 @@ pub use read::{parse, read};
 pub use write::OemWriter;
 pub use xml::{parse_xml, read_xml};
 
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::hermite::Hermite;
 use crate::formats::ccsds::kvn::{CcsdsHeader, write_comments};
 use crate::formats::metadata::{Metadata, Object};
@@ -153,12 +154,33 @@ impl Segment {
         }
         let time_system = time_system_of_name(&metadata.time_system)?;
         let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
+        let frame = frame_of_name(&metadata.ref_frame)?;
+        let nodes: Vec<_> = self.states.iter().map(instant).collect();
+        let arc = Arc::new(frame, self.interpolation(), nodes);
+        let ends = [metadata.useable_start_time, metadata.useable_stop_time];
+        let [first, last] = ends.map(|end| end.map(|stamp| time_system.epoch(stamp)));
+        // The samples beyond the useable span are there to interpolate (5.2.4.4, table 5-3).
+        let useable = |arc: Arc| {
+            let (start, stop) = arc.useable;
+            arc.within((first.unwrap_or(start), last.unwrap_or(stop)))
+        };
         Ok(Trajectory {
             name: metadata.object_name.clone(),
             id: metadata.object_id.clone(),
-            frame: frame_of_name(&metadata.ref_frame)?,
-            states: self.states.iter().map(instant).collect(),
+            arcs: Vec::from_iter(arc.and_then(useable)),
         })
+    }
+
+    /// The interpolation that the segment names, or that of states.
+    fn interpolation(&self) -> Interpolation {
+        match &self.metadata.interpolation {
+            Some((method, degree)) => match method.to_ascii_uppercase().as_str() {
+                "HERMITE" => Interpolation::Hermite(*degree | 1),
+                "LINEAR" => Interpolation::Lagrange(1),
+                _ => Interpolation::Lagrange(*degree),
+            },
+            None => Interpolation::OF_STATES,
+        }
     }
 }
 

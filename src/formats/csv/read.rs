@@ -2,12 +2,14 @@
 //! are passed over.
 
 use super::CsvTable;
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, State};
 use crate::orbit::MeanElements;
+use crate::orbit::earth_orbit::check_state;
 use crate::time::Epoch;
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -134,7 +136,7 @@ pub fn parse_states(
     input: impl BufRead,
     findings: &mut FindingList,
 ) -> io::Result<Vec<Trajectory>> {
-    let mut trajectories: Vec<Trajectory> = Vec::new();
+    let mut satellites: Vec<(String, Frame, Vec<(Epoch, State<Frame>)>)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     rows(input, &STATES, findings, |frame, row, findings| {
         let at = row.stamp(1, findings);
@@ -151,24 +153,30 @@ pub fn parse_states(
         };
         let name = row.text(0);
         let index = places.get(name).copied().unwrap_or_else(|| {
-            places.insert(name.to_owned(), trajectories.len());
-            trajectories.push(Trajectory {
-                name: name.to_owned(),
-                id: name.to_owned(),
-                frame,
-                states: Vec::new(),
-            });
-            trajectories.len() - 1
+            places.insert(name.to_owned(), satellites.len());
+            satellites.push((name.to_owned(), frame, Vec::new()));
+            satellites.len() - 1
         });
-        let states = &mut trajectories[index].states;
+        let states = &mut satellites[index].2;
         if states.last().is_some_and(|(last, _)| *last >= at) {
             let message = format!("the time is not after that of the row of {name} before");
             findings.error(row.place(1), "csv-time-order", message);
             return;
         }
-        states.push((at, State::new(position_km, velocity_km_s)));
+        let state = State::new(position_km, velocity_km_s);
+        if let Err(fault) = check_state(frame, &state) {
+            let message = format!("{name}: {fault}");
+            findings.error(row.place(2), "implausible-state", message);
+            return;
+        }
+        states.push((at, state));
     })?;
-    Ok(trajectories)
+    let trajectory = |(name, frame, states): (String, Frame, Vec<_>)| Trajectory {
+        id: name.clone(),
+        name,
+        arcs: Vec::from_iter(Arc::new(frame, Interpolation::OF_STATES, states)),
+    };
+    Ok(satellites.into_iter().map(trajectory).collect())
 }
 
 /// A row whose fields are numbered as the columns that are read.

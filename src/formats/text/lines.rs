@@ -13,7 +13,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(crate) struct Line {
     /// Number, from 1.
     pub(crate) number: usize,
-    /// Text: printable ASCII.
+    /// Text: printable ASCII, but for a comment.
     pub(crate) text: String,
 }
 
@@ -24,6 +24,8 @@ pub(crate) struct Lines<R> {
     after_carriage_return: bool,
     /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
     takes_tabs: bool,
+    /// Tells a comment, which may hold any characters: they change no number.
+    is_comment: fn(&[u8]) -> bool,
 }
 
 /// How the bytes of a line were taken.
@@ -40,6 +42,7 @@ impl<R: BufRead> Lines<R> {
             number: 0,
             after_carriage_return: false,
             takes_tabs: false,
+            is_comment: |_| false,
         }
     }
 
@@ -49,6 +52,11 @@ impl<R: BufRead> Lines<R> {
             takes_tabs: true,
             ..Self::new(input)
         }
+    }
+
+    /// The same lines, with any characters in those that `is_comment` tells.
+    pub(crate) fn with_comments(self, is_comment: fn(&[u8]) -> bool) -> Self {
+        Self { is_comment, ..self }
     }
 
     /// Number of the last line that was read.
@@ -78,7 +86,15 @@ impl<R: BufRead> Lines<R> {
                 None => return Ok(Some(self.line(&bytes))),
                 Some(at) => {
                     let message = format!("byte 0x{:02X} is not printable ASCII", bytes[at]);
-                    findings.error((self.number, at + 1), "character", message);
+                    let place = (self.number, at + 1);
+                    if (self.is_comment)(&bytes) {
+                        findings.warning(place, "character", message);
+                        return Ok(Some(Line {
+                            number: self.number,
+                            text: String::from_utf8_lossy(&bytes).into_owned(),
+                        }));
+                    }
+                    findings.error(place, "character", message);
                 }
             }
         }
