@@ -117,15 +117,21 @@ impl Arc {
     /// # Errors
     /// The other arc, if it does not follow at the spacing of this one.
     pub fn continued_by(&mut self, next: Self) -> Result<(), Self> {
-        let spacing_s = |one: Option<&(Epoch, State<Frame>)>, other: Option<&(Epoch, State<Frame>)>| {
+        let spacing_s = |one: Option<&(Epoch, State<Frame>)>,
+                         other: Option<&(Epoch, State<Frame>)>| {
             Some(other?.0.seconds_since(one?.0))
         };
         let count = self.nodes.len();
-        let before_s = spacing_s(count.checked_sub(2).map(|k| &self.nodes[k]), self.nodes.last());
+        let before_s = spacing_s(
+            count.checked_sub(2).map(|k| &self.nodes[k]),
+            self.nodes.last(),
+        );
         let between_s = spacing_s(self.nodes.last(), next.nodes.first());
-        let follows = before_s.zip(between_s).is_some_and(|(before_s, between_s)| {
-            between_s > SAME_INSTANT_S && between_s < 1.5 * before_s
-        });
+        let follows = before_s
+            .zip(between_s)
+            .is_some_and(|(before_s, between_s)| {
+                between_s > SAME_INSTANT_S && between_s < 1.5 * before_s
+            });
         let alike = (self.frame, self.interpolation) == (next.frame, next.interpolation);
         if !(self.is_open && next.is_open && alike && follows) {
             return Err(next);
@@ -154,7 +160,9 @@ impl Arc {
             return None;
         }
         let since = |node: &(Epoch, State<Frame>)| node.0.seconds_since(at);
-        let next = self.nodes.partition_point(|node| since(node) < -SAME_INSTANT_S);
+        let next = self
+            .nodes
+            .partition_point(|node| since(node) < -SAME_INSTANT_S);
         let node = self.nodes.get(next)?;
         if since(node) <= SAME_INSTANT_S {
             return Some((node.1, false));
@@ -173,7 +181,9 @@ impl Arc {
     #[must_use]
     pub fn is_interpolated(&self, at: Epoch) -> Option<bool> {
         let since = |node: &(Epoch, State<Frame>)| node.0.seconds_since(at);
-        let next = self.nodes.partition_point(|node| since(node) < -SAME_INSTANT_S);
+        let next = self
+            .nodes
+            .partition_point(|node| since(node) < -SAME_INSTANT_S);
         let node = self.nodes.get(next).filter(|_| self.covers(at))?;
         let interpolated = since(node) > SAME_INSTANT_S;
         (next > 0 || !interpolated).then_some(interpolated)
@@ -207,7 +217,9 @@ impl Arc {
 /// The `count` nodes around the gap before `next`: as many on both sides, shifted at the ends.
 fn window<T>(nodes: &[T], next: usize, count: usize) -> &[T] {
     let count = count.min(nodes.len());
-    let first = next.saturating_sub(count.div_ceil(2)).min(nodes.len() - count);
+    let first = next
+        .saturating_sub(count.div_ceil(2))
+        .min(nodes.len() - count);
     &nodes[first..first + count]
 }
 
@@ -231,10 +243,12 @@ pub(crate) fn lagrange<F>(nodes: &[(f64, State<F>)], t: f64) -> (Vector3<f64>, V
 }
 
 /// A state without a velocity of its own.
-#[must_use]
-pub fn still<F>(position_km: Vector3<f64>) -> State<F> {
+pub(crate) fn still<F>(position_km: Vector3<f64>) -> State<F> {
     State {
         position_km: Position::new(position_km),
         velocity_km_s: Vector3::zeros(),
     }
 }
+
+#[cfg(test)]
+mod tests;

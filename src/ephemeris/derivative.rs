@@ -36,10 +36,11 @@ const COMPARED: usize = 50;
 
 /// Says how velocities differ from the derivative of the positions, if they do wherever the positions stand
 /// close enough to tell; by the median, so that a manoeuvre is none.
-pub(crate) fn velocity_fault<F>(
-    samples: &[(Epoch, Position<F>, Vector3<f64>)],
-) -> Option<String> {
-    let positions: Vec<_> = samples.iter().map(|(at, r, _)| (*at, Position::new(r.km()))).collect();
+pub(crate) fn velocity_fault<F>(samples: &[(Epoch, Position<F>, Vector3<f64>)]) -> Option<String> {
+    let positions: Vec<_> = samples
+        .iter()
+        .map(|(at, r, _)| (*at, Position::new(r.km())))
+        .collect();
     let increase = positions.windows(2).all(|pair| pair[0].0 < pair[1].0);
     if positions.len() < NEIGHBOURS || !increase {
         return None;
@@ -55,7 +56,11 @@ pub(crate) fn velocity_fault<F>(
         let allowed = LEAST_FAULT_KM_S + SHARE * derived.norm();
         if (derived - narrow).norm() < 0.1 * allowed {
             let given = samples[place].2;
-            faults.push(((given - derived).norm() / allowed, given.norm(), derived.norm()));
+            faults.push((
+                (given - derived).norm() / allowed,
+                given.norm(),
+                derived.norm(),
+            ));
         }
     }
     faults.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -67,7 +67,12 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
                 findings.error((line.number, column), "sem-count", message);
                 return Ok(almanacs);
             }
-            record.extend(number::read(text, (line.number, column), "sem-number", findings));
+            record.extend(number::read(
+                text,
+                (line.number, column),
+                "sem-number",
+                findings,
+            ));
             match (week, record.len()) {
                 (None, 2) => {
                     week = Some([record[0], record[1]]);
@@ -94,7 +99,10 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
     match announced {
         None => findings.error(place, "sem-first-line", "the file is empty"),
         Some(count) if count != almanacs.len() || count == 0 => {
-            let message = format!("{count} records are announced; there are {}", almanacs.len());
+            let message = format!(
+                "{count} records are announced; there are {}",
+                almanacs.len()
+            );
             findings.error(place, "sem-count", message);
         }
         Some(_) => {}

@@ -102,7 +102,8 @@ impl StkEphemeris {
             let next_s = self.states.get(k + 1).map(|(next_s, _)| *next_s);
             let at_boundary = is_boundary(&self.boundaries_s, *elapsed_s) && nodes.len() > 1;
             let before_boundary = next_s.is_some_and(|next_s| {
-                let between = |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
+                let between =
+                    |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
                 self.boundaries_s.iter().any(between)
             });
             if at_boundary || before_boundary {

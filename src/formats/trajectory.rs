@@ -1,7 +1,7 @@
 //! A satellite's states as a file gives them, in the library's own terms.
 
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::ephemeris::arc::Arc;
 use crate::frames::{Frame, State};
 use crate::keyword::{Keyword, UnknownKeyword};
 use crate::time::Epoch;
@@ -19,6 +19,21 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
+    /// One arc of states in the order of time, between which nothing is said of the interpolation.
+    #[must_use]
+    pub fn of_states(
+        name: &str,
+        id: &str,
+        frame: Frame,
+        states: Vec<(Epoch, State<Frame>)>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            id: id.to_owned(),
+            arcs: Vec::from_iter(Arc::new(frame, Interpolation::OF_STATES, states)),
+        }
+    }
+
     /// The samples for which the arcs hold, in the order of time, each instant once.
     #[must_use]
     pub fn samples(&self) -> Vec<(Epoch, Frame, State<Frame>)> {

@@ -50,7 +50,9 @@ impl GnssFiles {
                 for (name, sets) in groups {
                     let system = ElementSets::new(&name, &sets)?;
                     let stale = system.stale(grid);
-                    self.found.notes.extend(stale.as_ref().map(StaleElements::to_string));
+                    self.found
+                        .notes
+                        .extend(stale.as_ref().map(StaleElements::to_string));
                     self.found.systems.push(system.into());
                 }
             }
@@ -82,7 +84,9 @@ impl GnssFiles {
         grid: TimeGrid,
     ) -> Result<(), GnssFileError> {
         let notes = fleet.sampling_notes(grid);
-        self.found.notes.extend(notes.iter().map(|note| format!("gnss.files: {note}")));
+        self.found
+            .notes
+            .extend(notes.iter().map(|note| format!("gnss.files: {note}")));
         // No file that comes here has mean elements, which alone ask for a model.
         let ephemeris = fleet.propagate(grid, Model::J2)?;
         let groups = by_system(name, ephemeris.into_satellites(), |one| &one.name);
@@ -113,10 +117,14 @@ fn by_system<T>(
         }
     }
     if let [(_, _)] = groups.as_slice() {
-        let only = groups.into_iter().map(|(_, group)| (file.to_owned(), group));
+        let only = groups
+            .into_iter()
+            .map(|(_, group)| (file.to_owned(), group));
         return only.collect();
     }
-    let named = groups.into_iter().map(|(system, group)| (format!("{file}-{system}"), group));
+    let named = groups
+        .into_iter()
+        .map(|(system, group)| (format!("{file}-{system}"), group));
     named.collect()
 }
 
@@ -126,7 +134,10 @@ fn system_of(name: &str) -> Option<&'static str> {
     if let [letter, b'0'..=b'9', b'0'..=b'9'] = name.as_bytes() {
         return of_letter(*letter);
     }
-    if let Some(number) = name.strip_prefix("PRN-").and_then(|number| number.parse::<u32>().ok()) {
+    if let Some(number) = name
+        .strip_prefix("PRN-")
+        .and_then(|number| number.parse::<u32>().ok())
+    {
         return match number {
             1..=63 => Some("gps"),
             193..=202 => Some("qzss"),

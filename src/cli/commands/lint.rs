@@ -60,7 +60,9 @@ fn rows_of(path: &Path, report: LintReport) -> impl Iterator<Item = FindingRow> 
     let file = path.display().to_string();
     report.findings.into_iter().map(move |finding| FindingRow {
         file: file.clone(),
-        format: report.format.map_or("unknown".to_owned(), |format| format.to_string()),
+        format: report
+            .format
+            .map_or("unknown".to_owned(), |format| format.to_string()),
         line: finding.line,
         column: finding.column,
         severity: match finding.severity {

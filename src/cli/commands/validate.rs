@@ -91,10 +91,7 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
 }
 
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
-fn comparisons(
-    path: &Path,
-    format: Option<Format>,
-) -> Result<Vec<(String, Vec<Comparand>)>> {
+fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_all = |path: &Path| -> Result<Vec<Comparand>> {
         let mut all = Vec::new();
         for (file, imported) in read_constellation::read_each(path, format)? {

@@ -32,7 +32,8 @@ pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
 
 /// Whether the arcs of two have more in common than an instant.
 fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
-    let both = |arc: &Arc, next: &Arc| arc.useable.1 > next.useable.0 && next.useable.1 > arc.useable.0;
+    let both =
+        |arc: &Arc, next: &Arc| arc.useable.1 > next.useable.0 && next.useable.1 > arc.useable.0;
     let mut arcs = one.arcs.iter();
     arcs.any(|arc| other.arcs.iter().any(|next| both(arc, next)))
 }

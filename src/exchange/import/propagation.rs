@@ -63,7 +63,11 @@ impl Propagator for Samples {
         if !(k >= 0.0 && (elapsed_s - k * self.step_s).abs() <= SAME_INSTANT_S) {
             return Err(missing);
         }
-        self.states.get(k as usize).copied().flatten().ok_or(missing)
+        self.states
+            .get(k as usize)
+            .copied()
+            .flatten()
+            .ok_or(missing)
     }
 }
 
@@ -201,7 +205,9 @@ fn sampled(
         let mut states = Vec::with_capacity(grid.len());
         for (k, elapsed_s) in grid.iter().enumerate() {
             let at = grid.epoch().plus_seconds(elapsed_s);
-            let found = trajectory.arc_at(at).and_then(|arc| Some((arc.frame, arc.state(at)?.0)));
+            let found = trajectory
+                .arc_at(at)
+                .and_then(|arc| Some((arc.frame, arc.state(at)?.0)));
             let Some((frame, state)) = found else {
                 states.push(None);
                 continue;
@@ -229,20 +235,28 @@ fn check_span(
 ) -> Result<(), FleetError> {
     let spans = trajectories.iter().zip(labels);
     let spans = spans.filter_map(|(one, label)| Some((one, label, one.span()?)));
-    let Some((longest, label, (first, last))) = spans
-        .reduce(|one, other| {
-            let length_s = |(first, last): (Epoch, Epoch)| last.seconds_since(first);
-            if length_s(other.2) > length_s(one.2) { other } else { one }
-        })
-    else {
+    let Some((longest, label, (first, last))) = spans.reduce(|one, other| {
+        let length_s = |(first, last): (Epoch, Epoch)| last.seconds_since(first);
+        if length_s(other.2) > length_s(one.2) {
+            other
+        } else {
+            one
+        }
+    }) else {
         return Err(FleetError::Empty);
     };
     let held = |at: Epoch| {
-        trajectories.iter().filter_map(Trajectory::span).any(|(first, last)| {
-            at.seconds_since(first) >= -SAME_INSTANT_S && last.seconds_since(at) >= -SAME_INSTANT_S
-        })
+        trajectories
+            .iter()
+            .filter_map(Trajectory::span)
+            .any(|(first, last)| {
+                at.seconds_since(first) >= -SAME_INSTANT_S
+                    && last.seconds_since(at) >= -SAME_INSTANT_S
+            })
     };
-    let mut instants = grid.iter().map(|elapsed_s| grid.epoch().plus_seconds(elapsed_s));
+    let mut instants = grid
+        .iter()
+        .map(|elapsed_s| grid.epoch().plus_seconds(elapsed_s));
     match instants.find(|at| !held(*at)) {
         None => Ok(()),
         Some(missing) => Err(FleetError::NotCovered {
@@ -271,7 +285,8 @@ impl RotationsByFrame {
         let known = self.made.iter().position(|(known, _)| *known == frame);
         let at = known.unwrap_or_else(|| {
             let rotation = |t| FromTeme::to(frame, self.grid.epoch(), t);
-            self.made.push((frame, self.grid.iter().map(rotation).collect()));
+            self.made
+                .push((frame, self.grid.iter().map(rotation).collect()));
             self.made.len() - 1
         });
         self.made[at].1[k]

@@ -58,7 +58,10 @@ impl fmt::Display for SamplingNote {
                 left_out_error_km,
             } => {
                 let how = interpolation.describe();
-                write!(f, "states of {satellites} satellites are interpolated ({how}); ")?;
+                write!(
+                    f,
+                    "states of {satellites} satellites are interpolated ({how}); "
+                )?;
                 match left_out_error_km {
                     Some(km) => write!(
                         f,
@@ -141,7 +144,10 @@ impl Coverage {
         };
         for elapsed_s in grid.iter() {
             let at = grid.epoch().plus_seconds(elapsed_s);
-            match trajectory.arc_at(at).and_then(|arc| arc.is_interpolated(at)) {
+            match trajectory
+                .arc_at(at)
+                .and_then(|arc| arc.is_interpolated(at))
+            {
                 Some(interpolated) => found.interpolates |= interpolated,
                 None => {
                     found.missing += 1;
@@ -170,9 +176,10 @@ fn worst(interpolated: &[(&Trajectory, &String)]) -> Option<SamplingNote> {
         errors.reduce(f64::max)
     };
     let estimated = interpolated.iter().take(ESTIMATED);
-    let estimated = estimated.map(|(trajectory, label)| (error_of(trajectory), *trajectory, *label));
-    let (left_out_error_km, trajectory, label) = estimated
-        .reduce(|one, other| if other.0 > one.0 { other } else { one })?;
+    let estimated =
+        estimated.map(|(trajectory, label)| (error_of(trajectory), *trajectory, *label));
+    let (left_out_error_km, trajectory, label) =
+        estimated.reduce(|one, other| if other.0 > one.0 { other } else { one })?;
     Some(SamplingNote::Interpolated {
         satellites: interpolated.len(),
         interpolation: trajectory.arcs.first()?.interpolation,
@@ -180,3 +187,6 @@ fn worst(interpolated: &[(&Trajectory, &String)]) -> Option<SamplingNote> {
         left_out_error_km,
     })
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,14 +31,18 @@ impl<R: BufRead> Unpacked<R> {
 
 impl<R: BufRead> Read for Unpacked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let damaged = |message: &str| io::Error::new(io::ErrorKind::InvalidData, message.to_owned());
-        let count = self.decoder.read(buffer).map_err(|error| match error.kind() {
-            io::ErrorKind::UnexpectedEof => damaged("the gzip data are cut short"),
-            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
-                damaged("the gzip data are damaged")
-            }
-            _ => error,
-        })?;
+        let damaged =
+            |message: &str| io::Error::new(io::ErrorKind::InvalidData, message.to_owned());
+        let count = self
+            .decoder
+            .read(buffer)
+            .map_err(|error| match error.kind() {
+                io::ErrorKind::UnexpectedEof => damaged("the gzip data are cut short"),
+                io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
+                    damaged("the gzip data are damaged")
+                }
+                _ => error,
+            })?;
         self.unpacked += count as u64;
         if self.unpacked > FREE + MOST_FOLD * self.decoder.get_ref().taken {
             let message = format!(

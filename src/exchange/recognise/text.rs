@@ -46,7 +46,10 @@ fn is_hash_comment(line: &str) -> bool {
 }
 
 fn is_sp3(line: &str) -> bool {
-    matches!(line.as_bytes(), [b'#', b'a'..=b'd', b'P' | b'V', b'0'..=b'9' | b' ', ..])
+    matches!(
+        line.as_bytes(),
+        [b'#', b'a'..=b'd', b'P' | b'V', b'0'..=b'9' | b' ', ..]
+    )
 }
 
 fn by_line(line: &str) -> Option<Content> {
@@ -62,7 +65,10 @@ fn by_line(line: &str) -> Option<Content> {
             other => Content::other(format_args!("a CCSDS {other}")),
         });
     }
-    if trimmed.get(..6).is_some_and(|start| start.eq_ignore_ascii_case("stk.v.")) {
+    if trimmed
+        .get(..6)
+        .is_some_and(|start| start.eq_ignore_ascii_case("stk.v."))
+    {
         return Some(Content::Format(Format::Stk));
     }
     if let Some((label, what)) = LABELS.iter().find(|(label, _)| line.contains(label)) {
@@ -125,7 +131,8 @@ fn almanac<'a>(first: &str, mut rest: impl Iterator<Item = &'a str>) -> Option<C
     };
     let count = first.split_whitespace().next();
     let is_count = count.is_some_and(|count| count.parse::<u32>().is_ok_and(|count| count <= 99));
-    let is_sem = is_count && whole(rest.next()?, 2) && whole(rest.next()?, 1) && whole(rest.next()?, 1);
+    let is_sem =
+        is_count && whole(rest.next()?, 2) && whole(rest.next()?, 1) && whole(rest.next()?, 1);
     is_sem.then_some(Content::Format(Format::Sem))
 }
 

@@ -2,7 +2,6 @@
 //! are passed over.
 
 use super::CsvTable;
-use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp;
@@ -171,10 +170,8 @@ pub fn parse_states(
         }
         states.push((at, state));
     })?;
-    let trajectory = |(name, frame, states): (String, Frame, Vec<_>)| Trajectory {
-        id: name.clone(),
-        name,
-        arcs: Vec::from_iter(Arc::new(frame, Interpolation::OF_STATES, states)),
+    let trajectory = |(name, frame, states): (String, Frame, Vec<_>)| {
+        Trajectory::of_states(&name, &name, frame, states)
     };
     Ok(satellites.into_iter().map(trajectory).collect())
 }
@@ -310,16 +307,16 @@ mod tests {
             assert_eq!(trajectories.len(), 6);
             for (trajectory, satellite) in trajectories.iter().zip(ephemeris.satellites()) {
                 assert_eq!(trajectory.name, satellite.name);
-                assert_eq!(trajectory.frame, Frame::Teme);
+                let (_, frame, last) = trajectory.samples()[9];
+                assert_eq!(frame, Frame::Teme);
                 let expected = ephemeris.state(satellite, 540.0).unwrap();
-                let (_, last) = trajectory.states[9];
                 // Nine decimals of a kilometre.
                 assert!((last.position_km.km() - expected.position_km.km()).norm() < 1e-9);
             }
         }
         let fixed = states.replace("teme_x_km", "other");
         assert_eq!(
-            read_states(fixed.as_bytes()).unwrap()[0].frame,
+            read_states(fixed.as_bytes()).unwrap()[0].arcs[0].frame,
             Frame::EarthFixed
         );
     }

@@ -304,7 +304,11 @@ impl Sp3Parser {
             if self.epochs == epochs && self.records >= satellites {
                 findings.warning(place, "sp3-eof", "EOF is missing");
             } else {
-                findings.error(place, "sp3-truncated", "the file ends early: EOF is missing");
+                findings.error(
+                    place,
+                    "sp3-truncated",
+                    "the file ends early: EOF is missing",
+                );
             }
         }
         if self.file.ids.len() != satellites {

@@ -204,7 +204,9 @@ impl StkParser {
                 known(self.order.is_some(), findings);
             }
             "timeformat" if !is(value, "EpSec") => {
-                let message = format!("TimeFormat {value} is not read, only EpSec, seconds from ScenarioEpoch");
+                let message = format!(
+                    "TimeFormat {value} is not read, only EpSec, seconds from ScenarioEpoch"
+                );
                 findings.error(value_place, "stk-time-format", message);
             }
             "timeformat" => {}
@@ -297,8 +299,12 @@ impl StkParser {
 
     fn boundaries(&mut self, line: &Line, findings: &mut FindingList) {
         for (column, text) in words(&line.text) {
-            self.boundaries_s
-                .extend(number::read(text, (line.number, column), "stk-number", findings));
+            self.boundaries_s.extend(number::read(
+                text,
+                (line.number, column),
+                "stk-number",
+                findings,
+            ));
         }
     }
 
@@ -326,10 +332,14 @@ impl StkParser {
     fn check_velocities(&self, number: usize, findings: &mut FindingList) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
-        let rows: Vec<_> = self.states.iter().map(|(elapsed_s, state)| {
-            let at = epoch.plus_seconds(*elapsed_s);
-            (at, state.position_km, state.velocity_km_s)
-        }).collect();
+        let rows: Vec<_> = self
+            .states
+            .iter()
+            .map(|(elapsed_s, state)| {
+                let at = epoch.plus_seconds(*elapsed_s);
+                (at, state.position_km, state.velocity_km_s)
+            })
+            .collect();
         if let Some(message) = velocity_fault(&rows) {
             findings.warning((number, 1), "stk-velocity-unit", message);
         }

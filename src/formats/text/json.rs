@@ -30,7 +30,6 @@ impl JsonObject {
         self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
     }
 
-
     /// The members of the object as texts; a finding if it is not an object of plain values.
     pub(crate) fn members(&self, findings: &mut FindingList) -> Option<Vec<(String, String)>> {
         let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
@@ -44,7 +43,10 @@ impl JsonObject {
     }
 
     /// The object as a type of ours; a finding if it is another.
-    pub(crate) fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut FindingList) -> Option<T> {
+    pub(crate) fn parsed<T: serde::de::DeserializeOwned>(
+        &self,
+        findings: &mut FindingList,
+    ) -> Option<T> {
         let error = match serde_json::from_str(&self.text) {
             Ok(parsed) => return Some(parsed),
             Err(error) => error,

@@ -44,7 +44,11 @@ mod tests {
             ("", None),
             ("1,5", None),
         ] {
-            assert_eq!(read(text, (1, 1), "a-number", &mut findings), value, "{text}");
+            assert_eq!(
+                read(text, (1, 1), "a-number", &mut findings),
+                value,
+                "{text}"
+            );
         }
         assert_eq!(findings.into_vec().len(), 5);
     }

@@ -159,7 +159,11 @@ pub fn parse_with_offset(text: &str) -> Option<NaiveDateTime> {
         None => (digits(offset.get(1..3)?, 2)?, digits(&offset[3..], 2)?),
     };
     let minutes = i64::from(hours) * 60 + i64::from(minutes);
-    let ahead = if offset.starts_with('-') { -minutes } else { minutes };
+    let ahead = if offset.starts_with('-') {
+        -minutes
+    } else {
+        minutes
+    };
     parse(local)?.checked_sub_signed(TimeDelta::minutes(ahead))
 }
 

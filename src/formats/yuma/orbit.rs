@@ -42,23 +42,38 @@ impl Almanac {
     }
 
     /// Finds values that no almanac has, and a satellite that is there before.
-    pub(crate) fn check(
-        &self,
-        place: (usize, usize),
-        before: &[Self],
-        findings: &mut FindingList,
-    ) {
+    pub(crate) fn check(&self, place: (usize, usize), before: &[Self], findings: &mut FindingList) {
         let name = self.name();
         if before.iter().any(|other| other.prn == self.prn) {
             let message = format!("{name} is given twice");
             findings.error(place, "almanac-repeated", message);
         }
         for (fits, value, range) in [
-            ((1..=999).contains(&self.prn), f64::from(self.prn), "number is outside 1 to 999"),
-            ((0.0..1.0).contains(&self.eccentricity), self.eccentricity, "eccentricity is outside 0 to 1 (exclusive)"),
-            ((0.0..=604_800.0).contains(&self.toa_s), self.toa_s, "time of applicability is outside 0 to 604800 s"),
-            (self.inclination_rad.abs() <= std::f64::consts::PI, self.inclination_rad, "inclination is outside 0 to pi rad"),
-            (self.week <= 9_999, f64::from(self.week), "week is outside 0 to 9999"),
+            (
+                (1..=999).contains(&self.prn),
+                f64::from(self.prn),
+                "number is outside 1 to 999",
+            ),
+            (
+                (0.0..1.0).contains(&self.eccentricity),
+                self.eccentricity,
+                "eccentricity is outside 0 to 1 (exclusive)",
+            ),
+            (
+                (0.0..=604_800.0).contains(&self.toa_s),
+                self.toa_s,
+                "time of applicability is outside 0 to 604800 s",
+            ),
+            (
+                self.inclination_rad.abs() <= std::f64::consts::PI,
+                self.inclination_rad,
+                "inclination is outside 0 to pi rad",
+            ),
+            (
+                self.week <= 9_999,
+                f64::from(self.week),
+                "week is outside 0 to 9999",
+            ),
         ] {
             if !fits {
                 let message = format!("{name}: {value}: the {range}");
@@ -102,7 +117,10 @@ impl Almanac {
         let node =
             self.raan_at_week_rad + node_rate * since_toa_s - GPS_EARTH_RATE_RAD_S * self.toa_s;
         let plane = OrbitPlane::new(wrap_two_pi(node), self.inclination_rad);
-        let (along, across) = (plane.vector(u.cos(), u.sin()), plane.vector(-u.sin(), u.cos()));
+        let (along, across) = (
+            plane.vector(u.cos(), u.sin()),
+            plane.vector(-u.sin(), u.cos()),
+        );
         let position_km = along * radius_km;
         let turning = Vector3::new(0.0, 0.0, node_rate).cross(&position_km);
         State::new(

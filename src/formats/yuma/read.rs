@@ -44,7 +44,9 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
     let mut almanacs: Vec<Almanac> = Vec::new();
     loop {
         let line = lines.next(findings)?;
-        let begins = line.as_ref().is_none_or(|line| line.text.starts_with("***"));
+        let begins = line
+            .as_ref()
+            .is_none_or(|line| line.text.starts_with("***"));
         if begins && !block.is_empty() {
             let place = (block.first, 1);
             if let Some(almanac) = std::mem::take(&mut block).almanac(findings) {

@@ -102,12 +102,12 @@ pub fn comparands(file: &str, fleet: Fleet) -> Result<Vec<Comparand>, FileError>
             boxed.map(Comparand::Elements).collect()
         }
         Fleet::Sampled(trajectories) => {
-            let sampled = trajectories
-                .into_iter()
-                .filter(|one| !one.arcs.is_empty());
+            let sampled = trajectories.into_iter().filter(|one| !one.arcs.is_empty());
             sampled.map(Comparand::States).collect()
         }
-        Fleet::Elements(_) | Fleet::Almanacs(_) => return Err(FileError::MeanElements(file.to_owned())),
+        Fleet::Elements(_) | Fleet::Almanacs(_) => {
+            return Err(FileError::MeanElements(file.to_owned()));
+        }
         Fleet::Mixed(parts) => {
             let mut all = Vec::new();
             for part in parts {

@@ -118,7 +118,9 @@ impl CzmlDocument {
         findings: &mut FindingList,
     ) -> Result<(), PacketFault> {
         let place = object.place_of("position");
-        let name = packet.id.unwrap_or_else(|| format!("packet at line {}", place.0));
+        let name = packet
+            .id
+            .unwrap_or_else(|| format!("packet at line {}", place.0));
         if packet.delete {
             if let Some(index) = self.places.remove(&name) {
                 self.objects[index].pieces.clear();
@@ -129,7 +131,9 @@ impl CzmlDocument {
         if packet.position.is_empty() && packet.availability.is_empty() {
             return Ok(());
         }
-        let gnss = packet.parent.is_some_and(|parent| parent.starts_with("gnss:"));
+        let gnss = packet
+            .parent
+            .is_some_and(|parent| parent.starts_with("gnss:"));
         if gnss {
             if !packet.position.is_empty() {
                 findings.pass_over("satellite of a GNSS beside the design", &name);
@@ -149,7 +153,10 @@ impl CzmlDocument {
         });
         let entry = &mut self.objects[index];
         if !packet.availability.is_empty() {
-            let intervals = packet.availability.iter().map(|text| interval("availability", text));
+            let intervals = packet
+                .availability
+                .iter()
+                .map(|text| interval("availability", text));
             entry.availability = intervals.collect::<Result<_, _>>()?;
         }
         for position in packet.position {
@@ -186,7 +193,9 @@ impl CzmlDocument {
                     .collect(),
                 false => self.objects[of].arcs(),
             };
-            let CzmlObject { name, availability, .. } = &self.objects[at];
+            let CzmlObject {
+                name, availability, ..
+            } = &self.objects[at];
             let mut arcs = within(arcs, availability);
             arcs.sort_by_key(|arc| arc.useable.0);
             if !arcs.is_empty() {
@@ -215,7 +224,10 @@ impl CzmlObject {
         findings: &mut FindingList,
     ) -> Result<(), PacketFault> {
         if position.delete {
-            let message = format!("{}: positions that are deleted again are not read", self.name);
+            let message = format!(
+                "{}: positions that are deleted again are not read",
+                self.name
+            );
             return Err(("czml-delete", "delete", message));
         }
         if let Some(reference) = &position.reference {
@@ -241,7 +253,9 @@ impl CzmlObject {
             }
         }
         let algorithm = algorithm(position)?;
-        let degree = position.interpolation_degree.map(|degree| degree.clamp(1, 50) as usize);
+        let degree = position
+            .interpolation_degree
+            .map(|degree| degree.clamp(1, 50) as usize);
         let has_velocities = kind == Kind::CartesianVelocity;
         let same = self.pieces.iter_mut().find(|piece| {
             (piece.interval, piece.frame, piece.has_velocities) == (interval, frame, has_velocities)
@@ -269,7 +283,11 @@ impl CzmlObject {
             nodes: piece.nodes.clone(),
             ..*piece
         };
-        self.pieces.iter().map(copy).filter_map(Piece::arc).collect()
+        self.pieces
+            .iter()
+            .map(copy)
+            .filter_map(Piece::arc)
+            .collect()
     }
 }
 
@@ -302,7 +320,10 @@ impl Piece {
 fn within(arcs: Vec<Arc>, availability: &[(Epoch, Epoch)]) -> Vec<Arc> {
     match availability {
         [] => arcs,
-        [only] => arcs.into_iter().filter_map(|arc| arc.within(*only)).collect(),
+        [only] => arcs
+            .into_iter()
+            .filter_map(|arc| arc.within(*only))
+            .collect(),
         several => {
             let cut = |arc: &Arc| -> Vec<Arc> {
                 let each = several.iter().map(|one| arc.clone().within(*one));
@@ -351,10 +372,22 @@ impl Kind {
 
 fn samples(position: &PositionPacket) -> Option<(&'static str, &Samples, Kind)> {
     let given = [
-        ("cartesianVelocity", &position.cartesian_velocity, Kind::CartesianVelocity),
+        (
+            "cartesianVelocity",
+            &position.cartesian_velocity,
+            Kind::CartesianVelocity,
+        ),
         ("cartesian", &position.cartesian, Kind::Cartesian),
-        ("cartographicDegrees", &position.cartographic_degrees, Kind::Degrees),
-        ("cartographicRadians", &position.cartographic_radians, Kind::Radians),
+        (
+            "cartographicDegrees",
+            &position.cartographic_degrees,
+            Kind::Degrees,
+        ),
+        (
+            "cartographicRadians",
+            &position.cartographic_radians,
+            Kind::Radians,
+        ),
     ];
     let mut given = given.into_iter();
     given.find_map(|(key, samples, kind)| Some((key, samples.as_ref()?, kind)))
@@ -399,11 +432,18 @@ fn nodes(
         let message = format!("samples are a time and {} numbers each", length - 1);
         return Err(broken(message));
     }
-    if samples.texts.iter().any(|(place, _)| !place.is_multiple_of(length)) {
+    if samples
+        .texts
+        .iter()
+        .any(|(place, _)| !place.is_multiple_of(length))
+    {
         return Err(broken("a sample is not of numbers".to_owned()));
     }
-    let texts: HashMap<usize, &String> =
-        samples.texts.iter().map(|(place, text)| (*place, text)).collect();
+    let texts: HashMap<usize, &String> = samples
+        .texts
+        .iter()
+        .map(|(place, text)| (*place, text))
+        .collect();
     let origin = match epoch {
         Some(text) => Some(instant(text).ok_or_else(|| {
             let message = format!("epoch {text:?} is not an ISO 8601 date and time");
@@ -423,7 +463,9 @@ fn nodes(
             }
         };
         if nodes.last().is_some_and(|(before, _)| *before > at) {
-            return Err(broken("the times of the samples do not increase".to_owned()));
+            return Err(broken(
+                "the times of the samples do not increase".to_owned(),
+            ));
         }
         nodes.push((at, kind.state(&sample[1..])));
     }
