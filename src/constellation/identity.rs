@@ -75,16 +75,16 @@ impl ObjectIdentity {
         names.is_some_and(|(a, b)| !a.eq_ignore_ascii_case(b))
     }
 
-    /// What the object is called: its name, or else its designator, or else its number.
+    /// What the object is called: its name, or else its number, or else its designator.
     #[must_use]
     pub fn label(&self) -> Option<String> {
         self.name.clone().or_else(|| self.identifier())
     }
 
-    /// The designator, or else the number.
+    /// The catalogue number, or else the designator.
     fn identifier(&self) -> Option<String> {
-        let number = || self.catalogue_number.map(|number| number.to_string());
-        self.designator.clone().or_else(number)
+        let number = self.catalogue_number.map(|number| number.to_string());
+        number.or_else(|| self.designator.clone())
     }
 
     /// Every text that the object may be asked for by.
@@ -104,7 +104,7 @@ fn given(text: &str) -> Option<String> {
     (!is_placeholder).then(|| text.to_owned())
 }
 
-/// Labels of objects, unique among them: objects that share a name have their designator or number behind it, and
+/// Labels of objects, unique among them: objects that share a name have their number or designator behind it, and
 /// those without any identifier are numbered by their place, from 1.
 #[must_use]
 pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
@@ -243,7 +243,7 @@ mod tests {
             "2025-900A",
             "2025-900B",
             "DEB (7)",
-            "DEB (1999-025A)",
+            "DEB (8)",
             "9",
             "satellite 6",
             "SAT",

@@ -18,18 +18,20 @@ pub use sampling::SamplingNote;
 
 use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::derivative::velocities;
-use crate::exchange::lint::Format;
+use crate::exchange::lint::{Format, xml_kinds};
 use crate::exchange::recognise::{Unread, recognise, unpacked};
+use crate::formats::ccsds::ndm::{self, NdmMessage};
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv::ElementsRow;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{FindingList, LeftOut};
-use crate::formats::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
+use crate::formats::trajectory::{
+    Trajectory, TrajectoryError, frame_of_sp3_name, time_system_of_name,
+};
 use crate::formats::yuma::Almanac;
 use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
 use crate::frames::{Frame, Position, State};
-use crate::keyword::UnknownKeyword;
 use crate::time::Epoch;
 use std::io::{self, BufRead};
 use thiserror::Error;
@@ -100,6 +102,7 @@ impl Fleet {
         format: Option<Format>,
         file_name: Option<&str>,
     ) -> Result<Imported, ReadFleetError> {
+        let kinds = xml_kinds(format);
         let (format, input) = match format {
             Some(format) => (format, unpacked(input).map_err(ReadError::Io)?),
             None => {
@@ -109,7 +112,7 @@ impl Fleet {
         };
         let file_name = file_name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
         let mut findings = FindingList::of_reader();
-        let mut fleet = Self::read_as(format, input, file_name, &mut findings)?;
+        let mut fleet = Self::read_as((format, kinds), input, file_name, &mut findings)?;
         fleet.name_after_file(file_name);
         Ok(Imported {
             format,
@@ -119,7 +122,7 @@ impl Fleet {
     }
 
     fn read_as(
-        format: Format,
+        (format, kinds): (Format, &[&str]),
         input: impl BufRead,
         file_name: Option<&str>,
         findings: &mut FindingList,
@@ -137,13 +140,15 @@ impl Fleet {
                 Ok(Self::Sets(sets.collect()))
             }
             Format::Omm => omm(input, OmmSyntax::Kvn, findings),
-            Format::OmmXml => omm(input, OmmSyntax::Xml, findings),
+            Format::OmmXml | Format::OemXml => {
+                let messages = all(findings, |findings, take| {
+                    ndm::parse(input, kinds, findings, take)
+                })?;
+                Self::of_ndm(messages)
+            }
             Format::OmmJson => omm(input, OmmSyntax::Json, findings),
             Format::OmmCsv => omm(input, OmmSyntax::Csv, findings),
-            Format::Oem => Self::of_oem(vec![oem::read(input)?]),
-            Format::OemXml => Self::of_oem(all(findings, |findings, take| {
-                oem::parse_xml(input, findings, take)
-            })?),
+            Format::Oem => Self::of_oem(&[oem::read(input)?]),
             Format::Opm => Self::of_opm(opm::read(input)?),
             Format::Sp3 => Self::of_sp3(sp3::read(input)?),
             Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
@@ -163,6 +168,22 @@ impl Fleet {
         }
     }
 
+    /// Messages of a kind go together; the first message's kind comes first.
+    fn of_ndm(messages: Vec<NdmMessage>) -> Result<Self, ReadFleetError> {
+        let mut fleet: Option<Self> = None;
+        for message in messages {
+            let next = match message {
+                NdmMessage::Oem(message) => Self::of_oem(&[message])?,
+                NdmMessage::Omm(message) => Self::Sets(vec![message.set]),
+            };
+            match &mut fleet {
+                None => fleet = Some(next),
+                Some(fleet) => fleet.append(next),
+            }
+        }
+        Ok(fleet.unwrap_or(Self::Sets(Vec::new())))
+    }
+
     fn of_omm(messages: Vec<omm::Omm>) -> Self {
         Self::Sets(messages.into_iter().map(|message| message.set).collect())
     }
@@ -173,7 +194,7 @@ impl Fleet {
     }
 
     /// The segments of one satellite follow each other.
-    fn of_oem(messages: Vec<oem::Oem>) -> Result<Self, ReadFleetError> {
+    fn of_oem(messages: &[oem::Oem]) -> Result<Self, ReadFleetError> {
         let mut trajectories = Vec::new();
         for segment in messages.iter().flat_map(|message| &message.segments) {
             objects::unite(&mut trajectories, segment.trajectory()?);
@@ -196,7 +217,7 @@ impl Fleet {
     }
 
     fn of_sp3(file: sp3::Sp3) -> Result<Self, ReadFleetError> {
-        let frame = frame_of_sp3(&file.frame).map_err(TrajectoryError::Name)?;
+        let frame = frame_of_sp3_name(&file.frame).map_err(TrajectoryError::Name)?;
         let mut trajectories = Vec::new();
         let given = file.ids.iter().zip(&file.states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
@@ -374,17 +395,6 @@ fn stem(file_name: &str) -> &str {
     file_name
         .rsplit_once('.')
         .map_or(file_name, |(stem, _)| stem)
-}
-
-/// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,
-/// `ITR08`; positions are Earth-fixed also where the name is left out.
-fn frame_of_sp3(name: &str) -> Result<Frame, UnknownKeyword> {
-    let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ", "SLR", "UNDEF"];
-    let upper = name.to_ascii_uppercase();
-    if upper.is_empty() || earth_fixed.iter().any(|start| upper.starts_with(start)) {
-        return Ok(Frame::EarthFixed);
-    }
-    frame_of_name(name)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 
 use crate::exchange::recognise::{recognise, unpacked};
 use crate::formats::ccsds::omm::OmmSyntax;
-use crate::formats::ccsds::{oem, omm, opm};
+use crate::formats::ccsds::{ndm, oem, omm, opm};
 use crate::formats::csv;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{Finding, FindingList};
@@ -91,6 +91,7 @@ pub fn lint(
     file_name: Option<&str>,
     limit: usize,
 ) -> io::Result<LintReport> {
+    let kinds = xml_kinds(format);
     let mut findings = FindingList::of_linter(limit);
     let (format, input) = match format {
         Some(format) => (Ok(format), unpacked(input)?),
@@ -113,9 +114,8 @@ pub fn lint(
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
         Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
-        Format::OemXml => oem::parse_xml(input, &mut findings, |_| ())?,
+        Format::OemXml | Format::OmmXml => ndm::parse(input, kinds, &mut findings, |_| ())?,
         Format::Omm => omm::parse(input, OmmSyntax::Kvn, &mut findings, |_| ())?,
-        Format::OmmXml => omm::parse(input, OmmSyntax::Xml, &mut findings, |_| ())?,
         Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
         Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
         Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
@@ -132,6 +132,15 @@ pub fn lint(
         format: Some(format),
         findings,
     })
+}
+
+/// The messages that are read from XML: those of the format that is asked for, or else all kinds.
+pub(super) fn xml_kinds(asked: Option<Format>) -> &'static [&'static str] {
+    match asked {
+        Some(Format::OemXml) => &["oem"],
+        Some(Format::OmmXml) => &["omm"],
+        _ => ndm::READ,
+    }
 }
 
 /// Element sets, none of which may stand twice.

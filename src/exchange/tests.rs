@@ -2,6 +2,7 @@
 
 mod foreign;
 mod hostile;
+mod kinds;
 
 use crate::exchange::export::testing::{in_memory, is_read, subject};
 use crate::exchange::export::{Choices, Product};

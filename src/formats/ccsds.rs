@@ -1,6 +1,8 @@
 //! The messages of the CCSDS Navigation Data Messages family, in KVN, XML, JSON and CSV.
 
+pub(crate) mod keywords;
 pub(crate) mod kvn;
+pub mod ndm;
 pub mod oem;
 pub mod omm;
 pub mod opm;

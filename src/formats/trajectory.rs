@@ -81,10 +81,17 @@ pub enum TrajectoryError {
     Name(#[from] UnknownKeyword),
 }
 
-/// The frame that a name in a file means.
+/// What the names of Earth-fixed frames begin with: realisations of the ITRF (`ITRF2000`, `ITR08`), those of
+/// navigation systems and of services (`IGS20`, `IGb14`, `SLR20`), and `ECEF` as such.
+const EARTH_FIXED: [&str; 10] = [
+    "ITR", "IGS", "IGB", "WGS84", "WGS-84", "SLR", "GTRF", "BTRF", "CGCS", "PZ",
+];
+
+/// The frame that a name in a file means; case does not matter.
 ///
-/// Every realisation of the ITRF (`ITRF2000`, `ITRF-97`) is the Earth-fixed frame, `ICRF` of an
-/// Earth orbit is GCRF, and `J2000` is what older files call EME2000.
+/// Every realisation of the ITRF is the Earth-fixed frame, and so are the frames of navigation systems, which are
+/// centimetres off it. `ICRF` of an Earth orbit is GCRF, and `J2000` is what older files call EME2000. Frames that
+/// are true or mean of date (`TOD`, `MOD`, `TDR`) are not read.
 ///
 /// # Errors
 /// When the library has no such frame.
@@ -92,8 +99,21 @@ pub fn frame_of_name(name: &str) -> Result<Frame, UnknownKeyword> {
     match name.to_ascii_uppercase().as_str() {
         "J2000" => Ok(Frame::Eme2000),
         "ICRF" => Ok(Frame::Gcrf),
-        upper if upper.starts_with("ITRF") => Ok(Frame::EarthFixed),
+        "TEMEOFDATE" => Ok(Frame::Teme),
+        "ECEF" | "ECF" => Ok(Frame::EarthFixed),
+        upper if EARTH_FIXED.iter().any(|start| upper.starts_with(start)) => Ok(Frame::EarthFixed),
         upper => Frame::from_keyword(upper),
+    }
+}
+
+/// The frame that SP3 names in five characters; positions are Earth-fixed also where the name is left out.
+///
+/// # Errors
+/// When the library has no such frame.
+pub fn frame_of_sp3_name(name: &str) -> Result<Frame, UnknownKeyword> {
+    match name.trim() {
+        "" | "UNDEF" => Ok(Frame::EarthFixed),
+        name => frame_of_name(name),
     }
 }
 

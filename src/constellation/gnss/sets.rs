@@ -83,7 +83,7 @@ impl ElementSets {
 
     /// The system `name` from the sets of its satellites.
     ///
-    /// A satellite is named as in its set, or by its designator or catalogue number.
+    /// A satellite is named as in its set, or by its catalogue number or designator.
     ///
     /// # Errors
     /// When there is no set, a satellite has two, or SGP4 refuses one.

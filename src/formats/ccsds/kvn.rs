@@ -1,13 +1,15 @@
-//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the
-//! keyword tables that say what belongs where.
+//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the values of a
+//! keyword table as they come in.
 
+use super::keywords::{KvnKeyword, Need, ValueKind};
 use crate::formats::metadata::Metadata;
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::Line;
+use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::number;
 use crate::formats::text::timestamp::{self, SecondDigits, calendar};
 use crate::keyword::{Keyword, keywords};
 use chrono::NaiveDateTime;
-use std::io::{self, Write};
+use std::io::{self, BufRead, Write};
 
 /// Longest line (7.3.2).
 const LINE: usize = 254;
@@ -112,51 +114,19 @@ pub(crate) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::R
         .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
 }
 
-/// Whether a keyword must be there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Need {
-    Mandatory,
-    /// Mandatory in the standard, but so often missing that a reader goes on.
-    Expected,
-    Optional,
-}
-
-/// A keyword of a table, and whether it must be there.
-pub(crate) struct KvnKeyword {
-    name: &'static str,
-    need: Need,
-}
-
-/// A keyword that must be there.
-pub(crate) const fn must(name: &'static str) -> KvnKeyword {
-    KvnKeyword {
-        name,
-        need: Need::Mandatory,
-    }
-}
-
-/// A keyword that must be there by the standard, without which a reader goes on.
-pub(crate) const fn should(name: &'static str) -> KvnKeyword {
-    KvnKeyword {
-        name,
-        need: Need::Expected,
-    }
-}
-
-/// A keyword that may be there.
-pub(crate) const fn may(name: &'static str) -> KvnKeyword {
-    KvnKeyword {
-        name,
-        need: Need::Optional,
-    }
-}
-
 /// A keyword and its value, as a line gives them.
 pub(crate) struct Pair<'a> {
     pub(crate) key: &'a str,
     pub(crate) value: &'a str,
+    /// The unit that XML has as an attribute.
+    pub(crate) unit: Option<&'a str>,
     pub(crate) key_place: (usize, usize),
     pub(crate) value_place: (usize, usize),
+}
+
+/// The lines of a message, whose comments may hold any text.
+pub(crate) fn lines<R: BufRead>(input: R) -> Lines<R> {
+    Lines::new(input).with_free_text(|line| line.trim_ascii_start().starts_with(b"COMMENT"))
 }
 
 /// What a line of a message is.
@@ -193,42 +163,18 @@ pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
     Item::Pair(Pair {
         key: key.trim(),
         value: value.trim(),
+        unit: None,
         key_place: (line.number, column(key)),
         value_place: (line.number, key.len() + 1 + column(value)),
     })
 }
 
-/// The frame and the elements of a covariance matrix, as they end an OPM and an OMM (tables 3-3 and
-/// 4-3).
-pub(crate) const COVARIANCE: &[KvnKeyword] = &[
-    may("COV_REF_FRAME"),
-    may("CX_X"),
-    may("CY_X"),
-    may("CY_Y"),
-    may("CZ_X"),
-    may("CZ_Y"),
-    may("CZ_Z"),
-    may("CX_DOT_X"),
-    may("CX_DOT_Y"),
-    may("CX_DOT_Z"),
-    may("CX_DOT_X_DOT"),
-    may("CY_DOT_X"),
-    may("CY_DOT_Y"),
-    may("CY_DOT_Z"),
-    may("CY_DOT_X_DOT"),
-    may("CY_DOT_Y_DOT"),
-    may("CZ_DOT_X"),
-    may("CZ_DOT_Y"),
-    may("CZ_DOT_Z"),
-    may("CZ_DOT_X_DOT"),
-    may("CZ_DOT_Y_DOT"),
-    may("CZ_DOT_Z_DOT"),
-];
-
 /// A value with its place in the file.
 #[derive(Debug, Clone)]
 struct PlacedValue {
     text: String,
+    /// Its value, if the keyword has numbers.
+    number: Option<f64>,
     place: (usize, usize),
 }
 
@@ -239,7 +185,9 @@ pub(crate) struct KvnBlock {
     /// Which keywords have come in, with a value or without.
     seen: Vec<bool>,
     last: Option<usize>,
-    ordered: bool,
+    /// Whether the standard's rules of order and of numbers hold: for messages, and not for the objects and rows
+    /// of a catalogue.
+    is_message: bool,
     /// Comments among the keywords.
     pub(crate) comments: Vec<String>,
 }
@@ -253,15 +201,15 @@ impl KvnBlock {
             seen: vec![false; table.len()],
             table,
             last: None,
-            ordered: true,
+            is_message: true,
             comments: Vec::new(),
         }
     }
 
-    /// A block whose keywords may come in any order.
-    pub(crate) fn unordered(tables: &[&'static [KvnKeyword]]) -> Self {
+    /// An object or a row of a catalogue: no message, but the same keywords, in any order.
+    pub(crate) fn of_record(tables: &[&'static [KvnKeyword]]) -> Self {
         Self {
-            ordered: false,
+            is_message: false,
             ..Self::new(tables)
         }
     }
@@ -273,6 +221,11 @@ impl KvnBlock {
     /// Whether a keyword belongs to the table.
     pub(crate) fn knows(&self, key: &str) -> bool {
         self.index(key).is_some()
+    }
+
+    /// Whether it is of a message, and not of a catalogue's record.
+    pub(crate) fn is_message(&self) -> bool {
+        self.is_message
     }
 
     /// Whether no keyword has come in yet.
@@ -292,7 +245,7 @@ impl KvnBlock {
             findings.error(pair.key_place, "ccsds-repeated", message);
             return;
         }
-        if let Some(last) = self.last.filter(|last| self.ordered && *last > index) {
+        if let Some(last) = self.last.filter(|last| self.is_message && *last > index) {
             let message = format!("{} stands after {}", pair.key, self.table[last].name);
             findings.warning(pair.key_place, "ccsds-order", message);
         }
@@ -305,22 +258,60 @@ impl KvnBlock {
             }
             return;
         }
+        let number = match self.table[index].kind {
+            ValueKind::Text if pair.unit.is_none() => None,
+            ValueKind::Text => {
+                let message = format!("{} has no unit", pair.key);
+                findings.error(pair.value_place, "ccsds-unit", message);
+                return;
+            }
+            ValueKind::Number(unit) => match self.read_quantity(pair, unit, findings) {
+                None => return,
+                number => number,
+            },
+        };
         self.values[index] = Some(PlacedValue {
             text: pair.value.to_owned(),
+            number,
             place: pair.value_place,
         });
+    }
+
+    /// The number of a keyword whose unit, if it is displayed, must be that of the table (7.7.1.1).
+    fn read_quantity(
+        &self,
+        pair: &Pair<'_>,
+        unit: Option<&'static str>,
+        findings: &mut FindingList,
+    ) -> Option<f64> {
+        let place = pair.value_place;
+        if !self.is_message {
+            return number::read_number(pair.value, place, "omm-number", findings);
+        }
+        let (text, shown) = match pair.value.split_once('[') {
+            Some((text, rest)) if rest.ends_with(']') => {
+                (text.trim_end(), rest.strip_suffix(']').map(str::trim))
+            }
+            _ => (pair.value, None),
+        };
+        for shown in shown.into_iter().chain(pair.unit) {
+            check_unit(pair.key, shown, unit, place, findings)?;
+        }
+        read_number(text, place, findings)
     }
 
     /// Takes a keyword of the table whose key and value stand at one place, as in XML.
     pub(crate) fn accept_at(
         &mut self,
         (key, value): (&str, &str),
+        unit: Option<&str>,
         place: (usize, usize),
         findings: &mut FindingList,
     ) {
         let pair = Pair {
             key,
             value,
+            unit,
             key_place: place,
             value_place: place,
         };
@@ -332,7 +323,9 @@ impl KvnBlock {
         for (keyword, seen) in self.table.iter().zip(&self.seen) {
             let message = || format!("{} is mandatory and missing", keyword.name);
             match keyword.need {
-                Need::Mandatory if !seen => findings.error(place, "ccsds-missing", message()),
+                Need::Mandatory | Need::Named if !seen => {
+                    findings.error(place, "ccsds-missing", message())
+                }
                 Need::Expected if !seen => findings.warning(place, "ccsds-missing", message()),
                 _ => {}
             }
@@ -353,20 +346,20 @@ impl KvnBlock {
         self.placed(key).map(|value| value.text.clone())
     }
 
+    /// A text value, or what the standard asks for where there is none.
+    pub(crate) fn text_or_unknown(&self, key: &str) -> String {
+        self.text(key).unwrap_or_else(|| "UNKNOWN".to_owned())
+    }
+
     /// A time; a finding if it is none.
     pub(crate) fn stamp(&self, key: &str, findings: &mut FindingList) -> Option<NaiveDateTime> {
         let value = self.placed(key)?;
         read_stamp(&value.text, value.place, findings)
     }
 
-    /// A number, behind which its unit in brackets may stand; a finding if it is none.
-    pub(crate) fn number(&self, key: &str, findings: &mut FindingList) -> Option<f64> {
-        let value = self.placed(key)?;
-        let text = match value.text.split_once('[') {
-            Some((number, unit)) if unit.ends_with(']') => number.trim_end(),
-            _ => &value.text,
-        };
-        read_number(text, value.place, findings)
+    /// A number.
+    pub(crate) fn number(&self, key: &str) -> Option<f64> {
+        self.placed(key)?.number
     }
 
     /// A count; a finding if it is none.
@@ -395,23 +388,41 @@ pub(crate) fn read_stamp(
     stamp
 }
 
+/// Whether a displayed unit is that of the table; the case of its letters is only warned of.
+fn check_unit(
+    key: &str,
+    shown: &str,
+    unit: Option<&'static str>,
+    place: (usize, usize),
+    findings: &mut FindingList,
+) -> Option<()> {
+    let Some(unit) = unit else {
+        let message = format!("{key} has no unit; [{shown}] stands with it");
+        findings.error(place, "ccsds-unit", message);
+        return None;
+    };
+    if shown == unit {
+        return Some(());
+    }
+    let message = format!("{key} is in [{unit}]; [{shown}] stands with it (7.7.1.1)");
+    if shown.eq_ignore_ascii_case(unit) {
+        findings.warning(place, "ccsds-unit", message);
+        return Some(());
+    }
+    findings.error(place, "ccsds-unit", message);
+    None
+}
+
 /// Reads a number of 7.5.4 to 7.5.7; a finding if it is none.
 pub(crate) fn read_number(
     text: &str,
     place: (usize, usize),
     findings: &mut FindingList,
 ) -> Option<f64> {
+    let value = number::read_number(text, place, "ccsds-number", findings)?;
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
-    // Rust would also take "inf" and "nan".
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
-    let all_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
-    let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-    let Some(value) = value.filter(|_| all_digits(whole) && all_digits(decimals)) else {
-        let message = format!("'{text}' is not a number");
-        findings.error(place, "ccsds-number", message);
-        return None;
-    };
     if whole.is_empty() || decimals.is_empty() {
         let message = format!("'{text}' needs a digit on both sides of its point (7.5.6)");
         findings.warning(place, "ccsds-point", message);

@@ -6,11 +6,13 @@
 //! XML (505.0-B-2) a combined instantiation holds the messages of several objects.
 
 mod read;
+mod rules;
 mod write;
 mod xml;
 
 pub use read::{parse, read};
 pub use write::OemWriter;
+pub(super) use xml::XmlMessage;
 pub use xml::{parse_xml, read_xml};
 
 use crate::ephemeris::arc::{Arc, Interpolation};
@@ -140,7 +142,8 @@ impl Segment {
             .fold(SecondDigits::FEWEST, Ord::max)
     }
 
-    /// The states in the library's terms.
+    /// The states in the library's terms: those of the usable span, since the others are there to interpolate and
+    /// need not be where the satellite was (table 5-3).
     ///
     /// # Errors
     /// When the centre is not the Earth, or the frame or the time system is unknown.
@@ -157,13 +160,10 @@ impl Segment {
         let frame = frame_of_name(&metadata.ref_frame)?;
         let nodes: Vec<_> = self.states.iter().map(instant).collect();
         let arc = Arc::new(frame, self.interpolation(), nodes);
-        let ends = [metadata.useable_start_time, metadata.useable_stop_time];
-        let [first, last] = ends.map(|end| end.map(|stamp| time_system.epoch(stamp)));
         // The samples beyond the useable span are there to interpolate (5.2.4.4, table 5-3).
-        let useable = |arc: Arc| {
-            let (start, stop) = arc.useable;
-            arc.within((first.unwrap_or(start), last.unwrap_or(stop)))
-        };
+        let (first, last) = metadata.useable_span();
+        let span = (time_system.epoch(first), time_system.epoch(last));
+        let useable = |arc: Arc| arc.within(span);
         Ok(Trajectory {
             name: metadata.object_name.clone(),
             id: metadata.object_id.clone(),
@@ -236,6 +236,15 @@ fn write_metadata(
 }
 
 impl SegmentMetadata {
+    /// The first and the last instant for which the segment holds.
+    #[must_use]
+    pub fn useable_span(&self) -> (NaiveDateTime, NaiveDateTime) {
+        (
+            self.useable_start_time.unwrap_or(self.start_time),
+            self.useable_stop_time.unwrap_or(self.stop_time),
+        )
+    }
+
     /// The keywords and their values in the order of table 5-3.
     pub(crate) fn pairs(&self, digits: SecondDigits) -> Vec<(&'static str, String)> {
         let time = |stamp| calendar(stamp, digits);

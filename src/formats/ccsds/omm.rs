@@ -7,6 +7,7 @@
 
 mod read;
 
+pub(super) use read::XmlMessage;
 pub use read::{parse_csv, parse_json, parse_kvn, parse_xml};
 
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};

@@ -22,9 +22,18 @@ pub(crate) enum XmlNode {
     /// Beginning of an element with children, with its `version` if it has one.
     Open(String, Option<String>),
     /// An element with text alone.
-    Leaf(String, String),
+    Leaf(XmlLeaf),
     /// End of an element with children.
     Close(String),
+}
+
+/// An element with text alone.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct XmlLeaf {
+    pub(crate) name: String,
+    pub(crate) text: String,
+    /// Its attribute `units`.
+    pub(crate) unit: Option<String>,
 }
 
 /// A node and the place where it begins.
@@ -77,7 +86,17 @@ struct Held {
     place: (usize, usize),
     name: String,
     version: Option<String>,
+    unit: Option<String>,
     text: String,
+}
+
+impl Held {
+    fn leaf(self) -> Placed {
+        let Self {
+            name, text, unit, ..
+        } = self;
+        (self.place, XmlNode::Leaf(XmlLeaf { name, text, unit }))
+    }
 }
 
 /// Takes the nodes out of a file.
@@ -149,17 +168,16 @@ impl<R: BufRead> Nodes<R> {
                     self.start(held, findings)
                 }
                 Ok(Event::Empty(tag)) => {
-                    let Held { name, place, .. } = held(&tag, place);
-                    let leaf = (place, XmlNode::Leaf(name, String::new()));
+                    let leaf = held(&tag, place).leaf();
                     let parent = self.held.take().map(opened);
                     self.any = true;
                     self.after(parent, leaf)
                 }
                 Ok(Event::End(tag)) => {
                     self.depth = self.depth.saturating_sub(1);
-                    let name = name_of(tag.name().as_ref());
+                    let name = name_of(tag.local_name().as_ref());
                     Some(match self.held.take() {
-                        Some(held) => (held.place, XmlNode::Leaf(held.name, held.text)),
+                        Some(held) => held.leaf(),
                         None => (place, XmlNode::Close(name)),
                     })
                 }
@@ -233,11 +251,16 @@ fn opened(held: Held) -> Placed {
 }
 
 fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
-    let version = tag.try_get_attribute("version").ok().flatten();
+    let attribute = |name: &str| {
+        let found = tag.try_get_attribute(name).ok().flatten();
+        found.map(|attribute| name_of(attribute.value.as_ref()))
+    };
     Held {
         place,
-        name: name_of(tag.name().as_ref()),
-        version: version.map(|attribute| name_of(attribute.value.as_ref())),
+        // A prefix of a namespace says nothing that the name does not.
+        name: name_of(tag.local_name().as_ref()),
+        version: attribute("version"),
+        unit: attribute("units"),
         text: String::new(),
     }
 }

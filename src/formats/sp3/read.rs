@@ -6,7 +6,7 @@ use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::formats::trajectory::time_system_of_name;
+use crate::formats::trajectory::{frame_of_sp3_name, time_system_of_name};
 use crate::frames::Position;
 use crate::orbit::earth_orbit::check_position;
 use crate::time::Epoch;
@@ -29,7 +29,7 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Sp3> {
-    let mut lines = Lines::new(input).with_comments(is_comment);
+    let mut lines = Lines::new(input).with_free_text(is_comment);
     let mut parser = Sp3Parser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
@@ -126,6 +126,10 @@ impl Sp3Parser {
         };
         self.file.version = char::from(*version);
         self.file.frame = line.text[46..51].trim().to_owned();
+        if let Err(unknown) = frame_of_sp3_name(&self.file.frame) {
+            let message = format!("coordinate system: {unknown}");
+            findings.error((line.number, 47), "sp3-frame", message);
+        }
         match line.text[32..39].trim().parse() {
             Ok(epochs) => self.announced.1 = epochs,
             Err(_) => {

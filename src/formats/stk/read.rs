@@ -9,7 +9,7 @@ use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
-use crate::formats::text::number;
+use crate::formats::text::number::read_number;
 use crate::frames::{Frame, State};
 use crate::orbit::earth_orbit::{ImplausibleState, check_position, check_state};
 use crate::time::Epoch;
@@ -47,7 +47,7 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<StkEphemeris>> {
     let is_comment = |line: &[u8]| line.trim_ascii_start().starts_with(b"#");
-    let mut lines = Lines::with_tabs(input).with_comments(is_comment);
+    let mut lines = Lines::with_tabs(input).with_free_text(is_comment);
     let mut parser = StkParser::default();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
@@ -254,7 +254,7 @@ impl StkParser {
         }
         let mut values = [0.0; 10];
         for (value, (column, text)) in values.iter_mut().zip(fields) {
-            match number::read(text, (line.number, column), "stk-number", findings) {
+            match read_number(text, (line.number, column), "stk-number", findings) {
                 Some(number) => *value = number,
                 None => return,
             }
@@ -299,7 +299,7 @@ impl StkParser {
 
     fn boundaries(&mut self, line: &Line, findings: &mut FindingList) {
         for (column, text) in words(&line.text) {
-            self.boundaries_s.extend(number::read(
+            self.boundaries_s.extend(read_number(
                 text,
                 (line.number, column),
                 "stk-number",

@@ -147,10 +147,10 @@ fn changed(before: &str, rows: &str, behind: &str) -> String {
     format!("{head}{before}\n{rows}\n{behind}END Ephemeris\n")
 }
 
-/// Accelerations and covariances are passed over, a comment may hold any characters, and the exponent may be Fortran's.
+/// Accelerations and covariances are passed over, a comment may hold any characters.
 #[test]
 fn further_columns_and_blocks_are_passed_over() {
-    let rows = "0 7.0e6 0 0 0 7.5e3 0 0 0 0\n60 6.9D6 4.0e5 0 -1 7.4e3 0 0 0 0";
+    let rows = "0 7.0e6 0 0 0 7.5e3 0 0 0 0\n60 6.9E6 4.0e5 0 -1 7.4e3 0 0 0 0";
     let behind = "\nCovarianceTimePosVel\n0 1 0 0 1 0 0\n1 0 0 0\n60 1 0 0 1 0 0\n1 0 0 0\n";
     let before =
         "CovarianceFormat LowerTriangular\nTimeFormat EpSec\n# caf\u{e9}\nEphemerisTimePosVelAcc";

@@ -13,7 +13,7 @@ const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 pub(crate) struct Line {
     /// Number, from 1.
     pub(crate) number: usize,
-    /// Text: printable ASCII, but for a comment.
+    /// Text: printable ASCII, but in free text.
     pub(crate) text: String,
 }
 
@@ -24,8 +24,8 @@ pub(crate) struct Lines<R> {
     after_carriage_return: bool,
     /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
     takes_tabs: bool,
-    /// Tells a comment, which may hold any characters: they change no number.
-    is_comment: fn(&[u8]) -> bool,
+    /// Lines whose text means nothing to the reader, or is a name: they may hold any characters.
+    is_free_text: fn(&[u8]) -> bool,
 }
 
 /// How the bytes of a line were taken.
@@ -42,7 +42,16 @@ impl<R: BufRead> Lines<R> {
             number: 0,
             after_carriage_return: false,
             takes_tabs: false,
-            is_comment: |_| false,
+            is_free_text: |_| false,
+        }
+    }
+
+    /// The same, with lines that may hold more than printable ASCII: comments and names. `is_free_text` sees the
+    /// bytes of a line.
+    pub(crate) fn with_free_text(self, is_free_text: fn(&[u8]) -> bool) -> Self {
+        Self {
+            is_free_text,
+            ..self
         }
     }
 
@@ -52,11 +61,6 @@ impl<R: BufRead> Lines<R> {
             takes_tabs: true,
             ..Self::new(input)
         }
-    }
-
-    /// The same lines, with any characters in those that `is_comment` tells.
-    pub(crate) fn with_comments(self, is_comment: fn(&[u8]) -> bool) -> Self {
-        Self { is_comment, ..self }
     }
 
     /// Number of the last line that was read.
@@ -75,8 +79,12 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             if matches!(taken, Taken::TooLong) {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
-                findings.error((self.number, MAX_LINE + 1), "line-length", message);
-                continue;
+                let place = (self.number, MAX_LINE + 1);
+                if !(self.is_free_text)(&bytes) {
+                    findings.error(place, "line-length", message);
+                    continue;
+                }
+                findings.warning(place, "line-length", message);
             }
             if self.number == 1 && bytes.starts_with(BYTE_ORDER_MARK) {
                 bytes.drain(..BYTE_ORDER_MARK.len());
@@ -87,12 +95,10 @@ impl<R: BufRead> Lines<R> {
                 Some(at) => {
                     let message = format!("byte 0x{:02X} is not printable ASCII", bytes[at]);
                     let place = (self.number, at + 1);
-                    if (self.is_comment)(&bytes) {
+                    let has_control = bytes.iter().any(|b| b.is_ascii_control());
+                    if (self.is_free_text)(&bytes) && !has_control {
                         findings.warning(place, "character", message);
-                        return Ok(Some(Line {
-                            number: self.number,
-                            text: String::from_utf8_lossy(&bytes).into_owned(),
-                        }));
+                        return Ok(Some(self.line(&bytes)));
                     }
                     findings.error(place, "character", message);
                 }
@@ -104,7 +110,7 @@ impl<R: BufRead> Lines<R> {
     fn line(&self, bytes: &[u8]) -> Line {
         Line {
             number: self.number,
-            text: bytes.iter().map(|byte| char::from(*byte)).collect(),
+            text: String::from_utf8_lossy(bytes).into_owned(),
         }
     }
 
@@ -205,6 +211,27 @@ mod tests {
         assert_eq!(places, [(2, 2), (3, 1), (4, 2)]);
         assert_eq!(findings[0].rule, "tab");
         assert_eq!(findings[0].severity, Severity::Warning);
+    }
+
+    #[test]
+    fn comments_may_hold_any_text() {
+        let bytes = "COMMENT \u{d6}BB\nX = \u{d6}\n".as_bytes();
+        let latin_1 = b"COMMENT \xd6BB\nCOMMENT \0\n";
+        let bytes = [bytes, latin_1].concat();
+        let mut findings = FindingList::of_linter(10);
+        let mut reader = Lines::new(&bytes[..]).with_free_text(|line| line.starts_with(b"COMMENT"));
+        let mut texts = Vec::new();
+        while let Some(line) = reader.next(&mut findings).unwrap() {
+            texts.push(line.text);
+        }
+        assert_eq!(texts, ["COMMENT \u{d6}BB", "COMMENT \u{fffd}BB"]);
+        let found: Vec<_> = findings
+            .into_vec()
+            .iter()
+            .map(|f| (f.line, f.severity))
+            .collect();
+        let (warning, error) = (Severity::Warning, Severity::Error);
+        assert_eq!(found, [(1, warning), (2, error), (3, warning), (4, error)]);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub fn parse(
     findings: &mut FindingList,
     mut take: impl FnMut(TleRecord),
 ) -> io::Result<()> {
-    let mut lines = Lines::new(input);
+    let mut lines = Lines::new(input).with_free_text(is_name);
     let mut name: Option<Line> = None;
     let mut first: Option<Line> = None;
     let mut any = false;
@@ -78,6 +78,11 @@ pub fn parse(
         findings.error((lines.number().max(1), 1), "tle-empty", "no element set");
     }
     Ok(())
+}
+
+/// Whether bytes are not of an element line, but of a name, which may hold any text.
+fn is_name(line: &[u8]) -> bool {
+    !line.starts_with(b"1 ") && !line.starts_with(b"2 ")
 }
 
 /// What a line is, by its beginning and its length.
@@ -203,10 +208,10 @@ fn record(
         return None;
     }
     let name = match name {
-        Some(line) => Some(checked_name(&line, findings)?),
+        Some(line) => Some(checked_name(&line, findings)),
         None => None,
     };
-    if !ranges_fit(first, second, findings) {
+    if !is_for_sgp4(first, findings) || !ranges_fit(first, second, findings) {
         return None;
     }
     match set_of_lines(name, [one, two]) {
@@ -254,15 +259,35 @@ fn is_designator(columns: &str) -> bool {
     is_named || columns.trim().is_empty()
 }
 
-fn checked_name(line: &Line, findings: &mut FindingList) -> Option<String> {
+/// The name, which catalogues give with any number of characters.
+fn checked_name(line: &Line, findings: &mut FindingList) -> String {
     let text = line.text.trim();
     let name = text.strip_prefix("0 ").unwrap_or(text).trim_start();
-    if name.len() <= NAME {
-        return Some(name.to_owned());
+    let length = name.chars().count();
+    if length > NAME {
+        let message = format!("the name has {length} characters; the format has {NAME}");
+        findings.warning((line.number, NAME + 1), "tle-name", message);
     }
-    let message = format!("the name has {} characters; {NAME} fit", name.len());
-    findings.error((line.number, NAME + 1), "tle-name", message);
-    None
+    name.to_owned()
+}
+
+/// Column of the ephemeris type, from 0.
+const TYPE: usize = 62;
+
+/// Whether a set is for SGP4: type 0 is what catalogues write, type 2 its own number.
+fn is_for_sgp4(first: &Line, findings: &mut FindingList) -> bool {
+    let kind = first.text.as_bytes()[TYPE];
+    let name = match kind {
+        b'0' | b'2' => return true,
+        b'4' => ", SGP4-XP,",
+        _ => "",
+    };
+    let message = format!(
+        "ephemeris type {}{name} is not 0 or 2: SGP4 does not propagate it",
+        char::from(kind)
+    );
+    findings.error((first.number, TYPE + 1), "tle-type", message);
+    false
 }
 
 /// Checks the values that the columns alone do not bound.

@@ -19,11 +19,13 @@ pub(in crate::scenario) enum Text {
 
 impl Text {
     /// Longest text in bytes. A name becomes part of the name of a directory, where 255 is the usual
-    /// limit; 4096 is the usual one of a path.
+    /// limit; ASCII stands behind its keyword in a line of a CCSDS message, which has 254 characters
+    /// (502.0-B-3, 7.3.2); 4096 is the usual limit of a path.
     fn longest(&self) -> usize {
         match self {
             Self::Name => 100,
-            Self::Ascii | Self::Any => 4096,
+            Self::Ascii => 200,
+            Self::Any => 4096,
         }
     }
 

@@ -304,7 +304,7 @@ fn a_gap_is_no_coverage() {
 
 #[test]
 fn a_file_that_breaks_its_format_is_named() {
-    let error = read("x.oem", "CCSDS_OEM_VERS = 9.0\n".as_bytes())
+    let error = read("x.oem", "CCSDS_OEM_VERS = 9.0\n".as_bytes(), None)
         .unwrap_err()
         .to_string();
     assert!(error.starts_with("x.oem: line 1"), "{error}");
@@ -317,8 +317,12 @@ fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
     let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
-    let findings =
-        against_file(&subject, "orekit", &read("orekit.oem", OREKIT).unwrap().0).unwrap();
+    let findings = against_file(
+        &subject,
+        "orekit",
+        &read("orekit.oem", OREKIT, None).unwrap().0,
+    )
+    .unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];
     assert_eq!(

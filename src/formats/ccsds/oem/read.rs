@@ -1,14 +1,15 @@
 //! Reads messages strictly, line by line.
 
+use super::rules::MessageRules;
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
+use crate::formats::ccsds::keywords::{KvnKeyword, may, must, named};
 use crate::formats::ccsds::kvn::{
-    CcsdsHeader, Item, KvnBlock, KvnKeyword, Pair, item, may, must, read_number, read_stamp, words,
+    CcsdsHeader, Item, KvnBlock, Pair, item, lines, read_number, read_stamp, words,
 };
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::lines::Line;
 use crate::frames::State;
-use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
@@ -23,8 +24,8 @@ pub(super) const HEADER: &[KvnKeyword] = &[
 
 /// Table 5-3.
 pub(super) const METADATA: &[KvnKeyword] = &[
-    must("OBJECT_NAME"),
-    must("OBJECT_ID"),
+    named("OBJECT_NAME"),
+    named("OBJECT_ID"),
     must("CENTER_NAME"),
     must("REF_FRAME"),
     may("REF_FRAME_EPOCH"),
@@ -64,7 +65,7 @@ pub fn parse(
     findings: &mut FindingList,
     mut take: impl FnMut(Segment),
 ) -> io::Result<Option<CcsdsHeader>> {
-    let mut lines = Lines::new(input);
+    let mut lines = lines(input);
     let mut parser = OemParser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings, &mut take);
@@ -86,8 +87,7 @@ struct OemParser {
     part: OemSection,
     header_block: KvnBlock,
     header: Option<CcsdsHeader>,
-    /// Time system of the first segment, which all share (5.2.4.5).
-    time_system: Option<String>,
+    rules: MessageRules,
     segment: Option<Segment>,
     /// Line of the last `META_START`.
     segment_line: usize,
@@ -100,7 +100,7 @@ impl OemParser {
             part: OemSection::Header,
             header_block: KvnBlock::new(&[HEADER]),
             header: None,
-            time_system: None,
+            rules: MessageRules::default(),
             segment: None,
             segment_line: 0,
             segments: 0,
@@ -175,7 +175,7 @@ impl OemParser {
         };
         let metadata = metadata(block, number, findings);
         if let Some(metadata) = &metadata {
-            check_time_system(&mut self.time_system, metadata, block, findings);
+            self.rules.check_metadata(metadata, block, findings);
         }
         self.segments += 1;
         self.segment = metadata.map(|metadata| Segment {
@@ -206,7 +206,7 @@ impl OemParser {
             OemSection::Ephemeris => {
                 let state = state_line(line, findings);
                 if let (Some(segment), Some(state)) = (&mut self.segment, state)
-                    && in_order(segment, &state, line.number, findings)
+                    && self.rules.admit(segment, &state, line.number, findings)
                 {
                     segment.states.push(state);
                 }
@@ -246,20 +246,6 @@ impl OemParser {
             }
         }
         self.header
-    }
-}
-
-/// All segments share the time system of the first (5.2.4.5).
-pub(super) fn check_time_system(
-    first: &mut Option<String>,
-    metadata: &SegmentMetadata,
-    block: &KvnBlock,
-    findings: &mut FindingList,
-) {
-    let first = first.get_or_insert_with(|| metadata.time_system.clone());
-    if *first != metadata.time_system {
-        let message = format!("TIME_SYSTEM was {first} before; it must not change");
-        findings.error(block.place("TIME_SYSTEM"), "oem-time-system", message);
     }
 }
 
@@ -326,8 +312,8 @@ pub(super) fn metadata(
     }
     Some(SegmentMetadata {
         comments: block.comments.clone(),
-        object_name: block.text("OBJECT_NAME")?,
-        object_id: block.text("OBJECT_ID")?,
+        object_name: block.text_or_unknown("OBJECT_NAME"),
+        object_id: block.text_or_unknown("OBJECT_ID"),
         center_name: block.text("CENTER_NAME")?,
         ref_frame: block.text("REF_FRAME")?,
         ref_frame_epoch: block.stamp("REF_FRAME_EPOCH", findings),
@@ -365,28 +351,6 @@ fn state_line(line: &Line, findings: &mut FindingList) -> Option<StateLine> {
         state: State::new(vector(0), vector(3)),
         acceleration_km_s2: (numbers.len() == 9).then(|| vector(6)),
     })
-}
-
-/// Whether a line comes after the one before it and inside the span of its segment.
-pub(super) fn in_order(
-    segment: &Segment,
-    line: &StateLine,
-    number: usize,
-    findings: &mut FindingList,
-) -> bool {
-    let previous: Option<NaiveDateTime> = segment.states.last().map(|last| last.epoch);
-    if previous.is_some_and(|previous| line.epoch <= previous) {
-        let message = "the time is not after that of the line before";
-        findings.error((number, 1), "oem-time-order", message);
-        return false;
-    }
-    let metadata = &segment.metadata;
-    if line.epoch < metadata.start_time || line.epoch > metadata.stop_time {
-        let message = "the time is outside START_TIME to STOP_TIME";
-        findings.error((number, 1), "oem-span", message);
-        return false;
-    }
-    true
 }
 
 /// A covariance section: for each matrix its keywords and six rows.

@@ -1,11 +1,14 @@
 //! Messages in XML (CCSDS 502.0-B-3, section 8; 505.0-B-2), written and read.
 
-use super::read::{HEADER, METADATA, check_segment, check_time_system, header, in_order, metadata};
+use super::read::{HEADER, METADATA, check_segment, header, metadata};
+use super::rules::MessageRules;
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
-use crate::formats::ccsds::kvn::{KvnBlock, KvnKeyword, may, must};
+use crate::formats::ccsds::keywords::{KvnKeyword, may, must};
+use crate::formats::ccsds::kvn::KvnBlock;
+use crate::formats::ccsds::ndm::{self, NdmMessage};
 use crate::formats::ccsds::xml::{
-    Nodes, XmlNode, begin_file, write_comments, write_header, write_leaves,
+    XmlLeaf, XmlNode, begin_file, write_comments, write_header, write_leaves,
 };
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
@@ -16,15 +19,15 @@ use std::io::{self, BufRead, Write};
 /// Elements of a `stateVector`.
 const STATE: &[KvnKeyword] = &[
     must("EPOCH"),
-    must("X"),
-    must("Y"),
-    must("Z"),
-    must("X_DOT"),
-    must("Y_DOT"),
-    must("Z_DOT"),
-    may("X_DDOT"),
-    may("Y_DDOT"),
-    may("Z_DDOT"),
+    must("X").unit("km"),
+    must("Y").unit("km"),
+    must("Z").unit("km"),
+    must("X_DOT").unit("km/s"),
+    must("Y_DOT").unit("km/s"),
+    must("Z_DOT").unit("km/s"),
+    may("X_DDOT").unit("km/s**2"),
+    may("Y_DDOT").unit("km/s**2"),
+    may("Z_DDOT").unit("km/s**2"),
 ];
 
 impl Oem {
@@ -109,7 +112,7 @@ pub fn read_xml(input: impl BufRead) -> Result<Vec<Oem>, ReadError> {
 }
 
 /// Passes every message that keeps the rules to `take`: the one of the file, or those of a
-/// combined instantiation, whose messages of other kinds are passed over.
+/// combined instantiation, whose messages of other kinds are left out by name.
 ///
 /// # Errors
 /// A failure of the input.
@@ -118,32 +121,11 @@ pub fn parse_xml(
     findings: &mut FindingList,
     mut take: impl FnMut(Oem),
 ) -> io::Result<()> {
-    let mut nodes = Nodes::new(input);
-    let mut message: Option<Message> = None;
-    let mut any = false;
-    while let Some((place, node)) = nodes.next(findings)? {
-        match (node, &mut message) {
-            (XmlNode::Open(name, version), _) if name == "oem" => {
-                any = true;
-                message = Some(Message::new(version, place, findings));
-            }
-            (XmlNode::Close(name), Some(_)) if name == "oem" => {
-                let ended = message
-                    .take()
-                    .and_then(|message| message.end(place, findings));
-                ended.into_iter().for_each(&mut take);
-            }
-            (node, Some(message)) => message.node(node, place, findings),
-            _ => {}
+    ndm::parse(input, &["oem"], findings, |message| {
+        if let NdmMessage::Oem(message) = message {
+            take(message);
         }
-        if findings.is_full() {
-            return Ok(());
-        }
-    }
-    if !any {
-        findings.error(nodes.place(), "oem-empty", "there is no message");
-    }
-    Ok(())
+    })
 }
 
 /// The innermost part of a message that the next leaf belongs to.
@@ -158,36 +140,45 @@ enum OemXmlSection {
 }
 
 /// A message as it comes in.
-struct Message {
+pub(in crate::formats::ccsds) struct XmlMessage {
     part: OemXmlSection,
     header: KvnBlock,
-    time_system: Option<String>,
+    rules: MessageRules,
     segment_place: (usize, usize),
     segment: Option<Segment>,
     segments: Vec<Segment>,
 }
 
-impl Message {
-    fn new(version: Option<String>, place: (usize, usize), findings: &mut FindingList) -> Self {
+impl XmlMessage {
+    pub(in crate::formats::ccsds) fn new(
+        version: Option<&str>,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) -> Self {
         let mut header = KvnBlock::new(&[HEADER]);
         if let Some(version) = version {
-            header.accept_at((VERSION, &version), place, findings);
+            header.accept_at((VERSION, version), None, place, findings);
         }
         Self {
             part: OemXmlSection::Body,
             header,
-            time_system: None,
+            rules: MessageRules::default(),
             segment_place: place,
             segment: None,
             segments: Vec::new(),
         }
     }
 
-    fn node(&mut self, node: XmlNode, place: (usize, usize), findings: &mut FindingList) {
+    pub(in crate::formats::ccsds) fn node(
+        &mut self,
+        node: &XmlNode,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) {
         match node {
-            XmlNode::Open(name, _) => self.open(&name, place),
-            XmlNode::Leaf(name, text) => self.leaf(&name, text, place, findings),
-            XmlNode::Close(name) => self.close(&name, place, findings),
+            XmlNode::Open(name, _) => self.open(name, place),
+            XmlNode::Leaf(leaf) => self.leaf(leaf, place, findings),
+            XmlNode::Close(name) => self.close(name, place, findings),
         }
     }
 
@@ -203,28 +194,22 @@ impl Message {
         }
     }
 
-    fn leaf(
-        &mut self,
-        name: &str,
-        text: String,
-        place: (usize, usize),
-        findings: &mut FindingList,
-    ) {
-        let is_comment = name == "COMMENT";
+    fn leaf(&mut self, leaf: &XmlLeaf, place: (usize, usize), findings: &mut FindingList) {
+        let is_comment = leaf.name == "COMMENT";
+        let text = || leaf.text.clone();
+        let (pair, unit) = ((leaf.name.as_str(), leaf.text.trim()), leaf.unit.as_deref());
         match (&mut self.part, &mut self.segment) {
-            (OemXmlSection::Header, _) if is_comment => self.header.comments.push(text),
-            (OemXmlSection::Header, _) => {
-                self.header.accept_at((name, text.trim()), place, findings)
-            }
-            (OemXmlSection::Metadata(block), _) if is_comment => block.comments.push(text),
+            (OemXmlSection::Header, _) if is_comment => self.header.comments.push(text()),
+            (OemXmlSection::Header, _) => self.header.accept_at(pair, unit, place, findings),
+            (OemXmlSection::Metadata(block), _) if is_comment => block.comments.push(text()),
             (OemXmlSection::Metadata(block) | OemXmlSection::State(block), _) => {
-                block.accept_at((name, text.trim()), place, findings);
+                block.accept_at(pair, unit, place, findings);
             }
-            (OemXmlSection::Data, Some(segment)) if is_comment => segment.comments.push(text),
+            (OemXmlSection::Data, Some(segment)) if is_comment => segment.comments.push(text()),
             (OemXmlSection::Covariance, _) => {}
             (OemXmlSection::Data, None) if is_comment => {}
             (OemXmlSection::Body | OemXmlSection::Data, _) => {
-                let message = format!("element {name} does not belong here");
+                let message = format!("element {} does not belong here", leaf.name);
                 findings.error(place, "ccsds-keyword", message);
             }
         }
@@ -235,7 +220,7 @@ impl Message {
             ("metadata", OemXmlSection::Metadata(block)) => {
                 let metadata = metadata(block, place.0, findings);
                 if let Some(metadata) = &metadata {
-                    check_time_system(&mut self.time_system, metadata, block, findings);
+                    self.rules.check_metadata(metadata, block, findings);
                 }
                 self.segment = metadata.map(|metadata| Segment {
                     metadata,
@@ -247,7 +232,7 @@ impl Message {
             ("stateVector", OemXmlSection::State(block)) => {
                 let line = state(block, place, findings);
                 if let (Some(segment), Some(line)) = (&mut self.segment, line)
-                    && in_order(segment, &line, place.0, findings)
+                    && self.rules.admit(segment, &line, place.0, findings)
                 {
                     segment.states.push(line);
                 }
@@ -265,7 +250,11 @@ impl Message {
         }
     }
 
-    fn end(self, place: (usize, usize), findings: &mut FindingList) -> Option<Oem> {
+    pub(in crate::formats::ccsds) fn end(
+        self,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) -> Option<Oem> {
         let header = header(&self.header, place.0, findings);
         if self.segments.is_empty() {
             findings.error(place, "oem-empty", "the message has no segment");
@@ -280,8 +269,8 @@ impl Message {
 fn state(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList) -> Option<StateLine> {
     block.finish(place, findings);
     let epoch = block.stamp("EPOCH", findings);
-    let mut vector = |keys: [&str; 3]| {
-        let [x, y, z] = keys.map(|key| block.number(key, findings));
+    let vector = |keys: [&str; 3]| {
+        let [x, y, z] = keys.map(|key| block.number(key));
         Some(Vector3::new(x?, y?, z?))
     };
     let position = vector(["X", "Y", "Z"]);

@@ -1,56 +1,59 @@
 //! Reads messages in every notation into element sets.
 
 use super::{METADATA, Omm, VERSION};
-use crate::formats::ccsds::kvn::{
-    COVARIANCE, CcsdsHeader, Item, KvnBlock, KvnKeyword, item, may, must, should,
+use crate::formats::ccsds::keywords::{
+    COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named, should,
 };
-use crate::formats::ccsds::xml::{Nodes, XmlNode};
+use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, item, lines};
+use crate::formats::ccsds::ndm::{self, NdmMessage};
+use crate::formats::ccsds::xml::XmlNode;
 use crate::formats::csv::CsvTable;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::Objects;
-use crate::formats::text::lines::Lines;
 use std::io::{self, BufRead};
 
 /// Tables 4-1 to 4-3 in their order, the covariance at the end. Catalogues leave the date and
 /// the originator out.
-const MESSAGE: &[KvnKeyword] = &[
+const ELEMENTS: &[KvnKeyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     should("CREATION_DATE"),
     should("ORIGINATOR"),
     may("MESSAGE_ID"),
-    must("OBJECT_NAME"),
-    must("OBJECT_ID"),
+    named("OBJECT_NAME"),
+    named("OBJECT_ID"),
     must("CENTER_NAME"),
     must("REF_FRAME"),
     may("REF_FRAME_EPOCH"),
     must("TIME_SYSTEM"),
     must("MEAN_ELEMENT_THEORY"),
     must("EPOCH"),
-    may("SEMI_MAJOR_AXIS"),
-    may("MEAN_MOTION"),
-    must("ECCENTRICITY"),
-    must("INCLINATION"),
-    must("RA_OF_ASC_NODE"),
-    must("ARG_OF_PERICENTER"),
-    must("MEAN_ANOMALY"),
-    may("GM"),
-    may("MASS"),
-    may("SOLAR_RAD_AREA"),
-    may("SOLAR_RAD_COEFF"),
-    may("DRAG_AREA"),
-    may("DRAG_COEFF"),
+    may("SEMI_MAJOR_AXIS").unit("km"),
+    may("MEAN_MOTION").unit("rev/day"),
+    must("ECCENTRICITY").number(),
+    must("INCLINATION").unit("deg"),
+    must("RA_OF_ASC_NODE").unit("deg"),
+    must("ARG_OF_PERICENTER").unit("deg"),
+    must("MEAN_ANOMALY").unit("deg"),
+    may("GM").unit("km**3/s**2"),
+];
+
+/// The TLE related parameters of table 4-3, whose need depends on the theory.
+const TLE_PARAMETERS: &[KvnKeyword] = &[
     may("EPHEMERIS_TYPE"),
     may("CLASSIFICATION_TYPE"),
     may("NORAD_CAT_ID"),
     may("ELEMENT_SET_NO"),
     may("REV_AT_EPOCH"),
-    may("BSTAR"),
-    may("BTERM"),
-    may("MEAN_MOTION_DOT"),
-    may("MEAN_MOTION_DDOT"),
-    may("AGOM"),
+    may("BSTAR").unit("1/ER"),
+    may("BTERM").unit("m**2/kg"),
+    may("MEAN_MOTION_DOT").unit("rev/day**2"),
+    may("MEAN_MOTION_DDOT").unit("rev/day**3"),
+    may("AGOM").unit("m**2/kg"),
 ];
+
+/// A message.
+const MESSAGE: &[&[KvnKeyword]] = &[ELEMENTS, SPACECRAFT, TLE_PARAMETERS, COVARIANCE];
 
 /// What an object of JSON or a row of CSV must and may hold; other members are passed over.
 const RECORD: &[KvnKeyword] = &[
@@ -58,23 +61,25 @@ const RECORD: &[KvnKeyword] = &[
     may("REF_FRAME"),
     may("TIME_SYSTEM"),
     may("MEAN_ELEMENT_THEORY"),
-    may("OBJECT_NAME"),
-    may("OBJECT_ID"),
+    should("OBJECT_NAME"),
+    should("OBJECT_ID"),
     must("EPOCH"),
-    must("MEAN_MOTION"),
-    must("ECCENTRICITY"),
-    must("INCLINATION"),
-    must("RA_OF_ASC_NODE"),
-    must("ARG_OF_PERICENTER"),
-    must("MEAN_ANOMALY"),
+    must("MEAN_MOTION").unit("rev/day"),
+    must("ECCENTRICITY").number(),
+    must("INCLINATION").unit("deg"),
+    must("RA_OF_ASC_NODE").unit("deg"),
+    must("ARG_OF_PERICENTER").unit("deg"),
+    must("MEAN_ANOMALY").unit("deg"),
     may("EPHEMERIS_TYPE"),
     may("CLASSIFICATION_TYPE"),
     must("NORAD_CAT_ID"),
     may("ELEMENT_SET_NO"),
     may("REV_AT_EPOCH"),
-    may("BSTAR"),
-    may("MEAN_MOTION_DOT"),
-    may("MEAN_MOTION_DDOT"),
+    may("BSTAR").unit("1/ER"),
+    may("BTERM").unit("m**2/kg"),
+    may("MEAN_MOTION_DOT").unit("rev/day**2"),
+    may("MEAN_MOTION_DDOT").unit("rev/day**3"),
+    may("AGOM").unit("m**2/kg"),
 ];
 
 /// Keywords that users define (4.2.4.10); they are passed over.
@@ -90,8 +95,8 @@ pub fn parse_kvn(
     findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
-    let mut lines = Lines::new(input);
-    let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
+    let mut lines = lines(input);
+    let mut block = KvnBlock::new(MESSAGE);
     let (mut begin, mut started) = (1, false);
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
@@ -105,7 +110,7 @@ pub fn parse_kvn(
                     message_of(&block, begin, line.number, findings)
                         .into_iter()
                         .for_each(&mut take);
-                    block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
+                    block = KvnBlock::new(MESSAGE);
                 }
                 if pair.key == VERSION {
                     begin = line.number;
@@ -124,8 +129,8 @@ pub fn parse_kvn(
     Ok(())
 }
 
-/// Reads XML: a message, or a combined instantiation of any number; messages of other kinds in
-/// it are passed over.
+/// Reads XML: a message, or a combined instantiation of any number, whose messages of other kinds are left out by
+/// name.
 ///
 /// # Errors
 /// A failure of the input.
@@ -134,40 +139,60 @@ pub fn parse_xml(
     findings: &mut FindingList,
     mut take: impl FnMut(Omm),
 ) -> io::Result<()> {
-    let mut nodes = Nodes::new(input);
-    let mut message: Option<(usize, KvnBlock)> = None;
-    let mut any = false;
-    while let Some((place, node)) = nodes.next(findings)? {
-        match (node, &mut message) {
-            (XmlNode::Open(name, version), _) if name == "omm" => {
-                let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
-                if let Some(version) = version {
-                    block.accept_at((VERSION, &version), place, findings);
-                }
-                any = true;
-                message = Some((place.0, block));
-            }
-            (XmlNode::Close(name), Some((begin, block))) if name == "omm" => {
-                message_of(block, *begin, nodes.place().0, findings)
-                    .into_iter()
-                    .for_each(&mut take);
-                message = None;
-            }
-            (XmlNode::Leaf(name, text), Some((_, block))) => match name.as_str() {
-                "COMMENT" => block.comments.push(text),
-                _ if name.starts_with(USER_DEFINED) => {}
-                _ => block.accept_at((&name, text.trim()), place, findings),
-            },
-            _ => {}
+    ndm::parse(input, &["omm"], findings, |message| {
+        if let NdmMessage::Omm(message) = message {
+            take(message);
         }
-        if findings.is_full() {
-            return Ok(());
+    })
+}
+
+/// A message in XML as it comes in.
+pub(in crate::formats::ccsds) struct XmlMessage {
+    begin: usize,
+    block: KvnBlock,
+}
+
+impl XmlMessage {
+    pub(in crate::formats::ccsds) fn new(
+        version: Option<&str>,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) -> Self {
+        let mut block = KvnBlock::new(MESSAGE);
+        if let Some(version) = version {
+            block.accept_at((VERSION, version), None, place, findings);
+        }
+        Self {
+            begin: place.0,
+            block,
         }
     }
-    if !any {
-        findings.error(nodes.place(), "omm-empty", "there is no message");
+
+    pub(in crate::formats::ccsds) fn node(
+        &mut self,
+        node: &XmlNode,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) {
+        let XmlNode::Leaf(leaf) = node else { return };
+        match leaf.name.as_str() {
+            "COMMENT" => self.block.comments.push(leaf.text.clone()),
+            name if name.starts_with(USER_DEFINED) => {}
+            name => {
+                let pair = (name, leaf.text.trim());
+                let unit = leaf.unit.as_deref();
+                self.block.accept_at(pair, unit, place, findings);
+            }
+        }
     }
-    Ok(())
+
+    pub(in crate::formats::ccsds) fn end(
+        &self,
+        place: (usize, usize),
+        findings: &mut FindingList,
+    ) -> Option<Omm> {
+        message_of(&self.block, self.begin, place.0, findings)
+    }
 }
 
 /// Reads an array of JSON objects, or one object.
@@ -184,10 +209,10 @@ pub fn parse_json(
         let Some(members) = object.members(findings) else {
             continue;
         };
-        let mut block = KvnBlock::unordered(&[RECORD]);
+        let mut block = KvnBlock::of_record(&[RECORD]);
         for (key, value) in &members {
-            if block.knows(key) && !value.is_empty() {
-                block.accept_at((key, value), object.place_of(key), findings);
+            if is_given(&block, key, value) {
+                block.accept_at((key, value), None, object.place_of(key), findings);
             }
         }
         let place = object.place_of("");
@@ -216,17 +241,17 @@ pub fn parse_csv(
     };
     if keys
         .iter()
-        .all(|key| !KvnBlock::unordered(&[RECORD]).knows(key))
+        .all(|key| !KvnBlock::of_record(&[RECORD]).knows(key))
     {
         findings.error((1, 1), "csv-header", "no column is a keyword of an OMM");
         return Ok(());
     }
     let mut row = ::csv::StringRecord::new();
     while let Some(line) = table.next(&mut row, findings)? {
-        let mut block = KvnBlock::unordered(&[RECORD]);
+        let mut block = KvnBlock::of_record(&[RECORD]);
         for (column, (key, value)) in keys.iter().zip(&row).enumerate() {
-            if block.knows(key) && !value.is_empty() {
-                block.accept_at((key, value), (line, column + 1), findings);
+            if is_given(&block, key, value) {
+                block.accept_at((key, value), None, (line, column + 1), findings);
             }
         }
         record_of(&block, (line, 1), findings)
@@ -237,6 +262,11 @@ pub fn parse_csv(
         }
     }
     Ok(())
+}
+
+/// Whether a value of a record is given: an empty one is as good as none, but of an identifier it is told.
+fn is_given(block: &KvnBlock, key: &str, value: &str) -> bool {
+    block.knows(key) && (!value.is_empty() || matches!(key, "OBJECT_NAME" | "OBJECT_ID"))
 }
 
 fn message_of(
@@ -272,7 +302,7 @@ fn set(
 ) -> Option<sgp4::Elements> {
     let mut fits = fits_sgp4(block, place, findings);
     let mut bounded = |key: &str, low: f64, high: f64| {
-        let value = block.number(key, findings)?;
+        let value = block.number(key)?;
         if (low..=high).contains(&value) {
             return Some(value);
         }
@@ -306,7 +336,7 @@ fn set(
         mean_anomaly,
     ] = angles;
     let known = |text: &String| text != "UNKNOWN";
-    let mut number = |key| block.number(key, findings).unwrap_or(0.0);
+    let number = |key| block.number(key).unwrap_or(0.0);
     let (mean_motion_dot, mean_motion_ddot, drag_term) = (
         number("MEAN_MOTION_DOT"),
         number("MEAN_MOTION_DDOT"),
@@ -353,10 +383,48 @@ fn fits_sgp4(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList
             fits = false;
         }
     }
-    if block.text("MEAN_MOTION").is_none() {
-        let message = "MEAN_MOTION is missing, which SGP4 needs (4.2.4.6)";
-        findings.error(place, "ccsds-missing", message);
+    for (key, why) in [("MEAN_MOTION", "4.2.4.6"), ("NORAD_CAT_ID", "table 4-3")] {
+        if block.text(key).is_none() && block.is_message() {
+            let message = format!("{key} is missing, which SGP4 needs ({why})");
+            findings.error(place, "ccsds-missing", message);
+            fits = false;
+        }
+    }
+    fits & is_not_sgp4_xp(block, place, findings)
+}
+
+/// Types of element sets for SGP4: 0, the default of catalogues, and 2.
+const SGP4_TYPES: [&str; 2] = ["0", "2"];
+
+/// Whether nothing belongs to SGP4-XP, whose B* and derivatives mean other things (table 4-3).
+fn is_not_sgp4_xp(block: &KvnBlock, place: (usize, usize), findings: &mut FindingList) -> bool {
+    let mut fits = true;
+    let mut refuse = |key: &str, message: String| {
+        findings.error(block.place(key), "omm-theory", message);
         fits = false;
+    };
+    if let Some(found) = block.text("EPHEMERIS_TYPE")
+        && !SGP4_TYPES.contains(&found.as_str())
+    {
+        let name = if found == "4" { ", SGP4-XP," } else { "" };
+        let message = format!("EPHEMERIS_TYPE {found}{name} is not 0 or 2, which are SGP4");
+        refuse("EPHEMERIS_TYPE", message);
+    }
+    for key in ["BTERM", "AGOM"] {
+        if block.text(key).is_some() {
+            let beside = match block.text("BSTAR") {
+                Some(_) if key == "BTERM" => "; it stands in place of BSTAR, not beside it",
+                _ => "",
+            };
+            refuse(
+                key,
+                format!("{key} belongs to SGP4-XP, which is not propagated here{beside}"),
+            );
+        }
+    }
+    if fits && block.is_message() && block.text("BSTAR").is_none() {
+        let message = "BSTAR is missing, which SGP4 needs (table 4-3); it is taken as 0";
+        findings.warning(place, "ccsds-missing", message);
     }
     fits
 }

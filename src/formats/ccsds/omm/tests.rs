@@ -312,7 +312,7 @@ fn tables_are_checked_row_by_row() {
     let found = findings(table.replacen("63.4", "163.4x", 1), OmmSyntax::Csv);
     assert_eq!(
         (found[0].line, found[0].column, found[0].rule),
-        (2, 6, "ccsds-number")
+        (2, 6, "omm-number")
     );
     assert_eq!(findings("a,b\n1,2\n", OmmSyntax::Csv)[0].rule, "csv-header");
     let windows = format!("\u{feff}{}", table.replace('\n', "\r\n"));

@@ -2,11 +2,9 @@
 
 use super::{Keplerian, Opm, USER_DEFINED, VERSION};
 use crate::formats::ReadError;
-use crate::formats::ccsds::kvn::{
-    COVARIANCE, CcsdsHeader, Item, KvnBlock, KvnKeyword, Pair, item, may, must,
-};
+use crate::formats::ccsds::keywords::{COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named};
+use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, Pair, item, lines};
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::Lines;
 use crate::frames::State;
 use crate::orbit::kepler::eccentric_anomaly;
 use crate::units::wrap_360;
@@ -20,43 +18,38 @@ const MESSAGE: &[KvnKeyword] = &[
     must("CREATION_DATE"),
     must("ORIGINATOR"),
     may("MESSAGE_ID"),
-    must("OBJECT_NAME"),
-    must("OBJECT_ID"),
+    named("OBJECT_NAME"),
+    named("OBJECT_ID"),
     must("CENTER_NAME"),
     must("REF_FRAME"),
     may("REF_FRAME_EPOCH"),
     must("TIME_SYSTEM"),
     must("EPOCH"),
-    must("X"),
-    must("Y"),
-    must("Z"),
-    must("X_DOT"),
-    must("Y_DOT"),
-    must("Z_DOT"),
-    may("SEMI_MAJOR_AXIS"),
-    may("ECCENTRICITY"),
-    may("INCLINATION"),
-    may("RA_OF_ASC_NODE"),
-    may("ARG_OF_PERICENTER"),
-    may("TRUE_ANOMALY"),
-    may("MEAN_ANOMALY"),
-    may("GM"),
-    may("MASS"),
-    may("SOLAR_RAD_AREA"),
-    may("SOLAR_RAD_COEFF"),
-    may("DRAG_AREA"),
-    may("DRAG_COEFF"),
+    must("X").unit("km"),
+    must("Y").unit("km"),
+    must("Z").unit("km"),
+    must("X_DOT").unit("km/s"),
+    must("Y_DOT").unit("km/s"),
+    must("Z_DOT").unit("km/s"),
+    may("SEMI_MAJOR_AXIS").unit("km"),
+    may("ECCENTRICITY").number(),
+    may("INCLINATION").unit("deg"),
+    may("RA_OF_ASC_NODE").unit("deg"),
+    may("ARG_OF_PERICENTER").unit("deg"),
+    may("TRUE_ANOMALY").unit("deg"),
+    may("MEAN_ANOMALY").unit("deg"),
+    may("GM").unit("km**3/s**2"),
 ];
 
 /// A manoeuvre of table 3-3; there may be several.
 const MANOEUVRE: &[KvnKeyword] = &[
     must("MAN_EPOCH_IGNITION"),
-    must("MAN_DURATION"),
-    must("MAN_DELTA_MASS"),
+    must("MAN_DURATION").unit("s"),
+    must("MAN_DELTA_MASS").unit("kg"),
     must("MAN_REF_FRAME"),
-    must("MAN_DV_1"),
-    must("MAN_DV_2"),
-    must("MAN_DV_3"),
+    must("MAN_DV_1").unit("km/s"),
+    must("MAN_DV_2").unit("km/s"),
+    must("MAN_DV_3").unit("km/s"),
 ];
 
 /// Parameters of users that are kept.
@@ -79,8 +72,8 @@ pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<Opm>> {
-    let mut lines = Lines::new(input);
-    let mut block = KvnBlock::new(&[MESSAGE, COVARIANCE]);
+    let mut lines = lines(input);
+    let mut block = KvnBlock::new(&[MESSAGE, SPACECRAFT, COVARIANCE]);
     let mut manoeuvre: Option<KvnBlock> = None;
     let mut user_defined = Vec::new();
     let mut in_header = true;
@@ -150,8 +143,8 @@ fn message(
     block.finish(end, findings);
     let header = CcsdsHeader::read(block, VERSION, findings);
     let epoch = block.stamp("EPOCH", findings);
-    let mut vector = |keys: [&str; 3]| {
-        let [x, y, z] = keys.map(|key| block.number(key, findings));
+    let vector = |keys: [&str; 3]| {
+        let [x, y, z] = keys.map(|key| block.number(key));
         Some(Vector3::new(x?, y?, z?))
     };
     let position = vector(["X", "Y", "Z"]);
@@ -159,8 +152,8 @@ fn message(
     let keplerian = keplerian(block, findings);
     Some(Opm {
         header: header?,
-        object_name: block.text("OBJECT_NAME")?,
-        object_id: block.text("OBJECT_ID")?,
+        object_name: block.text_or_unknown("OBJECT_NAME"),
+        object_id: block.text_or_unknown("OBJECT_ID"),
         center_name: block.text("CENTER_NAME")?,
         ref_frame: block.text("REF_FRAME")?,
         time_system: block.text("TIME_SYSTEM")?,
@@ -190,8 +183,8 @@ fn keplerian(block: &KvnBlock, findings: &mut FindingList) -> Option<Keplerian> 
         findings.error(block.place(first), "opm-elements", message);
         return None;
     }
-    let [a, e, i, raan, perigee, gm] = keys.map(|key| block.number(key, findings));
-    let [true_anomaly, mean_anomaly] = anomalies.map(|key| block.number(key, findings));
+    let [a, e, i, raan, perigee, gm] = keys.map(|key| block.number(key));
+    let [true_anomaly, mean_anomaly] = anomalies.map(|key| block.number(key));
     let eccentricity = e?;
     if !(0.0..1.0).contains(&eccentricity) {
         // Open orbits have elements too, which nothing here computes with.

@@ -1,0 +1,105 @@
+//! Files of Navigation Data Messages in XML (CCSDS 505.0-B-2): one message, or a combined instantiation of
+//! messages of any kinds.
+
+use super::oem::{self, Oem};
+use super::omm::{self, Omm};
+use super::xml::{Nodes, XmlNode};
+use crate::formats::text::finding::FindingList;
+use std::io::{self, BufRead};
+
+/// Kinds of messages (505.0-B-2 and its successors).
+const KINDS: [&str; 10] = [
+    "acm", "aem", "apm", "cdm", "ocm", "oem", "omm", "opm", "rdm", "tdm",
+];
+
+/// Kinds that are read.
+pub const READ: &[&str] = &["oem", "omm"];
+
+/// A message of a kind that is read.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NdmMessage {
+    /// Ephemeris.
+    Oem(Oem),
+    /// Mean elements.
+    Omm(Omm),
+}
+
+/// A message as it comes in.
+enum Open {
+    Oem(Box<oem::XmlMessage>),
+    Omm(Box<omm::XmlMessage>),
+    /// A kind that is not read, at this depth.
+    Other(usize),
+}
+
+/// Passes the messages of a file to `take`, until the list of findings is full; those of kinds that are not read
+/// are left out by name. `wanted` says which kinds are read, and the file must have one of them.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(
+    input: impl BufRead,
+    wanted: &[&str],
+    findings: &mut FindingList,
+    mut take: impl FnMut(NdmMessage),
+) -> io::Result<()> {
+    let mut nodes = Nodes::new(input);
+    let mut open: Option<Open> = None;
+    let (mut depth, mut any) = (0, false);
+    while let Some((place, node)) = nodes.next(findings)? {
+        match (&node, &mut open) {
+            (XmlNode::Open(name, version), None) if name != "ndm" || depth > 0 => {
+                let version = version.as_deref();
+                open = Some(match name.as_str() {
+                    "oem" if wanted.contains(&"oem") => {
+                        any = true;
+                        Open::Oem(Box::new(oem::XmlMessage::new(version, place, findings)))
+                    }
+                    "omm" if wanted.contains(&"omm") => {
+                        any = true;
+                        Open::Omm(Box::new(omm::XmlMessage::new(version, place, findings)))
+                    }
+                    name => {
+                        // A root of no kind at all is no message.
+                        if depth > 0 || KINDS.contains(&name) {
+                            findings.leave_out(place, "message", name);
+                        }
+                        Open::Other(depth)
+                    }
+                });
+            }
+            (XmlNode::Close(name), Some(Open::Oem(_))) if name == "oem" => {
+                if let Some(Open::Oem(message)) = open.take() {
+                    let message = message.end(place, findings);
+                    message.map(NdmMessage::Oem).into_iter().for_each(&mut take);
+                }
+            }
+            (XmlNode::Close(name), Some(Open::Omm(_))) if name == "omm" => {
+                if let Some(Open::Omm(message)) = open.take() {
+                    let message = message.end(nodes.place(), findings);
+                    message.map(NdmMessage::Omm).into_iter().for_each(&mut take);
+                }
+            }
+            (XmlNode::Close(_), Some(Open::Other(at))) if *at + 1 == depth => open = None,
+            (_, Some(Open::Oem(message))) => message.node(&node, place, findings),
+            (_, Some(Open::Omm(message))) => message.node(&node, place, findings),
+            _ => {}
+        }
+        match node {
+            XmlNode::Open(..) => depth += 1,
+            XmlNode::Close(_) => depth = depth.saturating_sub(1),
+            XmlNode::Leaf(_) => {}
+        }
+        if findings.is_full() {
+            return Ok(());
+        }
+    }
+    if !any {
+        let message = format!(
+            "there is no message of a kind that is read ({})",
+            wanted.join(", ")
+        );
+        findings.error(nodes.place(), "ndm-empty", message);
+    }
+    Ok(())
+}

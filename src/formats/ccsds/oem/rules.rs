@@ -1,0 +1,212 @@
+//! What must hold across the segments and lines of a message, in both notations, and what of it is read here.
+
+use super::{Segment, SegmentMetadata, StateLine};
+use crate::constellation::identity::ObjectIdentity;
+use crate::formats::ccsds::kvn::KvnBlock;
+use crate::formats::text::finding::FindingList;
+use crate::formats::trajectory::{frame_of_name, time_system_of_name};
+use crate::frames::Frame;
+use crate::orbit::earth_orbit::check_state;
+use chrono::NaiveDateTime;
+use std::collections::BTreeMap;
+
+/// What the segments so far have said.
+#[derive(Default)]
+pub(super) struct MessageRules {
+    /// Name and identifier of the object of the first segment (5.1.3).
+    object: Option<(String, String)>,
+    /// Time system of the first segment, which all share (5.2.4.5).
+    time_system: Option<String>,
+    /// Usable spans, by their beginnings.
+    spans: BTreeMap<NaiveDateTime, NaiveDateTime>,
+    /// Frame of the present segment.
+    frame: Option<Frame>,
+    /// Whether the present segment has an implausible state or a line with too few fields already.
+    is_told: bool,
+}
+
+impl MessageRules {
+    /// Checks the metadata of the next segment.
+    pub(super) fn check_metadata(
+        &mut self,
+        metadata: &SegmentMetadata,
+        block: &KvnBlock,
+        findings: &mut FindingList,
+    ) {
+        self.is_told = false;
+        self.check_object(metadata, block, findings);
+        self.check_time_system(metadata, block, findings);
+        self.check_frame(metadata, block, findings);
+        self.check_span(metadata, block, findings);
+    }
+
+    fn check_object(
+        &mut self,
+        metadata: &SegmentMetadata,
+        block: &KvnBlock,
+        findings: &mut FindingList,
+    ) {
+        let (name, id) = (&metadata.object_name, &metadata.object_id);
+        let Some((first_name, first_id)) = &self.object else {
+            self.object = Some((name.clone(), id.clone()));
+            return;
+        };
+        let first = ObjectIdentity::new(0, first_id, first_name);
+        let this = ObjectIdentity::new(0, id, name);
+        let is_same = first.is_same(&this) && !first.is_named_otherwise(&this);
+        if !is_same && (first_name, first_id) != (name, id) {
+            let key = if first_name == name {
+                "OBJECT_ID"
+            } else {
+                "OBJECT_NAME"
+            };
+            let message = format!(
+                "an OEM is for a single object (5.1.3): {first_name} ({first_id}) before, {name} ({id}) here"
+            );
+            findings.error(block.place(key), "oem-objects", message);
+        }
+    }
+
+    fn check_time_system(
+        &mut self,
+        metadata: &SegmentMetadata,
+        block: &KvnBlock,
+        findings: &mut FindingList,
+    ) {
+        let place = block.place("TIME_SYSTEM");
+        let system = &metadata.time_system;
+        let first = self.time_system.get_or_insert_with(|| system.clone());
+        if first != system {
+            let message = format!("TIME_SYSTEM was {first} before; it must not change");
+            findings.error(place, "oem-time-system", message);
+        } else if let Err(unknown) = time_system_of_name(system) {
+            findings.error(place, "oem-time-system", format!("TIME_SYSTEM: {unknown}"));
+        }
+    }
+
+    /// The frame of an Earth orbit must be one that states can be taken from.
+    fn check_frame(
+        &mut self,
+        metadata: &SegmentMetadata,
+        block: &KvnBlock,
+        findings: &mut FindingList,
+    ) {
+        self.frame = None;
+        if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
+            // A sound message, which no Earth orbit comes from: `Segment::trajectory` refuses it.
+            return;
+        }
+        let frame = match frame_of_name(&metadata.ref_frame) {
+            Ok(frame) => frame,
+            Err(unknown) => {
+                let message = format!("REF_FRAME: {unknown}");
+                findings.error(block.place("REF_FRAME"), "oem-frame", message);
+                return;
+            }
+        };
+        let moves = matches!(frame, Frame::Teme | Frame::EarthFixed);
+        if moves && metadata.ref_frame_epoch.is_some() {
+            let message = format!(
+                "{} held still at an epoch is not read; only of date",
+                metadata.ref_frame
+            );
+            findings.error(block.place("REF_FRAME_EPOCH"), "oem-frame", message);
+        }
+        self.frame = Some(frame);
+    }
+
+    /// The usable span must be a part of the whole one, and have at most an instant in common with any other.
+    fn check_span(
+        &mut self,
+        metadata: &SegmentMetadata,
+        block: &KvnBlock,
+        findings: &mut FindingList,
+    ) {
+        let (start, stop) = metadata.useable_span();
+        let mut problem = |key: &str, message: String| {
+            let key = if block.text(key).is_some() {
+                key
+            } else {
+                "START_TIME"
+            };
+            findings.error(block.place(key), "oem-span", message);
+        };
+        if metadata.start_time > metadata.stop_time {
+            // This has a finding of its own.
+            return;
+        }
+        if stop < start {
+            problem(
+                "USEABLE_STOP_TIME",
+                "USEABLE_STOP_TIME is before USEABLE_START_TIME".to_owned(),
+            );
+            return;
+        }
+        for (key, at) in [("USEABLE_START_TIME", start), ("USEABLE_STOP_TIME", stop)] {
+            if at < metadata.start_time || at > metadata.stop_time {
+                problem(key, format!("{key} is outside START_TIME to STOP_TIME"));
+                return;
+            }
+        }
+        let before = self.spans.range(..stop).next_back();
+        if let Some((other_start, other_stop)) = before.filter(|(_, other)| **other > start) {
+            let message = format!(
+                "the usable span overlaps that of another segment, {other_start} to {other_stop} (5.2.4.4)"
+            );
+            problem("USEABLE_START_TIME", message);
+            return;
+        }
+        self.spans.insert(start, stop);
+    }
+
+    /// Whether a line comes after the one before it, is inside the span of its segment, has the fields of its
+    /// first line, and is a state of an Earth orbit.
+    pub(super) fn admit(
+        &mut self,
+        segment: &Segment,
+        line: &StateLine,
+        number: usize,
+        findings: &mut FindingList,
+    ) -> bool {
+        let place = (number, 1);
+        let previous = segment.states.last().map(|last| last.epoch);
+        if previous.is_some_and(|previous| line.epoch <= previous) {
+            let message = "the time is not after that of the line before";
+            findings.error(place, "oem-time-order", message);
+            return false;
+        }
+        let metadata = &segment.metadata;
+        if line.epoch < metadata.start_time || line.epoch > metadata.stop_time {
+            let message = "the time is outside START_TIME to STOP_TIME";
+            findings.error(place, "oem-span", message);
+            return false;
+        }
+        if let Some(problem) = self.first_problem(segment, line) {
+            self.is_told = true;
+            findings.error(place, problem.0, problem.1);
+            return false;
+        }
+        true
+    }
+
+    /// What is wrong with a line, once in a segment: it would be wrong with all that follow.
+    fn first_problem(&self, segment: &Segment, line: &StateLine) -> Option<(&'static str, String)> {
+        if self.is_told {
+            return None;
+        }
+        let has_acceleration = |line: &StateLine| line.acceleration_km_s2.is_some();
+        if let Some(first) = segment.states.first()
+            && has_acceleration(first) != has_acceleration(line)
+        {
+            let message =
+                "accelerations stand in some lines only; all lines of a segment have them or none";
+            return Some(("oem-accelerations", message.to_owned()));
+        }
+        let problem = check_state(self.frame?, &line.state).err()?;
+        let message = format!(
+            "{} at {}: {problem}",
+            segment.metadata.object_name, line.epoch
+        );
+        Some(("implausible-state", message))
+    }
+}
