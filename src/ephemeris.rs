@@ -1,5 +1,6 @@
 //! Satellites on a time grid: what the evaluator, the file formats and the validators consume.
 
+pub mod arc;
 pub mod coincidence;
 pub(crate) mod derivative;
 pub mod hermite;
@@ -120,6 +121,25 @@ impl Ephemeris {
                 name: satellite.name.clone(),
                 source,
             })
+    }
+
+    /// The state of a satellite that may have none, as in a gap of its file: then it is nowhere in view.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state_or_gap(
+        &self,
+        satellite: &EphemerisSatellite,
+        elapsed_s: f64,
+    ) -> Result<Option<State<Teme>>, EphemerisError> {
+        match self.state(satellite, elapsed_s) {
+            Ok(state) => Ok(Some(state)),
+            Err(EphemerisError {
+                source: PropagationError::NotSampled { .. },
+                ..
+            }) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// The states of one satellite at every instant of the grid, with the seconds since its epoch.

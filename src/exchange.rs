@@ -6,6 +6,7 @@ pub mod import;
 pub mod lint;
 pub mod manifest;
 pub mod read_back;
+pub mod recognise;
 
 #[cfg(test)]
 mod tests;

@@ -19,6 +19,7 @@ mod algorithm;
 mod builtin;
 mod canonical;
 mod document;
+mod gnss_file;
 mod keys;
 mod number;
 mod problem;

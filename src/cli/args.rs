@@ -250,10 +250,15 @@ pub(crate) struct EvaluateArgs {
     )]
     pub(crate) design: Option<Design>,
 
-    /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, or a
-    /// table of elements or states; a directory means all its files; may be repeated.
+    /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM
+    /// almanacs, or a table of elements or states, also packed by gzip; a directory means all its files that
+    /// are constellations; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub(crate) constellation: Vec<PathBuf>,
+
+    /// Read the constellation files in this format instead of the one that their content shows.
+    #[arg(long, value_name = "FORMAT", requires = "constellation")]
+    pub(crate) input_format: Option<crate::exchange::lint::Format>,
 
     /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
     /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
@@ -439,6 +444,10 @@ pub(crate) struct ValidateArgs {
     /// target with a `.` or `/` in it is a path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
+
+    /// Read the files of other programs in this format instead of the one that their content shows.
+    #[arg(long, value_name = "FORMAT")]
+    pub(crate) input_format: Option<crate::exchange::lint::Format>,
 
     /// Also write the report in every format to this directory.
     #[arg(long, value_name = "DIR")]

@@ -1,38 +1,64 @@
 //! Constellations from files.
 
 use crate::cli::output;
-use crate::exchange::import::Fleet;
+use crate::exchange::import::{Fleet, Imported};
 use crate::exchange::lint::Format;
+use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// The satellites of files and directories, in the order of the names, and the first format.
-pub(crate) fn read(paths: &[PathBuf]) -> Result<(Format, Fleet)> {
-    let mut whole: Option<(Format, Fleet)> = None;
+/// Names that are listed of what a directory holds besides.
+const MOST_NAMES: usize = 5;
+
+/// The satellites of files and directories, in the order of the names, and the formats that were met.
+pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<Format>, Fleet)> {
+    let mut formats = Vec::new();
+    let mut whole: Option<Fleet> = None;
     for path in paths {
-        for file in files_of(path)? {
-            let read = || -> Result<(Format, Fleet)> {
-                let input = BufReader::new(File::open(&file)?);
-                let name = file.file_name().map(|name| name.to_string_lossy());
-                let read = Fleet::read(input, None, name.as_deref())?;
-                warn_left_out(&file, &read.left_out);
-                Ok((read.format, read.fleet))
-            };
-            let (format, fleet) =
-                read().with_context(|| format!("cannot read {}", file.display()))?;
+        for (_, imported) in read_each(path, format)? {
+            if !formats.contains(&imported.format) {
+                formats.push(imported.format);
+            }
             match &mut whole {
-                None => whole = Some((format, fleet)),
-                Some((_, whole)) => whole.append(fleet),
+                None => whole = Some(imported.fleet),
+                Some(whole) => whole.append(imported.fleet),
             }
         }
     }
     match whole {
-        Some(whole) => Ok(whole),
+        Some(whole) => Ok((formats, whole)),
         None => bail!("no file to read"),
     }
+}
+
+/// What each file of a path gives: the file itself, or those of a directory that are constellations. What else is
+/// in a directory is said.
+pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(PathBuf, Imported)>> {
+    if !path.is_dir() {
+        return Ok(vec![(path.to_owned(), read_one(path, format)?)]);
+    }
+    let (files, mut others) = entries(path)?;
+    let mut found = Vec::new();
+    for file in files {
+        let format = match format {
+            Some(format) => Some(format),
+            None => format_of(&file)?,
+        };
+        match format {
+            Some(format) => found.push((file.clone(), read_one(&file, Some(format))?)),
+            None => others.push(file),
+        }
+    }
+    if !others.is_empty() {
+        output::warning(&format!("{}: {}", path.display(), left_out(&others)));
+    }
+    if found.is_empty() {
+        bail!("{} has no file of a constellation", path.display());
+    }
+    Ok(found)
 }
 
 /// Says what of a file is not read.
@@ -42,16 +68,56 @@ pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     }
 }
 
-fn files_of(path: &Path) -> Result<Vec<PathBuf>> {
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
+/// The formats of a constellation, as results name them.
+pub(crate) fn names(formats: &[Format]) -> String {
+    let names: Vec<String> = formats.iter().map(Format::to_string).collect();
+    names.join("+")
+}
+
+fn read_one(file: &Path, format: Option<Format>) -> Result<Imported> {
+    let read = || -> Result<Imported> {
+        let input = BufReader::new(File::open(file)?);
+        let name = file.file_name().map(|name| name.to_string_lossy());
+        Ok(Fleet::read(input, format, name.as_deref())?)
+    };
+    let imported = read().with_context(|| format!("cannot read {}", file.display()))?;
+    warn_left_out(file, &imported.left_out);
+    Ok(imported)
+}
+
+/// The format of a file; none if it is not of one that is read.
+fn format_of(file: &Path) -> Result<Option<Format>> {
+    let look = || -> std::io::Result<Option<Format>> {
+        let input = BufReader::new(File::open(file)?);
+        let name = file.file_name().map(|name| name.to_string_lossy());
+        Ok(recognise(input, name.as_deref())?.content.ok())
+    };
+    look().with_context(|| format!("cannot read {}", file.display()))
+}
+
+/// The files of a directory in the order of their names, and what else is in it.
+fn entries(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
     let listed = || -> std::io::Result<Vec<PathBuf>> {
         let entries = fs::read_dir(path)?.map(|entry| Ok(entry?.path()));
-        let mut files: Vec<PathBuf> = entries.collect::<std::io::Result<_>>()?;
-        files.retain(|file| file.is_file());
-        files.sort();
-        Ok(files)
+        let mut entries: Vec<PathBuf> = entries.collect::<std::io::Result<_>>()?;
+        entries.sort();
+        Ok(entries)
     };
-    listed().with_context(|| format!("cannot list {}", path.display()))
+    let entries = listed().with_context(|| format!("cannot list {}", path.display()))?;
+    Ok(entries.into_iter().partition(|entry| entry.is_file()))
+}
+
+/// `left out: 2 (manifest.json, notes.txt)`.
+fn left_out(others: &[PathBuf]) -> String {
+    let name = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let end = if path.is_dir() { "/" } else { "" };
+        format!("{name}{end}")
+    };
+    let names: Vec<String> = others.iter().take(MOST_NAMES).map(name).collect();
+    let more = match others.len() - names.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("left out: {} ({}{more})", others.len(), names.join(", "))
 }

@@ -3,7 +3,6 @@
 use crate::cli::args::{DesignArgs, StudyArgs};
 use crate::cli::{files, output, run};
 use crate::constellation::Design;
-use crate::constellation::gnss::System;
 use crate::evaluate::{Evaluator, Setup};
 use crate::ground::ignored_columns;
 use crate::run::checkpoint::Identity;
@@ -188,16 +187,12 @@ impl Study {
             let bytes = at.and_then(|at| contents.get(at)).cloned();
             bytes.ok_or_else(|| io::ErrorKind::NotFound.into())
         };
-        let setup = self.scenario.setup(&read);
-        let setup = setup.map_err(|error| self.placed(&error))?;
+        let setup = self.scenario.setup_with_notes(&read);
+        let (setup, notes) = setup.map_err(|error| self.placed(&error))?;
         check_memory(&setup)?;
         self.warn_of_columns(contents);
-        for system in &setup.gnss {
-            if let System::Sets(sets) = system
-                && let Some(stale) = sets.stale(setup.grid)
-            {
-                output::warning(&stale.to_string());
-            }
+        for note in &notes {
+            output::warning(note);
         }
         Ok(setup)
     }

@@ -13,6 +13,8 @@ use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::Epoch;
 use nalgebra::Vector3;
+use std::fmt;
+use std::sync::Arc;
 
 keywords! {
     /// A named GNSS constellation that is part of the library.
@@ -116,6 +118,18 @@ pub enum GnssOrbit {
     },
     /// SGP4 from an element set.
     Sgp4(Box<Sgp4Orbit>),
+    /// As a file gives it: sampled states, or an almanac.
+    Given(GivenOrbit),
+}
+
+/// An orbit that a file gives.
+#[derive(Clone)]
+pub struct GivenOrbit(pub Arc<dyn Propagator>);
+
+impl fmt::Debug for GivenOrbit {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("GivenOrbit")
+    }
 }
 
 /// A circular geosynchronous orbit whose argument of latitude advances at the rate of GMST.
@@ -147,6 +161,7 @@ impl Propagator for GnssOrbit {
             Self::Secular(orbit) => orbit.state(elapsed_s),
             Self::Geosynchronous(orbit) => orbit.state(elapsed_s),
             Self::Sgp4(orbit) => orbit.state_at(elapsed_s)?,
+            Self::Given(orbit) => orbit.0.state_at(elapsed_s)?,
             Self::Geostationary {
                 longitude_rad,
                 epoch,

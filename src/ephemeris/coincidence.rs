@@ -3,7 +3,7 @@
 //!
 //! They are one direction to a receiver, however many are counted in view.
 
-use super::{Ephemeris, EphemerisError};
+use super::{Ephemeris, EphemerisError, EphemerisSatellite};
 use nalgebra::Vector3;
 
 /// Satellites within this distance of each other at every instant looked at are in one place, km.
@@ -31,15 +31,29 @@ pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, Epheme
     let mut tracks = Vec::new();
     for (number, ephemeris) in ephemerides.iter().enumerate() {
         for (place, satellite) in ephemeris.satellites().iter().enumerate() {
-            let mut track = [Vector3::zeros(); 3];
-            for (position, elapsed_s) in track.iter_mut().zip(instants) {
-                *position = ephemeris.state(satellite, elapsed_s)?.position_km.km();
+            if let Some(track) = track(ephemeris, satellite, instants)? {
+                tracks.push(((number, place), track));
             }
-            tracks.push(((number, place), track));
         }
     }
     tracks.sort_by(|a, b| a.1[0].x.total_cmp(&b.1[0].x));
     Ok(groups(&tracks))
+}
+
+/// The positions of a satellite, km; `None` where its file has a gap at one of the instants.
+fn track(
+    ephemeris: &Ephemeris,
+    satellite: &EphemerisSatellite,
+    instants: [f64; 3],
+) -> Result<Option<[Vector3<f64>; 3]>, EphemerisError> {
+    let mut track = [Vector3::zeros(); 3];
+    for (position, elapsed_s) in track.iter_mut().zip(instants) {
+        let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? else {
+            return Ok(None);
+        };
+        *position = state.position_km.km();
+    }
+    Ok(Some(track))
 }
 
 /// A satellite and its positions at the three instants, km.

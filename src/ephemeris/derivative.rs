@@ -24,6 +24,54 @@ pub(crate) fn velocities<F>(positions: &[(Epoch, Position<F>)]) -> Option<Vec<Ve
     all_finite.then_some(found)
 }
 
+/// Least difference of a velocity from the derivative of the positions that is told, km/s: above the
+/// rounding of any format, below every mistaken unit and the speed of the Earth's axes at any orbit.
+const LEAST_FAULT_KM_S: f64 = 1e-3;
+
+/// Share of the speed that is allowed besides.
+const SHARE: f64 = 0.01;
+
+/// Samples of a satellite whose velocities are compared.
+const COMPARED: usize = 50;
+
+/// Says how velocities differ from the derivative of the positions, if they do wherever the positions stand
+/// close enough to tell; by the median, so that a manoeuvre is none.
+pub(crate) fn velocity_fault<F>(samples: &[(Epoch, Position<F>, Vector3<f64>)]) -> Option<String> {
+    let positions: Vec<_> = samples
+        .iter()
+        .map(|(at, r, _)| (*at, Position::new(r.km())))
+        .collect();
+    let increase = positions.windows(2).all(|pair| pair[0].0 < pair[1].0);
+    if positions.len() < NEIGHBOURS || !increase {
+        return None;
+    }
+    let half = NEIGHBOURS / 2;
+    let inner = positions.len() - 2 * half;
+    let mut faults = Vec::new();
+    for place in (half..half + inner).step_by(inner.div_ceil(COMPARED)) {
+        let wide: &[(Epoch, Position<F>)] = &positions[place - half..=place + half];
+        let derived = derivative_at(wide, half);
+        // Two nodes fewer show how far the derivative can be trusted.
+        let narrow = derivative_at(&wide[1..NEIGHBOURS - 1], half - 1);
+        let allowed = LEAST_FAULT_KM_S + SHARE * derived.norm();
+        if (derived - narrow).norm() < 0.1 * allowed {
+            let given = samples[place].2;
+            faults.push((
+                (given - derived).norm() / allowed,
+                given.norm(),
+                derived.norm(),
+            ));
+        }
+    }
+    faults.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (fault, given, derived) = *faults.get(faults.len() / 2)?;
+    (fault > 1.0).then(|| {
+        format!(
+            "the velocities are not the derivative of the positions: {given:.4} km/s where they move at {derived:.4} km/s"
+        )
+    })
+}
+
 /// Derivative at node `j` of the Lagrange polynomial: the sum of f_i l_i'(t_j).
 fn derivative_at<F>(window: &[(Epoch, Position<F>)], j: usize) -> Vector3<f64> {
     let t: Vec<f64> = window

@@ -90,11 +90,17 @@ fn max_error_km<F: ReferenceFrame>(
 }
 
 /// Position at `at_s` of the polynomial through positions and velocities.
+#[must_use]
+pub fn hermite_position<F>(table: &[(f64, State<F>)], at_s: f64) -> Position<F> {
+    hermite_state(table, at_s).position_km
+}
+
+/// Position at `at_s` of the polynomial through positions and velocities, and its derivative.
 ///
 /// Newton's form with every node taken twice; Stoer and Bulirsch, *Introduction to Numerical
 /// Analysis* (3rd ed.), section 2.1.5. The instants must differ.
 #[must_use]
-pub fn hermite_position<F>(table: &[(f64, State<F>)], at_s: f64) -> Position<F> {
+pub fn hermite_state<F>(table: &[(f64, State<F>)], at_s: f64) -> State<F> {
     let instants: Vec<f64> = table.iter().flat_map(|(t, _)| [*t, *t]).collect();
     let mut column: Vec<Vector3<f64>> = table
         .iter()
@@ -112,13 +118,12 @@ pub fn hermite_position<F>(table: &[(f64, State<F>)], at_s: f64) -> Position<F> 
         }
         coefficients.push(column[0]);
     }
-    let nested = |sum: Vector3<f64>, (t, c): (&f64, &Vector3<f64>)| sum * (at_s - t) + c;
-    let km = instants
-        .iter()
-        .zip(&coefficients)
-        .rev()
-        .fold(Vector3::zeros(), nested);
-    Position::new(km)
+    let (mut value, mut slope) = (Vector3::zeros(), Vector3::zeros());
+    for (t, coefficient) in instants.iter().zip(&coefficients).rev() {
+        slope = slope * (at_s - t) + value;
+        value = value * (at_s - t) + coefficient;
+    }
+    State::new(value, slope)
 }
 
 #[cfg(test)]
@@ -144,6 +149,8 @@ mod tests {
             let apart = hermite_position(&table, t) - at(t).position_km;
             // Rounding of sums of terms up to 20.
             assert!(apart.norm() < 1e-13, "{t}: {}", apart.norm());
+            let apart = hermite_state(&table, t).velocity_km_s - at(t).velocity_km_s;
+            assert!(apart.norm() < 1e-12, "{t}: {}", apart.norm());
         }
     }
 

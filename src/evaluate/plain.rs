@@ -133,7 +133,7 @@ fn observe_counted(
     (visible, group)
 }
 
-/// Fills `positions` with the Earth-fixed positions of the satellites at one instant.
+/// Fills `positions` with the Earth-fixed positions of the satellites that have one at an instant.
 pub(super) fn earth_fixed(
     ephemeris: &Ephemeris,
     elapsed_s: f64,
@@ -142,8 +142,9 @@ pub(super) fn earth_fixed(
 ) -> Result<(), EphemerisError> {
     positions.clear();
     for satellite in ephemeris.satellites() {
-        let state = ephemeris.state(satellite, elapsed_s)?;
-        positions.push(rotation.to_earth_fixed(state.position_km));
+        if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {
+            positions.push(rotation.to_earth_fixed(state.position_km));
+        }
     }
     Ok(())
 }

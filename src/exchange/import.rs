@@ -10,25 +10,35 @@
 
 mod objects;
 mod propagation;
+mod sampling;
 
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
+pub use sampling::SamplingNote;
 
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::derivative::velocities;
 use crate::exchange::lint::{Format, xml_kinds};
+use crate::exchange::recognise::{Unread, recognise, unpacked};
 use crate::formats::ccsds::ndm::{self, NdmMessage};
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv::ElementsRow;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{FindingList, LeftOut};
-use crate::formats::trajectory::{TrajectoryError, frame_of_sp3_name, time_system_of_name};
-use crate::formats::{ReadError, csv};
-use crate::formats::{sp3, stk, tle};
+use crate::formats::trajectory::{
+    Trajectory, TrajectoryError, frame_of_sp3_name, time_system_of_name,
+};
+use crate::formats::yuma::Almanac;
+use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
 use crate::frames::{Frame, Position, State};
 use crate::time::Epoch;
 use std::io::{self, BufRead};
 use thiserror::Error;
+
+/// What is usual for SP3, which names none: eleven positions (M. Schenewerk, *A brief review of basic GPS orbit
+/// interpolation strategies*, GPS Solutions 6 (2003) 265).
+const SP3_INTERPOLATION: Interpolation = Interpolation::Lagrange(10);
 
 /// Satellites as files give them.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,9 +48,9 @@ pub enum Fleet {
     /// Mean elements of secular J2.
     Elements(Vec<ElementsRow>),
     /// States.
-    Sampled(Vec<crate::formats::trajectory::Trajectory>),
-    /// Positions with the polynomials between them.
-    Tracks(Vec<crate::formats::maps::czml::CzmlTrack>),
+    Sampled(Vec<Trajectory>),
+    /// Almanacs of navigation satellites.
+    Almanacs(Vec<Almanac>),
     /// Parts of different kinds, each of one of the kinds above.
     Mixed(Vec<Fleet>),
 }
@@ -62,6 +72,9 @@ pub enum ReadFleetError {
     /// It breaks a rule of its format.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// It is of no format that is read.
+    #[error(transparent)]
+    Unread(#[from] Unread),
     /// Its states cannot be brought to a frame of ours.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
@@ -85,15 +98,19 @@ impl Fleet {
     /// # Errors
     /// When the file breaks its format, or its states mean nothing here.
     pub fn read(
-        mut input: impl BufRead,
+        input: impl BufRead,
         format: Option<Format>,
         file_name: Option<&str>,
     ) -> Result<Imported, ReadFleetError> {
         let kinds = xml_kinds(format);
-        let format = match format {
-            Some(format) => format,
-            None => Format::of(input.fill_buf().map_err(ReadError::Io)?, file_name),
+        let (format, input) = match format {
+            Some(format) => (format, unpacked(input).map_err(ReadError::Io)?),
+            None => {
+                let recognised = recognise(input, file_name).map_err(ReadError::Io)?;
+                (recognised.content?, recognised.input)
+            }
         };
+        let file_name = file_name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
         let mut findings = FindingList::of_reader();
         let mut fleet = Self::read_as((format, kinds), input, file_name, &mut findings)?;
         fleet.name_after_file(file_name);
@@ -136,9 +153,17 @@ impl Fleet {
             Format::Sp3 => Self::of_sp3(sp3::read(input)?),
             Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
             Format::ElementsCsv => Ok(Self::Elements(csv::read_elements(input)?)),
-            Format::Czml => Ok(Self::Tracks(all(findings, |findings, take| {
-                czml::parse(input, findings, take)
+            Format::Czml => Ok(Self::Sampled(whole(findings, |findings| {
+                czml::parse(input, findings)
             })?)),
+            Format::Yuma => {
+                let almanacs = whole(findings, |findings| yuma::parse(input, findings))?;
+                Ok(Self::of_almanacs(almanacs))
+            }
+            Format::Sem => {
+                let almanacs = whole(findings, |findings| sem::parse(input, findings))?;
+                Ok(Self::of_almanacs(almanacs))
+            }
             Format::StatesCsv => Ok(Self::Sampled(csv::read_states(input)?)),
         }
     }
@@ -161,6 +186,11 @@ impl Fleet {
 
     fn of_omm(messages: Vec<omm::Omm>) -> Self {
         Self::Sets(messages.into_iter().map(|message| message.set).collect())
+    }
+
+    /// Satellites that are unhealthy are not used; the reader has counted them.
+    fn of_almanacs(almanacs: Vec<Almanac>) -> Self {
+        Self::Almanacs(almanacs.into_iter().filter(Almanac::is_healthy).collect())
     }
 
     /// The segments of one satellite follow each other.
@@ -191,25 +221,15 @@ impl Fleet {
         let mut trajectories = Vec::new();
         let given = file.ids.iter().zip(&file.states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
-            let positions: Vec<(Epoch, Position<Frame>)> =
-                samples.iter().map(|s| (s.at, s.position_km)).collect();
-            let given: Option<Vec<_>> = samples.iter().map(|s| s.velocity_km_s).collect();
-            let velocities = given
-                .or_else(|| velocities(&positions))
+            let name = file.name_of(id).unwrap_or(id);
+            let states = sp3_states(samples)
                 .ok_or_else(|| ReadFleetError::NoVelocity { name: id.clone() })?;
-            let state = |((at, position_km), velocity_km_s)| {
-                let state = State {
-                    position_km,
-                    velocity_km_s,
-                };
-                (at, state)
-            };
-            trajectories.push(crate::formats::trajectory::Trajectory {
-                name: file.name_of(id).unwrap_or(id).to_owned(),
+            let most_s = file.step_s.map_or(f64::INFINITY, |step_s| 1.5 * step_s);
+            trajectories.push(Trajectory {
+                name: name.to_owned(),
                 // Ids start again in each file: beyond it only the name tells satellites apart.
-                id: file.name_of(id).unwrap_or(id).to_owned(),
-                frame,
-                states: positions.into_iter().zip(velocities).map(state).collect(),
+                id: name.to_owned(),
+                arcs: arcs_without_gaps(frame, states, most_s),
             });
         }
         Ok(Self::Sampled(trajectories))
@@ -228,14 +248,10 @@ impl Fleet {
     /// The file names no satellite: it is called as its file is.
     fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
         let name = stem(file_name.unwrap_or("satellite"));
-        let epoch = Epoch::from_utc(file.scenario_epoch.and_utc());
-        let at =
-            |(elapsed_s, state): &(f64, State<Frame>)| (epoch.plus_seconds(*elapsed_s), *state);
-        Self::Sampled(vec![crate::formats::trajectory::Trajectory {
+        Self::Sampled(vec![Trajectory {
             name: name.to_owned(),
             id: name.to_owned(),
-            frame: file.frame,
-            states: file.states.iter().map(at).collect(),
+            arcs: file.arcs(),
         }])
     }
 
@@ -254,7 +270,7 @@ impl Fleet {
             Self::Mixed(parts) => parts
                 .iter_mut()
                 .for_each(|part| part.name_after_file(Some(file_name))),
-            Self::Sets(_) | Self::Elements(_) | Self::Tracks(_) => {}
+            Self::Sets(_) | Self::Elements(_) | Self::Almanacs(_) => {}
         }
     }
 
@@ -267,7 +283,7 @@ impl Fleet {
             (Self::Sampled(states), Self::Sampled(more)) => more
                 .into_iter()
                 .for_each(|next| objects::unite(states, next)),
-            (Self::Tracks(tracks), Self::Tracks(more)) => tracks.extend(more),
+            (Self::Almanacs(almanacs), Self::Almanacs(more)) => almanacs.extend(more),
             (_, Self::Mixed(more)) => more.into_iter().for_each(|part| self.append(part)),
             (Self::Mixed(parts), other) => {
                 let kind = std::mem::discriminant(&other);
@@ -291,7 +307,7 @@ impl Fleet {
             Self::Sets(_) => "SGP4 element sets".to_owned(),
             Self::Elements(_) => "mean elements".to_owned(),
             Self::Sampled(_) => "sampled states".to_owned(),
-            Self::Tracks(_) => "interpolated positions".to_owned(),
+            Self::Almanacs(_) => "almanacs".to_owned(),
             Self::Mixed(parts) => {
                 let contents: Vec<String> = parts.iter().map(Self::content).collect();
                 contents.join(", ")
@@ -306,7 +322,7 @@ impl Fleet {
             Self::Sets(sets) => sets.len(),
             Self::Elements(rows) => rows.len(),
             Self::Sampled(trajectories) => trajectories.len(),
-            Self::Tracks(tracks) => tracks.len(),
+            Self::Almanacs(almanacs) => almanacs.len(),
             Self::Mixed(parts) => parts.iter().map(Self::len).sum(),
         }
     }
@@ -315,6 +331,18 @@ impl Fleet {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+}
+
+/// What a parser gives, or the first rule that the file breaks.
+fn whole<T>(
+    findings: &mut FindingList,
+    parse: impl FnOnce(&mut FindingList) -> io::Result<T>,
+) -> Result<T, ReadError> {
+    let parsed = parse(findings)?;
+    match findings.first_error() {
+        Some(first) => Err(first.clone().into()),
+        None => Ok(parsed),
     }
 }
 
@@ -329,6 +357,36 @@ fn all<T>(
         Some(first) => Err(first.clone().into()),
         None => Ok(taken),
     }
+}
+
+/// The states of an SP3 file; velocities that are not given for all follow from the positions.
+fn sp3_states(samples: &[sp3::Sp3Sample]) -> Option<Vec<(Epoch, State<Frame>)>> {
+    let positions: Vec<(Epoch, Position<Frame>)> =
+        samples.iter().map(|s| (s.at, s.position_km)).collect();
+    let given: Option<Vec<_>> = samples.iter().map(|s| s.velocity_km_s).collect();
+    let velocities = given.or_else(|| velocities(&positions))?;
+    let state = |((at, position_km), velocity_km_s)| {
+        let state = State {
+            position_km,
+            velocity_km_s,
+        };
+        (at, state)
+    };
+    Some(positions.into_iter().zip(velocities).map(state).collect())
+}
+
+/// One arc for each run of states that lie at most `most_s` seconds apart.
+fn arcs_without_gaps(frame: Frame, states: Vec<(Epoch, State<Frame>)>, most_s: f64) -> Vec<Arc> {
+    let mut arcs = Vec::new();
+    let follow = |one: &(Epoch, _), other: &(Epoch, _)| other.0.seconds_since(one.0) <= most_s;
+    for run in states.chunk_by(follow) {
+        let arc = Arc::new(frame, SP3_INTERPOLATION, run.to_vec());
+        arcs.extend(arc.map(|arc| Arc {
+            is_open: true,
+            ..arc
+        }));
+    }
+    arcs
 }
 
 /// The name of a file without its directory and its last extension.

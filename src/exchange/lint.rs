@@ -1,13 +1,13 @@
 //! Checks a file against its format: what a reader refuses, and what it lets pass although the
 //! standard forbids it.
 
+use crate::exchange::recognise::{recognise, unpacked};
 use crate::formats::ccsds::omm::OmmSyntax;
-use crate::formats::ccsds::xml::first_message;
 use crate::formats::ccsds::{ndm, oem, omm, opm};
 use crate::formats::csv;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{Finding, FindingList};
-use crate::formats::{sp3, stk, tle};
+use crate::formats::{sem, sp3, stk, tle, yuma};
 use crate::keyword::keywords;
 use std::collections::HashSet;
 use std::io::{self, BufRead};
@@ -37,6 +37,10 @@ keywords! {
         Czml = "czml",
         /// STK ephemeris.
         Stk = "stk",
+        /// YUMA almanac.
+        Yuma = "yuma",
+        /// SEM almanac.
+        Sem = "sem",
         /// Table of mean elements.
         ElementsCsv = "elements-csv",
         /// Table of states.
@@ -44,50 +48,15 @@ keywords! {
     }
 }
 
-/// Bytes that are looked at to tell the format.
-const PROBE: usize = 1024;
-
 impl Format {
-    /// The format that the beginning of a file shows, or else its name.
-    #[must_use]
-    pub fn of(beginning: &[u8], file_name: Option<&str>) -> Self {
-        let whole = beginning;
-        let beginning = &beginning[..beginning.len().min(PROBE)];
-        let text = String::from_utf8_lossy(beginning);
-        let text = text.trim_start_matches('\u{feff}').trim_start();
-        let first_line = text.lines().next().unwrap_or_default();
-        let by_content = match text.as_bytes() {
-            [b'<', ..] => Some(Self::of_xml(whole)),
-            [b'[', ..] if text.contains("\"document\"") => Some(Self::Czml),
-            [b'[' | b'{', ..] => Some(Self::OmmJson),
-            [b'#', b'a'..=b'd', b'P' | b'V', ..] => Some(Self::Sp3),
-            _ if text.starts_with("CCSDS_OEM_VERS") => Some(Self::Oem),
-            _ if text.starts_with("CCSDS_OMM_VERS") => Some(Self::Omm),
-            _ if text.starts_with("CCSDS_OPM_VERS") => Some(Self::Opm),
-            _ if text.to_ascii_lowercase().starts_with("stk.v.") => Some(Self::Stk),
-            _ if first_line.contains(',') && first_line.contains("MEAN_MOTION") => {
-                Some(Self::OmmCsv)
-            }
-            _ if first_line.contains("semi_major_axis_km") => Some(Self::ElementsCsv),
-            _ if first_line.contains("_x_km") => Some(Self::StatesCsv),
-            _ => None,
-        };
-        by_content
-            .or_else(|| Self::of_name(file_name?))
-            .unwrap_or(Self::Tle)
-    }
-
-    /// The notation of the first message, however long the comments before it are.
-    fn of_xml(beginning: &[u8]) -> Self {
-        match first_message(&String::from_utf8_lossy(beginning)) {
-            Some("oem") => Self::OemXml,
-            _ => Self::OmmXml,
-        }
-    }
-
-    fn of_name(file_name: &str) -> Option<Self> {
+    /// The format that a file of this name has by its extension, compressed or not.
+    pub(crate) fn of_name(file_name: &str) -> Option<Self> {
+        let file_name = file_name.strip_suffix(".gz").unwrap_or(file_name);
         let (_, extension) = file_name.rsplit_once('.')?;
         match extension.to_ascii_lowercase().as_str() {
+            "tle" | "3le" | "2le" => Some(Self::Tle),
+            "alm" | "yuma" => Some(Self::Yuma),
+            "al3" | "sem" => Some(Self::Sem),
             "oem" => Some(Self::Oem),
             "opm" => Some(Self::Opm),
             "omm" | "kvn" => Some(Self::Omm),
@@ -105,8 +74,8 @@ impl Format {
 /// What a check of a file says.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LintReport {
-    /// The format that it was checked against.
-    pub format: Format,
+    /// The format that it was checked against; none for one that is not read.
+    pub format: Option<Format>,
     /// What it breaks, in the order of the file as far as it goes.
     pub findings: Vec<Finding>,
 }
@@ -117,17 +86,31 @@ pub struct LintReport {
 /// # Errors
 /// A failure of the input.
 pub fn lint(
-    mut input: impl BufRead,
+    input: impl BufRead,
     format: Option<Format>,
     file_name: Option<&str>,
     limit: usize,
 ) -> io::Result<LintReport> {
     let kinds = xml_kinds(format);
-    let format = match format {
-        Some(format) => format,
-        None => Format::of(input.fill_buf()?, file_name),
-    };
     let mut findings = FindingList::of_linter(limit);
+    let (format, input) = match format {
+        Some(format) => (Ok(format), unpacked(input)?),
+        None => {
+            let recognised = recognise(input, file_name)?;
+            (recognised.content, recognised.input)
+        }
+    };
+    let format = match format {
+        Ok(format) => format,
+        Err(unread) => {
+            findings.error((1, 1), "unknown-format", unread.to_string());
+            let findings = findings.into_vec();
+            return Ok(LintReport {
+                format: None,
+                findings,
+            });
+        }
+    };
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
         Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
@@ -136,14 +119,19 @@ pub fn lint(
         Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
         Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
         Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
-        Format::Czml => czml::parse(input, &mut findings, |_| ())?,
+        Format::Czml => czml::parse(input, &mut findings).map(drop)?,
+        Format::Yuma => yuma::parse(input, &mut findings).map(drop)?,
+        Format::Sem => sem::parse(input, &mut findings).map(drop)?,
         Format::Stk => stk::parse(input, &mut findings).map(drop)?,
         Format::Opm => opm::parse(input, &mut findings).map(drop)?,
         Format::ElementsCsv => csv::parse_elements(input, &mut findings, |_| ())?,
         Format::StatesCsv => csv::parse_states(input, &mut findings).map(drop)?,
     }
     let findings = findings.into_vec();
-    Ok(LintReport { format, findings })
+    Ok(LintReport {
+        format: Some(format),
+        findings,
+    })
 }
 
 /// The messages that are read from XML: those of the format that is asked for, or else all kinds.
@@ -219,7 +207,8 @@ mod tests {
             assert_eq!(report.findings, [], "{path}");
             formats.insert(report.format);
         }
-        assert_eq!(formats.len(), Format::ALL.len());
+        // SEM is read and not written.
+        assert_eq!(formats.len(), Format::ALL.len() - 1);
     }
 
     /// Bytes of one format given to the reader of another, cut short, or of no format at all.
@@ -254,7 +243,7 @@ mod tests {
         let mut bytes = exported()["constellation.tle"].clone();
         bytes.extend_from_within(..);
         let report = lint(bytes.as_slice(), None, None, 100).unwrap();
-        assert_eq!(report.format, Format::Tle);
+        assert_eq!(report.format, Some(Format::Tle));
         assert_eq!(report.findings.len(), 14);
         assert_eq!(
             (report.findings[0].line, report.findings[0].rule),
@@ -270,16 +259,5 @@ mod tests {
             let report = lint(endless, Some(*format), None, 5).unwrap();
             assert!(!report.findings.is_empty(), "{format}");
         }
-    }
-
-    #[test]
-    fn names_help_where_content_does_not() {
-        assert_eq!(Format::of(b"", Some("a.b.SP3")), Format::Sp3);
-        assert_eq!(Format::of(b"x", Some("a.e")), Format::Stk);
-        assert_eq!(Format::of(b"x", None), Format::Tle);
-        assert_eq!(
-            Format::of(b"\xef\xbb\xbfstk.v.4.3", Some("a.csv")),
-            Format::Stk
-        );
     }
 }

@@ -352,6 +352,8 @@ pub struct Sp3 {
     pub comments: Vec<String>,
     /// For each satellite its states in the order of time; a missing velocity is none.
     pub states: Vec<Vec<Sp3Sample>>,
+    /// Smallest spacing of the epochs, s.
+    pub step_s: Option<f64>,
 }
 
 impl Sp3 {

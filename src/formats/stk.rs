@@ -11,11 +11,13 @@ mod read;
 pub use read::{parse, read};
 
 use crate::ephemeris::EphemerisSatellite;
+use crate::ephemeris::arc::{Arc, Interpolation, SAME_INSTANT_S};
 use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::Metadata;
 use crate::frames::{Frame, State};
+use crate::time::Epoch;
 use chrono::{Datelike, NaiveDateTime, Timelike};
 use std::io::{self, Write};
 
@@ -27,6 +29,19 @@ pub(super) const MONTHS: [&str; 12] = [
     "Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec",
 ];
 
+/// The interpolations that a file names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StkInterpolation {
+    /// Through positions.
+    Lagrange,
+    /// Through positions and velocities.
+    Hermite,
+}
+
+/// Samples of an interpolation minus one where the file names none (STK Help, keyword
+/// `InterpolationSamplesM1`).
+const SAMPLES_M1: usize = 5;
+
 /// A whole file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StkEphemeris {
@@ -34,8 +49,12 @@ pub struct StkEphemeris {
     pub comments: Vec<String>,
     /// Origin of the times, UTC.
     pub scenario_epoch: NaiveDateTime,
+    /// How states follow between the samples.
+    pub interpolation: Option<StkInterpolation>,
     /// Number of samples of the interpolation minus one.
     pub interpolation_samples_m1: Option<usize>,
+    /// Seconds since the scenario epoch at which segments meet: nothing is interpolated across them.
+    pub boundaries_s: Vec<f64>,
     /// Frame of the states.
     pub frame: Frame,
     /// Seconds since the scenario epoch, and the states.
@@ -48,18 +67,55 @@ impl StkEphemeris {
     /// # Errors
     /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let samples_m1 = self.interpolation_samples_m1;
+        let interpolation = self.interpolation.zip(samples_m1);
+        let lengths = (self.states.len(), self.boundaries_s.as_slice());
         write_head(
             out,
             &self.comments,
             self.scenario_epoch,
-            self.states.len(),
-            self.interpolation_samples_m1,
+            lengths,
+            interpolation,
             self.frame,
         )?;
         for (elapsed_s, state) in &self.states {
             write_state(out, *elapsed_s, state)?;
         }
         write_tail(out)
+    }
+
+    /// The states, one arc for each segment.
+    #[must_use]
+    pub fn arcs(&self) -> Vec<Arc> {
+        let epoch = Epoch::from_utc(self.scenario_epoch.and_utc());
+        let samples_m1 = self.interpolation_samples_m1.unwrap_or(SAMPLES_M1);
+        let interpolation = match self.interpolation {
+            Some(StkInterpolation::Hermite) => Interpolation::Hermite(2 * samples_m1 + 1),
+            _ => Interpolation::Lagrange(samples_m1),
+        };
+        let mut arcs = Vec::new();
+        let mut nodes: Vec<(Epoch, State<Frame>)> = Vec::new();
+        let mut close = |nodes: Vec<_>| arcs.extend(Arc::new(self.frame, interpolation, nodes));
+        for (k, (elapsed_s, state)) in self.states.iter().enumerate() {
+            let node = (epoch.plus_seconds(*elapsed_s), *state);
+            nodes.push(node);
+            let next_s = self.states.get(k + 1).map(|(next_s, _)| *next_s);
+            let at_boundary = is_boundary(&self.boundaries_s, *elapsed_s) && nodes.len() > 1;
+            let before_boundary = next_s.is_some_and(|next_s| {
+                let between =
+                    |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
+                self.boundaries_s.iter().any(between)
+            });
+            if at_boundary || before_boundary {
+                close(std::mem::take(&mut nodes));
+            }
+            // A boundary of one row belongs to both sides; of two, each side has its own.
+            if at_boundary && next_s.is_some_and(|next_s| next_s > *elapsed_s) {
+                nodes.push(node);
+            }
+        }
+        close(nodes);
+        arcs
     }
 }
 
@@ -82,8 +138,8 @@ pub fn write(
         out,
         &comments,
         grid.epoch().utc().naive_utc(),
-        grid.len(),
-        hermite.map(|hermite| hermite.degree / 2),
+        (grid.len(), &[]),
+        hermite.map(|hermite| (StkInterpolation::Hermite, hermite.degree / 2)),
         sampled.frame(),
     )?;
     for (k, sample) in sampled.states(satellite).enumerate() {
@@ -105,12 +161,18 @@ pub fn coordinate_system(frame: Frame) -> &'static str {
     }
 }
 
+/// Whether a time is one of the boundaries.
+fn is_boundary(boundaries_s: &[f64], elapsed_s: f64) -> bool {
+    let mut boundaries_s = boundaries_s.iter();
+    boundaries_s.any(|at| (at - elapsed_s).abs() <= SAME_INSTANT_S)
+}
+
 fn write_head(
     out: &mut impl Write,
     comments: &[String],
     epoch: NaiveDateTime,
-    points: usize,
-    samples_m1: Option<usize>,
+    (points, boundaries_s): (usize, &[f64]),
+    interpolation: Option<(StkInterpolation, usize)>,
     frame: Frame,
 ) -> io::Result<()> {
     writeln!(out, "stk.v.{FORMAT_VERSION}")?;
@@ -120,13 +182,20 @@ fn write_head(
     writeln!(out, "BEGIN Ephemeris")?;
     writeln!(out, "NumberOfEphemerisPoints {points}")?;
     writeln!(out, "ScenarioEpoch {}", calendar_date(epoch))?;
-    if let Some(samples_m1) = samples_m1 {
-        writeln!(out, "InterpolationMethod Hermite")?;
+    if let Some((method, samples_m1)) = interpolation {
+        writeln!(out, "InterpolationMethod {method:?}")?;
         writeln!(out, "InterpolationSamplesM1 {samples_m1}")?;
     }
     writeln!(out, "CentralBody Earth")?;
     writeln!(out, "CoordinateSystem {}", coordinate_system(frame))?;
     writeln!(out, "DistanceUnit Kilometers")?;
+    if !boundaries_s.is_empty() {
+        writeln!(out, "BEGIN SegmentBoundaryTimes")?;
+        for boundary_s in boundaries_s {
+            writeln!(out, "{boundary_s}")?;
+        }
+        writeln!(out, "END SegmentBoundaryTimes")?;
+    }
     writeln!(out, "EphemerisTimePosVel\n")
 }
 

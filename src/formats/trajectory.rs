@@ -1,22 +1,67 @@
 //! A satellite's states as a file gives them, in the library's own terms.
 
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::{Frame, State};
 use crate::keyword::{Keyword, UnknownKeyword};
 use crate::time::Epoch;
 use thiserror::Error;
 
-/// States of one satellite, in the order of time.
+/// States of one satellite.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     /// Name of the satellite.
     pub name: String,
     /// Its identifier.
     pub id: String,
-    /// Frame of the states.
-    pub frame: Frame,
-    /// The states and their instants.
-    pub states: Vec<(Epoch, State<Frame>)>,
+    /// Its arcs, in the order of their beginnings; where two hold, the earlier one does.
+    pub arcs: Vec<Arc>,
+}
+
+impl Trajectory {
+    /// One arc of states in the order of time, between which nothing is said of the interpolation.
+    #[must_use]
+    pub fn of_states(
+        name: &str,
+        id: &str,
+        frame: Frame,
+        states: Vec<(Epoch, State<Frame>)>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            id: id.to_owned(),
+            arcs: Vec::from_iter(Arc::new(frame, Interpolation::OF_STATES, states)),
+        }
+    }
+
+    /// The samples for which the arcs hold, in the order of time, each instant once.
+    #[must_use]
+    pub fn samples(&self) -> Vec<(Epoch, Frame, State<Frame>)> {
+        let mut samples: Vec<(Epoch, Frame, State<Frame>)> = Vec::new();
+        for arc in &self.arcs {
+            samples.extend(arc.samples().map(|(at, state)| (*at, arc.frame, *state)));
+        }
+        if !samples.is_sorted_by(|one, other| one.0 < other.0) {
+            // The sort is stable.
+            samples.sort_by_key(|(at, ..)| *at);
+            samples.dedup_by_key(|(at, ..)| *at);
+        }
+        samples
+    }
+
+    /// The arc that holds at an instant.
+    #[must_use]
+    pub fn arc_at(&self, at: Epoch) -> Option<&Arc> {
+        self.arcs.iter().find(|arc| arc.covers(at))
+    }
+
+    /// The first and the last instant for which an arc holds.
+    #[must_use]
+    pub fn span(&self) -> Option<(Epoch, Epoch)> {
+        let first = self.arcs.iter().map(|arc| arc.useable.0).min()?;
+        let last = self.arcs.iter().map(|arc| arc.useable.1).max()?;
+        Some((first, last))
+    }
 }
 
 /// Why the states of a file cannot be compared with ours.

@@ -7,16 +7,17 @@
 //! of latitude, which moves the radius, and the node's rate absorbs the difference of the two rates
 //! of the Earth ([M-39](crate::models#m-39)).
 
+mod orbit;
 mod read;
 
-pub use read::{ReadAlmanacError, read};
+pub use orbit::AlmanacOrbit;
+pub use read::{parse, read};
 
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite};
 use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S, GPS_EARTH_RATE_RAD_S, GPS_MU_M3_S2};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::frames::{EarthFixed, Position};
 use crate::time::Epoch;
-use crate::units::{wrap_pi, wrap_two_pi};
+use crate::units::wrap_pi;
 use chrono::{NaiveDate, NaiveDateTime, TimeDelta};
 use std::io::{self, Write};
 
@@ -62,7 +63,7 @@ pub struct Almanac {
 /// Why a satellite has no almanac.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoAlmanac {
-    /// It is propagated by SGP4.
+    /// It is propagated by SGP4, or given by a file.
     Sgp4,
     /// Its perigee moves, which an almanac has no rate for.
     Eccentric,
@@ -148,20 +149,6 @@ impl Almanac {
         })
     }
 
-    /// Position a time after the time of applicability, by the algorithm of IS-GPS-200 for
-    /// a circle.
-    #[must_use]
-    pub fn position_km(&self, since_toa_s: f64) -> Position<EarthFixed> {
-        let a_m = self.sqrt_a * self.sqrt_a;
-        let n = (GPS_MU_M3_S2 / a_m.powi(3)).sqrt();
-        let u = self.arg_perigee_rad + self.mean_anomaly_rad + n * since_toa_s;
-        let node = self.raan_at_week_rad
-            + (self.raan_rate_rad_s - GPS_EARTH_RATE_RAD_S) * since_toa_s
-            - GPS_EARTH_RATE_RAD_S * self.toa_s;
-        let plane = crate::frames::OrbitPlane::new(wrap_two_pi(node), self.inclination_rad);
-        Position::new(plane.vector(u.cos(), u.sin()) * (a_m / 1000.0))
-    }
-
     /// Writes the satellite's block.
     ///
     /// # Errors
@@ -237,7 +224,7 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngl
             latitude_argument_rad: 0.0,
             latitude_argument_rate_rad_s: GMST_RATE_RAD_S,
         }),
-        GnssOrbit::Sgp4(_) => Err(NoAlmanac::Sgp4),
+        GnssOrbit::Sgp4(_) | GnssOrbit::Given(_) => Err(NoAlmanac::Sgp4),
     }
 }
 

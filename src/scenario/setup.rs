@@ -1,13 +1,13 @@
 //! From a validated scenario to what the evaluator, the search and the optimisers take.
 
+use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::PointsFile;
 use super::{Algorithm, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
-use crate::constellation::gnss::{ElementSetError, ElementSets, System};
+use crate::constellation::gnss::{ElementSetError, System};
 use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
-use crate::exchange::import::{Fleet, ReadFleetError};
-use crate::formats::text::finding::LeftOut;
+use crate::exchange::import::{FleetError, ReadFleetError};
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{Goals, SweepSteps};
@@ -120,17 +120,17 @@ pub enum GnssFileError {
     #[error(transparent)]
     Format(#[from] ReadFleetError),
     /// It is not a file of element sets.
-    #[error("the file holds {content}; TLE or OMM element sets are needed")]
+    #[error("the file holds {content}; element sets, almanacs or states are needed")]
     NoSets {
         /// What it holds.
         content: String,
     },
-    /// A part of it is not read.
-    #[error("{0}; take it out of the file")]
-    LeftOut(LeftOut),
     /// Its sets make no system.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
+    /// Its satellites do not cover the study.
+    #[error(transparent)]
+    Fleet(#[from] FleetError),
 }
 
 impl Scenario {
@@ -161,6 +161,17 @@ impl Scenario {
     /// # Errors
     /// When a file cannot be read, or the values together leave no point or sample.
     pub fn setup(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Setup, SetupError> {
+        Ok(self.setup_with_notes(read)?.0)
+    }
+
+    /// The same, with what is to be said of the GNSS files: age, gaps, interpolation, what is left out.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or the values together leave no point or sample.
+    pub fn setup_with_notes(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<(Setup, Vec<String>), SetupError> {
         let visibility = &self.visibility;
         let setup = Setup::new(self.time_grid()?, self.sites(read)?)
             .with_mask(Mask::from_degrees(visibility.mask_deg)?)
@@ -169,8 +180,9 @@ impl Scenario {
             Some(skyline) => setup.with_skyline(skyline),
             None => setup,
         };
-        Ok(setup
-            .with_gnss(self.systems(read)?)
+        let (systems, notes) = self.systems(setup.grid, read)?;
+        let setup = setup
+            .with_gnss(systems)
             .with_clocks(self.gnss.clocks)
             .with_observation_weights(visibility.weighting)
             .with_pdop_cap(visibility.pdop_cap)
@@ -179,7 +191,8 @@ impl Scenario {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
-            }))
+            });
+        Ok((setup, notes))
     }
 
     /// The error of a file, among [`Scenario::files`], that cannot be read.
@@ -195,11 +208,13 @@ impl Scenario {
         }
     }
 
-    /// The presets, and then a system for each file, named by the file.
+    /// The presets, and then those of each file: one system named by the file, or, of a file with several, one for
+    /// each.
     fn systems(
         &self,
+        grid: TimeGrid,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
-    ) -> Result<Vec<System>, SetupError> {
+    ) -> Result<(Vec<System>, Vec<String>), SetupError> {
         let mut systems: Vec<System> = self
             .gnss
             .constellations
@@ -207,27 +222,21 @@ impl Scenario {
             .copied()
             .map(System::from)
             .collect();
+        let mut files = GnssFiles::default();
         for file in &self.gnss.files {
             let error = |source| SetupError::GnssFile {
                 file: file.clone(),
                 source,
             };
             let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
-            let name = file.rsplit('/').next().unwrap_or(file);
-            let read = Fleet::read(bytes.as_slice(), None, Some(name))
-                .map_err(|source| error(source.into()))?;
-            if !read.left_out.is_empty() {
-                return Err(error(GnssFileError::LeftOut(read.left_out)));
-            }
-            let Fleet::Sets(sets) = read.fleet else {
-                let content = read.fleet.content();
-                return Err(error(GnssFileError::NoSets { content }));
-            };
-            let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
-            let system = ElementSets::new(name, &sets).map_err(|source| error(source.into()))?;
-            systems.push(system.into());
+            files.add(file, &bytes, grid).map_err(error)?;
         }
-        Ok(systems)
+        let found = files.finish(grid).map_err(|source| SetupError::GnssFile {
+            file: self.gnss.files.join(", "),
+            source,
+        })?;
+        systems.extend(found.systems);
+        Ok((systems, found.notes))
     }
 
     fn skyline(&self) -> Result<Option<MaskTable>, MaskTableError> {

@@ -12,7 +12,7 @@ mod read;
 mod tracks;
 
 pub use conventions::Explanation;
-pub use read::{Comparand, FileError, read};
+pub use read::{Comparand, FileError, comparands, read};
 
 use super::decisions::TrajectoryPair;
 use super::distribution::{Distribution, Residual};

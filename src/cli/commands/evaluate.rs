@@ -63,7 +63,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
 }
 
 fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
-    let (format, mut fleet) = read_constellation::read(&args.constellation)?;
+    let (formats, mut fleet) = read_constellation::read(&args.constellation, args.input_format)?;
     let filter = SatelliteFilter {
         only: args.only.clone(),
         exclude: args.exclude.clone(),
@@ -81,13 +81,16 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
         output::warning(&stale.to_string());
     }
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
+    for note in fleet.sampling_notes(setup.grid) {
+        output::warning(&note.to_string());
+    }
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let result = ConstellationResult {
         constellation: ConstellationSummary {
             name,
-            format: format.to_string(),
+            format: read_constellation::names(&formats),
             content: fleet.content(),
             satellites: fleet.len(),
         },

@@ -129,8 +129,8 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         read_back,
     } in groups(args, manifest)
     {
-        let (format, mut fleet) = read_constellation::read(&paths)?;
-        if format == LintFormat::Sp3 {
+        let (formats, mut fleet) = read_constellation::read(&paths, None)?;
+        if formats == [LintFormat::Sp3] {
             fleet.name_by_place();
         }
         let found = original

@@ -37,8 +37,8 @@ pub(crate) fn run(args: &LintArgs) -> Result<Status> {
                 continue;
             }
         };
-        if report.findings.is_empty() {
-            clean += &format!("{}: no findings as {}\n", path.display(), report.format);
+        if let (Some(format), []) = (report.format, report.findings.as_slice()) {
+            clean += &format!("{}: no findings as {format}\n", path.display());
         }
         rows.extend(rows_of(path, report));
     }
@@ -71,7 +71,9 @@ fn rows_of(path: &Path, report: LintReport) -> impl Iterator<Item = FindingRow> 
     let file = path.display().to_string();
     report.findings.into_iter().map(move |finding| FindingRow {
         file: file.clone(),
-        format: report.format.to_string(),
+        format: report
+            .format
+            .map_or("unknown".to_owned(), |format| format.to_string()),
         line: finding.line,
         column: finding.column,
         severity: match finding.severity {

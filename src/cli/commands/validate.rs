@@ -4,16 +4,16 @@ use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::ephemeris::Ephemeris;
+use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
-use crate::validate::file::{Comparand, against_file, read};
+use crate::validate::file::{Comparand, against_file, comparands};
 use crate::validate::{Findings, Subject, Target};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::BufReader;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// A standard, or files of another program.
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
                 }
             }
             Against::Files(path) => {
-                for (source, comparands) in comparisons(path)? {
+                for (source, comparands) in comparisons(path, args.input_format)? {
                     findings.append(against_file(&subject, &source, &comparands)?);
                 }
             }
@@ -98,29 +98,25 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
 }
 
 /// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
-fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
-    let read_one = |file: &Path| -> Result<Vec<Comparand>> {
-        let opened = File::open(file);
-        let opened = opened.with_context(|| format!("cannot read {}", file.display()))?;
-        let (comparands, left_out) = read(&file.to_string_lossy(), BufReader::new(opened))?;
-        read_constellation::warn_left_out(file, &left_out);
-        Ok(comparands)
+fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<Comparand>)>> {
+    let read_all = |path: &Path| -> Result<Vec<Comparand>> {
+        let mut all = Vec::new();
+        for (file, imported) in read_constellation::read_each(path, format)? {
+            all.extend(comparands(&file.to_string_lossy(), imported.fleet)?);
+        }
+        if all.is_empty() {
+            bail!("{} has no object", path.display());
+        }
+        Ok(all)
     };
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();
     if !path.is_dir() {
-        return Ok(vec![(name, read_one(path)?)]);
+        return Ok(vec![(name, read_all(path)?)]);
     }
     let manifest = path.join(FILE_NAME);
     if !manifest.exists() {
-        let mut all = Vec::new();
-        for file in sorted_files(path)? {
-            all.extend(read_one(&file)?);
-        }
-        if all.is_empty() {
-            bail!("{} has no file to compare with", path.display());
-        }
-        return Ok(vec![(name, all)]);
+        return Ok(vec![(name, read_all(path)?)]);
     }
     let bytes =
         fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
@@ -129,7 +125,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
         if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
-            let found = read_one(&path.join(&file.path))?;
+            let found = read_all(&path.join(&file.path))?;
             by_format.entry(file.format).or_default().extend(found);
         }
     }
@@ -147,20 +143,6 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
 const COMPARED: [&str; 8] = [
     "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
 ];
-
-fn sorted_files(directory: &Path) -> Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    let entries =
-        fs::read_dir(directory).with_context(|| format!("cannot read {}", directory.display()))?;
-    for entry in entries {
-        let path = entry?.path();
-        if path.is_file() {
-            found.push(path);
-        }
-    }
-    found.sort();
-    Ok(found)
-}
 
 fn write_reports(directory: &Path, result: &ValidateResult) -> Result<()> {
     let staged = files::StagedDirectory::new(directory)?;

@@ -68,13 +68,17 @@ impl Positions {
     ) -> Result<(), EphemerisError> {
         (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
         for (n, satellite) in ephemeris.satellites().iter().enumerate() {
-            let state = ephemeris.state(satellite, elapsed_s)?;
+            let block = &mut self.blocks[n / BLOCK];
+            let place = n % BLOCK;
+            let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? else {
+                let nowhere = f64::NAN;
+                (block.x[place], block.y[place], block.z[place]) = (nowhere, nowhere, nowhere);
+                continue;
+            };
             let position = rotation.to_earth_fixed(state.position_km).km();
             let radius_km = position.norm();
             self.nearest_km = self.nearest_km.min(radius_km);
             self.farthest_km = self.farthest_km.max(radius_km);
-            let block = &mut self.blocks[n / BLOCK];
-            let place = n % BLOCK;
             (block.x[place], block.y[place], block.z[place]) = (position.x, position.y, position.z);
         }
         Ok(())

@@ -85,10 +85,12 @@ impl<'a> Settling<'a> {
     ) -> Result<Vec<Position<EarthFixed>>, EphemerisError> {
         let position = |&n: &u32| {
             let satellite = &leo.satellites()[n as usize];
-            let state = leo.state(satellite, self.instant.elapsed_s)?;
-            Ok(self.instant.rotation.to_earth_fixed(state.position_km))
+            let state = leo.state_or_gap(satellite, self.instant.elapsed_s);
+            let to_earth_fixed =
+                |state: State<Teme>| self.instant.rotation.to_earth_fixed(state.position_km);
+            state.map(|state| state.map(to_earth_fixed)).transpose()
         };
-        undecided.satellites.iter().map(position).collect()
+        undecided.satellites.iter().filter_map(position).collect()
     }
 
     /// The sample of the plain path, to the bit.

@@ -92,7 +92,6 @@ pub(crate) fn is_read(path: &str) -> bool {
         ".kml",
         ".script",
         ".cof",
-        ".alm",
         ".txt",
         ".pnt",
         "metrics/points.csv",

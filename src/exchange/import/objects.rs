@@ -2,10 +2,9 @@
 
 use super::Fleet;
 use crate::constellation::identity::{ObjectIdentity, unique_labels};
+use crate::ephemeris::arc::Arc;
 use crate::formats::trajectory::Trajectory;
-use crate::frames::{Frame, FromTeme, State};
 use crate::keyword::nearest;
-use crate::time::Epoch;
 use thiserror::Error;
 
 /// The identity of a satellite with states; an id that is not its name holds beyond its file.
@@ -23,7 +22,7 @@ pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
         let of_before = identity(before);
         of_before.is_same(&of_next)
             && !of_before.is_named_otherwise(&of_next)
-            && !overlap(&before.states, &next.states)
+            && !overlap(before, &next)
     });
     match continued {
         Some(before) => join(before, next),
@@ -31,36 +30,27 @@ pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
     }
 }
 
-/// Whether the spans of states have more in common than an instant.
-fn overlap(one: &[(Epoch, State<Frame>)], other: &[(Epoch, State<Frame>)]) -> bool {
-    let (Some((one_first, _)), Some((one_last, _))) = (one.first(), one.last()) else {
-        return false;
-    };
-    let (Some((first, _)), Some((last, _))) = (other.first(), other.last()) else {
-        return false;
-    };
-    one_last > first && last > one_first
+/// Whether the arcs of two have more in common than an instant.
+fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
+    let both =
+        |arc: &Arc, next: &Arc| arc.useable.1 > next.useable.0 && next.useable.1 > arc.useable.0;
+    let mut arcs = one.arcs.iter();
+    arcs.any(|arc| other.arcs.iter().any(|next| both(arc, next)))
 }
 
-/// Puts states behind or before those of the same satellite; at an instant that both have, the earlier one's
-/// state stands.
-fn join(before: &mut Trajectory, mut next: Trajectory) {
-    if before.frame != next.frame {
-        to_teme(before);
-        to_teme(&mut next);
-    }
-    before.states.extend(next.states);
+/// Puts arcs among those of the same satellite; at an instant that two have, the earlier one's state stands.
+fn join(before: &mut Trajectory, next: Trajectory) {
+    let mut arcs = std::mem::take(&mut before.arcs);
+    arcs.extend(next.arcs);
     // The sort is stable.
-    before.states.sort_by_key(|(at, _)| *at);
-    before.states.dedup_by_key(|(at, _)| *at);
-}
-
-fn to_teme(trajectory: &mut Trajectory) {
-    for (at, state) in &mut trajectory.states {
-        let teme = FromTeme::to(trajectory.frame, *at, 0.0).undo(*state);
-        *state = State::new(teme.position_km.km(), teme.velocity_km_s);
+    arcs.sort_by_key(|arc| arc.useable.0);
+    for arc in arcs {
+        let rest = match before.arcs.last_mut() {
+            Some(last) => last.continued_by(arc).err(),
+            None => Some(arc),
+        };
+        before.arcs.extend(rest);
     }
-    trajectory.frame = Frame::Teme;
 }
 
 impl Fleet {
@@ -72,7 +62,7 @@ impl Fleet {
             Self::Sets(sets) => sets.iter().map(ObjectIdentity::of_set).collect(),
             Self::Elements(rows) => rows.iter().map(|row| named(&row.name)).collect(),
             Self::Sampled(trajectories) => trajectories.iter().map(identity).collect(),
-            Self::Tracks(tracks) => tracks.iter().map(|track| named(&track.name)).collect(),
+            Self::Almanacs(almanacs) => almanacs.iter().map(|one| named(&one.name())).collect(),
             Self::Mixed(parts) => parts.iter().flat_map(Self::identities).collect(),
         }
     }
@@ -100,7 +90,7 @@ impl Fleet {
             Self::Sets(sets) => sets.retain(|_| keep()),
             Self::Elements(rows) => rows.retain(|_| keep()),
             Self::Sampled(trajectories) => trajectories.retain(|_| keep()),
-            Self::Tracks(tracks) => tracks.retain(|_| keep()),
+            Self::Almanacs(almanacs) => almanacs.retain(|_| keep()),
             Self::Mixed(parts) => {
                 parts.iter_mut().for_each(|part| part.retain(keep));
                 parts.retain(|part| !part.is_empty());

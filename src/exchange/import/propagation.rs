@@ -3,17 +3,15 @@
 use super::Fleet;
 use crate::constellation::gnss::{ElementSetError, ElementSets, StaleElements};
 use crate::constellation::identity::{ObjectIdentity, first_repeated, unique_labels};
+use crate::ephemeris::arc::SAME_INSTANT_S;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::formats::trajectory::Trajectory;
+use crate::formats::yuma::{Almanac, AlmanacOrbit};
 use crate::frames::{Frame, FromTeme, State, Teme};
 use crate::orbit::earth_orbit::{check_inertial, check_state};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 use thiserror::Error;
-
-/// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
-/// 10 ns of SP3 and the microseconds of some writers.
-const SAME_INSTANT_S: f64 = 1e-6;
 
 /// Why the satellites of a file do not propagate a study.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -33,7 +31,7 @@ pub enum FleetError {
     /// The same by its catalogue number or designator, under two names.
     #[error("{0} and {1} are one object by catalogue number or OBJECT_ID; keep one")]
     TwoNames(String, String),
-    /// A satellite without a sample at an instant of the study.
+    /// Satellites without a state at an instant of the study.
     #[error(
         "{name} has no state at {missing}; its {samples} states run from {first} to {last}: \
          change time.epoch, time.duration-h or time.step-s"
@@ -52,10 +50,10 @@ pub enum FleetError {
     },
 }
 
-/// States at the instants of a grid.
+/// States at the instants of a grid; none in a gap of the file.
 struct Samples {
     step_s: f64,
-    states: Vec<State<Teme>>,
+    states: Vec<Option<State<Teme>>>,
 }
 
 impl Propagator for Samples {
@@ -65,7 +63,11 @@ impl Propagator for Samples {
         if !(k >= 0.0 && (elapsed_s - k * self.step_s).abs() <= SAME_INSTANT_S) {
             return Err(missing);
         }
-        self.states.get(k as usize).copied().ok_or(missing)
+        self.states
+            .get(k as usize)
+            .copied()
+            .flatten()
+            .ok_or(missing)
     }
 }
 
@@ -149,10 +151,11 @@ impl Fleet {
                 rows.iter().zip(labels).map(propagate).collect()
             }
             Self::Sampled(trajectories) => sampled(trajectories, labels, grid),
-            Self::Tracks(tracks) => {
-                let instants = || grid.iter().map(|t| grid.epoch().plus_seconds(t));
-                let states = tracks.iter().map(|track| track.trajectory(instants()));
-                sampled(&states.collect::<Vec<_>>(), labels, grid)
+            Self::Almanacs(almanacs) => {
+                let orbit = |(almanac, label): (&Almanac, &String)| {
+                    propagated(label, AlmanacOrbit::new(*almanac, grid.epoch()))
+                };
+                Ok(almanacs.iter().zip(labels).map(orbit).collect())
             }
             Self::Mixed(parts) => {
                 let mut satellites = Vec::with_capacity(labels.len());
@@ -183,7 +186,7 @@ impl Fleet {
                 let stale = parts.iter().filter_map(|part| part.stale(name, grid));
                 stale.max_by(|a, b| a.age_days.total_cmp(&b.age_days))
             }
-            Self::Elements(_) | Self::Sampled(_) | Self::Tracks(_) => None,
+            Self::Elements(_) | Self::Sampled(_) | Self::Almanacs(_) => None,
         }
     }
 }
@@ -196,36 +199,33 @@ fn propagated(name: &str, propagator: impl Propagator + 'static) -> EphemerisSat
     }
 }
 
-/// Satellites of one file share its frame, so that its rotations are kept from one to the next.
+/// The states of satellites at the instants of a grid. Instants that lie within the span of none are an error; one
+/// that lies in a gap, or beyond the span of its satellite alone, is without a state.
 fn sampled(
     trajectories: &[Trajectory],
     labels: &[String],
     grid: TimeGrid,
 ) -> Result<Vec<EphemerisSatellite>, FleetError> {
-    let mut rotations: Vec<FromTeme<Frame>> = Vec::new();
-    let mut frame = None;
+    check_span(trajectories, labels, grid)?;
+    let mut frames = RotationsByFrame::new(grid);
     let mut satellites = Vec::with_capacity(trajectories.len());
     for (trajectory, label) in trajectories.iter().zip(labels) {
-        if frame != Some(trajectory.frame) {
-            let rotation = |t| FromTeme::to(trajectory.frame, grid.epoch(), t);
-            rotations = grid.iter().map(rotation).collect();
-            frame = Some(trajectory.frame);
+        let mut states = Vec::with_capacity(grid.len());
+        for (k, elapsed_s) in grid.iter().enumerate() {
+            let at = grid.epoch().plus_seconds(elapsed_s);
+            let found = trajectory
+                .arc_at(at)
+                .and_then(|arc| Some((arc.frame, arc.state(at)?.0)));
+            let Some((frame, state)) = found else {
+                states.push(None);
+                continue;
+            };
+            check_state(frame, &state).map_err(|problem| EphemerisError {
+                name: label.clone(),
+                source: PropagationError::Implausible { at, problem },
+            })?;
+            states.push(Some(frames.rotation(frame, k).undo(state)));
         }
-        let states = grid
-            .iter()
-            .zip(&rotations)
-            .map(|(elapsed_s, rotation)| {
-                let state = state_at(trajectory, label, grid.epoch(), elapsed_s)?;
-                check_state(trajectory.frame, &state).map_err(|problem| EphemerisError {
-                    name: label.clone(),
-                    source: PropagationError::Implausible {
-                        at: grid.epoch().plus_seconds(elapsed_s),
-                        problem,
-                    },
-                })?;
-                Ok(rotation.undo(state))
-            })
-            .collect::<Result<_, FleetError>>()?;
         let samples = Samples {
             step_s: grid.step_s(),
             states,
@@ -235,27 +235,68 @@ fn sampled(
     Ok(satellites)
 }
 
-/// The sample of an instant, in the frame of the file.
-fn state_at(
-    trajectory: &Trajectory,
-    label: &str,
-    epoch: Epoch,
-    elapsed_s: f64,
-) -> Result<State<Frame>, FleetError> {
-    let states = &trajectory.states;
-    let (Some((first, _)), Some((last, _))) = (states.first(), states.last()) else {
+/// Refuses a grid that reaches beyond the states of all satellites.
+fn check_span(
+    trajectories: &[Trajectory],
+    labels: &[String],
+    grid: TimeGrid,
+) -> Result<(), FleetError> {
+    let spans = trajectories.iter().zip(labels);
+    let spans = spans.filter_map(|(one, label)| Some((one, label, one.span()?)));
+    let Some((longest, label, (first, last))) = spans.reduce(|one, other| {
+        let length_s = |(first, last): (Epoch, Epoch)| last.seconds_since(first);
+        if length_s(other.2) > length_s(one.2) {
+            other
+        } else {
+            one
+        }
+    }) else {
         return Err(FleetError::Empty);
     };
-    let after = |at: &Epoch| at.seconds_since(epoch) - elapsed_s;
-    let next = states.partition_point(|(at, _)| after(at) < -SAME_INSTANT_S);
-    match states.get(next) {
-        Some((at, state)) if after(at) <= SAME_INSTANT_S => Ok(*state),
-        _ => Err(FleetError::NotCovered {
-            name: label.to_owned(),
-            missing: epoch.plus_seconds(elapsed_s),
-            samples: states.len(),
-            first: *first,
-            last: *last,
+    let held = |at: Epoch| {
+        trajectories
+            .iter()
+            .filter_map(Trajectory::span)
+            .any(|(first, last)| {
+                at.seconds_since(first) >= -SAME_INSTANT_S
+                    && last.seconds_since(at) >= -SAME_INSTANT_S
+            })
+    };
+    let mut instants = grid
+        .iter()
+        .map(|elapsed_s| grid.epoch().plus_seconds(elapsed_s));
+    match instants.find(|at| !held(*at)) {
+        None => Ok(()),
+        Some(missing) => Err(FleetError::NotCovered {
+            name: label.clone(),
+            missing,
+            samples: longest.samples().len(),
+            first,
+            last,
         }),
+    }
+}
+
+/// The rotations of a grid, made for each frame when it is first met.
+struct RotationsByFrame {
+    grid: TimeGrid,
+    made: Vec<(Frame, Vec<FromTeme<Frame>>)>,
+}
+
+impl RotationsByFrame {
+    fn new(grid: TimeGrid) -> Self {
+        let made = Vec::new();
+        Self { grid, made }
+    }
+
+    fn rotation(&mut self, frame: Frame, k: usize) -> FromTeme<Frame> {
+        let known = self.made.iter().position(|(known, _)| *known == frame);
+        let at = known.unwrap_or_else(|| {
+            let rotation = |t| FromTeme::to(frame, self.grid.epoch(), t);
+            self.made
+                .push((frame, self.grid.iter().map(rotation).collect()));
+            self.made.len() - 1
+        });
+        self.made[at].1[k]
     }
 }

@@ -116,7 +116,7 @@ fn a_grid_that_the_samples_do_not_cover_is_refused() {
     let epoch = grid().epoch();
     for (duration_s, step_s, missing) in [
         (7_200.0, 60.0, "2025-01-01T01:00:00"),
-        (3_600.0, 30.0, "2025-01-01T00:00:30"),
+        (3_600.0, 30.0, "2025-01-01T00:59:30"),
     ] {
         let longer = TimeGrid::new(epoch, duration_s, step_s).unwrap();
         let error = fleet.propagate(longer, Model::J2).err().unwrap();
@@ -161,12 +161,7 @@ fn what_makes_no_constellation_is_refused() {
             .err(),
         Some(FleetError::Empty)
     );
-    let hollow = Trajectory {
-        name: "A".to_owned(),
-        id: "A".to_owned(),
-        frame: Frame::Teme,
-        states: Vec::new(),
-    };
+    let hollow = Trajectory::of_states("A", "A", Frame::Teme, Vec::new());
     assert!(
         Fleet::Sampled(vec![hollow])
             .propagate(grid(), Model::J2)

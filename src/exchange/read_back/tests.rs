@@ -110,8 +110,7 @@ fn swapped(fleet: &mut Fleet) {
         Fleet::Sets(sets) => sets.swap(2, 3),
         Fleet::Elements(rows) => rows.swap(2, 3),
         Fleet::Sampled(trajectories) => trajectories.swap(2, 3),
-        Fleet::Tracks(tracks) => tracks.swap(2, 3),
-        Fleet::Mixed(_) => unreachable!("a product is of one kind"),
+        Fleet::Almanacs(_) | Fleet::Mixed(_) => unreachable!("a product is of one kind"),
     }
 }
 
@@ -124,13 +123,16 @@ fn a_second_late(fleet: &mut Fleet) {
         Fleet::Elements(rows) => rows
             .iter_mut()
             .for_each(|row| row.epoch = row.epoch.plus_seconds(1.0)),
-        Fleet::Tracks(tracks) => tracks
-            .iter_mut()
-            .for_each(|track| track.epoch = track.epoch.plus_seconds(1.0)),
-        Fleet::Mixed(_) => unreachable!("a product is of one kind"),
+        Fleet::Almanacs(_) | Fleet::Mixed(_) => unreachable!("a product is of one kind"),
         Fleet::Sampled(trajectories) => {
-            for (_, state) in trajectories.iter_mut().flat_map(|one| &mut one.states) {
-                state.position_km = state.position_km + -state.velocity_km_s;
+            for arc in trajectories.iter_mut().flat_map(|one| &mut one.arcs) {
+                for (at, state) in &mut arc.nodes {
+                    // Positions alone reach beyond the span.
+                    if state.velocity_km_s.norm() == 0.0 {
+                        *at = at.plus_seconds(1.0);
+                    }
+                    state.position_km = state.position_km + -state.velocity_km_s;
+                }
             }
         }
     }
@@ -141,7 +143,8 @@ fn in_another_frame(fleet: &mut Fleet) {
     if let Fleet::Sampled(trajectories) = fleet {
         trajectories
             .iter_mut()
-            .for_each(|one| one.frame = Frame::Eme2000);
+            .flat_map(|one| &mut one.arcs)
+            .for_each(|arc| arc.frame = Frame::Eme2000);
     }
 }
 

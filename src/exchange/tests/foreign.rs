@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 /// The satellites of a text in the format that its beginning shows; no error, and these warnings.
 fn read(text: &str, format: Format, warnings: &[&str]) -> Fleet {
     let report = lint(text.as_bytes(), None, None, 100).unwrap();
-    assert_eq!(report.format, format);
+    assert_eq!(report.format, Some(format));
     let mut rules: Vec<_> = report.findings.iter().map(|finding| finding.rule).collect();
     rules.dedup();
     assert_eq!(rules, warnings, "{:?}", report.findings);
@@ -161,8 +161,8 @@ fn validate_orbits_of_an_analysis_centre() {
         // C19 has no position at all.
         let names: Vec<_> = satellites.iter().map(|one| one.name.as_str()).collect();
         assert_eq!(names, ["G01", "E11"]);
-        assert_eq!(satellites[0].frame, Frame::EarthFixed);
-        let (at, state) = satellites[0].states[1];
+        assert_eq!(satellites[0].arcs[0].frame, Frame::EarthFixed);
+        let (at, _, state) = satellites[0].samples()[1];
         let late_s = utc("2025-01-01T00:05:00Z").seconds_since(at);
         assert!((late_s - ahead_s).abs() < 1e-9, "{system}: {late_s}");
         assert_eq!(
@@ -187,7 +187,7 @@ fn velocities_of_missing_positions_are_passed_over() {
         .replace("PC19      0.000000      0.000000      0.000000 999999.999999            M  P\n", "PC19      0.000000      0.000000      0.000000 999999.999999\nVC19      0.000000      0.000000      0.000000 999999.999999\n");
     let satellites = sampled(read(&text, Format::Sp3, &[]));
     assert_eq!(satellites.len(), 2);
-    let velocity = satellites[0].states[0].1.velocity_km_s;
+    let velocity = satellites[0].samples()[0].2.velocity_km_s;
     // Decimetres a second.
     assert!(
         (velocity - Vector3::new(2.029_888_036_4, -1.846_204_480_4, 0.138_138_768_5)).norm()
@@ -224,10 +224,10 @@ COMMENT  This block begins after propagation.
 #[test]
 fn validate_an_ephemeris_message_of_gmat() {
     let satellites = sampled(read(GMAT, Format::Oem, &[]));
-    assert_eq!((satellites.len(), satellites[0].states.len()), (1, 3));
-    assert_eq!(satellites[0].frame, Frame::Eme2000);
-    assert_eq!(satellites[0].states[1].0, utc("2026-01-01T12:00:28Z"));
-    assert_eq!(satellites[0].states[1].1.position_km.km().z, 1357.0);
+    assert_eq!((satellites.len(), satellites[0].samples().len()), (1, 3));
+    assert_eq!(satellites[0].arcs[0].frame, Frame::Eme2000);
+    assert_eq!(satellites[0].samples()[1].0, utc("2026-01-01T12:00:28Z"));
+    assert_eq!(satellites[0].samples()[1].2.position_km.km().z, 1357.0);
 }
 
 /// In the layout of Orekit's writer: version 3.0, days of the year, microseconds, blanks for
@@ -285,12 +285,12 @@ META_STOP
 fn validate_an_ephemeris_message_of_orekit() {
     let satellites = sampled(read(OREKIT, Format::Oem, &[]));
     assert_eq!(satellites.len(), 1);
-    let states = &satellites[0].states;
-    assert_eq!(satellites[0].frame, Frame::EarthFixed);
+    let states = satellites[0].samples();
+    assert_eq!(satellites[0].arcs[0].frame, Frame::EarthFixed);
     // The instant that both arcs have is that of the first.
     assert_eq!(states.len(), 3);
     assert_eq!(states[0].0, utc("2026-01-01T00:00:00Z"));
-    assert_eq!(states[1].1.position_km.km().x, 7086.0);
+    assert_eq!(states[1].2.position_km.km().x, 7086.0);
     assert_eq!(states[2].0, utc("2026-01-01T00:02:00Z"));
 }
 
@@ -299,8 +299,8 @@ fn validate_an_ephemeris_message_of_orekit() {
 fn validate_an_ephemeris_message_of_stk() {
     let text = "CCSDS_OEM_VERS = 2.0\r\n\r\nCREATION_DATE = 2026-01-05T08:15:30.123\r\nORIGINATOR = STK\r\n\r\nMETA_START\r\n  OBJECT_NAME = LeoSat\r\n  OBJECT_ID = 2026-001-A\r\n  CENTER_NAME = Earth\r\n  REF_FRAME = ICRF\r\n  TIME_SYSTEM = UTC\r\n  START_TIME = 2026-01-01T00:00:00.000\r\n  STOP_TIME = 2026-01-01T00:01:00.000\r\n  INTERPOLATION = LAGRANGE\r\n  INTERPOLATION_DEGREE = 1\r\nMETA_STOP\r\n\r\n2026-01-01T00:00:00.000 7100.0 0.0 1300.0 0.0 7.35 1.0 -0.0077 0.0 -0.0014\r\nCOMMENT in between\r\n2026-01-01T00:01:00.000 7086.0 441.0 1357.0 -0.47 7.34 0.92 -0.0077 0.0 -0.0014\r\n";
     let satellites = sampled(read(text, Format::Oem, &["oem-comment"]));
-    assert_eq!(satellites[0].frame, Frame::Gcrf);
-    assert_eq!(satellites[0].states.len(), 2);
+    assert_eq!(satellites[0].arcs[0].frame, Frame::Gcrf);
+    assert_eq!(satellites[0].samples().len(), 2);
 }
 
 /// In the layout of STK's own export: tabs, comments among the keywords, metres by default.
@@ -322,10 +322,10 @@ fn validate_ephemerides_of_stk() {
     ] {
         let satellites = sampled(read(&stk(system, "", with_velocities), Format::Stk, &[]));
         assert_eq!(
-            (satellites[0].name.as_str(), satellites[0].frame),
+            (satellites[0].name.as_str(), satellites[0].arcs[0].frame),
             ("SAT-7", frame)
         );
-        let (at, state) = satellites[0].states[1];
+        let (at, _, state) = satellites[0].samples()[1];
         assert_eq!(at, utc("2026-01-01T00:01:00Z"));
         assert!((state.position_km.km() - Vector3::new(7086.0, 441.0, 1357.0)).norm() < 1e-12);
         assert!((state.velocity_km_s - Vector3::new(-0.47, 7.34, 0.92)).norm() < 1e-15);
@@ -337,7 +337,7 @@ fn validate_ephemerides_of_stk() {
         "DistanceUnit kilometers\r\n",
     ] {
         let satellites = sampled(read(&stk("J2000", unit, positions), Format::Stk, &[]));
-        for (k, (_, state)) in satellites[0].states.iter().enumerate() {
+        for (k, (_, _, state)) in satellites[0].samples().iter().enumerate() {
             let expected = Vector3::new(-1.2 * k as f64, 7.0, 0.0);
             assert!(
                 (state.velocity_km_s - expected).norm() < 1e-12,

@@ -346,9 +346,9 @@ fn a_theory_that_has_diverged_is_told_with_name_and_instant() {
         "{error}"
     );
     assert!(error.ends_with("not an Earth orbit"), "{error}");
-    let stale = falling.stale(grid()).unwrap().to_string();
+    let stale = falling.stale("files", grid()).unwrap().to_string();
     assert!(stale.contains("FALLING is 69.5 days"), "{stale}");
-    assert_eq!(fleet(&sample(Format::Tle)).stale(grid()), None);
+    assert_eq!(fleet(&sample(Format::Tle)).stale("files", grid()), None);
 }
 
 /// States that no satellite of the Earth has: metres taken for kilometres, and the other way round.
@@ -372,7 +372,7 @@ fn states_that_are_no_earth_orbit_are_refused_with_name_and_instant() {
     let Fleet::Sampled(mut trajectories) = fleet(&states) else {
         panic!("states")
     };
-    trajectories[1].states[2].1.velocity_km_s *= 2.0;
+    trajectories[1].arcs[0].nodes[2].1.velocity_km_s *= 2.0;
     let error = Fleet::Sampled(trajectories).propagate(grid(), Model::J2);
     let error = error.err().unwrap().to_string();
     assert!(
@@ -401,7 +401,7 @@ fn xml_is_recognised_by_its_root() {
             let report = lint(other.as_bytes(), None, None, 10).unwrap();
             assert_eq!(
                 (report.format, report.findings),
-                (format, Vec::new()),
+                (Some(format), Vec::new()),
                 "{root}"
             );
             assert_eq!(fleet(&other), fleet(&text), "{root}");
@@ -437,7 +437,7 @@ fn messages_of_several_kinds_are_read_or_named() {
         .collect();
     assert_eq!(
         (report.format, found),
-        (Format::OemXml, vec![("left-out", Severity::Warning)])
+        (Some(Format::OemXml), vec![("left-out", Severity::Warning)])
     );
     let read = Fleet::read(mixed.as_bytes(), None, None).unwrap();
     assert_eq!(read.left_out.to_string(), "left out: 1 (message: opm)");

@@ -15,6 +15,7 @@ pub use write::OemWriter;
 pub(super) use xml::XmlMessage;
 pub use xml::{parse_xml, read_xml};
 
+use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::hermite::Hermite;
 use crate::formats::ccsds::kvn::{CcsdsHeader, write_comments};
 use crate::formats::metadata::{Metadata, Object};
@@ -158,15 +159,31 @@ impl Segment {
             });
         }
         let time_system = time_system_of_name(&metadata.time_system)?;
-        let (first, last) = metadata.useable_span();
-        let is_useable = |line: &&StateLine| (first..=last).contains(&line.epoch);
         let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
+        let frame = frame_of_name(&metadata.ref_frame)?;
+        let nodes: Vec<_> = self.states.iter().map(instant).collect();
+        let arc = Arc::new(frame, self.interpolation(), nodes);
+        // The samples beyond the useable span are there to interpolate (5.2.4.4, table 5-3).
+        let (first, last) = metadata.useable_span();
+        let span = (time_system.epoch(first), time_system.epoch(last));
+        let useable = |arc: Arc| arc.within(span);
         Ok(Trajectory {
             name: metadata.object_name.clone(),
             id: metadata.object_id.clone(),
-            frame: frame_of_name(&metadata.ref_frame)?,
-            states: self.states.iter().filter(is_useable).map(instant).collect(),
+            arcs: Vec::from_iter(arc.and_then(useable)),
         })
+    }
+
+    /// The interpolation that the segment names, or that of states.
+    fn interpolation(&self) -> Interpolation {
+        match &self.metadata.interpolation {
+            Some((method, degree)) => match method.to_ascii_uppercase().as_str() {
+                "HERMITE" => Interpolation::Hermite(*degree | 1),
+                "LINEAR" => Interpolation::Lagrange(1),
+                _ => Interpolation::Lagrange(*degree),
+            },
+            None => Interpolation::OF_STATES,
+        }
     }
 }
 

@@ -270,33 +270,6 @@ fn name_of(bytes: impl AsRef<[u8]>) -> String {
     String::from_utf8_lossy(bytes.as_ref()).into_owned()
 }
 
-/// The name of the first message in the beginning of a file: of the root element, or of the first element in an
-/// `ndm`; comments and declarations are passed over.
-pub(crate) fn first_message(beginning: &str) -> Option<&str> {
-    let mut rest = beginning;
-    loop {
-        rest = &rest[rest.find('<')? + 1..];
-        let end = match rest.as_bytes() {
-            [b'!', b'-', b'-', ..] => Some("-->"),
-            [b'?', ..] => Some("?>"),
-            [b'!' | b'/', ..] => Some(">"),
-            _ => None,
-        };
-        if let Some(end) = end {
-            rest = &rest[rest.find(end)? + end.len()..];
-            continue;
-        }
-        let is_end = |c: char| c.is_ascii_whitespace() || c == '>' || c == '/';
-        let name = &rest[..rest.find(is_end)?];
-        let local = name.rsplit(':').next().unwrap_or(name);
-        // Elements of an `ndm` that are no messages, as MESSAGE_ID.
-        let is_message = local.bytes().all(|byte| byte.is_ascii_lowercase());
-        if local != "ndm" && is_message {
-            return Some(local);
-        }
-    }
-}
-
 fn resolved(reference: &BytesRef<'_>) -> Option<String> {
     if let Ok(Some(character)) = reference.resolve_char_ref() {
         return Some(character.to_string());

@@ -8,6 +8,7 @@ use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, State};
 use crate::orbit::MeanElements;
+use crate::orbit::earth_orbit::check_state;
 use crate::time::Epoch;
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -134,7 +135,7 @@ pub fn parse_states(
     input: impl BufRead,
     findings: &mut FindingList,
 ) -> io::Result<Vec<Trajectory>> {
-    let mut trajectories: Vec<Trajectory> = Vec::new();
+    let mut satellites: Vec<(String, Frame, Vec<(Epoch, State<Frame>)>)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     rows(input, &STATES, findings, |frame, row, findings| {
         let at = row.stamp(1, findings);
@@ -151,24 +152,28 @@ pub fn parse_states(
         };
         let name = row.text(0);
         let index = places.get(name).copied().unwrap_or_else(|| {
-            places.insert(name.to_owned(), trajectories.len());
-            trajectories.push(Trajectory {
-                name: name.to_owned(),
-                id: name.to_owned(),
-                frame,
-                states: Vec::new(),
-            });
-            trajectories.len() - 1
+            places.insert(name.to_owned(), satellites.len());
+            satellites.push((name.to_owned(), frame, Vec::new()));
+            satellites.len() - 1
         });
-        let states = &mut trajectories[index].states;
+        let states = &mut satellites[index].2;
         if states.last().is_some_and(|(last, _)| *last >= at) {
             let message = format!("the time is not after that of the row of {name} before");
             findings.error(row.place(1), "csv-time-order", message);
             return;
         }
-        states.push((at, State::new(position_km, velocity_km_s)));
+        let state = State::new(position_km, velocity_km_s);
+        if let Err(fault) = check_state(frame, &state) {
+            let message = format!("{name}: {fault}");
+            findings.error(row.place(2), "implausible-state", message);
+            return;
+        }
+        states.push((at, state));
     })?;
-    Ok(trajectories)
+    let trajectory = |(name, frame, states): (String, Frame, Vec<_>)| {
+        Trajectory::of_states(&name, &name, frame, states)
+    };
+    Ok(satellites.into_iter().map(trajectory).collect())
 }
 
 /// A row whose fields are numbered as the columns that are read.
@@ -302,16 +307,16 @@ mod tests {
             assert_eq!(trajectories.len(), 6);
             for (trajectory, satellite) in trajectories.iter().zip(ephemeris.satellites()) {
                 assert_eq!(trajectory.name, satellite.name);
-                assert_eq!(trajectory.frame, Frame::Teme);
+                let (_, frame, last) = trajectory.samples()[9];
+                assert_eq!(frame, Frame::Teme);
                 let expected = ephemeris.state(satellite, 540.0).unwrap();
-                let (_, last) = trajectory.states[9];
                 // Nine decimals of a kilometre.
                 assert!((last.position_km.km() - expected.position_km.km()).norm() < 1e-9);
             }
         }
         let fixed = states.replace("teme_x_km", "other");
         assert_eq!(
-            read_states(fixed.as_bytes()).unwrap()[0].frame,
+            read_states(fixed.as_bytes()).unwrap()[0].arcs[0].frame,
             Frame::EarthFixed
         );
     }

@@ -1,12 +1,14 @@
 //! Reads SP3-a to SP3-d by columns.
 
 use super::{DM_IN_KM, Sp3, Sp3Sample};
+use crate::ephemeris::derivative::velocity_fault;
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::timestamp::{TimeSystem, stamp};
 use crate::formats::trajectory::{frame_of_sp3_name, time_system_of_name};
 use crate::frames::Position;
+use crate::orbit::earth_orbit::check_position;
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
@@ -27,12 +29,17 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Sp3> {
-    let mut lines = Lines::new(input);
+    let mut lines = Lines::new(input).with_comments(is_comment);
     let mut parser = Sp3Parser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
     }
     Ok(parser.end(lines.number().max(1), findings))
+}
+
+/// Comments begin with `/*`; those of the laser ranging service with `%/*`.
+fn is_comment(line: &[u8]) -> bool {
+    line.starts_with(b"/*") || line.starts_with(b"%/*")
 }
 
 struct Sp3Parser {
@@ -45,6 +52,8 @@ struct Sp3Parser {
     at: Option<Epoch>,
     /// Satellites whose position at this epoch is marked as missing.
     missing: Vec<usize>,
+    /// Positions at this epoch, the missing ones among them.
+    records: usize,
     ended: bool,
     any: bool,
 }
@@ -59,12 +68,14 @@ impl Sp3Parser {
                 ids: Vec::new(),
                 comments: Vec::new(),
                 states: Vec::new(),
+                step_s: None,
             },
             announced: (0, 0),
             type_lines: 0,
             epochs: 0,
             at: None,
             missing: Vec::new(),
+            records: 0,
             ended: false,
             any: false,
         }
@@ -90,7 +101,10 @@ impl Sp3Parser {
             | [b'E', b'P' | b'V', ..] => {}
             [b'+', b' ', ..] => self.ids(line, findings),
             [b'%', b'c', ..] => self.file_type(line, findings),
-            [b'/', b'*', ..] => self.file.comments.push(text[2..].trim().to_owned()),
+            bytes if is_comment(bytes) => {
+                let comment = text.trim_start_matches(['%', '/', '*']);
+                self.file.comments.push(comment.trim().to_owned());
+            }
             [b'*', b' ', ..] => self.epoch(line, findings),
             [b'P', ..] => self.position(line, findings),
             [b'V', ..] => self.velocity(line, findings),
@@ -192,9 +206,15 @@ impl Sp3Parser {
         };
         let at = self.file.time_system.epoch(stamp);
         self.missing.clear();
-        if self.at.is_some_and(|before| at <= before) {
-            let message = "the epoch is not after the one before";
-            findings.error((line.number, 4), "sp3-time-order", message);
+        self.records = 0;
+        if let Some(before) = self.at {
+            let step_s = at.seconds_since(before);
+            if step_s <= 0.0 {
+                let message = "the epoch is not after the one before";
+                findings.error((line.number, 4), "sp3-time-order", message);
+            }
+            let least_s = self.file.step_s.get_or_insert(step_s);
+            *least_s = least_s.min(step_s);
         }
         self.epochs += 1;
         self.at = Some(at);
@@ -228,9 +248,15 @@ impl Sp3Parser {
         let (Some((index, position_km)), Some(at)) = (self.record(line, findings), self.at) else {
             return;
         };
+        self.records += 1;
         // A position of zeros stands for a missing one.
         if position_km.norm_squared() == 0.0 {
             self.missing.push(index);
+            return;
+        }
+        if let Err(fault) = check_position(&position_km) {
+            let message = format!("{}: {fault}", self.file.ids[index]);
+            findings.error((line.number, 5), "implausible-state", message);
             return;
         }
         let states = &mut self.file.states[index];
@@ -252,7 +278,9 @@ impl Sp3Parser {
         };
         match self.file.states[index].last_mut() {
             Some(last) if Some(last.at) == self.at => {
-                last.velocity_km_s = Some(velocity_dm_s / DM_IN_KM);
+                // Zeros stand for a missing velocity too.
+                let given = velocity_dm_s.norm_squared() > 0.0;
+                last.velocity_km_s = given.then(|| velocity_dm_s / DM_IN_KM);
             }
             _ if self.missing.contains(&index) => {}
             _ => {
@@ -266,10 +294,20 @@ impl Sp3Parser {
         let place = (number, 1);
         if !self.any {
             findings.error(place, "sp3-first-line", "the file is empty");
-        } else if !self.ended {
-            findings.error(place, "sp3-truncated", "EOF is missing");
         }
         let (satellites, epochs) = self.announced;
+        if self.any && !self.ended {
+            // Products of laser ranging end without it; the counts show whether anything is lost.
+            if self.epochs == epochs && self.records >= satellites {
+                findings.warning(place, "sp3-eof", "EOF is missing");
+            } else {
+                findings.error(
+                    place,
+                    "sp3-truncated",
+                    "the file ends early: EOF is missing",
+                );
+            }
+        }
         if self.file.ids.len() != satellites {
             let message = format!(
                 "{satellites} satellites are announced; {} are named",
@@ -281,7 +319,24 @@ impl Sp3Parser {
             let message = format!("{epochs} epochs are announced; there are {}", self.epochs);
             findings.error(place, "sp3-count", message);
         }
+        self.check_velocities(number, findings);
         self.file
+    }
+
+    /// Velocities that are not the derivative of the positions: m/s in place of dm/s, or those of inertial
+    /// axes.
+    fn check_velocities(&self, number: usize, findings: &mut FindingList) {
+        for (id, samples) in self.file.ids.iter().zip(&self.file.states) {
+            let sample = |s: &Sp3Sample| Some((s.at, s.position_km, s.velocity_km_s?));
+            let Some(samples) = samples.iter().map(sample).collect::<Option<Vec<_>>>() else {
+                continue;
+            };
+            if let Some(message) = velocity_fault(&samples) {
+                let message = format!("{id}: {message}; SP3 has dm/s in the axes of the positions");
+                findings.warning((number, 1), "sp3-velocity-unit", message);
+                return;
+            }
+        }
     }
 }
 

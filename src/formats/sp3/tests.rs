@@ -147,7 +147,6 @@ fn broken_rules_are_named_with_their_place() {
         ("\nPL03", "\nPL02", (28, 2, "sp3-repeated")),
         ("\nVL03", "\nVL04", (29, 1, "sp3-velocity")),
         ("\nPL03", "\nPL03 x", (28, 5, "sp3-number")),
-        ("EOF\n", "", (113, 1, "sp3-truncated")),
         ("EOF\n", "EOF\nmore\n", (115, 1, "sp3-line")),
         ("/* T", "?? T", (20, 1, "sp3-line")),
     ];
@@ -164,6 +163,58 @@ fn broken_rules_are_named_with_their_place() {
     }
     assert!(misplaced.is_empty(), "{misplaced:#?}");
     assert!(read(&b""[..]).is_err());
+}
+
+/// Products of laser ranging: comments of their own form, any characters in them, and no end mark.
+#[test]
+fn comments_and_the_end_are_taken_as_services_write_them() {
+    let text = written(&ephemeris("delta:55:6/3/1@925"), Sp3Version::C, 'L').unwrap();
+    let expected = read(text.as_bytes()).unwrap().states;
+    let other = text.replacen("/* ", "%/* Universit\u{e4}t ", 1);
+    let other = other.trim_end().strip_suffix("EOF").unwrap();
+    let rules: Vec<_> = findings(other).iter().map(|f| f.rule).collect();
+    assert_eq!(rules, ["character", "sp3-eof"]);
+    assert_eq!(read(other.as_bytes()).unwrap().states, expected);
+    let latin: Vec<u8> = text
+        .replacen("/* ", "/* ~", 1)
+        .bytes()
+        .map(|b| if b == b'~' { 0xe4 } else { b })
+        .collect();
+    assert_eq!(read(latin.as_slice()).unwrap().states, expected);
+    // With a satellite less at the last epoch it is cut short.
+    let lines: Vec<&str> = other.lines().collect();
+    let cut = lines[..lines.len() - 2].join("\n");
+    assert!(findings(&cut).iter().any(|f| f.rule == "sp3-truncated"));
+    assert!(read(cut.as_bytes()).is_err());
+}
+
+/// Metres in place of decimetres, and velocities against the stars: 3 m/s and more of 37 000 dm/s.
+#[test]
+fn velocities_that_are_not_the_derivative_are_told() {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let grid = TimeGrid::new(epoch, 1_800.0, 60.0).unwrap();
+    let design: Design = "delta:55:2/1/1@925".parse().unwrap();
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
+    let text = written(&ephemeris, Sp3Version::C, 'L').unwrap();
+    assert_eq!(findings(&text), []);
+    let scaled = |line: &str| {
+        if !line.starts_with('V') {
+            return format!("{line}\n");
+        }
+        let number = |at: usize| line[at..at + 14].trim().parse::<f64>().unwrap() / 10.0;
+        let [x, y, z] = [4, 18, 32].map(number);
+        format!("{}{x:14.6}{y:14.6}{z:14.6}{}\n", &line[..4], &line[46..])
+    };
+    let metres: String = text.lines().map(scaled).collect();
+    let found = findings(&metres);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(
+        (found[0].rule, found[0].severity),
+        (
+            "sp3-velocity-unit",
+            crate::formats::text::finding::Severity::Warning
+        )
+    );
 }
 
 proptest! {

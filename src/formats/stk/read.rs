@@ -1,23 +1,28 @@
 //! Reads `.e` files: keywords in any order and case, then one table.
+//!
+//! Accelerations and covariances are passed over. Segment boundaries are kept, since nothing may be
+//! interpolated across them, and each may have two rows of one time.
 
-use super::{MONTHS, StkEphemeris};
-use crate::ephemeris::derivative::velocities;
+use super::{MONTHS, StkEphemeris, StkInterpolation, is_boundary};
+use crate::ephemeris::derivative::{velocities, velocity_fault};
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
 use crate::formats::text::number;
 use crate::frames::{Frame, State};
+use crate::orbit::earth_orbit::{ImplausibleState, check_position, check_state};
 use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
 /// Keywords that do not change what the states mean here.
-const PASSED_OVER: [&str; 8] = [
-    "TimeFormat",
-    "InterpolationMethod",
-    "InterpolationOrder",
+const PASSED_OVER: [&str; 9] = [
+    "CovarianceFormat",
+    "CovarianceInterpolationMethod",
+    "CovInterpolationMethod",
+    "CovInterpolationSamplesM1",
     "MessageLevel",
     "ScenarioName",
     "BlockingFactor",
@@ -41,7 +46,8 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<StkEphemeris>> {
-    let mut lines = Lines::with_tabs(input);
+    let is_comment = |line: &[u8]| line.trim_ascii_start().starts_with(b"#");
+    let mut lines = Lines::with_tabs(input).with_comments(is_comment);
     let mut parser = StkParser::default();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
@@ -56,8 +62,39 @@ enum StkSection {
     Version,
     Before,
     Keywords,
+    Boundaries,
     Table,
+    Covariances,
     After,
+}
+
+/// What stands in a row behind the time.
+#[derive(Clone, Copy, PartialEq, Default)]
+enum Columns {
+    #[default]
+    PosVel,
+    Pos,
+    PosVelAcc,
+}
+
+impl Columns {
+    fn of_keyword(key: &str) -> Option<Self> {
+        match key.to_ascii_lowercase().as_str() {
+            "ephemeristimepos" => Some(Self::Pos),
+            "ephemeristimeposvel" => Some(Self::PosVel),
+            "ephemeristimeposvelacc" => Some(Self::PosVelAcc),
+            _ => None,
+        }
+    }
+
+    /// Numbers of a row, the time among them.
+    fn count(self) -> usize {
+        match self {
+            Self::Pos => 4,
+            Self::PosVel => 7,
+            Self::PosVelAcc => 10,
+        }
+    }
 }
 
 #[derive(Default)]
@@ -66,12 +103,15 @@ struct StkParser {
     comments: Vec<String>,
     points: Option<(usize, (usize, usize))>,
     epoch: Option<NaiveDateTime>,
+    method: Option<StkInterpolation>,
     samples_m1: Option<usize>,
+    /// The name that `InterpolationSamplesM1` had before.
+    order: Option<usize>,
     frame: Option<Frame>,
     /// Kilometres in the unit of length; metres if none is named.
     unit_km: Option<f64>,
-    /// Whether the rows have positions alone.
-    positions_only: bool,
+    columns: Columns,
+    boundaries_s: Vec<f64>,
     states: Vec<(f64, State<Frame>)>,
 }
 
@@ -102,11 +142,20 @@ impl StkParser {
             StkSection::Before => {
                 findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here")
             }
+            StkSection::Keywords if is(key, "BEGIN") && is(value, "SegmentBoundaryTimes") => {
+                self.part = StkSection::Boundaries
+            }
             StkSection::Keywords => self.keyword(place, (key, value), line, findings),
-            StkSection::Table if is(key, "END") && is(value, "Ephemeris") => {
+            StkSection::Boundaries if is(key, "END") => self.part = StkSection::Keywords,
+            StkSection::Boundaries => self.boundaries(line, findings),
+            StkSection::Table | StkSection::Covariances
+                if is(key, "END") && is(value, "Ephemeris") =>
+            {
                 self.part = StkSection::After
             }
+            StkSection::Table if is_covariance(key) => self.part = StkSection::Covariances,
             StkSection::Table => self.row(line, findings),
+            StkSection::Covariances => {}
             StkSection::After => {
                 findings.error(place, "stk-line", "nothing may follow END Ephemeris")
             }
@@ -127,6 +176,11 @@ impl StkParser {
                 findings.error(value_place, "stk-value", message);
             }
         };
+        if let Some(columns) = Columns::of_keyword(key) {
+            self.columns = columns;
+            self.begin_table(place, findings);
+            return;
+        }
         match key.to_ascii_lowercase().as_str() {
             "numberofephemerispoints" => {
                 let points = value.parse().ok();
@@ -137,10 +191,25 @@ impl StkParser {
                 self.epoch = calendar_date(value);
                 known(self.epoch.is_some(), findings);
             }
+            "interpolationmethod" => {
+                self.method = method(value);
+                known(self.method.is_some(), findings);
+            }
             "interpolationsamplesm1" => {
                 self.samples_m1 = value.parse().ok();
                 known(self.samples_m1.is_some(), findings);
             }
+            "interpolationorder" => {
+                self.order = value.parse().ok();
+                known(self.order.is_some(), findings);
+            }
+            "timeformat" if !is(value, "EpSec") => {
+                let message = format!(
+                    "TimeFormat {value} is not read, only EpSec, seconds from ScenarioEpoch"
+                );
+                findings.error(value_place, "stk-time-format", message);
+            }
+            "timeformat" => {}
             "centralbody" => known(is(value, "Earth"), findings),
             "coordinatesystem" => {
                 self.frame = frame(value);
@@ -153,11 +222,6 @@ impl StkParser {
                     _ => None,
                 };
                 known(self.unit_km.is_some(), findings);
-            }
-            "ephemeristimeposvel" => self.begin_table(place, findings),
-            "ephemeristimepos" => {
-                self.positions_only = true;
-                self.begin_table(place, findings);
             }
             _ if PASSED_OVER.iter().any(|passed| is(key, passed)) => {}
             _ => {
@@ -181,34 +245,67 @@ impl StkParser {
     }
 
     fn row(&mut self, line: &Line, findings: &mut FindingList) {
-        let needed = if self.positions_only { 4 } else { 7 };
-        let fields: Vec<_> = words(&line.text).take(8).collect();
+        let needed = self.columns.count();
+        let fields: Vec<_> = words(&line.text).take(needed + 1).collect();
         if fields.len() != needed {
             let message = format!("the row has {} fields; it needs {needed}", fields.len());
             findings.error((line.number, 1), "stk-fields", message);
             return;
         }
-        let mut values = [0.0; 7];
+        let mut values = [0.0; 10];
         for (value, (column, text)) in values.iter_mut().zip(fields) {
             match number::read(text, (line.number, column), "stk-number", findings) {
                 Some(number) => *value = number,
                 None => return,
             }
         }
-        let [elapsed_s, numbers @ ..] = values;
-        if self
-            .states
-            .last()
-            .is_some_and(|(last, _)| elapsed_s <= *last)
-        {
+        let [elapsed_s, x, y, z, vx, vy, vz, ..] = values;
+        let before_s = self.states.last().map(|(last, _)| *last);
+        if before_s.is_some_and(|before_s| {
+            elapsed_s < before_s || (elapsed_s == before_s && !self.may_repeat(elapsed_s))
+        }) {
             let message = "the time is not after that of the row before";
             findings.error((line.number, 1), "stk-time-order", message);
             return;
         }
         let unit_km = self.unit_km.unwrap_or(1e-3);
-        let [x, y, z, vx, vy, vz] = numbers.map(|number| number * unit_km);
+        let [x, y, z, vx, vy, vz] = [x, y, z, vx, vy, vz].map(|number| number * unit_km);
         let state = State::new(Vector3::new(x, y, z), Vector3::new(vx, vy, vz));
+        if let Some(fault) = self.implausible(&state) {
+            let unit = match self.unit_km {
+                None => "; lengths are metres unless DistanceUnit names another unit",
+                Some(_) => "",
+            };
+            let message = format!("{fault}{unit}");
+            findings.error((line.number, 1), "implausible-state", message);
+            return;
+        }
         self.states.push((elapsed_s, state));
+    }
+
+    fn implausible(&self, state: &State<Frame>) -> Option<ImplausibleState> {
+        match (self.columns, self.frame) {
+            (Columns::Pos, _) | (_, None) => check_position(&state.position_km.km()).err(),
+            (_, Some(frame)) => check_state(frame, state).err(),
+        }
+    }
+
+    /// Whether a row may have the time of the one before: once, at a boundary.
+    fn may_repeat(&self, elapsed_s: f64) -> bool {
+        let rows = self.states.iter().rev();
+        let same = rows.take_while(|(before_s, _)| *before_s == elapsed_s);
+        same.count() == 1 && is_boundary(&self.boundaries_s, elapsed_s)
+    }
+
+    fn boundaries(&mut self, line: &Line, findings: &mut FindingList) {
+        for (column, text) in words(&line.text) {
+            self.boundaries_s.extend(number::read(
+                text,
+                (line.number, column),
+                "stk-number",
+                findings,
+            ));
+        }
     }
 
     fn derive_velocities(&mut self, number: usize, findings: &mut FindingList) {
@@ -231,6 +328,23 @@ impl StkParser {
         }
     }
 
+    /// Velocities that are not the derivative of the positions: another unit, or other axes.
+    fn check_velocities(&self, number: usize, findings: &mut FindingList) {
+        let Some(epoch) = self.epoch else { return };
+        let epoch = Epoch::from_utc(epoch.and_utc());
+        let rows: Vec<_> = self
+            .states
+            .iter()
+            .map(|(elapsed_s, state)| {
+                let at = epoch.plus_seconds(*elapsed_s);
+                (at, state.position_km, state.velocity_km_s)
+            })
+            .collect();
+        if let Some(message) = velocity_fault(&rows) {
+            findings.warning((number, 1), "stk-velocity-unit", message);
+        }
+    }
+
     fn end(mut self, number: usize, findings: &mut FindingList) -> Option<StkEphemeris> {
         if self.part != StkSection::After {
             findings.error((number, 1), "stk-truncated", "END Ephemeris is missing");
@@ -246,13 +360,15 @@ impl StkParser {
             _ if self.states.is_empty() => {
                 findings.error((number, 1), "stk-empty", "there is no point");
             }
-            _ if self.positions_only => self.derive_velocities(number, findings),
-            _ => {}
+            _ if self.columns != Columns::Pos => self.check_velocities(number, findings),
+            _ => self.derive_velocities(number, findings),
         }
         Some(StkEphemeris {
             comments: self.comments,
             scenario_epoch: self.epoch?,
-            interpolation_samples_m1: self.samples_m1,
+            interpolation: self.method,
+            interpolation_samples_m1: self.samples_m1.or(self.order),
+            boundaries_s: self.boundaries_s,
             frame: self.frame?,
             states: self.states,
         })
@@ -261,6 +377,19 @@ impl StkParser {
 
 fn is(word: &str, name: &str) -> bool {
     word.eq_ignore_ascii_case(name)
+}
+
+/// `LagrangeVOP` takes the same samples, as variations of a two-body orbit.
+fn method(name: &str) -> Option<StkInterpolation> {
+    match name.to_ascii_lowercase().as_str() {
+        "lagrange" | "lagrangevop" => Some(StkInterpolation::Lagrange),
+        "hermite" => Some(StkInterpolation::Hermite),
+        _ => None,
+    }
+}
+
+fn is_covariance(key: &str) -> bool {
+    key.to_ascii_lowercase().starts_with("covariancetime")
 }
 
 fn frame(name: &str) -> Option<Frame> {

@@ -105,6 +105,19 @@ fn broken_rules_are_named_with_their_place() {
         ("Body Earth", "Body Mars", (7, 13, "stk-value")),
         ("CoordinateSystem Fixed\n", "", (9, 1, "stk-missing")),
         ("TimePosVel\n", "LLATimePos\n", (10, 1, "stk-keyword")),
+        (
+            "CentralBody",
+            "TimeFormat JDate\nCentralBody",
+            (7, 12, "stk-time-format"),
+        ),
+        ("Method Lagrange", "Method Spline", (8, 21, "stk-value")),
+        ("TimePosVel\n", "TimePosVelAcc\n", (11, 1, "stk-fields")),
+        (" 7.0e+006", " 7.0e+003", (11, 1, "implausible-state")),
+        (
+            "CentralBody",
+            "DistanceUnit Kilometers\nCentralBody",
+            (12, 1, "implausible-state"),
+        ),
         ("\n60 ", "\n0 ", (12, 1, "stk-time-order")),
         ("\n60 ", "\nNaN ", (12, 1, "stk-number")),
         ("\n60 ", "\n", (12, 1, "stk-fields")),
@@ -126,6 +139,114 @@ fn broken_rules_are_named_with_their_place() {
     for text in ["", "\n", "\0", "stk.v.4.3\n"] {
         assert!(read(text.as_bytes()).is_err(), "{text:?}");
     }
+}
+
+/// The rows of `METRES`, with its keywords and what stands among and behind them changed.
+fn changed(before: &str, rows: &str, behind: &str) -> String {
+    let head =
+        "stk.v.11.0\nBEGIN Ephemeris\nScenarioEpoch 1 Jul 2007 12:00:00\nCoordinateSystem Fixed\n";
+    format!("{head}{before}\n{rows}\n{behind}END Ephemeris\n")
+}
+
+/// Accelerations and covariances are passed over, a comment may hold any characters.
+#[test]
+fn further_columns_and_blocks_are_passed_over() {
+    let rows = "0 7.0e6 0 0 0 7.5e3 0 0 0 0\n60 6.9E6 4.0e5 0 -1 7.4e3 0 0 0 0";
+    let behind = "\nCovarianceTimePosVel\n0 1 0 0 1 0 0\n1 0 0 0\n60 1 0 0 1 0 0\n1 0 0 0\n";
+    let before =
+        "CovarianceFormat LowerTriangular\nTimeFormat EpSec\n# caf\u{e9}\nEphemerisTimePosVelAcc";
+    let text = changed(before, rows, behind);
+    let file = read(text.as_bytes()).unwrap();
+    assert_eq!(file.states.len(), 2);
+    assert_eq!(file.states[1].1.position_km.km().x, 6900.0);
+    assert_eq!(file.states[1].1.velocity_km_s.y, 7.4);
+    assert_eq!(file.comments, ["caf\u{e9}"]);
+    let latin = [&b"stk.v.11.0\n# caf\xe9\n"[..], &text.as_bytes()[11..]].concat();
+    assert_eq!(read(latin.as_slice()).unwrap().states, file.states);
+    let found = findings(&latin);
+    assert!(found.iter().all(|f| f.rule == "character"), "{found:?}");
+}
+
+/// Nothing is interpolated across a boundary, whether it has two rows, one, or none.
+#[test]
+fn segments_are_arcs_of_their_own() {
+    let row = |t: f64, x: f64| format!("{t} {x} 0 0 0 7500 0\n");
+    let block = "BEGIN SegmentBoundaryTimes\n0\n1.2e+002\n180\nEND SegmentBoundaryTimes\nEphemerisTimePosVel";
+    let rows = |middle: &[(f64, f64)]| {
+        let ends = [(0.0, 7e6), (60.0, 7.1e6)];
+        let rows = ends.iter().chain(middle).chain(&[(180.0, 7.3e6)]);
+        rows.map(|(t, x)| row(*t, *x)).collect::<String>()
+    };
+    for (middle, counts) in [
+        (&[(120.0, 7.2e6), (120.0, 7.5e6)][..], [3, 2]),
+        (&[(120.0, 7.2e6)], [3, 2]),
+        (&[(130.0, 7.2e6)], [2, 2]),
+    ] {
+        let text = changed(block, &rows(middle), "");
+        assert_eq!(findings(&text), [], "{middle:?}");
+        let file = read(text.as_bytes()).unwrap();
+        let arcs: Vec<usize> = file.arcs().iter().map(|arc| arc.nodes.len()).collect();
+        assert_eq!(arcs, counts, "{middle:?}");
+        let mut again = Vec::new();
+        file.write(&mut again).unwrap();
+        assert_eq!(read(again.as_slice()).unwrap().arcs(), file.arcs());
+    }
+    let three = changed(
+        block,
+        &rows(&[(120.0, 7e6), (120.0, 7e6), (120.0, 7e6)]),
+        "",
+    );
+    assert_eq!(findings(&three)[0].rule, "stk-time-order");
+}
+
+#[test]
+fn the_interpolation_is_that_of_the_file() {
+    for (keywords, expected) in [
+        ("", Interpolation::Lagrange(5)),
+        (
+            "InterpolationMethod Lagrange\nInterpolationSamplesM1 7\n",
+            Interpolation::Lagrange(7),
+        ),
+        (
+            "InterpolationMethod LagrangeVOP\nInterpolationOrder 7\n",
+            Interpolation::Lagrange(7),
+        ),
+        (
+            "InterpolationMethod Hermite\nInterpolationSamplesM1 3\n",
+            Interpolation::Hermite(7),
+        ),
+    ] {
+        let text = changed(
+            &format!("{keywords}EphemerisTimePosVel"),
+            "0 7e6 0 0 0 7500 0",
+            "",
+        );
+        assert_eq!(
+            read(text.as_bytes()).unwrap().arcs()[0].interpolation,
+            expected,
+            "{keywords}"
+        );
+    }
+}
+
+/// Velocities in km/s where the positions are in metres.
+#[test]
+fn velocities_in_another_unit_are_told() {
+    let row = |k: u32, unit: f64| {
+        let (t, u) = (60.0 * f64::from(k), 0.06 * f64::from(k));
+        let (x, y) = (7e6 * u.cos(), 7e6 * u.sin());
+        format!(
+            "{t} {x} {y} 0 {} {} 0\n",
+            -7000.0 * u.sin() * unit,
+            7000.0 * u.cos() * unit
+        )
+    };
+    let file = |unit: f64| {
+        let rows: String = (0..20).map(|k| row(k, unit)).collect();
+        changed("EphemerisTimePosVel", &rows, "")
+    };
+    assert_eq!(findings(file(1.0)), []);
+    assert_eq!(findings(file(1e-3))[0].rule, "stk-velocity-unit");
 }
 
 proptest! {

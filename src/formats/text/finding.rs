@@ -166,6 +166,12 @@ impl FindingList {
         self.left_out.add(what, name);
     }
 
+    /// Notes that a part of the file is not read because it is no satellite of the file: no warning of a linter,
+    /// but what a reader says once it is done.
+    pub(crate) fn pass_over(&mut self, what: &'static str, name: &str) {
+        self.left_out.add(what, name);
+    }
+
     /// What has been left out so far.
     #[must_use]
     pub fn left_out(&self) -> &LeftOut {

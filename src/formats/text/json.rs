@@ -3,7 +3,7 @@
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Longest object that is kept, in bytes.
+/// Longest object that is kept of a format of small ones, in bytes.
 const MAX_OBJECT: usize = 1 << 20;
 
 /// An object of the array.
@@ -30,11 +30,6 @@ impl JsonObject {
         self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
     }
 
-    /// The object as a value; a finding if it is not a JSON.
-    pub(crate) fn value(&self, findings: &mut FindingList) -> Option<serde_json::Value> {
-        self.parsed(findings)
-    }
-
     /// The members of the object as texts; a finding if it is not an object of plain values.
     pub(crate) fn members(&self, findings: &mut FindingList) -> Option<Vec<(String, String)>> {
         let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
@@ -47,7 +42,11 @@ impl JsonObject {
         Some(members.into_iter().filter_map(text).collect())
     }
 
-    fn parsed<T: serde::de::DeserializeOwned>(&self, findings: &mut FindingList) -> Option<T> {
+    /// The object as a type of ours; a finding if it is another.
+    pub(crate) fn parsed<T: serde::de::DeserializeOwned>(
+        &self,
+        findings: &mut FindingList,
+    ) -> Option<T> {
         let error = match serde_json::from_str(&self.text) {
             Ok(parsed) => return Some(parsed),
             Err(error) => error,
@@ -70,6 +69,8 @@ pub(crate) struct Objects<R> {
     input: R,
     place: (usize, usize),
     state: ScanState,
+    /// Longest object that is kept, in bytes.
+    most: usize,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -86,7 +87,13 @@ impl<R: BufRead> Objects<R> {
             input,
             place: (1, 0),
             state: ScanState::Start,
+            most: MAX_OBJECT,
         }
+    }
+
+    /// Objects of up to `most` bytes.
+    pub(crate) fn up_to(self, most: usize) -> Self {
+        Self { most, ..self }
     }
 
     /// The next byte; its place is that of `self` afterwards.
@@ -148,9 +155,12 @@ impl<R: BufRead> Objects<R> {
         let mut bytes = vec![b'{'];
         let (mut depth, mut in_string, mut escaped) = (1_usize, false, false);
         while depth > 0 {
-            let byte = self.byte()?.filter(|_| bytes.len() < MAX_OBJECT);
+            let byte = self.byte()?.filter(|_| bytes.len() < self.most);
             let Some(byte) = byte else {
-                let message = format!("the object is not closed within {MAX_OBJECT} bytes");
+                let message = match bytes.len() < self.most {
+                    true => "the object is not closed".to_owned(),
+                    false => format!("the object is not closed within {} bytes", self.most),
+                };
                 findings.error(start, "json-truncated", message);
                 self.state = ScanState::End;
                 return Ok(None);

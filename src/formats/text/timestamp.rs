@@ -153,6 +153,34 @@ pub fn stamp(
     start.checked_add_signed(TimeDelta::nanoseconds(nanoseconds))
 }
 
+/// Reads a date and time of ISO 8601 with an offset from UTC, or none for UTC itself: `…+02:00`, `…-0530`,
+/// `…Z`.
+#[must_use]
+pub fn parse_with_offset(text: &str) -> Option<NaiveDateTime> {
+    let (date, time) = text.split_once('T')?;
+    // The end of a day, as in the last instant of all, 9999-12-31T24:00:00Z.
+    if let Some(rest) = time.strip_prefix("24:00:00") {
+        let start = parse_with_offset(&format!("{date}T00:00:00{rest}"))?;
+        return start.checked_add_signed(TimeDelta::days(1));
+    }
+    let Some(at) = time.rfind(['+', '-']) else {
+        return parse(text);
+    };
+    let (local, offset) = text.split_at(text.len() - time.len() + at);
+    let (hours, minutes) = match offset[1..].split_once(':') {
+        Some((hours, minutes)) => (digits(hours, 2)?, digits(minutes, 2)?),
+        None if offset.len() == 3 => (digits(&offset[1..], 2)?, 0),
+        None => (digits(offset.get(1..3)?, 2)?, digits(&offset[3..], 2)?),
+    };
+    let minutes = i64::from(hours) * 60 + i64::from(minutes);
+    let ahead = if offset.starts_with('-') {
+        -minutes
+    } else {
+        minutes
+    };
+    parse(local)?.checked_sub_signed(TimeDelta::minutes(ahead))
+}
+
 /// A number of exactly `count` decimal digits.
 fn digits(text: &str, count: usize) -> Option<u32> {
     let all_digits = text.len() == count && text.bytes().all(|byte| byte.is_ascii_digit());

@@ -1,35 +1,11 @@
 //! Reads YUMA almanacs: blocks of `key: value`, one a satellite.
 
 use super::Almanac;
+use crate::formats::ReadError;
+use crate::formats::text::finding::FindingList;
+use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::number;
 use std::io::{self, BufRead};
-use thiserror::Error;
-
-/// Longest line, in bytes.
-const MAX_LINE: u64 = 1 << 12;
-
-/// Why an almanac is not read.
-#[derive(Debug, Error)]
-pub enum ReadAlmanacError {
-    /// Reading failed.
-    #[error(transparent)]
-    Io(#[from] io::Error),
-    /// A line without a value, or with one that is not a number.
-    #[error("line {line}: expected a key and a number of an almanac, found {text:?}")]
-    Line {
-        /// Line, from 1.
-        line: usize,
-        /// Its text.
-        text: String,
-    },
-    /// A block that lacks a field.
-    #[error("the block ending at line {line} has no '{key}'")]
-    Lacks {
-        /// Line, from 1.
-        line: usize,
-        /// The field.
-        key: &'static str,
-    },
-}
 
 /// The fields by the beginnings of their keys, in the order of a block.
 const KEYS: [&str; 13] = [
@@ -40,7 +16,7 @@ const KEYS: [&str; 13] = [
     "Orbital Inclination",
     "Rate of Right Ascen",
     "SQRT(A)",
-    "Right Ascen at Week",
+    "Right Ascen at ",
     "Argument of Perigee",
     "Mean Anom",
     "Af0",
@@ -48,64 +24,110 @@ const KEYS: [&str; 13] = [
     "week",
 ];
 
-/// Reads the satellites.
+/// Reads the satellites, those that are unhealthy among them; the first broken rule ends it.
 ///
 /// # Errors
-/// Names the line that is not a field, or the field that is missing.
-pub fn read(mut input: impl BufRead) -> Result<Vec<Almanac>, ReadAlmanacError> {
-    let mut almanacs = Vec::new();
-    let mut values: [Option<f64>; 13] = [None; 13];
-    let mut number = 0;
+/// The first finding, or a failure of the input.
+pub fn read(input: impl BufRead) -> Result<Vec<Almanac>, ReadError> {
+    let mut findings = FindingList::of_reader();
+    let almanacs = parse(input, &mut findings)?;
+    findings.unless_error(almanacs)
+}
+
+/// Reads the satellites; what the file breaks goes to the list of findings.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<Almanac>> {
+    let mut lines = Lines::with_tabs(input);
+    let mut block = Block::default();
+    let mut almanacs: Vec<Almanac> = Vec::new();
     loop {
-        let mut bytes = Vec::new();
-        let taken = io::Read::take(&mut input, MAX_LINE).read_until(b'\n', &mut bytes)?;
-        let text = String::from_utf8_lossy(&bytes).trim().to_owned();
-        let ends = taken == 0 || text.starts_with("***");
-        number += usize::from(taken > 0);
-        if ends && values.iter().any(Option::is_some) {
-            almanacs.push(almanac(&values, number)?);
-            values = [None; 13];
+        let line = lines.next(findings)?;
+        let begins = line
+            .as_ref()
+            .is_none_or(|line| line.text.starts_with("***"));
+        if begins && !block.is_empty() {
+            let place = (block.first, 1);
+            if let Some(almanac) = std::mem::take(&mut block).almanac(findings) {
+                almanac.check(place, &almanacs, findings);
+                almanacs.push(almanac);
+            }
         }
-        if taken == 0 {
-            return Ok(almanacs);
-        }
-        if text.is_empty() || ends {
-            continue;
-        }
-        match field(&text) {
-            Some((at, value)) => values[at] = Some(value),
-            None => return Err(ReadAlmanacError::Line { line: number, text }),
+        let Some(line) = line else { break };
+        if !begins && !line.text.trim().is_empty() {
+            block.add(&line, findings);
         }
     }
+    if almanacs.is_empty() && !findings.is_full() {
+        let place = (lines.number().max(1), 1);
+        findings.error(place, "almanac-empty", "there is no satellite");
+    }
+    Ok(almanacs)
 }
 
-fn field(text: &str) -> Option<(usize, f64)> {
-    let (key, value) = text.split_once(':')?;
-    let at = KEYS
-        .iter()
-        .position(|known| key.trim().starts_with(known))?;
-    let value: f64 = value.trim().parse().ok()?;
-    value.is_finite().then_some((at, value))
+#[derive(Default)]
+struct Block {
+    /// Line of the first field.
+    first: usize,
+    last: usize,
+    values: [Option<f64>; KEYS.len()],
 }
 
-fn almanac(values: &[Option<f64>; 13], line: usize) -> Result<Almanac, ReadAlmanacError> {
-    let value = |at: usize| {
-        values[at].ok_or(ReadAlmanacError::Lacks {
-            line,
-            key: KEYS[at],
+impl Block {
+    fn is_empty(&self) -> bool {
+        self.first == 0
+    }
+
+    fn add(&mut self, line: &Line, findings: &mut FindingList) {
+        self.last = line.number;
+        if self.is_empty() {
+            self.first = line.number;
+        }
+        let place = (line.number, 1);
+        let known = line.text.split_once(':').and_then(|(key, value)| {
+            let key = key.trim_start();
+            let is_key = |known: &&str| {
+                let start = key.get(..known.len());
+                start.is_some_and(|start| start.eq_ignore_ascii_case(known))
+            };
+            Some((KEYS.iter().position(|known| is_key(&known))?, value))
+        });
+        let Some((at, value)) = known else {
+            findings.error(place, "yuma-line", "this is not a field of a YUMA almanac");
+            return;
+        };
+        if self.values[at].is_some() {
+            let message = format!("{} is given twice in one block", KEYS[at]);
+            findings.error(place, "yuma-repeated", message);
+            return;
+        }
+        let column = line.text.len() - value.trim_start().len() + 1;
+        let place = (line.number, column);
+        self.values[at] = number::read(value.trim(), place, "yuma-number", findings);
+    }
+
+    fn almanac(self, findings: &mut FindingList) -> Option<Almanac> {
+        let place = (self.last, 1);
+        let missing = (0..KEYS.len()).find(|at| self.values[*at].is_none());
+        if let Some(at) = missing {
+            let message = format!("the block that ends here has no '{}'", KEYS[at].trim());
+            findings.error(place, "yuma-missing", message);
+            return None;
+        }
+        let value = |at: usize| self.values[at].unwrap_or_default();
+        Some(Almanac {
+            prn: value(0) as u32,
+            health: value(1) as u32,
+            eccentricity: value(2),
+            toa_s: value(3),
+            inclination_rad: value(4),
+            raan_rate_rad_s: value(5),
+            sqrt_a: value(6),
+            raan_at_week_rad: value(7),
+            arg_perigee_rad: value(8),
+            mean_anomaly_rad: value(9),
+            week: value(12) as u32,
         })
-    };
-    Ok(Almanac {
-        prn: value(0)? as u32,
-        health: value(1)? as u32,
-        eccentricity: value(2)?,
-        toa_s: value(3)?,
-        inclination_rad: value(4)?,
-        raan_rate_rad_s: value(5)?,
-        sqrt_a: value(6)?,
-        raan_at_week_rad: value(7)?,
-        arg_perigee_rad: value(8)?,
-        mean_anomaly_rad: value(9)?,
-        week: value(12)? as u32,
-    })
+    }
 }

@@ -1,8 +1,9 @@
 use super::*;
 use crate::constellation::gnss::Preset;
-use crate::frames::from_teme;
+use crate::frames::{EarthFixed, from_teme};
 use crate::keyword::Keyword;
 use crate::orbit::Propagator;
+use nalgebra::Vector3;
 
 fn epoch() -> Epoch {
     Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap())
@@ -102,13 +103,76 @@ fn validate_a_published_form() {
     assert_eq!(found[0].raan_rate_rad_s, -0.793_175_896_1e-8);
     assert_eq!(found[0].sqrt_a, 5153.596191);
     let broken = text.replace("0.9869852662", "north");
-    assert!(matches!(
-        read(broken.as_bytes()),
-        Err(ReadAlmanacError::Line { line: 6, .. })
-    ));
+    let error = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
+    assert_eq!(
+        error(&broken),
+        "line 6, column 29: 'north' is not a number [yuma-number]"
+    );
     let lacking = text.replace("SQRT(A)  (m 1/2):           5153.596191\n", "");
-    assert!(matches!(
-        read(lacking.as_bytes()),
-        Err(ReadAlmanacError::Lacks { key: "SQRT(A)", .. })
-    ));
+    assert!(error(&lacking).contains("has no 'SQRT(A)' [yuma-missing]"));
+    let twice = text.replace("Health:", "ID: 2\nHealth:");
+    assert!(error(&twice).starts_with("line 3, column 1: ID is given twice"));
+    let low = text.replace("5153.596191", "5.153596191");
+    assert!(error(&low).contains("[implausible-state]"));
+}
+
+/// Weeks of ten bits are the ones next to the study, weeks beyond them stand as they are: week 295 is that of 1985-09-01,
+/// 2005-04-17 and 2024-12-01 (each 1024 weeks later), and 2343 the last of them in full.
+#[test]
+fn validate_weeks_are_those_next_to_the_study() {
+    let of = |week: u32, near: &str| {
+        let almanac = Almanac {
+            week,
+            toa_s: 405_504.0,
+            ..Almanac::of(
+                &Preset::Gps.satellites(epoch())[0],
+                1,
+                epoch(),
+                Applicability::next_to(epoch()),
+            )
+            .unwrap()
+        };
+        let at = almanac.applicability(Epoch::from_utc(near.parse().unwrap()));
+        at.utc().format("%Y-%m-%dT%H:%M:%S").to_string()
+    };
+    // 405 504 s are 4 days, 16 h 38 min 24 s; GPS time is ahead of UTC by 3, 13 and 18 s.
+    assert_eq!(of(295, "2025-01-01T00:00:00Z"), "2024-12-05T16:38:06");
+    assert_eq!(of(295, "2005-01-01T00:00:00Z"), "2005-04-21T16:38:11");
+    assert_eq!(of(295, "1986-01-01T00:00:00Z"), "1985-09-05T16:38:21");
+    assert_eq!(of(2343, "1986-01-01T00:00:00Z"), "2024-12-05T16:38:06");
+}
+
+/// On an ellipse the closed form holds: radius and speed from the anomaly by the vis-viva equation in inertial axes, and
+/// the derivative of the position by differences.
+#[test]
+fn validate_an_eccentric_almanac_keeps_the_energy_of_its_ellipse() {
+    let almanac = Almanac {
+        eccentricity: 0.02,
+        arg_perigee_rad: 0.7,
+        raan_rate_rad_s: -8e-9,
+        ..Almanac::of(
+            &Preset::Gps.satellites(epoch())[0],
+            1,
+            epoch(),
+            Applicability::next_to(epoch()),
+        )
+        .unwrap()
+    };
+    let a_km = almanac.sqrt_a.powi(2) / 1000.0;
+    let mu = GPS_MU_M3_S2 * 1e-9;
+    for t in [-80_000.0, 0.0, 12_345.0, 43_000.0] {
+        let state = almanac.state(t);
+        let h = 0.5;
+        let apart = almanac.position_km(t + h) - almanac.position_km(t - h);
+        // h² n² / 6 of 3 km/s: 1e-9; rounding 1e-12 km over 1 s.
+        assert!(
+            (apart / (2.0 * h) - state.velocity_km_s).norm() < 5e-9,
+            "{t}"
+        );
+        // Without the turning of the node the plane is inertial.
+        let turning = Vector3::z() * (almanac.raan_rate_rad_s - GPS_EARTH_RATE_RAD_S);
+        let inertial = state.velocity_km_s - turning.cross(&state.position_km.km());
+        let energy = 0.5 * inertial.norm_squared() - mu / state.position_km.norm();
+        assert!((energy * -2.0 * a_km / mu - 1.0).abs() < 1e-12, "{t}");
+    }
 }

@@ -1,6 +1,7 @@
 //! From the bytes of a file to what can be compared.
 
 use crate::exchange::import::{Fleet, ReadFleetError};
+use crate::exchange::lint::Format;
 use crate::formats::text::finding::LeftOut;
 use crate::formats::trajectory::Trajectory;
 use std::io::BufRead;
@@ -17,8 +18,8 @@ pub enum FileError {
         /// What is wrong with it.
         source: ReadFleetError,
     },
-    /// Mean elements, which say nothing of where a satellite is without a theory.
-    #[error("{0} holds mean elements; states or SGP4 element sets can be compared")]
+    /// Mean elements or almanacs, which are of other theories.
+    #[error("{0} holds mean elements or almanacs; states or SGP4 element sets can be compared")]
     MeanElements(String),
     /// SGP4 does not propagate an element set.
     #[error("{object}: {source}")]
@@ -70,12 +71,16 @@ pub enum Comparand {
     Elements(Box<::sgp4::Elements>),
 }
 
-/// The objects of a file, its format told by its content or else its name, and what is not read of it.
+/// The objects of a file in `format`, or in the one that its content or else its name shows, and what is not read of it.
 ///
 /// # Errors
 /// When the file breaks its format, or its states are in a frame or time that is not known.
-pub fn read(file: &str, input: impl BufRead) -> Result<(Vec<Comparand>, LeftOut), FileError> {
-    let read = Fleet::read(input, None, Some(file)).map_err(|source| FileError::Read {
+pub fn read(
+    file: &str,
+    input: impl BufRead,
+    format: Option<Format>,
+) -> Result<(Vec<Comparand>, LeftOut), FileError> {
+    let read = Fleet::read(input, format, Some(file)).map_err(|source| FileError::Read {
         file: file.to_owned(),
         source,
     })?;
@@ -86,25 +91,23 @@ pub fn read(file: &str, input: impl BufRead) -> Result<(Vec<Comparand>, LeftOut)
     Ok((found, read.left_out))
 }
 
-fn comparands(file: &str, fleet: Fleet) -> Result<Vec<Comparand>, FileError> {
+/// What of a constellation can be compared.
+///
+/// # Errors
+/// If it holds mean elements.
+pub fn comparands(file: &str, fleet: Fleet) -> Result<Vec<Comparand>, FileError> {
     Ok(match fleet {
         Fleet::Sets(sets) => {
             let boxed = sets.into_iter().map(Box::new);
             boxed.map(Comparand::Elements).collect()
         }
         Fleet::Sampled(trajectories) => {
-            let sampled = trajectories
-                .into_iter()
-                .filter(|one| !one.states.is_empty());
+            let sampled = trajectories.into_iter().filter(|one| !one.arcs.is_empty());
             sampled.map(Comparand::States).collect()
         }
-        Fleet::Tracks(tracks) => {
-            let sampled = tracks
-                .iter()
-                .map(crate::formats::maps::czml::CzmlTrack::sampled);
-            sampled.map(Comparand::States).collect()
+        Fleet::Elements(_) | Fleet::Almanacs(_) => {
+            return Err(FileError::MeanElements(file.to_owned()));
         }
-        Fleet::Elements(_) => return Err(FileError::MeanElements(file.to_owned())),
         Fleet::Mixed(parts) => {
             let mut all = Vec::new();
             for part in parts {

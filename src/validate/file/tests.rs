@@ -45,12 +45,8 @@ fn propagated(convention: &str) -> Vec<Comparand> {
                     let declared = from_teme(state, Frame::Teme, epoch(), t);
                     (epoch().plus_seconds(t), declared)
                 });
-            Comparand::States(Trajectory {
-                id: name.clone(),
-                name,
-                frame: Frame::Teme,
-                states: states.collect(),
-            })
+            let states = states.collect();
+            Comparand::States(Trajectory::of_states(&name, &name, Frame::Teme, states))
         })
         .collect()
 }
@@ -128,7 +124,7 @@ fn an_unknown_difference_is_not_explained() {
         let Comparand::States(trajectory) = comparand else {
             continue;
         };
-        for (_, state) in &mut trajectory.states {
+        for (_, state) in &mut trajectory.arcs[0].nodes {
             // A tilt by 0.05 rad for every second satellite.
             if n % 2 == 0 {
                 let axis = nalgebra::Rotation3::from_axis_angle(&Vector3::x_axis(), 0.05);
@@ -156,12 +152,13 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
             let declared = from_teme(state, Frame::Teme, epoch(), t);
             (epoch().plus_seconds(t), declared)
         });
-        Comparand::States(Trajectory {
-            id: n.to_string(),
-            name: format!("SAT{n}"),
-            frame: Frame::Teme,
-            states: states.collect(),
-        })
+        let (name, id) = (format!("SAT{n}"), n.to_string());
+        Comparand::States(Trajectory::of_states(
+            &name,
+            &id,
+            Frame::Teme,
+            states.collect(),
+        ))
     });
     let objects: Vec<_> = objects.collect();
     let findings = against_file(&subject, "test", &objects).unwrap();
@@ -216,7 +213,7 @@ fn exported_files_are_the_design() {
         let mut comparands = Vec::new();
         for (path, bytes) in &files {
             if path != "manifest.json" {
-                comparands.extend(read(path, bytes.as_slice()).unwrap().0);
+                comparands.extend(read(path, bytes.as_slice(), None).unwrap().0);
             }
         }
         let findings = compared(&comparands).unwrap();
@@ -260,9 +257,10 @@ fn another_epoch_is_an_error_that_says_so() {
     let mut comparands = propagated("mean-j2");
     for comparand in &mut comparands {
         if let Comparand::States(trajectory) = comparand {
-            for (at, _) in &mut trajectory.states {
-                *at = at.plus_seconds(10.0 * 86_400.0);
-            }
+            let arc = &mut trajectory.arcs[0];
+            let later = |at: Epoch| at.plus_seconds(10.0 * 86_400.0);
+            arc.nodes.iter_mut().for_each(|(at, _)| *at = later(*at));
+            arc.useable = (later(arc.useable.0), later(arc.useable.1));
         }
     }
     let error = compared(&comparands).unwrap_err().to_string();
@@ -273,7 +271,7 @@ fn another_epoch_is_an_error_that_says_so() {
 fn a_short_span_fails_and_is_measured() {
     let mut comparands = propagated("mean-j2");
     if let Comparand::States(trajectory) = &mut comparands[0] {
-        trajectory.states.truncate(73);
+        trajectory.arcs[0].nodes.truncate(73);
     }
     let findings = compared(&comparands).unwrap();
     let check = findings
@@ -291,7 +289,7 @@ fn a_gap_is_no_coverage() {
     let mut comparands = propagated("mean-j2");
     if let Comparand::States(trajectory) = &mut comparands[5] {
         // Samples 11 to 20 of 144: eleven steps, 55 min, are missing.
-        trajectory.states.drain(11..21);
+        trajectory.arcs[0].nodes.drain(11..21);
     }
     let findings = compared(&comparands).unwrap();
     let check = findings
@@ -306,7 +304,7 @@ fn a_gap_is_no_coverage() {
 
 #[test]
 fn a_file_that_breaks_its_format_is_named() {
-    let error = read("x.oem", "CCSDS_OEM_VERS = 9.0\n".as_bytes())
+    let error = read("x.oem", "CCSDS_OEM_VERS = 9.0\n".as_bytes(), None)
         .unwrap_err()
         .to_string();
     assert!(error.starts_with("x.oem: line 1"), "{error}");
@@ -319,8 +317,12 @@ fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
     let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
-    let findings =
-        against_file(&subject, "orekit", &read("orekit.oem", OREKIT).unwrap().0).unwrap();
+    let findings = against_file(
+        &subject,
+        "orekit",
+        &read("orekit.oem", OREKIT, None).unwrap().0,
+    )
+    .unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];
     assert_eq!(

@@ -55,14 +55,11 @@ fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Traje
     let epoch = subject.epoch();
     let last_s = last_s(subject);
     let all: Vec<(f64, State<Teme>)> = trajectory
-        .states
-        .iter()
-        .map(|(at, state)| {
+        .samples()
+        .into_iter()
+        .map(|(at, frame, state)| {
             let elapsed_s = at.seconds_since(epoch);
-            (
-                elapsed_s,
-                to_teme(*state, trajectory.frame, epoch, elapsed_s),
-            )
+            (elapsed_s, to_teme(state, frame, epoch, elapsed_s))
         })
         .collect();
     let within: Vec<(f64, State<Teme>)> = all
@@ -111,8 +108,8 @@ fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
     let at = |elapsed_s: f64| subject.epoch().plus_seconds(elapsed_s).to_string();
     let instants = comparands.iter().find_map(|comparand| match comparand {
         Comparand::States(trajectory) => {
-            let states = &trajectory.states;
-            Some((states.first()?.0.to_string(), states.last()?.0.to_string()))
+            let (first, last) = trajectory.span()?;
+            Some((first.to_string(), last.to_string()))
         }
         Comparand::Elements(_) => None,
     });

@@ -1,14 +1,10 @@
 use super::*;
+use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use nalgebra::Vector3;
 
 fn fleet() -> Fleet {
-    let satellite = |name: &str, id: &str| Trajectory {
-        name: name.to_owned(),
-        id: id.to_owned(),
-        frame: Frame::Teme,
-        states: Vec::new(),
-    };
+    let satellite = |name: &str, id: &str| Trajectory::of_states(name, id, Frame::Teme, Vec::new());
     Fleet::Sampled(vec![
         satellite("NW-P01-S01", "2025-900A"),
         satellite("NW-P01-S02", "2025-900B"),
@@ -70,17 +66,14 @@ fn stars_take_any_characters() {
 /// States of one satellite in files of two days are one satellite; states at the same instants are not.
 #[test]
 fn states_of_one_satellite_are_joined_if_they_follow_each_other() {
-    let part = |name: &str, id: &str, first: usize| Trajectory {
-        name: name.to_owned(),
-        id: id.to_owned(),
-        frame: Frame::Teme,
-        states: (first..first + 3)
-            .map(|k| {
-                let at = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
-                let x = Vector3::x() * (7_000.0 + k as f64);
-                (at.plus_seconds(k as f64), State::new(x, Vector3::y()))
-            })
-            .collect(),
+    let part = |name: &str, id: &str, first: usize| {
+        let state = |k: usize| {
+            let at = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+            let x = Vector3::x() * (7_000.0 + k as f64);
+            (at.plus_seconds(k as f64), State::new(x, Vector3::y()))
+        };
+        let states = (first..first + 3).map(state).collect();
+        Trajectory::of_states(name, id, Frame::Teme, states)
     };
     let united = |parts: &[Trajectory]| {
         let mut known = Vec::new();
@@ -89,7 +82,7 @@ fn states_of_one_satellite_are_joined_if_they_follow_each_other() {
             .for_each(|part| unite(&mut known, part.clone()));
         known
             .iter()
-            .map(|one: &Trajectory| one.states.len())
+            .map(|one: &Trajectory| one.samples().len())
             .collect::<Vec<_>>()
     };
     // One instant in common, in either order.
@@ -99,13 +92,40 @@ fn states_of_one_satellite_are_joined_if_they_follow_each_other() {
     assert_eq!(united(&[one.clone(), part("A", "2025-900A", 1)]), [3, 3]);
     assert_eq!(united(&[one.clone(), part("B", "2025-900A", 2)]), [3, 3]);
     assert_eq!(united(&[one.clone(), part("A", "2025-900B", 2)]), [3, 3]);
-    // In another frame: all in TEME, where they were.
+    // In another frame: each arc keeps its own.
     let mut known = vec![one];
     let mut fixed = part("A", "A", 3);
-    fixed.frame = Frame::EarthFixed;
-    let (at, state) = fixed.states[1];
-    let teme = FromTeme::to(Frame::EarthFixed, at, 0.0).undo(state);
+    fixed.arcs[0].frame = Frame::EarthFixed;
     unite(&mut known, fixed);
-    assert_eq!((known[0].frame, known[0].states.len()), (Frame::Teme, 6));
-    assert_eq!(known[0].states[4].1.position_km.km(), teme.position_km.km());
+    let frames: Vec<Frame> = known[0]
+        .samples()
+        .iter()
+        .map(|(_, frame, _)| *frame)
+        .collect();
+    assert_eq!(frames, [[Frame::Teme; 3], [Frame::EarthFixed; 3]].concat());
+}
+
+/// Days of SP3 that follow each other at their spacing are one arc; segments and later days are not.
+#[test]
+fn days_that_follow_each_other_are_one_arc() {
+    let start = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let day = |first: usize, is_open: bool| {
+        let state = |k: usize| {
+            let state = State::new(Vector3::x() * (7_000.0 + k as f64), Vector3::y());
+            (start.plus_seconds(900.0 * k as f64), state)
+        };
+        let states = (first..first + 4).map(state).collect();
+        let mut day = Trajectory::of_states("G01", "G01", Frame::EarthFixed, states);
+        day.arcs[0].is_open = is_open;
+        day
+    };
+    let arcs = |parts: [Trajectory; 2]| {
+        let mut known = Vec::new();
+        parts.into_iter().for_each(|part| unite(&mut known, part));
+        known[0].arcs.len()
+    };
+    assert_eq!(arcs([day(0, true), day(4, true)]), 1);
+    assert_eq!(arcs([day(4, true), day(0, true)]), 1);
+    assert_eq!(arcs([day(0, true), day(5, true)]), 2);
+    assert_eq!(arcs([day(0, false), day(4, true)]), 2);
 }

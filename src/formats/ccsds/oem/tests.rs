@@ -171,9 +171,9 @@ fn states_survive_frames_and_time_systems() {
         let trajectory = read(text.as_bytes()).unwrap().segments[0]
             .trajectory()
             .unwrap();
-        assert_eq!(trajectory.frame, frame);
-        assert_eq!(trajectory.states.len(), 120);
-        for ((at, state), expected) in trajectory.states.iter().zip(ephemeris.states(satellite)) {
+        let arc = &trajectory.arcs[0];
+        assert_eq!((arc.frame, arc.nodes.len()), (frame, 120));
+        for ((at, state), expected) in arc.nodes.iter().zip(ephemeris.states(satellite)) {
             let (elapsed_s, expected) = expected.unwrap();
             assert_eq!(at.seconds_since(ephemeris.grid().epoch()), elapsed_s);
             let teme = to_teme(*state, frame, ephemeris.grid().epoch(), elapsed_s);

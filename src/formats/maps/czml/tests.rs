@@ -1,10 +1,14 @@
 use super::*;
+use crate::ephemeris::arc::Interpolation;
 use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::exchange::manifest::Manifest;
+use crate::formats::text::finding::FindingList;
+use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, from_teme};
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
+use nalgebra::Vector3;
 use serde_json::Value;
 
 fn exported(design: &str) -> (Manifest, Vec<u8>) {
@@ -21,33 +25,6 @@ fn packets(bytes: &[u8]) -> Vec<Value> {
     serde_json::from_slice(bytes).unwrap()
 }
 
-/// A polynomial of the seventh degree comes back, with its derivative.
-#[test]
-fn eight_nodes_hold_a_polynomial_of_degree_seven() {
-    let f = |t: f64| Vector3::new(t.powi(7) - 3.0 * t, 1.0, t * t);
-    let nodes: Vec<_> = (-3..=4).map(|k| (f64::from(k), f(f64::from(k)))).collect();
-    let (value, slope) = lagrange(&nodes, 0.5);
-    assert!((value - f(0.5)).norm() < 1e-11);
-    let exact = Vector3::new(7.0 * 0.5_f64.powi(6) - 3.0, 0.0, 1.0);
-    assert!((slope - exact).norm() < 1e-11);
-    // On a node the product form divides by nothing that vanishes.
-    assert!((lagrange(&nodes, 2.0).0 - f(2.0)).norm() < 1e-11);
-}
-
-/// CesiumJS takes nodes from both sides, as far as there are any.
-#[test]
-fn windows_lie_around_the_instant() {
-    let nodes: Vec<_> = (0..20).map(|k| (f64::from(k), Vector3::zeros())).collect();
-    let ends = |t: f64| {
-        let window = window(&nodes, t, 7);
-        (window[0].0, window[window.len() - 1].0)
-    };
-    assert_eq!(ends(9.5), (6.0, 13.0));
-    assert_eq!(ends(0.2), (0.0, 7.0));
-    assert_eq!(ends(18.7), (12.0, 19.0));
-    assert_eq!(super::window(&nodes[..3], 1.0, 7).len(), 3);
-}
-
 /// Between the samples the satellites are within a metre of the model, to both ends of the span,
 /// on a circle and on an ellipse; a wrong order of coordinates or unit is thousands of kilometres.
 #[test]
@@ -61,13 +38,12 @@ fn positions_are_within_a_metre_everywhere() {
         assert_eq!(tracks.len(), design.satellite_count());
         for (track, satellite) in tracks.iter().zip(design.satellites()) {
             assert_eq!(track.name, format!("NW-{}", satellite.slot));
-            let orbit = Model::J2
-                .propagator(&satellite.elements, track.epoch)
-                .unwrap();
+            let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+            let orbit = Model::J2.propagator(&satellite.elements, epoch).unwrap();
             for t in (0..=7_200).step_by(97).map(f64::from).chain([7_200.0]) {
                 let teme = orbit.state_at(t).unwrap();
-                let ours = from_teme(teme, Frame::EarthFixed, track.epoch, t);
-                let shown = track.state(t).unwrap();
+                let ours = from_teme(teme, Frame::EarthFixed, epoch, t);
+                let (shown, _) = track.arcs[0].state(epoch.plus_seconds(t)).unwrap();
                 assert!((shown.position_km - ours.position_km).norm() < 2.0 * TARGET_KM);
                 // A metre over the half spacing of 150 s and more.
                 assert!((shown.velocity_km_s - ours.velocity_km_s).norm() < 1e-4);
@@ -81,7 +57,8 @@ fn positions_are_within_a_metre_everywhere() {
 fn samples_are_few() {
     let (_, bytes) = exported("delta:55:6/3/1@925");
     for track in read(bytes.as_slice()).unwrap() {
-        let step_s = track.nodes[1].0 - track.nodes[0].0;
+        let nodes = &track.arcs[0].nodes;
+        let step_s = nodes[1].0.seconds_since(nodes[0].0);
         assert!(step_s >= 300.0, "{step_s}");
     }
 }
@@ -133,7 +110,7 @@ fn what_breaks_the_format_is_named() {
             "czml-samples",
         ),
         (
-            packet(&format!("{{{samples} [0, 1, 2, 3, 0, 1, 2, 3]}}")),
+            packet(&format!("{{{samples} [60, 7e6, 2, 3, 0, 7e6, 2, 3]}}")),
             "czml-samples",
         ),
         (
@@ -141,7 +118,7 @@ fn what_breaks_the_format_is_named() {
             "czml-samples",
         ),
         (
-            packet(r#"{"cartesian": [0, 1, 2, 3, 60, 1, 2, 3]}"#),
+            packet(r#"{"cartesian": [0, 7e6, 2, 3, 60, 7e6, 2, 3]}"#),
             "czml-epoch",
         ),
         (
@@ -152,10 +129,23 @@ fn what_breaks_the_format_is_named() {
         ),
         (
             packet(&format!(
-                "{{{samples} [0, 1, 2, 3, 60, 1, 2, 3], \"interpolationAlgorithm\": \"HERMITE\"}}"
+                "{{{samples} [0, 7e6, 2, 3, 60, 7e6, 2, 3], \"interpolationAlgorithm\": \"SPLINE\"}}"
             )),
             "czml-interpolation",
         ),
+        (
+            packet(&format!("{{{samples} [0, 7e3, 2, 3, 60, 7e3, 2, 3]}}")),
+            "implausible-state",
+        ),
+        (
+            packet(r#"{"interval": "2025-01-01T00:00:00Z", "cartesian": [7e6, 0, 0]}"#),
+            "czml-interval",
+        ),
+        (packet(r#"{"reference": "b#position"}"#), "czml-reference"),
+        (packet(r#"{"reference": "a#position"}"#), "czml-reference"),
+        (packet(r#"{"cartesianVelocity": "x"}"#), "json-syntax"),
+        (packet(r#"{"somewhere": [1, 2, 3]}"#), "czml-position"),
+        (packet(r#"{"delete": true}"#), "czml-delete"),
     ] {
         match read(text.as_bytes()) {
             Err(crate::formats::ReadError::Rule(finding)) => {
@@ -166,4 +156,115 @@ fn what_breaks_the_format_is_named() {
     }
     let still = packet(r#"{"cartesian": [1, 2, 3]}"#);
     assert_eq!(read(still.as_bytes()).unwrap(), []);
+    let mut findings = FindingList::of_reader();
+    parse(still.as_bytes(), &mut findings).unwrap();
+    assert_eq!(
+        findings.left_out().to_string(),
+        "left out: 1 (place that does not move: a)"
+    );
+}
+
+fn document(packets: &str) -> Vec<Trajectory> {
+    let text = format!(r#"[{{"id": "document", "version": "1.0"}}, {packets}]"#);
+    read(text.as_bytes()).unwrap()
+}
+
+/// Position of the first satellite at a time of day, m.
+fn metres(trajectories: &[Trajectory], time: &str) -> Option<[f64; 3]> {
+    let at = Epoch::from_utc(format!("2025-01-01T{time}Z").parse().unwrap());
+    let (state, _) = trajectories[0].arc_at(at)?.state(at)?;
+    Some((state.position_km.km() * 1000.0).into())
+}
+
+/// Times as seconds, as texts and with an offset; several intervals and packets; each sample once.
+#[test]
+fn positions_are_read_however_they_are_written() {
+    let plain = document(
+        r#"{"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}}"#,
+    );
+    let half = Some([7e6, 3e5, 0.0]);
+    assert_eq!(metres(&plain, "00:00:30"), half);
+    for packets in [
+        r#"{"id": "a", "position": {"cartesian": ["2025-01-01T00:00:00Z", 7e6, 0, 0, "2025-01-01T01:01:00+01:00", 7e6, 6e5, 0, "2024-12-31T18:02:00-0600", 7e6, 12e5, 0]}}"#,
+        r#"{"id": "a", "position": {"epoch": "2025-01-01T02:00:00+02:00", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}}"#,
+        r#"{"id": "a", "position": {"epoch": "2025-01-01T00:01:00Z", "cartesian": [0, 7e6, 6e5, 0, 60, 7e6, 12e5, 0]}},
+           {"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0]}}"#,
+        // A repeated instant: the later one stands, as in CesiumJS.
+        r#"{"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 9e6, 9e6, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}}"#,
+        r#"{"id": "a", "position": [{"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}]}"#,
+    ] {
+        let found = document(packets);
+        assert_eq!(found.len(), 1, "{packets}");
+        assert_eq!(found[0].samples(), plain[0].samples(), "{packets}");
+    }
+    let two = document(
+        r#"{"id": "a", "position": [
+            {"interval": "2025-01-01T00:00:00Z/2025-01-01T00:01:00Z", "epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 120, 7e6, 12e5, 0]},
+            {"interval": "2025-01-01T00:02:00Z/2025-01-01T00:03:00Z", "epoch": "2025-01-01T00:00:00Z", "cartesian": [120, 8e6, 0, 0, 180, 8e6, 6e5, 0]}]}"#,
+    );
+    assert_eq!(two[0].arcs.len(), 2);
+    assert_eq!(metres(&two, "00:00:30"), half);
+    // Between the intervals it is nowhere, although the samples of the first reach further.
+    assert_eq!(metres(&two, "00:01:30"), None);
+    assert_eq!(metres(&two, "00:02:30"), Some([8e6, 3e5, 0.0]));
+    let available = document(
+        r#"{"id": "a", "availability": "2025-01-01T00:00:40Z/9999-12-31T24:00:00Z", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0]}}"#,
+    );
+    assert_eq!(metres(&available, "00:00:30"), None);
+    assert_eq!(metres(&available, "00:00:45"), Some([7e6, 4.5e5, 0.0]));
+}
+
+#[test]
+fn every_form_of_position_is_read() {
+    let of = |position: &str| {
+        document(&format!(
+            r#"{{"id": "a", "position": {{"epoch": "2025-01-01T00:00:00Z", {position}}}}}"#
+        ))
+    };
+    let hermite = of(
+        r#""interpolationAlgorithm": "HERMITE", "interpolationDegree": 3, "cartesianVelocity": [0, 7e6, 0, 0, 0, 7500, 0, 60, 7e6, 45e4, 0, 0, 7500, 0]"#,
+    );
+    assert_eq!(hermite[0].arcs[0].interpolation, Interpolation::Hermite(3));
+    let [x, y, _] = metres(&hermite, "00:00:30").unwrap();
+    assert!(
+        (x - 7e6).abs() < 1e-6 && (y - 225e3).abs() < 1e-6,
+        "{x} {y}"
+    );
+    // Without velocities CesiumJS takes the polynomial through the positions.
+    let plain = of(
+        r#""interpolationAlgorithm": "HERMITE", "interpolationDegree": 3, "cartesian": [0, 7e6, 0, 0, 60, 7e6, 0, 0]"#,
+    );
+    assert_eq!(plain[0].arcs[0].interpolation, Interpolation::Lagrange(3));
+    // 90° E over the equator at 621 863 m is 7 000 000 m along y; the pole at 643 247.686 m is as far along z
+    // (semi-axes 6 378 137 and 6 356 752.314 m).
+    for position in [
+        r#""cartographicDegrees": [0, 90, 0, 621863, 60, 0, 90, 643247.6858]"#,
+        r#""cartographicRadians": [0, 1.5707963267948966, 0, 621863, 60, 0, 1.5707963267948966, 643247.6858]"#,
+    ] {
+        let found = of(position);
+        for (time, expected) in [("00:00:00", [0.0, 7e6, 0.0]), ("00:01:00", [0.0, 0.0, 7e6])] {
+            let apart = Vector3::from(metres(&found, time).unwrap()) - Vector3::from(expected);
+            assert!(apart.norm() < 1e-3, "{position}: {apart}");
+        }
+        assert_eq!(found[0].arcs[0].frame, Frame::EarthFixed);
+    }
+    let shared = document(
+        r#"{"id": "b", "position": {"reference": "a#position"}},
+           {"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0]}}"#,
+    );
+    assert_eq!((shared.len(), shared[0].name.as_str()), (2, "b"));
+    assert_eq!(shared[0].arcs, shared[1].arcs);
+}
+
+/// A packet of 5 MB, as of some months of one satellite, is read.
+#[test]
+fn long_packets_are_read() {
+    let sample = |k: usize| format!("{},7000000.123456,{k}.5,0", 10 * k);
+    let samples: Vec<String> = (0..180_000).map(sample).collect();
+    let cartesian = samples.join(",");
+    assert!(cartesian.len() > 5_000_000);
+    let found = document(&format!(
+        r#"{{"id": "a", "position": {{"epoch": "2025-01-01T00:00:00Z", "cartesian": [{cartesian}]}}}}"#
+    ));
+    assert_eq!(found[0].arcs[0].nodes.len(), 180_000);
 }

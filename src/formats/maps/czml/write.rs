@@ -1,7 +1,8 @@
 //! Writes a scenario as CZML, packet by packet.
 
-use super::{DEGREE, FORMAT_VERSION, TARGET_KM, lagrange};
+use super::{DEGREE, FORMAT_VERSION, TARGET_KM};
 use crate::constellation::Design;
+use crate::ephemeris::arc::lagrange;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::PointMetrics;
@@ -9,11 +10,10 @@ use crate::formats::WriteError;
 use crate::formats::maps::scene::{
     ColourScale, Scene, colour_of, plane_colour, point_place, shown, wrapped,
 };
-use crate::frames::EarthFixed;
+use crate::frames::{EarthFixed, State};
 use crate::ground::Grid;
 use crate::ground::shapes::LonLat;
 use crate::units::round_decimal;
-use nalgebra::Vector3;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::f64::consts::TAU;
@@ -264,6 +264,7 @@ impl ShownSpan {
         let metres = |km: f64| round_decimal(km * 1000.0, 1);
         let cartesian: Vec<f64> = nodes
             .iter()
+            .map(|(t, state)| (t, state.position_km.km()))
             .flat_map(|(t, p)| [*t, metres(p.x), metres(p.y), metres(p.z)])
             .collect();
         let mut packet = json!({
@@ -300,10 +301,10 @@ fn nodes(
     propagated: &EphemerisSatellite,
     step_s: f64,
     range: std::ops::RangeInclusive<i64>,
-) -> Result<Vec<(f64, Vector3<f64>)>, EphemerisError> {
+) -> Result<Vec<(f64, State<EarthFixed>)>, EphemerisError> {
     let node = |k: i64| {
         let t = k as f64 * step_s;
-        Ok((t, sampled.state(propagated, t)?.position_km.km()))
+        Ok((t, sampled.state(propagated, t)?))
     };
     range.map(node).collect()
 }

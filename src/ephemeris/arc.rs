@@ -1,0 +1,254 @@
+//! States between the samples of a file, as the file says that they follow from them.
+//!
+//! An arc is a run of samples that polynomials may join: the segment of a message, the stretch between two gaps.
+//! Nothing is interpolated across its ends, and nothing is extrapolated.
+
+use crate::ephemeris::hermite::hermite_state;
+use crate::frames::{Frame, Position, State};
+use crate::time::Epoch;
+use nalgebra::Vector3;
+
+/// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
+/// 10 ns of SP3 and the microseconds of some writers.
+pub const SAME_INSTANT_S: f64 = 1e-6;
+
+/// Most nodes of a polynomial: beyond, equidistant nodes lose more by rounding than they win.
+const MOST_NODES: usize = 24;
+
+/// Places at which the error of an arc is estimated.
+const PLACES: usize = 200;
+
+/// The polynomial between samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// Through positions alone, of this degree.
+    Lagrange(usize),
+    /// Through positions and velocities, of this degree: (degree + 1) / 2 samples.
+    Hermite(usize),
+}
+
+impl Interpolation {
+    /// Where a file with velocities says nothing: four samples.
+    pub const OF_STATES: Self = Self::Hermite(7);
+
+    /// Samples that the polynomial passes through.
+    #[must_use]
+    pub fn nodes(self) -> usize {
+        let nodes = match self {
+            Self::Lagrange(degree) => degree + 1,
+            Self::Hermite(degree) => degree.div_ceil(2),
+        };
+        nodes.clamp(2, MOST_NODES)
+    }
+
+    /// Its name and its degree, as `Hermite, degree 7`.
+    #[must_use]
+    pub fn describe(self) -> String {
+        match self {
+            Self::Lagrange(1) => "linear".to_owned(),
+            Self::Lagrange(degree) => format!("Lagrange, degree {degree}"),
+            Self::Hermite(degree) => format!("Hermite, degree {degree}"),
+        }
+    }
+
+    /// Power of the spacing that its error falls with.
+    #[must_use]
+    pub fn order(self) -> u32 {
+        match self {
+            Self::Lagrange(_) => self.nodes() as u32,
+            Self::Hermite(_) => 2 * self.nodes() as u32,
+        }
+    }
+
+    fn state(self, nodes: &[(f64, State<Frame>)], at_s: f64) -> State<Frame> {
+        match self {
+            Self::Lagrange(_) => {
+                let (position_km, velocity_km_s) = lagrange(nodes, at_s);
+                State::new(position_km, velocity_km_s)
+            }
+            Self::Hermite(_) => hermite_state(nodes, at_s),
+        }
+    }
+}
+
+/// Samples that polynomials may join.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arc {
+    /// Frame of the states, and of the interpolation.
+    pub frame: Frame,
+    /// How states follow between them.
+    pub interpolation: Interpolation,
+    /// The first and the last instant for which the arc holds, both included; the samples beyond are there to
+    /// interpolate.
+    pub useable: (Epoch, Epoch),
+    /// Whether an arc that follows at its spacing continues it, as the next day of SP3 does.
+    pub is_open: bool,
+    /// The samples, in the order of time, each instant once.
+    pub nodes: Vec<(Epoch, State<Frame>)>,
+}
+
+impl Arc {
+    /// An arc that holds from its first sample to its last; none without a sample.
+    #[must_use]
+    pub fn new(
+        frame: Frame,
+        interpolation: Interpolation,
+        nodes: Vec<(Epoch, State<Frame>)>,
+    ) -> Option<Self> {
+        let useable = (nodes.first()?.0, nodes.last()?.0);
+        Some(Self {
+            frame,
+            interpolation,
+            useable,
+            is_open: false,
+            nodes,
+        })
+    }
+
+    /// The part that lies in an interval, with its nodes; none outside it.
+    #[must_use]
+    pub fn within(mut self, (first, last): (Epoch, Epoch)) -> Option<Self> {
+        self.useable = (self.useable.0.max(first), self.useable.1.min(last));
+        (self.useable.0 <= self.useable.1).then_some(self)
+    }
+
+    /// Takes the samples of an arc that continues this one, or gives it back.
+    ///
+    /// # Errors
+    /// The other arc, if it does not follow at the spacing of this one.
+    pub fn continued_by(&mut self, next: Self) -> Result<(), Self> {
+        let spacing_s = |one: Option<&(Epoch, State<Frame>)>,
+                         other: Option<&(Epoch, State<Frame>)>| {
+            Some(other?.0.seconds_since(one?.0))
+        };
+        let count = self.nodes.len();
+        let before_s = spacing_s(
+            count.checked_sub(2).map(|k| &self.nodes[k]),
+            self.nodes.last(),
+        );
+        let between_s = spacing_s(self.nodes.last(), next.nodes.first());
+        let follows = before_s
+            .zip(between_s)
+            .is_some_and(|(before_s, between_s)| {
+                between_s > SAME_INSTANT_S && between_s < 1.5 * before_s
+            });
+        let alike = (self.frame, self.interpolation) == (next.frame, next.interpolation);
+        if !(self.is_open && next.is_open && alike && follows) {
+            return Err(next);
+        }
+        self.nodes.extend(next.nodes);
+        self.useable.1 = next.useable.1;
+        Ok(())
+    }
+
+    /// Whether the arc holds at an instant.
+    #[must_use]
+    pub fn covers(&self, at: Epoch) -> bool {
+        let (first, last) = self.useable;
+        at.seconds_since(first) >= -SAME_INSTANT_S && last.seconds_since(at) >= -SAME_INSTANT_S
+    }
+
+    /// The samples for which the arc holds.
+    pub fn samples(&self) -> impl Iterator<Item = &(Epoch, State<Frame>)> {
+        self.nodes.iter().filter(|(at, _)| self.covers(*at))
+    }
+
+    /// The state at an instant, and whether it is interpolated; none outside the span.
+    #[must_use]
+    pub fn state(&self, at: Epoch) -> Option<(State<Frame>, bool)> {
+        if !self.covers(at) {
+            return None;
+        }
+        let since = |node: &(Epoch, State<Frame>)| node.0.seconds_since(at);
+        let next = self
+            .nodes
+            .partition_point(|node| since(node) < -SAME_INSTANT_S);
+        let node = self.nodes.get(next)?;
+        if since(node) <= SAME_INSTANT_S {
+            return Some((node.1, false));
+        }
+        if next == 0 {
+            return None;
+        }
+        let table: Vec<_> = window(&self.nodes, next, self.interpolation.nodes())
+            .iter()
+            .map(|node| (since(node), node.1))
+            .collect();
+        Some((self.interpolation.state(&table, 0.0), true))
+    }
+
+    /// Whether the state at an instant is interpolated; none outside the span.
+    #[must_use]
+    pub fn is_interpolated(&self, at: Epoch) -> Option<bool> {
+        let since = |node: &(Epoch, State<Frame>)| node.0.seconds_since(at);
+        let next = self
+            .nodes
+            .partition_point(|node| since(node) < -SAME_INSTANT_S);
+        let node = self.nodes.get(next).filter(|_| self.covers(at))?;
+        let interpolated = since(node) > SAME_INSTANT_S;
+        (next > 0 || !interpolated).then_some(interpolated)
+    }
+
+    /// Largest distance, km, between samples and what the others give when every other one is left out: that of
+    /// twice the spacing, and so above the error of the interpolation itself. None where there are too few.
+    #[must_use]
+    pub fn left_out_error_km(&self) -> Option<f64> {
+        let kept: Vec<_> = self.nodes.iter().step_by(2).copied().collect();
+        if kept.len() < self.interpolation.nodes() {
+            return None;
+        }
+        let dropped: Vec<_> = self.nodes.iter().skip(1).step_by(2).enumerate().collect();
+        let inner = dropped.iter().filter(|(place, _)| place + 1 < kept.len());
+        let stride = dropped.len().div_ceil(PLACES).max(1);
+        inner
+            .step_by(stride)
+            .map(|(place, (at, state))| {
+                let table: Vec<_> = window(&kept, place + 1, self.interpolation.nodes())
+                    .iter()
+                    .map(|(t, state)| (t.seconds_since(*at), *state))
+                    .collect();
+                let found = self.interpolation.state(&table, 0.0);
+                (found.position_km - state.position_km).norm()
+            })
+            .reduce(f64::max)
+    }
+}
+
+/// The `count` nodes around the gap before `next`: as many on both sides, shifted at the ends.
+fn window<T>(nodes: &[T], next: usize, count: usize) -> &[T] {
+    let count = count.min(nodes.len());
+    let first = next
+        .saturating_sub(count.div_ceil(2))
+        .min(nodes.len() - count);
+    &nodes[first..first + count]
+}
+
+/// Value and derivative by time of the Lagrange polynomial through the positions.
+pub(crate) fn lagrange<F>(nodes: &[(f64, State<F>)], t: f64) -> (Vector3<f64>, Vector3<f64>) {
+    let (mut value, mut slope) = (Vector3::zeros(), Vector3::zeros());
+    for (j, (tj, state)) in nodes.iter().enumerate() {
+        // The product of the factors and its derivative, one factor after the other.
+        let (mut weight, mut change) = (1.0, 0.0);
+        for (m, (tm, _)) in nodes.iter().enumerate() {
+            if m != j {
+                let scale = 1.0 / (tj - tm);
+                change = change * (t - tm) * scale + weight * scale;
+                weight *= (t - tm) * scale;
+            }
+        }
+        value += state.position_km.km() * weight;
+        slope += state.position_km.km() * change;
+    }
+    (value, slope)
+}
+
+/// A state without a velocity of its own.
+pub(crate) fn still<F>(position_km: Vector3<f64>) -> State<F> {
+    State {
+        position_km: Position::new(position_km),
+        velocity_km_s: Vector3::zeros(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,192 @@
+//! What the states of files leave to say about a study: where there are none, and what lies between them.
+
+use super::Fleet;
+use crate::ephemeris::arc::{Arc, Interpolation};
+use crate::formats::trajectory::Trajectory;
+use crate::time::{Epoch, TimeGrid};
+use std::fmt;
+
+/// Satellites whose interpolation is estimated: of a large constellation the first.
+const ESTIMATED: usize = 100;
+
+/// What is said of sampled satellites on a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SamplingNote {
+    /// Instants at which a satellite has no state, and counts as in view of nobody.
+    Gaps {
+        /// The satellite.
+        name: String,
+        /// Number of the instants.
+        missing: usize,
+        /// Instants of the grid.
+        of: usize,
+        /// The first without a state.
+        first: Epoch,
+        /// The last.
+        last: Epoch,
+    },
+    /// States that are interpolated.
+    Interpolated {
+        /// Satellites that are.
+        satellites: usize,
+        /// How, for the one with the largest error.
+        interpolation: Interpolation,
+        /// That satellite.
+        worst: String,
+        /// Its largest error when every other state is left out, km; none if there are too few to tell.
+        left_out_error_km: Option<f64>,
+    },
+}
+
+impl fmt::Display for SamplingNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Gaps {
+                name,
+                missing,
+                of,
+                first,
+                last,
+            } => write!(
+                f,
+                "{name} has no state at {missing} of {of} instants, from {first} to {last}: not in view there"
+            ),
+            Self::Interpolated {
+                satellites,
+                interpolation,
+                worst,
+                left_out_error_km,
+            } => {
+                let how = interpolation.describe();
+                write!(
+                    f,
+                    "states of {satellites} satellites are interpolated ({how}); "
+                )?;
+                match left_out_error_km {
+                    Some(km) => write!(
+                        f,
+                        "with every other state left out the error is up to {} ({worst}), with all of them \
+                         about {} times less",
+                        length(*km),
+                        2_u64.saturating_pow(interpolation.order())
+                    ),
+                    None => write!(f, "{worst} has too few states to estimate the error"),
+                }
+            }
+        }
+    }
+}
+
+/// A length in the unit that suits it, to two digits.
+fn length(km: f64) -> String {
+    match km {
+        km if km >= 10.0 => format!("{km:.0} km"),
+        km if km >= 1.0 => format!("{km:.1} km"),
+        km if km >= 1e-2 => format!("{:.0} m", km * 1e3),
+        km if km >= 1e-3 => format!("{:.1} m", km * 1e3),
+        km if km >= 1e-5 => format!("{:.0} mm", km * 1e6),
+        _ => "under 10 mm".to_owned(),
+    }
+}
+
+impl Fleet {
+    /// What is to be said of sampled satellites on a grid: gaps, once for each satellite, and the interpolation.
+    #[must_use]
+    pub fn sampling_notes(&self, grid: TimeGrid) -> Vec<SamplingNote> {
+        let labels = self.labels();
+        let mut sampled = Vec::new();
+        self.collect_sampled(&mut labels.iter(), &mut sampled);
+        let mut notes = Vec::new();
+        let mut interpolated: Vec<(&Trajectory, &String)> = Vec::new();
+        for (trajectory, label) in sampled {
+            let look = Coverage::of(trajectory, grid);
+            notes.extend(look.gaps(label, grid.len()));
+            if look.interpolates {
+                interpolated.push((trajectory, label));
+            }
+        }
+        notes.extend(worst(&interpolated));
+        notes
+    }
+
+    fn collect_sampled<'a>(
+        &'a self,
+        labels: &mut std::slice::Iter<'a, String>,
+        sampled: &mut Vec<(&'a Trajectory, &'a String)>,
+    ) {
+        match self {
+            Self::Sampled(trajectories) => sampled.extend(trajectories.iter().zip(labels)),
+            Self::Mixed(parts) => {
+                for part in parts {
+                    part.collect_sampled(labels, sampled);
+                }
+            }
+            Self::Sets(_) | Self::Elements(_) | Self::Almanacs(_) => {
+                labels.by_ref().take(self.len()).for_each(drop);
+            }
+        }
+    }
+}
+
+/// The instants of a grid that a satellite has states for.
+struct Coverage {
+    missing: usize,
+    ends: Option<(Epoch, Epoch)>,
+    interpolates: bool,
+}
+
+impl Coverage {
+    fn of(trajectory: &Trajectory, grid: TimeGrid) -> Self {
+        let mut found = Self {
+            missing: 0,
+            ends: None,
+            interpolates: false,
+        };
+        for elapsed_s in grid.iter() {
+            let at = grid.epoch().plus_seconds(elapsed_s);
+            match trajectory
+                .arc_at(at)
+                .and_then(|arc| arc.is_interpolated(at))
+            {
+                Some(interpolated) => found.interpolates |= interpolated,
+                None => {
+                    found.missing += 1;
+                    found.ends = Some((found.ends.map_or(at, |(first, _)| first), at));
+                }
+            }
+        }
+        found
+    }
+
+    fn gaps(&self, name: &str, of: usize) -> Option<SamplingNote> {
+        let (first, last) = self.ends?;
+        Some(SamplingNote::Gaps {
+            name: name.to_owned(),
+            missing: self.missing,
+            of,
+            first,
+            last,
+        })
+    }
+}
+
+fn worst(interpolated: &[(&Trajectory, &String)]) -> Option<SamplingNote> {
+    let error_of = |trajectory: &Trajectory| {
+        let errors = trajectory.arcs.iter().filter_map(Arc::left_out_error_km);
+        errors.reduce(f64::max)
+    };
+    let estimated = interpolated.iter().take(ESTIMATED);
+    let estimated =
+        estimated.map(|(trajectory, label)| (error_of(trajectory), *trajectory, *label));
+    let (left_out_error_km, trajectory, label) =
+        estimated.reduce(|one, other| if other.0 > one.0 { other } else { one })?;
+    Some(SamplingNote::Interpolated {
+        satellites: interpolated.len(),
+        interpolation: trajectory.arcs.first()?.interpolation,
+        worst: label.clone(),
+        left_out_error_km,
+    })
+}
+
+#[cfg(test)]
+mod tests;
