@@ -20,7 +20,7 @@ use crate::orbit::osculating::{OsculatingOrbit, frozen_eccentricity};
 use crate::orbit::{MeanElements, Model, PropagationError};
 use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
-use bounds::Bounds;
+use bounds::IntegrationBounds;
 use integrator::ZonalField;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -150,7 +150,7 @@ pub fn against_integration(subject: &Subject<'_>) -> Result<Findings, ValidateEr
         .collect::<Result<_, _>>()?;
     let mut findings = Findings::default();
     findings.checks.extend(conservation_checks(&tracks));
-    let bounds = Bounds::of(subject);
+    let bounds = IntegrationBounds::of(subject);
     for days in SPANS_DAYS {
         findings.checks.extend(span_checks(&bounds, &tracks, days));
     }
@@ -198,7 +198,7 @@ fn slope(track: &RevolutionMeans, values: &[f64], days: f64) -> f64 {
     line_fit(&track.days[..within], &values[..within]).map_or(0.0, |(_, slope)| slope)
 }
 
-fn span_checks(bounds: &Bounds, tracks: &[RevolutionMeans], days: f64) -> Vec<Check> {
+fn span_checks(bounds: &IntegrationBounds, tracks: &[RevolutionMeans], days: f64) -> Vec<Check> {
     let count = tracks.len() as f64;
     let mean_slope = |values: fn(&RevolutionMeans) -> &[f64]| {
         let slopes = tracks.iter().map(|track| slope(track, values(track), days));

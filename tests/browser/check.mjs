@@ -169,6 +169,28 @@ test("three objectives over points can be turned", async () => {
   await context.close();
 });
 
+test("the sky shows the skyline that the numbers were computed with", async () => {
+  const { page, context, trouble } = await open("walled");
+  await page.locator("#play").click();
+  await page.locator("#sky").scrollIntoViewIfNeeded();
+  await page.waitForFunction(() => window.navwalker.sky().length > 0);
+  const sky = (await page.evaluate(() => window.navwalker.sky())).map((s) => ({ visible: s.visible,
+    elevation: s.elevation * 180 / Math.PI, azimuth: (s.azimuth * 180 / Math.PI + 360) % 360 }));
+  const walled = (s) => s.azimuth > 1 && s.azimuth < 179;
+  const free = (s) => s.azimuth > 180;
+  assert.ok(sky.some((s) => walled(s) && s.elevation > 7 && s.elevation < 80), "nothing behind the wall");
+  for (const s of sky) {
+    if (walled(s)) assert.equal(s.visible, s.elevation >= 80, JSON.stringify(s));
+    if (free(s)) assert.equal(s.visible, s.elevation >= 7, JSON.stringify(s));
+  }
+  const caption = await page.locator("#sky-caption").textContent();
+  assert.ok(caption.includes(`${sky.filter((s) => s.visible).length} LEO satellites above the mask of 7° and the skyline of up to 80°`), caption);
+  assert.match(caption, /GNSS satellites, which are not drawn, is 12°/);
+  await page.locator("#sky").screenshot({ path: `${shots}/sky.png` });
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
 test("an empty front says so", async () => {
   const { page, context, trouble } = await open("empty");
   assert.match(await page.locator("aside.gaps").textContent(), /no member/);

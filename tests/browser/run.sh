@@ -40,6 +40,11 @@ printf '[region]\npoints = "%s"\n' "$work/points.csv" > "$work/points.toml"
   --set optimizer.generations=4 --set 'objectives.minimize=["mean-pdop", "satellites", "availability"]' \
   --out "$work/points" --report >/dev/null
 
+# A wall in the east, and a mask of its own for GNSS.
+"$program" optimize "${small[@]}" --set 'visibility.mask-table=[[0, 5], [1, 80], [179, 80], [180, 5], [360, 5]]' \
+  --set visibility.gnss-mask-deg=12 --set 'objectives.minimize=["satellites", "mean-visible"]' \
+  --out "$work/walled" --report >/dev/null
+
 # Nothing feasible, a damaged front with hostile texts, and a front of ten thousand.
 "$program" optimize "${small[@]}" --set 'objectives.constraints=["max-pdop <= 0.1"]' \
   --out "$work/empty" --report >/dev/null || [ $? = 1 ]

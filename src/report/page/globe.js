@@ -5,7 +5,7 @@ const Globe = (() => {
   const globe = document.getElementById("globe");
   if (!globe || !world) {
     for (const id of ["constellation"]) { const e = document.getElementById(id); if (e) e.hidden = true; }
-    return { frames: () => [] };
+    return { frames: () => [], sky: () => [] };
   }
   const sky = document.getElementById("sky");
   const RAD = Math.PI / 180;
@@ -23,6 +23,8 @@ const Globe = (() => {
   const frames = [];
   let colours = theme();
   let visibleNow = false;
+  /** What the sky shows. */
+  let drawn = [];
 
   /** Earth-fixed unit vector. */
   const unit = (latitude, longitude) => [Math.cos(latitude) * Math.cos(longitude),
@@ -299,6 +301,7 @@ const Globe = (() => {
     const axes = orbit ? planes(orbit, time.elapsed) : [];
     const found = orbit ? positions(orbit, axes, time.elapsed) : new Float64Array(0);
     const seen = overhead(found);
+    drawn = seen;
     drawGlobe(orbit, axes, found, seen);
     drawSky(seen);
     tell(seen);
@@ -378,5 +381,5 @@ const Globe = (() => {
     draw();
   });
 
-  return { frames: () => [...frames] };
+  return { frames: () => [...frames], sky: () => drawn };
 })();

@@ -48,5 +48,5 @@
   if (data.budget.length === 0) document.getElementById("budget")?.closest("figure").remove();
 
   // For tests of the page.
-  window.navwalker = { select, state, frames: Globe.frames };
+  window.navwalker = { select, state, frames: Globe.frames, sky: Globe.sky };
 })();

@@ -1,4 +1,4 @@
-//! Bounds on what a model may differ from the integration of its field by, and why.
+//! IntegrationBounds on what a model may differ from the integration of its field by, and why.
 
 use super::CONSERVED;
 use crate::orbit::Model;
@@ -12,7 +12,7 @@ use std::f64::consts::SQRT_2;
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// The bounds for one design and model.
-pub(super) struct Bounds {
+pub(super) struct IntegrationBounds {
     model: Model,
     causes: Causes,
     eccentricity: f64,
@@ -33,7 +33,7 @@ pub(super) struct Bounds {
     pub(super) after_fit_reason: &'static str,
 }
 
-impl Bounds {
+impl IntegrationBounds {
     pub(super) fn of(subject: &Subject<'_>) -> Self {
         let model = subject.model();
         let orbit = subject.orbit();
@@ -89,7 +89,7 @@ impl Bounds {
         }
     }
 
-    /// Bounds on the RMS in-track, after the fit, and cross-track, km.
+    /// IntegrationBounds on the RMS in-track, after the fit, and cross-track, km.
     pub(super) fn after_fit_km(&self, days: f64) -> [Option<f64>; 2] {
         let causes = &self.causes;
         let integrator = CONSERVED * self.drift_per_a_per_day * self.a_km * days.powi(2);

@@ -92,15 +92,17 @@ pub(super) fn checks(
     // What a position is known to is seen from the node under 1/sin i.
     let lever = 1.0 / orbit.inclination_rad.sin();
     let leftover_deg = 0.02 * swing_deg / scale.days.min(1.0);
-    let rounding_deg = match subject.model() {
-        // The short-period terms of a node and an argument of latitude go twice around.
-        Model::J2Osculating => {
-            let periodic = scale.causes.short_period_km.iter().sum::<f64>() * lever;
-            let slope = periodic * scale.leftover_per_day[1] / orbit.semi_major_axis_km;
-            ROUNDING_DEG_PER_DAY + slope.to_degrees()
-        }
-        _ => ROUNDING_DEG_PER_DAY,
-    };
+    // The velocity turns with the node: r × v swings about the normal of the plane by dΩ/dt / n, twice
+    // around, and so does the node of short-period terms.
+    let swing_rad = (closed[0] / closed[1]).abs()
+        + match subject.model() {
+            Model::J2Osculating => {
+                let km = scale.causes.short_period_km.iter().sum::<f64>();
+                km * lever / orbit.semi_major_axis_km
+            }
+            _ => 0.0,
+        };
+    let rounding_deg = ROUNDING_DEG_PER_DAY + (swing_rad * scale.leftover_per_day[1]).to_degrees();
     let mut checks = Vec::new();
     for (n, name) in ["node", "argument-of-latitude"].into_iter().enumerate() {
         let unit = "deg/day";
@@ -143,9 +145,9 @@ pub(super) fn checks(
     Ok(checks)
 }
 
-/// What the slope of an angle over a day is good to, degrees a day: angles of states are rounded to 1e-14
-/// degrees, and their sums over a constellation to some hundreds of that.
-const ROUNDING_DEG_PER_DAY: f64 = 1e-11;
+/// What the slope of an angle over a day is good to, degrees a day: a millimetre along the orbit, for
+/// rounding and for what an eccentricity leaves of the periodic terms in the mean over a constellation.
+const ROUNDING_DEG_PER_DAY: f64 = 1e-8;
 
 fn deg_per_day(rate_rad_s: f64) -> f64 {
     (rate_rad_s * SECONDS_PER_DAY).to_degrees()
