@@ -8,7 +8,7 @@ use super::lanes::{FixedTile, clear_pivot};
 use super::sample::{Doubt, Outcome, POSITION_STATES, SampleContext, UNSOLVED, Undecided};
 use crate::dop::{Factor, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, LocalFrame, Position};
+use crate::frames::{EarthFixed, LocalFrame, Position, State, Teme};
 use nalgebra::Vector3;
 use std::cell::OnceCell;
 
