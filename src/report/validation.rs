@@ -11,7 +11,7 @@ use crate::validate::sgp4::SweepCell;
 use quick_xml::escape::escape;
 use std::fmt::Write;
 
-/// Digits that tell a number of any size apart: four significant ones, plainly written.
+/// Four significant digits, in scientific notation only for very large and very small values.
 pub(super) fn digits(value: f64) -> String {
     let magnitude = if value == 0.0 {
         0.0
@@ -29,10 +29,10 @@ fn budget_table(budget: &[BudgetLine]) -> Table {
     let right = Align::Right;
     let mut table = Table::new(&[
         ("case", Align::Left),
-        ("rms R", right),
+        ("RMS R", right),
         ("I", right),
         ("C (km)", right),
-        ("max R", right),
+        ("maximum R", right),
         ("I", right),
         ("C (km)", right),
         ("growth R", right),
@@ -79,7 +79,7 @@ fn check_table(checks: &[Check]) -> Table {
     table
 }
 
-/// What every number rests on, in one line.
+/// The conventions behind every number, in one line.
 fn conventions(basis: &Basis) -> String {
     let judges: Vec<String> = basis
         .judges
@@ -112,7 +112,7 @@ fn distribution_table(distributions: &[&Distribution]) -> Table {
         ("median", right),
         ("95 %", right),
         ("99 %", right),
-        ("max", right),
+        ("maximum", right),
         ("unit", Align::Left),
         ("worst", Align::Left),
     ]);
@@ -131,7 +131,7 @@ fn distribution_table(distributions: &[&Distribution]) -> Table {
     table
 }
 
-/// Most satellites of a comparison that a table lists; JSON has them all.
+/// How many satellites of a comparison a table lists at most; JSON has all of them.
 const LISTED: usize = 12;
 
 /// The satellites that differ most.
@@ -147,7 +147,7 @@ fn satellite_table(comparison: &FileComparison) -> Table {
         ("drift R", right),
         ("I", right),
         ("C (km/day)", right),
-        ("max (km)", right),
+        ("maximum (km)", right),
     ]);
     let mut satellites: Vec<_> = comparison.satellites.iter().collect();
     satellites.sort_by(|a, b| b.max_km.total_cmp(&a.max_km));
@@ -167,14 +167,14 @@ fn satellite_table(comparison: &FileComparison) -> Table {
     table
 }
 
-/// How a comparison went, in sentences.
+/// The outcome of a comparison, in sentences.
 fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
     let mut lines = vec![format!(
         "{} satellites matched by {}{}",
         comparison.satellites.len(),
         comparison.matched_by,
         if comparison.satellites.len() > LISTED {
-            format!("; the {LISTED} that differ most are listed, JSON has all")
+            format!("; the {LISTED} with the largest differences are listed, JSON has all")
         } else {
             String::new()
         }
@@ -197,22 +197,22 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
         Some(found) => {
             let left = match found.before_km {
                 Some(before_km) => format!(
-                    "it leaves {} of {} km rms",
+                    "with it {} of {} km rms remain",
                     digits(found.after_km),
                     digits(before_km)
                 ),
                 None => format!(
-                    "with it every object has a slot, {} km rms away",
+                    "with it every object matches a slot, {} km rms away",
                     digits(found.after_km)
                 ),
             };
             format!("explained by {}: {}; {left}", found.convention, found.meaning)
         }
         None if comparison.agrees => {
-            "the states are those of the design, to a decimetre".to_owned()
+            "the states agree with the design to a decimetre".to_owned()
         }
         None if comparison.matched_agree() => {
-            "the objects that matched are the design's own, to a decimetre; the rest is missing or another design"
+            "the matched objects agree with the design to a decimetre; the others are missing or belong to another design"
                 .to_owned()
         }
         None => {
@@ -256,9 +256,9 @@ fn sweep_table(sweep: &[SweepCell]) -> Table {
         ("C", right),
         ("osculating: R", right),
         ("I", right),
-        ("C (km rms)", right),
+        ("C (km RMS)", right),
         ("Keplerian mean motion (km/day)", right),
-        ("of gate", right),
+        ("fraction of gate", right),
     ]);
     for cell in sweep {
         let mut cells = vec![
@@ -292,7 +292,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
     );
     if !result.findings.budget.is_empty() {
         text +=
-            "\nError budget: second minus first, radial, in-track and cross-track of the first\n";
+            "\nError budget: second minus first, in radial, in-track and cross-track axes of the first\n";
         text += &budget_table(&result.findings.budget).to_text();
         for line in &result.findings.budget {
             let worst = &line.worst;
@@ -304,7 +304,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         }
     }
     if !result.findings.sweep.is_empty() {
-        text += "\nOver inclination and altitude, circular patterns; the cases are those of the budget\n";
+        text += "\nOver inclination and altitude, circular patterns; cases as in the budget\n";
         text += &sweep_table(&result.findings.sweep).to_text();
     }
     text += "\nChecks\n";
@@ -328,7 +328,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
     text
 }
 
-/// Why the gates are where they are, each reason once, with the checks that it is for.
+/// The reason for each gate, once, with the checks it applies to.
 fn reasons(checks: &[Check]) -> Vec<String> {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for check in checks {
@@ -373,18 +373,18 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         }
     }
     if !result.findings.sweep.is_empty() {
-        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; the cases are those of the budget, and the last column is the largest share of a gate.\n\n";
+        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.\n\n";
         text += &sweep_table(&result.findings.sweep).to_markdown();
     }
     text += "\n## Checks\n\n";
     text += &check_table(&result.findings.checks).to_markdown();
-    text += "\nReasons of the gates:\n\n";
+    text += "\nReasons for the gates:\n\n";
     for reason in reasons(&result.findings.checks) {
         let _ = writeln!(text, "- {reason}");
     }
     let residuals = distributions(result);
     if !residuals.is_empty() {
-        text += "\n## Residuals\n\nSizes of the residuals and the inputs of the largest.\n\n";
+        text += "\n## Residuals\n\nMagnitudes, and the input that gives the largest.\n\n";
         text += &distribution_table(&residuals).to_markdown();
     }
     for comparison in &result.findings.files {

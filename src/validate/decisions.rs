@@ -16,7 +16,7 @@ const PASS_SITES: usize = 6;
 const PASS_SATELLITES: usize = 60;
 
 /// Why there is no bound.
-const UNBOUNDED: &str = "reported only: what the difference of the states does to the result";
+const UNBOUNDED: &str = "reported only: effect of the state difference on the result";
 
 /// Bounds on the change of decisions and metrics; `None` reports only.
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +60,7 @@ impl TrajectoryPair<'_> {
             },
             flips,
             gates.map(|gates| gates.flips),
-            gates.map_or(UNBOUNDED, |_| "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude"),
+            gates.map_or(UNBOUNDED, |_| "area swept by the displaced footprint edge, times three because satellites crowd near their highest latitude"),
         ));
         let metrics = [
             self.evaluator.evaluate_ephemeris(self.first)?,
@@ -123,9 +123,9 @@ impl TrajectoryPair<'_> {
             .collect::<Result<_, _>>()?;
         let shifts: Vec<Shift> = shifts.into_iter().flatten().collect();
         let kinds: [(&str, &str, ShiftMeasure); 3] = [
-            ("rise", "shift of the rise", |shift| shift.rise_s),
-            ("set", "shift of the set", |shift| shift.set_s),
-            ("duration", "change of the duration of a pass", |shift| {
+            ("rise", "shift of the rise time", |shift| shift.rise_s),
+            ("set", "shift of the set time", |shift| shift.set_s),
+            ("duration", "change in pass duration", |shift| {
                 shift.set_s - shift.rise_s
             }),
         ];
@@ -206,7 +206,7 @@ impl std::fmt::Display for Shift {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             formatter,
-            "{} from {}, {} deg at {:.0} s",
+            "{} seen from {}, {} deg at {:.0} s",
             self.satellite, self.latitude_deg, self.longitude_deg, self.at_s
         )
     }
@@ -308,7 +308,7 @@ fn metric_checks(
     let mut checks = vec![Check::new(
         &format!("{name}/mean-visible"),
         CheckedQuantity {
-            quantity: "change of mean visible satellites",
+            quantity: "change in mean visible",
             unit: "1",
             statistic: "mean",
         },
@@ -316,7 +316,7 @@ fn metric_checks(
         visible_gate,
         gates.map_or(
             UNBOUNDED,
-            |_| "the bound on flips: each changes a count by one, and flips of both signs cancel",
+            |_| "the bound on flips: each flip changes a count by one, and flips of opposite sign cancel",
         ),
     )];
     let pdop = [
@@ -331,13 +331,13 @@ fn metric_checks(
             checks.push(Check::new(
                 &format!("{name}/{quantity}"),
                 CheckedQuantity {
-                    quantity: &format!("change of {quantity}"),
+                    quantity: &format!("change in {quantity}"),
                     unit: "1",
                     statistic: "difference",
                 },
                 after - before,
                 gate.map(|(relative, factor)| factor * relative * before),
-                gates.map_or(UNBOUNDED, |_| "each flip changes PDOP by about 1/n of n satellites; fourfold in the tail, where n is small; the maximum is one sample and has no bound"),
+                gates.map_or(UNBOUNDED, |_| "with n satellites in view a flip changes PDOP by about 1/n; four times as much in the tail, where n is small; the maximum is a single sample and is not gated"),
             ));
         }
     }

@@ -210,24 +210,24 @@ fn coverage_checks(
             "unmatched-slots",
             "slots of the design without an object",
             slots - matched,
-            "every satellite of the design is in the file",
+            "every satellite of the design must be in the file",
         ),
         count(
             "unmatched-objects",
             "objects of the file without a slot",
             tracks.len() as f64 - matched,
-            "every object of the file is a satellite of the design",
+            "every object of the file must be a satellite of the design",
         ),
         Check::new(
             &format!("file/{source}/uncovered-span"),
             CheckedQuantity {
-                quantity: "share of the span of the study that an object leaves out at most",
+                quantity: "largest fraction of the study's time span that an object does not cover",
                 unit: "1",
                 statistic: "max",
             },
             1.0 - shortest,
             Some(1e-9),
-            "states reach from the first to the last sample of the study without a gap of more than a tenth of a revolution; metrics are compared only then",
+            "states must cover the study from first to last sample with no gap longer than a tenth of a revolution; otherwise metrics are not compared",
         ),
     ]
 }
@@ -236,13 +236,13 @@ fn misplaced_check(source: &str, misplaced: usize) -> Check {
     Check::new(
         &format!("file/{source}/misplaced-objects"),
         CheckedQuantity {
-            quantity: "objects far from the slot of their name",
+            quantity: "objects far from the slot they are named after",
             unit: "1",
             statistic: "count",
         },
         misplaced as f64,
         Some(0.0),
-        "at its first sample an object is nearer to its own slot than to the next: else it is another pattern, frame or time",
+        "at its first sample an object must be nearer to its own slot than to the next; otherwise pattern, frame or time differ",
     )
 }
 
@@ -263,7 +263,7 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
         .map(|one| one.drift_km_per_day.in_track)
         .sum::<f64>()
         / n;
-    let reason = "what the file's model and conventions differ by; the explanation names the convention if one does";
+    let reason = "reported only: the file may use another model or convention; the explanation names the one that accounts for the difference";
     let rows: [(&str, &str, &str, f64); 4] = [
         ("radial-rms", "km", "rms", square(|ric| ric.radial)),
         ("in-track-rms", "km", "rms", square(|ric| ric.in_track)),
@@ -280,7 +280,7 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
             Check::new(
                 &format!("file/{source}/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("{name} of the file from the design"),
+                    quantity: &format!("{name}, file minus design"),
                     unit,
                     statistic,
                 },

@@ -204,10 +204,10 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
     }
     let mut findings = Findings::default();
     let judge =
-        "two constructions of one plane: GeographicLib's 15 nm over the arm of 1 km, and rounding";
-    let teacher = "a circle of the curvature along the azimuth in place of the ellipsoid: good over the way to a low satellite";
+        "two constructions of the same plane: GeographicLib's 15 nm over an arm of 1 km, plus rounding";
+    let teacher = "the ellipsoid approximated by a circle with its curvature along the azimuth: accurate out to a low satellite";
     let limits =
-        "the way to a high satellite is long, and the curvature method does not hold there";
+        "reported only: the curvature method is not valid out to a high satellite";
     for (name, quantity, residuals, gate, reason) in [
         (
             "elevation",

@@ -141,7 +141,7 @@ fn conservation_checks(tracks: &[RevolutionMeans]) -> Vec<Check> {
             Check::new(
                 &format!("numerical/conserved/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("relative change of the {name} over 30 days"),
+                    quantity: &format!("relative change in {name} over 30 days"),
                     unit: "1",
                     statistic: "max",
                 },
@@ -183,30 +183,30 @@ fn span_checks(subject: &Subject<'_>, tracks: &[RevolutionMeans], days: f64) -> 
         Check::new(
             &name("in-track-drift"),
             CheckedQuantity {
-                quantity: "in-track drift of the integration from mean J2",
+                quantity: "in-track drift of the integrated orbit relative to mean J2",
                 unit: "km/day",
                 statistic: "mean slope",
             },
             drift,
             // δa of a few J2² a at the start drifts by 3/2 n δa.
             Some(6.0 * second_order),
-            "the starting semi-major axis is known to O(J2^2), some metres, which drifts by 3/2 n per metre: no error of the rates",
+            "the starting semi-major axis is known to O(J2^2), a few metres, and drifts by 3/2 n per metre; this is not an error in the rates",
         ),
         Check::new(
             &name("fitted-mean-a"),
             CheckedQuantity {
-                quantity: "mean semi-major axis of the integration less that of the elements",
+                quantity: "mean semi-major axis, integrated orbit minus elements",
                 unit: "m",
                 statistic: "mean",
             },
             fitted_a_m,
             None,
-            "the drift read as the starting element that it comes from",
+            "reported only: the drift expressed as the error of the starting semi-major axis that causes it",
         ),
         Check::new(
             &name("node-rate"),
             CheckedQuantity {
-                quantity: "node rate less its closed form",
+                quantity: "node rate minus closed form",
                 unit: "deg/day",
                 statistic: "mean slope",
             },
@@ -223,7 +223,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[RevolutionMeans], days: f64) -> 
             },
             rms[1],
             Some(gate_after_fit_km(&causes, &orbit, days)),
-            "first-order terms are good to J2 of their size; the perigee of the O(J2^2) eccentricity turns; long-period terms of order e J2",
+            "first-order terms are accurate to a fraction J2 of their size; rotating perigee of the O(J2^2) eccentricity; long-period terms of order e J2",
         ),
         Check::new(
             &name("cross-track-after-fit"),
@@ -304,13 +304,13 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
         Check::new(
             "numerical/j3/frozen-eccentricity",
             CheckedQuantity {
-                quantity: "change of the frozen eccentricity vector in a week, over its size",
+                quantity: "change of the frozen eccentricity vector in a week, relative to its size",
                 unit: "1",
                 statistic: "difference",
             },
             (first[0] - last[0]).hypot(first[1] - last[1]) / frozen,
             Some(0.1),
-            "under J2 and J3 the vector circles the frozen one; started there to first order it stays within a tenth",
+            "under J2 and J3 the vector circles the frozen one; started there to first order, it stays within a tenth of it",
         )
     }))
 }

@@ -25,7 +25,7 @@ pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
             },
             value.mean_visible - row.mean_visible,
             Some(paper::VISIBLE_TOLERANCE),
-            "half a digit of Table II, and the epoch and the step of fits that it does not state",
+            "half a digit of Table II, plus the effect of the epoch and time step, which the paper does not state",
         ));
         let Some(mean_pdop) = value.mean_pdop else {
             continue;
@@ -33,9 +33,9 @@ pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
         let name = format!("paper/{}/mean-pdop", row.name());
         let own = row.scheme == Scheme::Proposed;
         let reason = if own {
-            "what the slots and the epoch that the paper does not state move it by"
+            "effect of the GNSS slots and the epoch, which the paper does not state"
         } else {
-            "reported only: no assumption that was tried gives the baselines' mean PDOP"
+            "reported only: none of the assumptions tried reproduces the baselines' mean PDOP"
         };
         checks.push(Check::new(
             &name,

@@ -74,7 +74,7 @@ impl Propagations {
         let cases: [(&str, &str, &Ephemeris, &Ephemeris); 8] = [
             (
                 "mean-j2/sgp4",
-                "all that mean J2 leaves out; at e = 0 mostly J3's frozen eccentricity",
+                "everything mean J2 neglects; at e = 0 mostly J3's frozen eccentricity",
                 &self.mean_j2,
                 &self.sgp4,
             ),
@@ -92,26 +92,26 @@ impl Propagations {
             ),
             (
                 "osculating-j2/sgp4",
-                "J3's frozen eccentricity, J4 and the second order",
+                "J3's frozen eccentricity, J4 and second-order terms",
                 &self.osculating_j2,
                 &self.sgp4,
             ),
             (
                 "kepler-slot",
-                "sqrt(mu/a^3) in the Kozai slot: the effect of a common mistake",
+                "sqrt(mu/a^3) in the Kozai mean motion field, a common mistake",
                 &self.mean_j2,
                 &self.kepler_slot,
             ),
             ("sgp4-no-j3j4/sgp4-no-j3", "J4", &self.no_j3j4, &self.no_j3),
             (
                 "sgp4/sgp4-egm96",
-                "gravity constants: mu, R and J2 of EGM96 in place of WGS-72",
+                "gravity constants: mu, R and J2 of EGM96 instead of WGS-72",
                 &self.sgp4,
                 &self.design_constants,
             ),
             (
                 "sgp4/sgp4-improved",
-                "improved mode and its sidereal time in place of AFSPC mode",
+                "improved mode with its sidereal time instead of AFSPC mode",
                 &self.sgp4,
                 &self.improved,
             ),
@@ -249,7 +249,7 @@ impl GateScale {
                     },
                     value,
                     self.gate(bound),
-                    self.reason("closed forms of radius shift, short period, frozen eccentricity and second order, with 15 %"),
+                    self.reason("closed forms of radius shift, short-period terms, frozen eccentricity and second order, plus 15 %"),
                 )
             })
             .collect();
@@ -262,7 +262,7 @@ impl GateScale {
             },
             line.growth_km_per_day.in_track,
             self.gate(self.causes.growth_gate_km_per_day(self.days)),
-            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, and the residual of an incomplete revolution"),
+            self.reason("second-order secular terms of J2 and J4: (2 + 12 cos^4 i) J2^2 n a, plus the residual of an incomplete revolution"),
         ));
         checks
     }
@@ -276,13 +276,13 @@ impl GateScale {
         Check::new(
             "sgp4/radius-shift/closed-form",
             CheckedQuantity {
-                quantity: "mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)",
+                quantity: "mean radial difference minus 3/4 J2 R^2/a (1 - 3 cos^2 i)",
                 unit: "km",
                 statistic: "mean",
             },
             without_j3j4.mean_km.radial - causes.radius_shift_km,
             self.gate(bound),
-            self.reason("the short-period theory of J2 moves the mean radius by a constant, known to first order"),
+            self.reason("the short-period theory of J2 shifts the mean radius by a constant that is known to first order"),
         )
     }
 
@@ -298,12 +298,12 @@ impl GateScale {
                 },
                 growth,
                 None,
-                "what sqrt(mu/a^3) in the mean motion slot of an element set costs",
+                "reported only: drift caused by sqrt(mu/a^3) in the mean motion field of an element set",
             ),
             Check::new(
                 "sgp4/kepler-slot/closed-form",
                 CheckedQuantity {
-                    quantity: "in-track growth less -dM/dt(J2) a",
+                    quantity: "in-track growth minus -dM/dt(J2) a",
                     unit: "km/day",
                     statistic: "slope",
                 },

@@ -95,13 +95,13 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
             Check::new(
                 &format!("analytic/rates/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("rate of the {name} less that of the averaged potential"),
+                    quantity: &format!("rate of the {name} minus that of the averaged potential"),
                     unit: "deg/day",
                     statistic: "value",
                 },
                 apart.to_degrees(),
                 Some(1e-5),
-                "Lagrange's equations with the J2 potential averaged by quadrature: differences at 1e-4, good to 1e-7 of the J2 rates",
+                "Lagrange's equations with the J2 potential averaged by quadrature; finite differences of 1e-4, accurate to 1e-7 of the J2 rates",
             )
         })
         .collect()

@@ -135,11 +135,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         Evaluator::new(solved_for)?.evaluate_ephemeris(&Ephemeris::new(setup.grid, propagated))?;
     let samples = setup.sample_count() as f64;
     let unit_weights = setup.observation_weights == ObservationWeights::Unit;
-    let reason = "the same definitions by another way: angles for squares of sines, whole matrices for Schur complements";
+    let reason = "the same definitions by another route: angles instead of squared sines, full matrices instead of Schur complements";
     let mut checks = vec![Check::new(
         "analytic/geometry/mean-visible",
         CheckedQuantity {
-            quantity: "mean visible satellites of some samples, by angles",
+            quantity: "mean visible over selected samples, from angles",
             unit: "1",
             statistic: "difference",
         },
@@ -164,7 +164,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
             checks.push(Check::new(
                 &format!("analytic/geometry/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("{name} of some samples, by whole matrices"),
+                    quantity: &format!("{name} of selected samples, from full matrices"),
                     unit: "1",
                     statistic: "difference",
                 },

@@ -121,24 +121,24 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         Check::new(
             "analytic/mean-visible/quadrature",
             CheckedQuantity {
-                quantity: "mean visible satellites, by quadrature",
+                quantity: "mean visible, by quadrature",
                 unit: "1",
                 statistic: "mean",
             },
             expected,
             None,
-            "the limit of a long time: node and place in the orbit independent",
+            "reported only: the long-time limit, where node and position in the orbit are independent",
         ),
         Check::new(
             "analytic/mean-visible",
             CheckedQuantity {
-                quantity: "mean visible satellites of the study over quadrature, less 1",
+                quantity: "mean visible of the study relative to quadrature, minus 1",
                 unit: "1",
                 statistic: "mean",
             },
             found / expected - 1.0,
             Some(finite_span(subject)),
-            "a finite span misses at most a pass or two of each satellite's revolutions; satellites that are spread share the error",
+            "a finite span cuts off at most a pass or two per satellite; the errors of evenly spread satellites average out",
         ),
     ])
 }

@@ -70,13 +70,13 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     Some(Check::new(
         "analytic/symmetry/turn",
         CheckedQuantity {
-            quantity: "distance of the pattern, turned and shifted, from itself",
+            quantity: "distance between the pattern and its rotated and shifted copy",
             unit: "km",
             statistic: "max",
         },
         moved.map(nearest).fold(0.0, f64::max),
         Some(1e-6),
-        "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
+        "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P except at the seam; rounding only",
     ))
 }
 
@@ -102,13 +102,13 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     Ok(Check::new(
         "analytic/symmetry/order",
         CheckedQuantity {
-            quantity: "change of the metrics when satellites are reordered",
+            quantity: "change in the metrics when satellites are reordered",
             unit: "1",
             statistic: "max",
         },
         pairs.into_iter().map(change).fold(0.0, f64::max),
         Some(1e-6),
-        "sums in another order: rounding only, of single precision where the fast path takes it",
+        "sums in another order: rounding only, in single precision where the fast path uses it",
     ))
 }
 
@@ -133,13 +133,13 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
         Check::new(
             "analytic/mask",
             CheckedQuantity {
-                quantity: "gain of mean visible satellites when the mask is raised",
+                quantity: "gain in mean visible when the mask is raised",
                 unit: "1",
                 statistic: "max",
             },
             largest_gain.max(0.0),
             Some(0.0),
-            "what is above a higher mask is above the lower one",
+            "a satellite above the higher mask is also above the lower one",
         )
     }))
 }

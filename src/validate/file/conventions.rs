@@ -167,7 +167,7 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "two-body",
-        meaning: "no J2 at all",
+        meaning: "two-body motion, without J2",
         propagate: |subject, _| {
             propagate_each(&subject.design.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
@@ -203,17 +203,17 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "sgp4",
-        meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
+        meaning: "SGP4 with dM/dt of secular J2 in the mean motion field",
         propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
     },
     Convention {
         name: "sgp4-kepler-slot",
-        meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
+        meaning: "SGP4 with sqrt(mu/a^3) in the mean motion field",
         propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
     },
     Convention {
         name: ANOTHER_RADIUS,
-        meaning: "altitudes over another radius of the Earth",
+        meaning: "altitudes measured from another Earth radius",
         propagate: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
     },
     Convention {
@@ -278,32 +278,32 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "teme-taken-for-eme2000",
-        meaning: "TEME states, labelled EME2000; or, the same, elements and pole of J2 counted from the equator of J2000",
+        meaning: "TEME states labelled EME2000, or equivalently elements and J2 pole referred to the J2000 equator",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
     },
     Convention {
         name: "eme2000-taken-for-teme",
-        meaning: "EME2000 states, labelled TEME",
+        meaning: "EME2000 states labelled TEME",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
     },
     Convention {
         name: "teme-taken-for-earth-fixed",
-        meaning: "TEME states, labelled as of the rotating Earth",
+        meaning: "TEME states labelled Earth-fixed",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
     },
     Convention {
         name: "earth-fixed-taken-for-teme",
-        meaning: "states of the rotating Earth, labelled TEME",
+        meaning: "Earth-fixed states labelled TEME",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
     },
     Convention {
         name: "utc-taken-for-gps",
-        meaning: "UTC instants, labelled GPS time",
+        meaning: "UTC instants labelled GPS time",
         propagate: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "gps-taken-for-utc",
-        meaning: "GPS instants, labelled UTC",
+        meaning: "GPS instants labelled UTC",
         propagate: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
@@ -343,7 +343,7 @@ pub(super) fn explanation(
             convention: convention.name.to_owned(),
             meaning: if convention.name == ANOTHER_RADIUS {
                 let radius_km = RADIUS_KM + fitted.radius_offset_km;
-                format!("altitudes over a radius of {radius_km:.4} km (fitted)")
+                format!("altitudes measured from a radius of {radius_km:.4} km (fitted)")
             } else {
                 convention.meaning.to_owned()
             },

@@ -17,7 +17,7 @@ pub enum FileError {
         source: ReadFleetError,
     },
     /// Mean elements, which say nothing of where a satellite is without a theory.
-    #[error("{0} holds mean elements; states or SGP4 element sets can be compared")]
+    #[error("{0} holds mean elements; only states and SGP4 element sets can be compared")]
     MeanElements(String),
     /// SGP4 does not propagate an element set.
     #[error("{object}: {source}")]
@@ -29,7 +29,7 @@ pub enum FileError {
     },
     /// No state lies in the span of the study.
     #[error(
-        "none of the {objects} objects has a state within the span of the study, {from} to {to}; the first object covers {first} to {last}"
+        "none of the {objects} objects has a state within the time span of the study, {from} to {to}; the first object covers {first} to {last}"
     )]
     AnotherEpoch {
         /// Objects of the files.
@@ -45,7 +45,7 @@ pub enum FileError {
     },
     /// No object is near a slot.
     #[error(
-        "none of the {objects} objects of {source_name} matches one of the {slots} slots by name or place"
+        "none of the {objects} objects of {source_name} matches any of the {slots} slots by name or position"
     )]
     NothingMatches {
         /// The files.
@@ -56,7 +56,7 @@ pub enum FileError {
         slots: usize,
     },
     /// No object at all.
-    #[error("{0} has no object")]
+    #[error("{0} has no objects")]
     Empty(String),
 }
 

@@ -116,7 +116,7 @@ fn a_radius_is_fitted() {
     let explanation = findings.files[0].explanation.as_ref().unwrap();
     assert_eq!(
         explanation.meaning,
-        "altitudes over a radius of 6371.0000 km (fitted)"
+        "altitudes measured from a radius of 6371.0000 km (fitted)"
     );
 }
 

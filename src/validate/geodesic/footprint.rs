@@ -60,7 +60,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         Check::new(
             "geographiclib/footprint/cap",
             CheckedQuantity {
-                quantity: "area of the footprint by the cap formula",
+                quantity: "footprint area by the spherical cap formula",
                 unit: "km^2",
                 statistic: "value",
             },
@@ -71,7 +71,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         Check::new(
             "geographiclib/footprint/geodesic-polygon",
             CheckedQuantity {
-                quantity: "area of the footprint by a geodesic polygon over that of the cap, less 1",
+                quantity: "footprint area by geodesic polygon relative to the cap, minus 1",
                 unit: "1",
                 statistic: "max",
             },
@@ -79,7 +79,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
             // Radii of curvature are between R (1 - 2f) and R (1 + f); at a fixed height the area
             // goes with the first power of the radius.
             Some(2.0 * FLATTENING + 3e-4),
-            "radii of curvature of the ellipsoid are off the equatorial radius by up to 2 f; 180 corners cut 2e-4",
+            "the ellipsoid's radii of curvature differ from the equatorial radius by up to 2 f; a polygon of 180 corners loses 2e-4",
         ),
     ]
 }

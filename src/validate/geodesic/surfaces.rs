@@ -45,12 +45,12 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
     let others: [(&str, &str, Frames); 2] = [
         (
             "sphere",
-            "latitudes taken as geocentric on the sphere of the equatorial radius: a shift of the points by up to 21 km",
+            "latitudes read as geocentric on a sphere of the equatorial radius: points shift by up to 21 km",
             |lat, lon| LocalFrame::new(Surface::Sphere, lat, lon),
         ),
         (
             "geocentric-vertical",
-            "points of the ellipsoid whose vertical points away from the centre: a tilt of up to 0.19 deg",
+            "points on the ellipsoid with geocentric verticals: a tilt of up to 0.19 deg",
             with_geocentric_vertical,
         ),
     ];
@@ -59,7 +59,7 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
         let wrong = metrics(frame)?;
         let mut add = |quantity: &str, before: Option<f64>, after: Option<f64>| {
             if let (Some(before), Some(after)) = (before, after) {
-                let label = format!("change of {quantity} against WGS 84");
+                let label = format!("change in {quantity} relative to WGS 84");
                 findings.checks.push(Check::new(
                     &format!("geographiclib/{name}/{quantity}"),
                     CheckedQuantity {

@@ -70,7 +70,7 @@ impl WrittenSets {
         )?;
         let epoch = compare(
             "sgp4/sgp4-at-tle-epoch",
-            "epoch of a TLE, in steps of 1e-8 day, elements carried there by J2",
+            "epoch of a TLE, in steps of 1e-8 day, with the elements propagated there by J2",
             exact,
             &self.unrounded,
         )?;
@@ -95,14 +95,14 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
     Check::new(
         "sgp4/tle/digits",
         CheckedQuantity {
-            quantity: "distance by the digits of a TLE",
+            quantity: "distance due to the digits of a TLE",
             unit: "km",
             statistic: "max",
         },
         line.worst.distance_km,
         // Sets whose epoch lies before the span drift a little longer; 10 % covers it.
         Some(1.1 * (angles_km + shape_km + drift_km)),
-        "half a digit in each of four angles, in e and in the mean motion over the span",
+        "half a digit in each of the four angles, in e and in the mean motion, over the span",
     )
 }
 
@@ -110,13 +110,13 @@ fn epoch_check(line: &BudgetLine) -> Check {
     Check::new(
         "sgp4/tle/epoch",
         CheckedQuantity {
-            quantity: "distance by the epoch of a TLE",
+            quantity: "distance due to the epoch of a TLE",
             unit: "km",
             statistic: "max",
         },
         line.worst.distance_km,
         Some(2e-4),
-        "elements are carried to the rounded epoch, at most 0.43 ms away: what is left is the dating of doubles, 20 us; uncarried it would be 3.2 m",
+        "elements are propagated to the rounded epoch, at most 0.43 ms away; the remainder is the resolution of a Julian date in doubles, 20 us; without this step it would be 3.2 m",
     )
 }
 
@@ -136,12 +136,12 @@ fn sidereal_check(subject: &Subject<'_>) -> Check {
     Check::new(
         "sgp4/sidereal-time",
         CheckedQuantity {
-            quantity: "shift of the Earth by SGP4's own sidereal time",
+            quantity: "rotation of the Earth by SGP4's own sidereal time",
             unit: "km",
             statistic: "max",
         },
         apart[0].max(apart[1]),
         Some(0.05),
-        "the expression of AFSPC mode (1970) and IAU 1982 differ by some 1e-6 rad this century",
+        "the AFSPC expression (1970) and IAU 1982 differ by about 1e-6 rad this century",
     )
 }

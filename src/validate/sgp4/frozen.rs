@@ -63,7 +63,7 @@ pub(super) fn checks(
         Check::new(
             "sgp4/frozen-eccentricity",
             CheckedQuantity {
-                quantity: "e sin w that J3 forces",
+                quantity: "e sin w forced by J3",
                 unit: "1",
                 statistic: "fit",
             },
@@ -74,24 +74,24 @@ pub(super) fn checks(
         Check::new(
             "sgp4/frozen-eccentricity/closed-form",
             CheckedQuantity {
-                quantity: "forced e sin w less |J3/(2 J2)| R/a sin i",
+                quantity: "forced e sin w minus |J3/(2 J2)| R/a sin i",
                 unit: "1",
                 statistic: "fit",
             },
             forced[1] - frozen,
             Some(0.02 * frozen + floor),
-            "first order in J3/J2; SGP4 floors the eccentricity at 1e-6",
+            "first order in J3/J2; SGP4 keeps the eccentricity at 1e-6 or more",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
             CheckedQuantity {
-                quantity: "e left when the set carries the frozen e at the cancelling w",
+                quantity: "e that remains when the set has the frozen e at the cancelling w",
                 unit: "1",
                 statistic: "fit",
             },
             left[0].hypot(left[1]),
             Some(0.1 * frozen + floor),
-            "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",
+            "a frozen eccentricity written at w = 270 deg cancels the forced one at the epoch; at 90 deg it would double it",
         ),
     ])
 }

@@ -103,24 +103,24 @@ pub(super) fn checks(
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/mean-j2"),
             CheckedQuantity {
-                quantity: &format!("rate of the {name} less closed form"),
+                quantity: &format!("rate of the {name} minus closed form"),
                 unit,
                 statistic: "slope",
             },
             ours[n],
             Some(1e-6 + if n == 1 { leftover_deg } else { 0.0 }),
-            "states of the model against the closed form of its rates: rounding, and the residual of an incomplete revolution",
+            "states of the model compared with the closed form of its rates: rounding, plus the residual of an incomplete revolution",
         ));
         checks.push(Check::new(
             &format!("sgp4/rates/{name}/sgp4"),
             CheckedQuantity {
-                quantity: &format!("rate of the {name} less closed form"),
+                quantity: &format!("rate of the {name} minus closed form"),
                 unit,
                 statistic: "slope",
             },
             theirs[n],
             scale.gate(lever * in_track_deg + leftover_deg),
-            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, over sin i as the node is far away in a flat orbit, and the residual of an incomplete revolution"),
+            scale.reason("second-order secular terms: at most (2 + 12 cos^4 i) J2^2 n, divided by sin i because the node is sensitive at low inclination, plus the residual of an incomplete revolution"),
         ));
     }
     Ok(checks)

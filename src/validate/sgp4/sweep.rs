@@ -76,17 +76,17 @@ pub(super) fn over_inclination_and_altitude(
     findings.checks.push(Check::new(
         name,
         CheckedQuantity {
-            quantity: "largest share of a gate over inclination and altitude",
+            quantity: "largest fraction of a gate over inclination and altitude",
             unit: "1",
             statistic: "max",
         },
         worst,
         Some(1.0),
-        "the closed forms hold from 30 to 98 deg and from 400 to 1500 km, and not by chance at one design",
+        "the closed forms are valid from 30 to 98 deg and from 400 to 1500 km, not just by chance for one design",
     ));
     findings.distributions.extend(Distribution::of(
         name,
-        ["share of the gate", "1"],
+        ["fraction of the gate", "1"],
         &shares,
         |(inclination, altitude, check)| format!("{check} at {inclination} deg, {altitude} km"),
     ));

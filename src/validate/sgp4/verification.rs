@@ -125,8 +125,8 @@ fn distances(expected: &[PublishedState], mode: Sgp4Mode) -> Vec<Residual<(u64, 
 #[must_use]
 pub fn against_the_verification_set() -> Findings {
     let mut findings = Findings::default();
-    let rounding = "the same theory in the same constants: rounding of doubles over years of mean anomaly, and the printed 1e-8 km";
-    let sidereal = "the crate's improved mode has a later expression of sidereal time, which resonant and deep-space terms see";
+    let rounding = "the same theory with the same constants: rounding of doubles over years of mean anomaly, and the printed 1e-8 km";
+    let sidereal = "the crate's improved mode uses a newer sidereal time expression, which affects resonant and deep-space terms";
     for (name, expected, mode, gate, reason) in [
         ("published", published(), Sgp4Mode::Improved, 1e-5, sidereal),
         ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 1e-6, rounding),
@@ -145,7 +145,7 @@ pub fn against_the_verification_set() -> Findings {
         findings.checks.push(Check::new(
             name,
             CheckedQuantity {
-                quantity: "distance of the sgp4 crate from the verification set",
+                quantity: "distance between the sgp4 crate and the verification set",
                 unit: "km",
                 statistic: "max",
             },
