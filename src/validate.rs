@@ -1,7 +1,8 @@
 //! Checks against standards that this library did not write: residuals, budgets and gates.
 //!
-//! What is on trial are the [`Parts`] of the library; a [`Subject`] is a design in a study, with
-//! the parts that propagate and see it. A target (a standard) takes a subject and gives [`Findings`].
+//! The [`Parts`] of the library are under test; a [`Subject`] is a design in a study together with
+//! the parts that propagate it and decide what is visible. A target (a standard) turns a subject
+//! into [`Findings`].
 
 pub mod analytic;
 mod decisions;
@@ -33,7 +34,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// One number of a validation, with the bound that it must keep.
+/// One number of a validation, with the bound it must meet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Unique name, `target/case/quantity`.
@@ -42,16 +43,16 @@ pub struct Check {
     pub quantity: String,
     /// Its unit.
     pub unit: String,
-    /// Which statistic of it.
+    /// The statistic.
     pub statistic: String,
     /// The value; JSON has `null` for one that is not finite.
     #[serde(deserialize_with = "null_is_nan")]
     pub value: f64,
-    /// The bound on its size; `None` when it is reported only.
+    /// The bound on its magnitude; `None` if it is reported only.
     pub gate: Option<f64>,
-    /// Whether the value keeps its bound (true when there is none).
+    /// Whether the value is within its bound (true if there is none).
     pub passed: bool,
-    /// The physical reason of the bound, or what the number shows.
+    /// The physical reason for the bound, or what the number shows.
     pub reason: String,
 }
 
@@ -93,18 +94,18 @@ fn null_is_nan<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Err
     Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
-/// A crate that validations lean on.
+/// A crate that validations rely on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Judge {
     /// Its name.
     pub name: Cow<'static, str>,
-    /// The version that is built in.
+    /// The version built in.
     pub version: Cow<'static, str>,
-    /// What it judges.
+    /// What it is used for.
     pub role: Cow<'static, str>,
 }
 
-/// The crates whose word counts, in the versions that the lock file pins.
+/// The crates that act as references, in the versions pinned by the lock file.
 pub const JUDGES: [Judge; 4] = [
     Judge {
         name: Cow::Borrowed("sgp4"),
@@ -131,7 +132,7 @@ pub const JUDGES: [Judge; 4] = [
 /// What a validation found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct Findings {
-    /// The checks, in the order in which they are read.
+    /// The checks, in reading order.
     #[serde(default)]
     pub checks: Vec<Check>,
     /// The error budget by cause, for comparisons of trajectories.
@@ -149,7 +150,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Whether every gate is kept.
+    /// Whether every gate passed.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.checks.iter().all(|check| check.passed)
@@ -165,24 +166,24 @@ impl Findings {
     }
 }
 
-/// The parts of the library that are held against standards.
+/// The parts of the library that are compared with standards.
 ///
-/// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
+/// Our own by default. A test replaces one by a faulty version to see which checks notice.
 #[derive(Debug, Clone, Copy)]
 pub struct Parts {
     /// Satellites and their slots.
     pub satellites: fn(&Design) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,
-    /// What the mean motion slot of exported element sets holds.
+    /// What exported element sets have in the mean motion field.
     pub slot: MeanMotionSlot,
     /// Argument of perigee at which the frozen eccentricity is cancelled in an element set, degrees.
     pub cancelling_perigee_deg: f64,
-    /// Greenwich mean sidereal time some seconds after an epoch, radians.
+    /// Greenwich mean sidereal time a number of seconds after an epoch, radians.
     pub gmst_rad: fn(Epoch, f64) -> f64,
     /// East, north and up at a latitude and longitude, radians.
     pub local_frame: fn(Surface, f64, f64) -> LocalFrame,
-    /// The clock states that are solved for, by those that are meant.
+    /// The clock states that are solved for, given those of the study.
     pub clocks: fn(Clocks) -> Clocks,
     /// Elevation and azimuth of a position, radians.
     pub look_angles: fn(&LocalFrame, Position<EarthFixed>) -> (f64, f64),
@@ -204,7 +205,7 @@ impl Default for Parts {
 }
 
 keywords! {
-    /// What a design can be held against.
+    /// What a design can be compared with.
     Target {
         /// SGP4: an error budget by cause.
         Sgp4 = "sgp4",
@@ -216,16 +217,16 @@ keywords! {
         Analytic = "analytic",
         /// The tables of the paper.
         Paper = "paper",
-        /// Every one of these that there is for the study.
+        /// All of these that apply to the study.
         All = "all",
     }
 }
 
 impl Target {
-    /// Holds a design against this standard; `All` holds it against each of the others.
+    /// Compares a design with this standard; `All` compares it with each of the others.
     ///
     /// # Errors
-    /// When the validation cannot be carried out.
+    /// If the validation cannot be carried out.
     pub fn findings(self, subject: &Subject<'_>) -> Result<Findings, ValidateError> {
         match self {
             Self::Sgp4 => sgp4::against_sgp4(subject),
@@ -243,7 +244,7 @@ impl Target {
         }
     }
 
-    /// The targets that this one stands for: for `All` each of the others.
+    /// The targets that this one covers: `All` covers each of the others.
     pub fn each(self) -> impl Iterator<Item = Self> {
         let stands_for = move |target: &&Self| match self {
             Self::All => **target != Self::All,
@@ -253,13 +254,13 @@ impl Target {
     }
 }
 
-/// A design in a study, and what propagates and sees it.
+/// A design in a study, with the parts that propagate it and decide what is visible.
 pub struct Subject<'a> {
     /// The design.
     pub design: Design,
     /// The study.
     pub evaluator: &'a Evaluator,
-    /// The parts of the library on trial.
+    /// The parts of the library under test.
     pub parts: Parts,
 }
 
@@ -290,7 +291,7 @@ impl<'a> Subject<'a> {
         self.grid().len() as f64 * self.grid().step_s() / SECONDS_PER_DAY
     }
 
-    /// Elements of the first satellite: all share size, shape and inclination.
+    /// Elements of the first satellite; all satellites share a, e and i.
     fn orbit(&self) -> MeanElements {
         self.design.elements(Slot { plane: 0, index: 0 })
     }
@@ -348,10 +349,10 @@ pub enum ValidateError {
     /// A satellite cannot be propagated.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
-    /// An element does not fit a TLE.
+    /// An element exceeds the columns of a TLE.
     #[error(transparent)]
     Tle(#[from] crate::formats::tle::TleFieldError),
-    /// The study of the paper cannot be repeated.
+    /// The paper's study cannot be reproduced.
     #[error(transparent)]
     Paper(#[from] crate::study::paper::PaperError),
     /// A file cannot be compared.
@@ -360,13 +361,13 @@ pub enum ValidateError {
     /// An integration fails.
     #[error(transparent)]
     Integration(#[from] numerical::integrator::IntegrationError),
-    /// A design of a sweep is none.
+    /// A design of a sweep is invalid.
     #[error(transparent)]
     Design(#[from] crate::constellation::DesignError),
-    /// A span is not a grid of time.
+    /// A span does not give a time grid.
     #[error(transparent)]
     Time(#[from] crate::time::TimeError),
-    /// There is no identity for a satellite.
+    /// No catalogue number or designator is left for a satellite.
     #[error(transparent)]
     Identity(#[from] crate::formats::metadata::IdentityError),
 }

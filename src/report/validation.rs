@@ -131,7 +131,7 @@ fn distribution_table(distributions: &[&Distribution]) -> Table {
     table
 }
 
-/// How many satellites of a comparison a table lists at most; JSON has all of them.
+/// Maximum number of satellites of a comparison in a table; JSON has all of them.
 const LISTED: usize = 12;
 
 /// The satellites that differ most.

@@ -1,4 +1,4 @@
-//! What a difference of two trajectories does to visibility decisions, passes and metrics.
+//! The effect of a trajectory difference on visibility decisions, passes and metrics.
 
 use super::distribution::{Distribution, Residual};
 use super::{Check, CheckedQuantity, Findings};
@@ -9,19 +9,19 @@ use crate::ground::Site;
 use crate::units::wrap_pi;
 use rayon::prelude::*;
 
-/// Sites at which passes are timed; more would tell the same.
+/// Sites at which passes are timed; more would not change the picture.
 const PASS_SITES: usize = 6;
 
-/// Most satellites whose passes are timed.
+/// Maximum number of satellites whose passes are timed.
 const PASS_SATELLITES: usize = 60;
 
-/// Why there is no bound.
+/// The reason given where there is no bound.
 const UNBOUNDED: &str = "reported only: effect of the state difference on the result";
 
 /// Bounds on the change of decisions and metrics; `None` reports only.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DecisionGates {
-    /// Share of the decisions that flip.
+    /// Fraction of the decisions that flip.
     pub(super) flips: f64,
     /// Satellites.
     pub(super) satellites: f64,
@@ -34,7 +34,7 @@ pub(super) struct TrajectoryPair<'a> {
     pub(super) second: &'a Ephemeris,
 }
 
-/// FlipCounts of decisions.
+/// Number of decisions, and of those that flip.
 #[derive(Debug, Clone, Copy, Default)]
 struct FlipCounts {
     decisions: u64,
@@ -161,7 +161,7 @@ impl TrajectoryPair<'_> {
         for site in sites {
             let [first, second] = [propagations[0].passes(site)?, propagations[1].passes(site)?];
             for pass in &first {
-                // The same pass is the one in the middle of which the other is under way.
+                // Two passes are the same pass if one is under way at the middle of the other.
                 let middle = 0.5 * (pass.0 + pass.1);
                 let Some(other) = second.iter().find(|p| p.0 <= middle && middle <= p.1) else {
                     continue;
@@ -180,7 +180,7 @@ impl TrajectoryPair<'_> {
     }
 }
 
-/// At most `most` of `all`, evenly chosen, the ends among them.
+/// At most `most` of `all`, evenly spaced and including both ends.
 fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     if all.len() <= most {
         return all.to_vec();
@@ -189,7 +189,7 @@ fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
-/// What is measured of a shift.
+/// The quantity taken from a shift.
 type ShiftMeasure = fn(&Shift) -> f64;
 
 /// How a pass moved.
@@ -248,14 +248,14 @@ impl<'a> SampledSatellite<'a> {
             .to_earth_fixed(state.position_km))
     }
 
-    /// Sine of the elevation less that of the mask.
+    /// Sine of the elevation minus that of the mask.
     fn height(&self, site: &Site, target_km: Position<EarthFixed>) -> f64 {
         let line = target_km - site.local.origin_km;
         let mask_rad = self.seen.evaluator.setup().mask.degrees().to_radians();
         site.local.up.dot(&line) / line.norm() - mask_rad.sin()
     }
 
-    /// Rise and set of the whole passes over a site, s.
+    /// Rise and set of the complete passes over a site, s.
     fn passes(&self, site: &Site) -> Result<Vec<(f64, f64)>, EphemerisError> {
         let grid = self.seen.evaluator.setup().grid;
         let heights: Vec<f64> = self
@@ -303,7 +303,7 @@ fn metric_checks(
 ) -> Vec<Check> {
     // Each flip changes a count by one.
     let visible_gate = gates.map(|gates| gates.flips * gates.satellites);
-    // A satellite more or less among n changes PDOP by about its 1/n.
+    // One satellite more or less out of n changes PDOP by about 1/n.
     let relative = gates.map(|gates| gates.flips * gates.satellites / first.mean_visible.max(1.0));
     let mut checks = vec![Check::new(
         &format!("{name}/mean-visible"),
@@ -321,7 +321,7 @@ fn metric_checks(
     )];
     let pdop = [
         ("mean-pdop", first.mean_pdop, second.mean_pdop, Some(1.0)),
-        // The tail is at few satellites, where one weighs several times more.
+        // The tail has few satellites in view, so each weighs several times more.
         ("cvar-pdop", first.cvar_pdop, second.cvar_pdop, Some(4.0)),
         ("max-pdop", first.max_pdop, second.max_pdop, None),
     ];
@@ -344,7 +344,7 @@ fn metric_checks(
     checks
 }
 
-/// Share of decisions that flip when satellites are `radial_km` and `along_km` (RMS) away.
+/// Fraction of decisions that flip when satellites are displaced by `radial_km` and `along_km` (RMS).
 ///
 /// The footprint has the half-angle ψ = acos(R cos ε/a) - ε; its edge moves by dψ/da per km of
 /// radius and 1/a per km across it; a strip of width w covers w sin ψ/2 of the sphere.

@@ -1,10 +1,9 @@
 //! The design against an ephemeris that another program made.
 //!
-//! Objects of the files are matched to the slots of the design, by name or else by place; their
-//! states are compared with ours at their own instants, so that nothing is interpolated; and where
-//! they differ, the conventions that other tools are known to use are tried one after the other, to
-//! see whether one of them explains it. What did not match is a check that fails, never left out
-//! silently.
+//! Objects of the files are matched to the slots of the design, by name or else by position. Their
+//! states are compared with ours at their own instants, so nothing is interpolated. Where they
+//! differ, conventions that other tools are known to use are tried one by one to see whether one
+//! explains the difference. Objects that do not match fail a check; they are never dropped silently.
 
 mod conventions;
 mod matching;
@@ -28,11 +27,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use tracks::{Track, tracks};
 
-/// Distance within which a file is the design's own, km: a decimetre, above what the digits of any
-/// format of states lose.
+/// Distance within which a file agrees with the design, km: a decimetre, more than the digits of
+/// any state format lose.
 const SAME_KM: f64 = 1e-4;
 
-/// How a satellite of the file differs from its slot.
+/// Difference of a satellite of the file from its slot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SatelliteDifference {
     /// The slot.
@@ -62,16 +61,16 @@ pub struct FileComparison {
     pub unmatched_slots: Vec<String>,
     /// Objects without a slot.
     pub unmatched_objects: Vec<String>,
-    /// Whether every slot and object matched and all states are the design's own to a decimetre.
+    /// Whether every slot and object matched and all states agree with the design to a decimetre.
     pub agrees: bool,
     /// The satellites, in the order of the slots.
     pub satellites: Vec<SatelliteDifference>,
-    /// The convention that explains the difference, if one does, and what it leaves.
+    /// The convention that explains the difference, if any, and what remains.
     pub explanation: Option<Explanation>,
 }
 
 impl FileComparison {
-    /// Whether the objects that matched are the design's own to a decimetre, whatever is missing.
+    /// Whether the matched objects agree with the design to a decimetre, whatever is missing.
     #[must_use]
     pub fn matched_agree(&self) -> bool {
         !self.satellites.is_empty() && self.satellites.iter().all(|one| one.max_km <= SAME_KM)
@@ -81,8 +80,8 @@ impl FileComparison {
 /// Compares a design with what was read from files; `source` names them.
 ///
 /// # Errors
-/// When nothing of the files can be compared at all: no object has a state, or none lies in the
-/// span of the study.
+/// If nothing in the files can be compared: no object has a state, or none within the time span of
+/// the study.
 pub fn against_file(
     subject: &Subject<'_>,
     source: &str,

@@ -1,9 +1,10 @@
 //! The secular J2 theory against a numerical integration of point mass and J2.
 //!
 //! The integration starts from the osculating state of the mean elements. First-order theory gives
-//! that state to O(J2²), some metres of semi-major axis, which alone drifts by kilometres a day. That
-//! is not an error of the secular rates; so the drift is fitted and reported as what it is, a mean a per
-//! satellite, and the gates are on what is left over 1, 7 and 30 days.
+//! that state to O(J2²), a few metres of semi-major axis, which by itself drifts by kilometres a
+//! day. This is not an error in the secular rates, so the drift is fitted and reported as a
+//! correction to the mean semi-major axis of each satellite, and the gates apply to the remainder
+//! over 1, 7 and 30 days.
 
 pub mod integrator;
 
@@ -22,25 +23,25 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Spans over which the theory is held against the integration, days.
+/// Spans over which the theory is compared with the integration, days.
 const SPANS_DAYS: [f64; 3] = [1.0, 7.0, 30.0];
 
-/// Satellites that are integrated, evenly over the constellation.
+/// Satellites that are integrated, evenly spaced over the constellation.
 const SATELLITES: usize = 8;
 
-/// Samples in a revolution, over which periodic terms average out.
+/// Samples per revolution, over which periodic terms average out.
 const PER_REVOLUTION: usize = 24;
 
-/// Days after which the frozen eccentricity is looked at again.
+/// Days after which the frozen eccentricity is measured again.
 const FROZEN_DAYS: f64 = 7.0;
 
-/// The revolutions of one satellite, each as its means.
+/// Means over each revolution of one satellite.
 struct RevolutionMeans {
     /// Middle of each revolution, days.
     days: Vec<f64>,
-    /// In-track difference of the integration from mean J2, km.
+    /// In-track difference, integration minus mean J2, km.
     in_track_km: Vec<f64>,
-    /// Node less its closed form, degrees.
+    /// Node minus its closed form, degrees.
     node_deg: Vec<f64>,
     /// Difference from J2 with short-period terms at every sample, km, in RIC axes.
     residual_km: Vec<Vector3<f64>>,
@@ -106,17 +107,17 @@ fn conserved(zonals: Zonals, states: &[State<Teme>]) -> [f64; 2] {
         let changes = states.iter().map(|s| (value(s) - value(first)).abs());
         changes.fold(0.0, f64::max) / scale
     };
-    // Relative to the whole angular momentum, as a polar orbit has none about the pole.
+    // Relative to the total angular momentum, since a polar orbit has none about the pole.
     [
         change(&energy, energy(first).abs()),
         change(&momentum, whole(first)),
     ]
 }
 
-/// Everything that the integration says about a design.
+/// All checks of a design by integration.
 ///
 /// # Errors
-/// When a satellite cannot be propagated or the integration fails.
+/// If a satellite cannot be propagated or the integration fails.
 pub fn against_integration(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let satellites = subject.satellites();
     let stride = satellites.len().div_ceil(SATELLITES);
@@ -188,7 +189,7 @@ fn span_checks(subject: &Subject<'_>, tracks: &[RevolutionMeans], days: f64) -> 
                 statistic: "mean slope",
             },
             drift,
-            // δa of a few J2² a at the start drifts by 3/2 n δa.
+            // A starting error δa of a few J2² a drifts by 3/2 n δa.
             Some(6.0 * second_order),
             "the starting semi-major axis is known to O(J2^2), a few metres, and drifts by 3/2 n per metre; this is not an error in the rates",
         ),
@@ -241,12 +242,12 @@ fn span_checks(subject: &Subject<'_>, tracks: &[RevolutionMeans], days: f64) -> 
 
 fn gate_after_fit_km(causes: &Causes, orbit: &MeanElements, days: f64) -> f64 {
     let short = causes.short_period_km.iter().sum::<f64>() + causes.radius_shift_km.abs();
-    // e J2 a grows through a turn of the perigee, which takes months.
+    // e J2 a builds up over a rotation of the perigee, which takes months.
     let long_period = orbit.eccentricity * J2 * orbit.semi_major_axis_km * (1.0 + days);
     0.02 + 0.02 * short + 3.0 * long_period
 }
 
-/// RMS of the residuals over a span, the line through each satellite's in-track residual taken out.
+/// RMS of the residuals over a span, after removing a straight line from each in-track residual.
 fn rms_after_fit(tracks: &[RevolutionMeans], days: f64) -> [f64; 3] {
     let mut squares = Vector3::zeros();
     let mut samples = 0.0;
@@ -270,7 +271,7 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
     let orbit = subject.orbit();
     let sin2 = orbit.inclination_rad.sin().powi(2);
     let frozen = frozen_eccentricity(&orbit);
-    // Near the critical inclination and the equator there is no such equilibrium to speak of.
+    // Near the critical inclination and the equator this equilibrium does not exist.
     if orbit.eccentricity > 0.0 || (sin2 - 0.8).abs() < 0.05 || frozen < 1e-4 {
         return Ok(None);
     }

@@ -4,14 +4,14 @@ use super::{Check, CheckedQuantity, Findings};
 use crate::evaluate::Setup;
 use crate::study::paper::{self, PaperError, Scheme};
 
-/// Table II against the paper: what a validation gates.
+/// Table II compared with the paper, as gated checks.
 ///
-/// Each row is propagated at its printed inclination, or where the table's file names one that fits,
-/// at that. Visibility is gated for all rows and mean PDOP for the paper's own designs; that of
-/// its baselines does not come out under any assumption that was tried, and is reported only.
+/// Each row is propagated at its printed inclination, or at the fitting one where the table's file
+/// names it. Visibility is gated for all rows and mean PDOP for the paper's own designs. The
+/// baselines' mean PDOP is not reproduced under any assumption tried, so it is reported only.
 ///
 /// # Errors
-/// When a design cannot be propagated under the given setup.
+/// If a design cannot be propagated under the given setup.
 pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
     let mut checks = Vec::new();
     for (row, value) in paper::fitted_table(setup)? {

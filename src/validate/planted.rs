@@ -1,5 +1,5 @@
-//! Each check proves that it can fail: mistakes are put in the place of parts of the library, and
-//! the checks that are made for them, and only related ones, notice.
+//! Proof that each check can fail: parts of the library are replaced by faulty ones, and the checks
+//! meant for the mistake, and only related ones, must notice.
 
 use super::analytic::against_closed_forms;
 use super::geodesic::against_geodesics;
@@ -15,7 +15,7 @@ use crate::orbit::j2::{SecularOrbit, SecularRates};
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::{Epoch, TimeGrid};
 
-/// Everything but files, on a design at 40°, where no mistake hides.
+/// All targets except files, on a design at 40°, where no mistake cancels out.
 fn failures(parts: Parts) -> Vec<String> {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     let evaluator = testing::evaluator(TimeGrid::new(epoch, 86_400.0, 600.0).unwrap());
@@ -33,7 +33,7 @@ fn failures(parts: Parts) -> Vec<String> {
     failed.map(|check| check.name).collect()
 }
 
-/// All failures are of these kinds, and each of these checks fails.
+/// Every failure is of one of these kinds, and each of these checks fails.
 fn assert_fails(parts: Parts, checks: &[&str], kinds: &[&str]) {
     let failed = failures(parts);
     for check in checks {
@@ -55,12 +55,12 @@ fn nothing_fails_without_a_mistake() {
     assert_eq!(failures(Parts::default()), Vec::<String>::new());
 }
 
-/// What a mistake of the secular theory touches.
+/// Checks affected by a mistake in the secular theory.
 const SECULAR: [&str; 7] = [
     "sgp4/mean-j2",
     "sgp4/rates",
     "sgp4/kepler-slot",
-    // Far ahead on its circle a satellite is lower, seen from the other.
+    // A satellite far ahead on the same circle appears lower from the other one.
     "sgp4/radius-shift",
     "decisions",
     "numerical/",
@@ -88,7 +88,7 @@ fn a_missing_mean_anomaly_rate() {
     assert_fails(parts, &checks, &SECULAR);
 }
 
-/// Kepler's mean motion in the element sets that are written: the theory itself is right.
+/// Kepler's mean motion in the written element sets; the theory itself is right.
 #[test]
 fn kepler_in_the_mean_motion_slot() {
     let parts = Parts {
@@ -99,7 +99,7 @@ fn kepler_in_the_mean_motion_slot() {
         "sgp4/mean-j2/sgp4/in-track-growth",
         "sgp4/rates/argument-of-latitude/sgp4",
     ];
-    // Every comparison in which SGP4 uses that slot.
+    // Every comparison in which SGP4 uses that field.
     assert_fails(parts, &checks, &["sgp4/"]);
 }
 

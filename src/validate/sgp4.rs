@@ -1,9 +1,9 @@
 //! The J2 propagation against SGP4: an error budget by cause.
 //!
-//! One number would not explain itself. Mean J2 and SGP4 differ by (a) the constant shift of the
-//! radius that the first-order short-period theory has, (b) its periodic terms, (c) the frozen
-//! eccentricity that J3 forces, and (d) second-order secular terms. Each has a closed form at e = 0,
-//! from which the gates are made, so that they follow the inclination and altitude of the design.
+//! A single number would explain nothing. Mean J2 and SGP4 differ by (a) the constant radius shift
+//! of the first-order short-period theory, (b) its periodic terms, (c) the frozen eccentricity
+//! forced by J3, and (d) second-order secular terms. Each has a closed form at e = 0 from which the
+//! gates are derived, so they follow the inclination and altitude of the design.
 
 pub(super) mod causes;
 mod element_sets;
@@ -68,8 +68,7 @@ impl Propagations {
         })
     }
 
-    /// The budget: first the cases of J2 against SGP4, then what SGP4's own variants amount to; the
-    /// first `count` of these.
+    /// The first `count` cases of the budget: J2 against SGP4, then SGP4 against its own variants.
     fn budget(&self, count: usize) -> Result<Vec<BudgetLine>, EphemerisError> {
         let cases: [(&str, &str, &Ephemeris, &Ephemeris); 8] = [
             (
@@ -124,14 +123,14 @@ impl Propagations {
     }
 }
 
-/// Everything that SGP4 says about a design: the budget by cause with its gates, the rates of node
-/// and argument of latitude, the frozen eccentricity, the exported element sets, and what the
-/// differences do to visibility decisions, passes and metrics.
+/// All checks of a design by SGP4: the budget by cause with its gates, the rates of node and
+/// argument of latitude, the frozen eccentricity, the exported element sets, and the effect of the
+/// differences on visibility decisions, passes and metrics.
 ///
 /// Elements are unrounded, without drag, in WGS-72 unless a case says otherwise.
 ///
 /// # Errors
-/// When SGP4 refuses a satellite, as for an orbit that decays.
+/// If SGP4 rejects a satellite, for example because its orbit decays.
 pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = against_the_verification_set();
     let propagations = Propagations::new(subject, subject.grid())?;
@@ -159,7 +158,7 @@ pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     Ok(findings)
 }
 
-/// The closed forms for the orbit and the span at hand.
+/// The closed forms for this orbit and span.
 struct GateScale {
     causes: Causes,
     days: f64,
@@ -176,12 +175,12 @@ impl GateScale {
         }
     }
 
-    /// A bound, but for deep space.
+    /// A bound, except in deep space.
     fn gate(&self, bound: f64) -> Option<f64> {
         (!self.deep_space).then_some(bound)
     }
 
-    /// Why a bound is there, or is not.
+    /// The reason for a bound, or for its absence.
     fn reason<'a>(&self, reason: &'a str) -> &'a str {
         if self.deep_space {
             "reported only: SGP4 adds Sun, Moon and resonances at this period"

@@ -21,7 +21,7 @@ fn averaged([a, e, i]: [f64; 3]) -> f64 {
         .map(|k| {
             let f = TAU * k as f64 / NODES as f64;
             let r = parameter / (1.0 + e * f.cos());
-            // The argument of perigee averages out of sin² (ω + f); a quarter turn more shows it.
+            // The argument of perigee averages out of sin² (ω + f), as adding a quarter turn shows.
             let s2 = i.sin().powi(2) * (0.7 + f).sin().powi(2);
             let potential = -MU_KM3_S2 / r * J2 * (RADIUS_KM / r).powi(2) * 0.5 * (3.0 * s2 - 1.0);
             // dM = (r/a)²/sqrt(1 - e²) df
@@ -72,7 +72,7 @@ fn propagated_rates(subject: &Subject<'_>, orbit: &MeanElements, expected: [f64;
         after.raan_rad - orbit.raan_rad,
         after.mean_argument_of_latitude_rad() - orbit.mean_argument_of_latitude_rad(),
     ];
-    // The whole turns are those that are expected.
+    // The number of full revolutions is the expected one.
     [0, 1].map(|n| {
         let excess = wrap_pi(turned[n] - expected[n] * SECONDS_PER_DAY);
         expected[n] + excess / SECONDS_PER_DAY
@@ -81,7 +81,7 @@ fn propagated_rates(subject: &Subject<'_>, orbit: &MeanElements, expected: [f64;
 
 pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     let orbit = subject.orbit();
-    // Without a node its rate and that of ω are not told apart.
+    // Without a node its rate and that of ω cannot be separated.
     if orbit.inclination_rad.sin() < 0.02 {
         return Vec::new();
     }

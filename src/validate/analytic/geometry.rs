@@ -1,4 +1,4 @@
-//! Visibility and PDOP of the study once more, by angles and whole matrices.
+//! Visibility and PDOP of the study recomputed from angles and full matrices.
 
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, ObservationWeights};
@@ -11,13 +11,13 @@ use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::{DMatrix, Vector3};
 
-/// Instants that are computed again.
+/// Instants that are recomputed.
 const INSTANTS: usize = 12;
 
-/// Points that are computed again.
+/// Points that are recomputed.
 const POINTS: usize = 40;
 
-/// A study of some instants and points of another, and its systems propagated.
+/// A study over some instants and points of another, with its systems propagated.
 struct Again {
     setup: Setup,
     gnss: Vec<Ephemeris>,
@@ -27,7 +27,7 @@ impl Again {
     fn new(subject: &Subject<'_>) -> Option<Self> {
         let full = subject.setup();
         let span_s = full.grid.len() as f64 * full.grid.step_s();
-        // A step that is not a divisor of the day or the period.
+        // A step that divides neither the day nor the period.
         let step_s = span_s / (INSTANTS as f64 - 0.37);
         let grid = TimeGrid::new(full.grid.epoch(), span_s, step_s).ok()?;
         let stride = full.sites.len().div_ceil(POINTS);
@@ -72,7 +72,7 @@ impl Again {
         Ok(lines)
     }
 
-    /// PDOP from the inverse of the whole normal matrix; `groups` are the lines of each clock.
+    /// PDOP from the inverse of the full normal matrix; `groups` are the lines of sight of each clock.
     fn pdop(&self, groups: &[Vec<Vector3<f64>>]) -> Option<f64> {
         let groups: Vec<_> = groups.iter().filter(|group| !group.is_empty()).collect();
         let rows: usize = groups.iter().map(|group| group.len()).sum();
@@ -149,9 +149,9 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         reason,
     )];
     let pdop = [
-        // The fast path has single precision where geometry is good.
+        // The fast path uses single precision where geometry is good.
         ("mean-pdop", metrics.mean_pdop, sum / solved, 1e-6),
-        // Bad geometry costs both ways digits: the condition number goes with PDOP squared.
+        // Poor geometry costs both methods digits: the condition number grows as PDOP squared.
         (
             "max-pdop",
             metrics.max_pdop,

@@ -1,4 +1,4 @@
-//! What does not change when a pattern is turned, satellites are reordered, or the mask is raised.
+//! Invariants: a pattern that is rotated, satellites that are reordered, a mask that is raised.
 
 use crate::constellation::{Pattern, Satellite};
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// Steps by which the mask is raised, degrees.
 const MASK_STEPS_DEG: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
 
-/// Largest design whose places are matched one by one.
+/// Largest design whose positions are matched one by one.
 const MOST_MATCHED: usize = 2_000;
 
 pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
@@ -25,20 +25,20 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     Ok(checks)
 }
 
-/// How a pattern comes to lie on itself: the turn of the nodes and the shift of M, rad.
+/// What maps a pattern onto itself: the rotation of the nodes and the shift of M, rad.
 fn symmetry(subject: &Subject<'_>) -> (f64, f64) {
     let design = &subject.design;
     let (planes, per_plane) = (design.planes() as f64, design.satellites_per_plane() as f64);
     let phase = TAU * design.phasing() as f64 / (planes * per_plane);
     match design.pattern() {
         Pattern::Delta => (TAU / planes, phase),
-        // Half a turn: the second half of the nodes is not occupied.
+        // Half a revolution: the other half of the nodes is not occupied.
         Pattern::Star => (0.5 * TAU / planes, phase),
         Pattern::Lattice => (TAU / planes, -phase),
     }
 }
 
-/// Largest distance of a turned place from the nearest place of the pattern, km.
+/// Largest distance of a rotated position from the nearest position of the pattern, km.
 fn turn_check(subject: &Subject<'_>) -> Option<Check> {
     let satellites = subject.satellites();
     if satellites.len() > MOST_MATCHED {
@@ -60,7 +60,7 @@ fn turn_check(subject: &Subject<'_>) -> Option<Check> {
                 mean_anomaly_rad: wrap_two_pi(elements.mean_anomaly_rad + shift),
                 ..*elements
             };
-            // Turned forwards about the pole by the angle.
+            // Rotated forwards about the pole by the angle.
             rotation.direction_to_teme(position(&shifted))
         });
     let nearest = |place: Vector3<f64>| {
@@ -112,7 +112,7 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     ))
 }
 
-/// The largest gain of mean visible satellites when the mask is raised, which must not be.
+/// The largest gain in mean visible when the mask is raised; there must be none.
 fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let setup = subject.setup();
     let propagated = subject.propagate_mean_j2()?;

@@ -8,7 +8,7 @@ use thiserror::Error;
 /// Why a file cannot be compared with a design.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The text breaks a rule of its format, or its states have no way to TEME.
+    /// The text violates its format, or its states cannot be transformed to TEME.
     #[error("{file}: {source}")]
     Read {
         /// The file.
@@ -16,10 +16,10 @@ pub enum FileError {
         /// What is wrong with it.
         source: ReadFleetError,
     },
-    /// Mean elements, which say nothing of where a satellite is without a theory.
+    /// Mean elements, which give no position without a theory.
     #[error("{0} holds mean elements; only states and SGP4 element sets can be compared")]
     MeanElements(String),
-    /// SGP4 does not propagate an element set.
+    /// SGP4 fails to propagate an element set.
     #[error("{object}: {source}")]
     ElementSet {
         /// The object.
@@ -27,7 +27,7 @@ pub enum FileError {
         /// Why not.
         source: crate::orbit::PropagationError,
     },
-    /// No state lies in the span of the study.
+    /// No state is within the time span of the study.
     #[error(
         "none of the {objects} objects has a state within the time span of the study, {from} to {to}; the first object covers {first} to {last}"
     )]
@@ -69,10 +69,10 @@ pub enum Comparand {
     Elements(Box<::sgp4::Elements>),
 }
 
-/// The objects of a file, its format told by its content or else its name.
+/// The objects of a file, whose format is recognised by content or else by name.
 ///
 /// # Errors
-/// When the file breaks its format, or its states are in a frame or time that is not known.
+/// If the file violates its format, or its states are in an unknown frame or time system.
 pub fn read(file: &str, input: impl BufRead) -> Result<Vec<Comparand>, FileError> {
     let (_, fleet) = Fleet::read(input, None, Some(file)).map_err(|source| FileError::Read {
         file: file.to_owned(),

@@ -1,4 +1,4 @@
-//! What a spherical Earth, or a geocentric vertical on the ellipsoid, does to the metrics.
+//! Effect on the metrics of a spherical Earth or of geocentric verticals on the ellipsoid.
 
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup};
@@ -34,7 +34,7 @@ fn setup_with(setup: &Setup, frame: Frames) -> Setup {
     }
 }
 
-/// The change of the metrics by the surface, against WGS 84.
+/// The change in the metrics due to the surface, relative to WGS 84.
 pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let propagated = subject.propagate_mean_j2()?;
     let metrics = |frame: Frames| {

@@ -1,4 +1,4 @@
-//! Closed forms of what mean J2 leaves out, from which the gates are made.
+//! Closed forms of the terms that mean J2 neglects, from which the gates are derived.
 
 use crate::earth::{J2, RADIUS_KM};
 use crate::orbit::sgp4::ZonalHarmonics;
@@ -13,8 +13,8 @@ const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
 /// -J3/J2 of WGS-72, the constants of SGP4 (Vallado et al., AIAA 2006-6753, table 1).
 const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
-/// Share by which a closed form at e = 0 and first order may be exceeded: terms of order e and
-/// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
+/// Fraction by which a first-order closed form at e = 0 may be exceeded: terms of order e and J2,
+/// the rotation of the frozen eccentricity in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// Closed forms of the causes, for one orbit; all at e = 0 ([M-40](crate::models#m-40) to
@@ -29,9 +29,9 @@ pub(in crate::validate) struct Causes {
     pub(in crate::validate) frozen_km: f64,
     /// Bound on the in-track rate of second-order terms, km/day.
     pub(in crate::validate) second_order_km_per_day: f64,
-    /// In-track rate of sqrt(μ/a³) in the Kozai slot, km/day.
+    /// In-track rate of sqrt(μ/a³) in the Kozai mean motion field, km/day.
     pub(in crate::validate) kepler_slot_km_per_day: f64,
-    /// Share of first-order sizes that the eccentricity adds.
+    /// Factor by which the eccentricity increases first-order terms.
     pub(in crate::validate) eccentric_factor: f64,
 }
 
@@ -94,14 +94,14 @@ impl Causes {
         })
     }
 
-    /// The bounds that are left when the short-period theory of J2 is propagated too.
+    /// The bounds that remain when the short-period terms of J2 are propagated too.
     pub(in crate::validate) fn osculating_gates_km(
         &self,
         zonals: ZonalHarmonics,
         days: f64,
     ) -> [f64; 3] {
         let mut without = *self;
-        // SGP4 floors the eccentricity at 1e-6, 7 m; first-order terms are good to J2 of their size.
+        // SGP4's minimum eccentricity of 1e-6 is 7 m; first-order terms are accurate to a fraction J2.
         without.radius_shift_km = 0.02;
         without.short_period_km = self
             .short_period_km
@@ -109,9 +109,9 @@ impl Causes {
         without.rms_gates_km(zonals, days)
     }
 
-    /// Bound on the slope of the mean in-track difference, km/day: second order, and for spans so
-    /// short that the mean over the constellation is not yet a mean over the orbit, the periodic
-    /// part.
+    /// Bound on the slope of the mean in-track difference, km/day: second order, plus the periodic
+    /// part for spans so short that the mean over the constellation is not yet a mean over the
+    /// orbit.
     pub(in crate::validate) fn growth_gate_km_per_day(&self, days: f64) -> f64 {
         let periodic = self.short_period_km[1] + 2.0 * self.frozen_km;
         let leftover = 0.02 * periodic / days.min(1.0);

@@ -1,4 +1,4 @@
-//! The element sets that an export writes: what their digits and their epoch cost.
+//! Exported element sets: the loss from their digits and their epoch.
 
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::formats::metadata::Object;
@@ -19,9 +19,9 @@ const ECCENTRICITY: f64 = 0.5e-7;
 
 /// A design as element sets, propagated by SGP4.
 pub(super) struct WrittenSets {
-    /// As a reader finds them in the lines.
+    /// As read back from the lines.
     pub(super) propagated: Ephemeris,
-    /// With all digits, at the epoch that a TLE can write.
+    /// With all digits, at the epoch as a TLE can represent it.
     unrounded: Ephemeris,
 }
 
@@ -100,7 +100,7 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
             statistic: "max",
         },
         line.worst.distance_km,
-        // Sets whose epoch lies before the span drift a little longer; 10 % covers it.
+        // Sets whose epoch is before the span drift a little longer; 10 % covers this.
         Some(1.1 * (angles_km + shape_km + drift_km)),
         "half a digit in each of the four angles, in e and in the mean motion, over the span",
     )
@@ -120,7 +120,7 @@ fn epoch_check(line: &BudgetLine) -> Check {
     )
 }
 
-/// Our sidereal time against the one of SGP4 in AFSPC mode, along the orbit.
+/// Our sidereal time compared with SGP4's in AFSPC mode, along the orbit.
 fn sidereal_check(subject: &Subject<'_>) -> Check {
     let grid = subject.grid();
     let last_s = grid.elapsed_s(grid.len() - 1);

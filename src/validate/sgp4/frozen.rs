@@ -1,4 +1,4 @@
-//! The eccentricity that J3 forces, and how an element set cancels it.
+//! The eccentricity forced by J3, and how an element set cancels it.
 
 use super::GateScale;
 use super::causes::Causes;
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// Samples over the first revolution.
 const SAMPLES: usize = 72;
 
-/// The eccentricity vector of one propagation less that of another over the first revolution.
+/// The eccentricity vector of one propagation minus that of another over the first revolution.
 fn vector(
     orbit: &MeanElements,
     with: &impl Propagator,
@@ -38,8 +38,8 @@ fn vector(
     ))
 }
 
-/// The frozen eccentricity against its closed form, and what is left when an element set carries it
-/// at the perigee that cancels it. For circular designs.
+/// The frozen eccentricity compared with its closed form, and the remainder when an element set has
+/// it at the perigee that cancels it. For circular designs.
 pub(super) fn checks(
     subject: &Subject<'_>,
     scale: &GateScale,
@@ -57,7 +57,7 @@ pub(super) fn checks(
         return Ok(Vec::new());
     };
     let frozen = scale.causes.frozen_km / orbit.semi_major_axis_km;
-    // SGP4's floor of the eccentricity, and terms of order J2 of the forced one.
+    // SGP4's minimum eccentricity, and terms of order J2 of the forced one.
     let floor = 3e-6;
     Ok(vec![
         Check::new(
@@ -96,7 +96,7 @@ pub(super) fn checks(
     ])
 }
 
-/// The eccentricity vector of SGP4 less that of J2 alone, and what is left of it with the frozen
+/// The eccentricity vector of SGP4 minus that of J2 alone, and the remainder with the frozen
 /// eccentricity in the set.
 fn eccentricities(
     subject: &Subject<'_>,

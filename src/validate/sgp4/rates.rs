@@ -9,7 +9,7 @@ use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
 use crate::validate::{Check, CheckedQuantity, Subject};
 
-/// Below this sine of the inclination there is no node to speak of.
+/// Below this sine of the inclination the node is ill-defined.
 const LEAST_SIN_I: f64 = 0.02;
 
 /// Node and argument of latitude of a state, rad.
@@ -37,7 +37,7 @@ pub(in crate::validate) fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
     ]
 }
 
-/// Slopes of the angles less their closed forms, deg/day: the mean over the constellation.
+/// Slopes of the angles minus their closed forms, deg/day: the mean over the constellation.
 fn excess_deg_per_day(
     subject: &Subject<'_>,
     propagated: &Ephemeris,
@@ -61,7 +61,7 @@ fn excess_deg_per_day(
     Ok(means.map(|mean| line_fit(&days, &mean).map_or(0.0, |(_, slope)| slope.to_degrees())))
 }
 
-/// The rates of our theory and of SGP4 against the closed forms.
+/// The rates of our theory and of SGP4 compared with the closed forms.
 pub(super) fn checks(
     subject: &Subject<'_>,
     scale: &GateScale,
@@ -78,11 +78,11 @@ pub(super) fn checks(
         Sgp4Orbit::from_mean_elements(elements, subject.epoch(), slot, ZonalHarmonics::Full)
     })?;
     let theirs = excess_deg_per_day(subject, &sgp4)?;
-    // Of eccentric orbits the true argument of latitude swings about the mean by 2e.
+    // On an eccentric orbit the true argument of latitude oscillates about the mean by 2e.
     let swing_deg = (2.0 * orbit.eccentricity).to_degrees();
     let in_track_deg =
         (scale.causes.growth_gate_km_per_day(scale.days) / orbit.semi_major_axis_km).to_degrees();
-    // What a position is known to is seen from the node under 1/sin i.
+    // An error in position moves the node by a factor 1/sin i.
     let lever = 1.0 / orbit.inclination_rad.sin();
     let leftover_deg = 0.02 * swing_deg / scale.days.min(1.0);
     let mut checks = Vec::new();
