@@ -291,8 +291,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         conventions(&result.basis)
     );
     if !result.findings.budget.is_empty() {
-        text +=
-            "\nError budget: second minus first, in radial, in-track and cross-track axes of the first\n";
+        text += "\nError budget: second minus first, in radial, in-track and cross-track axes of the first\n";
         text += &budget_table(&result.findings.budget).to_text();
         for line in &result.findings.budget {
             let worst = &line.worst;

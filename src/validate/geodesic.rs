@@ -203,11 +203,9 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
         }
     }
     let mut findings = Findings::default();
-    let judge =
-        "two constructions of the same plane: GeographicLib's 15 nm over an arm of 1 km, plus rounding";
+    let judge = "two constructions of the same plane: GeographicLib's 15 nm over an arm of 1 km, plus rounding";
     let teacher = "the ellipsoid approximated by a circle with its curvature along the azimuth: accurate out to a low satellite";
-    let limits =
-        "reported only: the curvature method is not valid out to a high satellite";
+    let limits = "reported only: the curvature method is not valid out to a high satellite";
     for (name, quantity, residuals, gate, reason) in [
         (
             "elevation",

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
         );
     }
     let staged = files::StagedDirectory::new(&args.out)?;
-    output::hint("reproducing the paper's study; this takes seconds to minutes");
+    output::hint("reproducing the paper; this takes seconds to minutes");
     let repeated = reproduce(&PaperStudy {
         setup: study.setup()?,
         designs: scenario.search.designs,

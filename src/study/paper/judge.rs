@@ -1,4 +1,4 @@
-//! The rule by which a statement of the paper is met.
+//! The rule that decides whether a statement of the paper is met.
 
 use crate::keyword::{Keyword, keywords};
 use serde::{Serialize, Serializer};
@@ -6,11 +6,11 @@ use serde::{Serialize, Serializer};
 keywords! {
     /// Verdict on a statement.
     Verdict {
-        /// It holds under the assumptions of the scenario.
+        /// True under the assumptions of the scenario.
         Met = "met",
-        /// It holds with one assumption changed.
+        /// True with one assumption changed.
         MetOtherwise = "met under another assumption",
-        /// It holds under none that was tried.
+        /// True under no assumption tried.
         NotMet = "not met",
     }
 }
@@ -21,25 +21,25 @@ impl Serialize for Verdict {
     }
 }
 
-/// What the paper says of a quantity.
+/// What the paper says about a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Expected {
-    /// A number, and by how much another may differ from it and still be the same.
+    /// A number and the tolerance around it.
     Value {
         /// The number.
         value: f64,
         /// The largest difference.
         tolerance: f64,
     },
-    /// At least so much.
+    /// At least this value.
     AtLeast(f64),
-    /// More than so much.
+    /// More than this value.
     MoreThan(f64),
 }
 
 impl Expected {
-    /// Whether `found` is what the paper says; what is not a number never is.
+    /// Whether `found` agrees with the paper; never true for NaN.
     pub(super) fn holds(self, found: f64) -> bool {
         match self {
             Self::Value { value, tolerance } => (found - value).abs() <= tolerance,
@@ -49,7 +49,7 @@ impl Expected {
     }
 }
 
-/// One statement of the paper, judged.
+/// One statement of the paper with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statement {
     /// Where the paper says it.
@@ -60,13 +60,13 @@ pub struct Statement {
     pub unit: String,
     /// What the paper says.
     pub expected: Expected,
-    /// What comes out under the assumptions of the scenario.
+    /// Our value under the assumptions of the scenario.
     pub ours: Option<f64>,
     /// The verdict.
     pub verdict: Verdict,
-    /// The one assumption under which it holds, where it does not hold as it is.
+    /// The changed assumption under which it is met, if it is not met as the scenario stands.
     pub assumption: Option<String>,
-    /// What comes out under that assumption.
+    /// Our value under that assumption.
     pub ours_there: Option<f64>,
 }
 
@@ -76,9 +76,9 @@ pub(super) struct OtherAssumption<'a> {
     pub(super) found: Option<f64>,
 }
 
-/// Judges a statement: met if it holds as the scenario stands; else met under another assumption if
-/// it holds under any of `others`, of which the one with the smallest difference is named (the
-/// first of equals); else not met.
+/// Judges a statement: met if true under the scenario; met under another assumption if true under
+/// any of `others`, of which the one with the smallest difference is named (the first of equals);
+/// otherwise not met.
 pub(super) fn judge(
     [place, statement, unit]: [&str; 3],
     expected: Expected,

@@ -77,8 +77,8 @@ impl Matching {
         }
     }
 
-    /// How many pairs of names are no pairs of places: farther apart at their first sample than
-    /// objects are matched by place.
+    /// How many pairs matched by name are too far apart at their first sample to be matched by
+    /// position.
     pub(super) fn misplaced(
         &self,
         subject: &Subject<'_>,
