@@ -134,7 +134,7 @@ impl Run {
         run
     }
 
-    /// The pick of the fuzzy decision, by place in the members.
+    /// The fuzzy pick, by position in the members.
     #[must_use]
     pub fn chosen(&self) -> Option<usize> {
         self.front.iter().position(|member| member.chosen)

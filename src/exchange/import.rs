@@ -45,13 +45,13 @@ pub enum ReadFleetError {
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
     /// A parameter message of another program: one state, and no theory to propagate it by.
-    #[error("{name}: the message has a state at one instant and no mean elements to propagate")]
+    #[error("{name}: the message has a state at one instant but no mean elements to propagate")]
     NoTheory {
         /// The satellite.
         name: String,
     },
     /// Files of one constellation that propagate by different theories.
-    #[error("one file holds {first} and another {second}; give files of one kind")]
+    #[error("one file has {first} and another {second}; give files of one kind")]
     Mixed {
         /// What the first holds.
         first: &'static str,
@@ -59,7 +59,7 @@ pub enum ReadFleetError {
         second: &'static str,
     },
     /// A satellite whose file has a single sample without a velocity, or two at one instant.
-    #[error("{name}: it has no velocities, and too few positions to derive them from")]
+    #[error("{name}: there are no velocities, and too few positions to derive them")]
     NoVelocity {
         /// The satellite.
         name: String,

@@ -147,7 +147,7 @@ fn lint_tle(input: impl BufRead, findings: &mut FindingList) -> io::Result<()> {
         }
     })?;
     for (line, number) in repeated {
-        let message = format!("satellite {number} has this epoch in a set before");
+        let message = format!("satellite {number} has an earlier set with the same epoch");
         findings.warning((line, 3), "tle-repeated", message);
     }
     Ok(())

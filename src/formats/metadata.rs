@@ -31,10 +31,7 @@ pub enum IdentityError {
     )]
     Alpha5(String),
     /// More satellites than synthetic designators.
-    #[error(
-        "no designator is left for satellite {index}; there are {}",
-        Object::MOST
-    )]
+    #[error("satellite {index} has no designator: only {} exist", Object::MOST)]
     Designator {
         /// Place of the satellite in its constellation, from 0.
         index: usize,
@@ -277,7 +274,7 @@ pub fn frame_comment(frame: Frame) -> &'static str {
              frame bias"
         }
         Frame::EarthFixed => {
-            "Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC, no polar motion; \
+            "Frame: pseudo-Earth-fixed, TEME rotated by GMST (IAU 1982), UT1 = UTC, no polar motion; \
              within 30 m of an ITRF in LEO"
         }
     }

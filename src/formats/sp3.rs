@@ -66,10 +66,10 @@ pub enum Sp3Error {
     #[error("SP3 holds at most 9999999 epochs, not {0}")]
     Epochs(usize),
     /// An instant outside the weeks that a file can count.
-    #[error("SP3 counts weeks from 1980-01-06, 9999 at most; {0} in GPS time is outside them")]
+    #[error("SP3 covers 9999 weeks from 1980-01-06; {0} in GPS time is outside them")]
     Instant(NaiveDateTime),
     /// A letter that is none.
-    #[error("'{0}' is not a capital letter, with which SP3 identifiers begin")]
+    #[error("'{0}' is not a capital letter, as SP3 identifiers need")]
     Letter(char),
     /// A coordinate or a velocity that is too large.
     #[error("{letter}{number:02}: {value} km or dm/s exceeds the 14 columns of an SP3 number")]
@@ -82,7 +82,7 @@ pub enum Sp3Error {
         value: f64,
     },
     /// The letter of a GNSS for the satellites of a design beside it.
-    #[error("'{letter}' is the letter of {preset} in SP3; choose another one for the design")]
+    #[error("'{letter}' is the SP3 letter of {preset}; choose another for the design")]
     LetterOfGnss {
         /// The letter.
         letter: char,

@@ -55,7 +55,7 @@ pub enum TleFieldError {
     #[error(transparent)]
     Identity(#[from] IdentityError),
     /// Lines that another reader refuses.
-    #[error("the lines are not read back: {0}")]
+    #[error("the lines cannot be read back: {0}")]
     Unreadable(sgp4::TleError),
 }
 
@@ -214,7 +214,7 @@ fn rate_field(value: f64) -> Result<String, TleFieldError> {
         None => Err(TleFieldError::Number {
             field: "mean motion derivative",
             value,
-            bound: "its columns hold less than 1 rev/day²",
+            bound: "its columns allow less than 1 rev/day²",
         }),
     }
 }
@@ -232,7 +232,7 @@ fn exponent_field(field: &'static str, value: f64) -> Result<String, TleFieldErr
     let wrong = TleFieldError::Number {
         field,
         value,
-        bound: "its columns hold less than 1e9",
+        bound: "its columns allow less than 1e9",
     };
     // One digit before the point in Rust's notation, none in a TLE's.
     let scientific = format!("{:.4e}", value.abs());
@@ -265,7 +265,7 @@ fn angle_error(field: &'static str, value: f64) -> TleFieldError {
     TleFieldError::Number {
         field,
         value,
-        bound: "angles run from 0 to 360°",
+        bound: "angles must be within 0 to 360°",
     }
 }
 
@@ -276,7 +276,7 @@ fn eccentricity_field(value: f64) -> Result<String, TleFieldError> {
         .ok_or(TleFieldError::Number {
             field: "eccentricity",
             value,
-            bound: "its columns hold 0 to 0.9999999",
+            bound: "its columns allow 0 to 0.9999999",
         })
 }
 
@@ -288,7 +288,7 @@ fn mean_motion_field(rev_day: f64) -> Result<String, TleFieldError> {
         Err(TleFieldError::Number {
             field: "mean motion",
             value: rev_day,
-            bound: "its columns hold 0 to 99.99999999 rev/day",
+            bound: "its columns allow 0 to 99.99999999 rev/day",
         })
     }
 }

@@ -6,7 +6,7 @@ use thiserror::Error;
 /// A method that picks, or the member itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pick {
-    /// The fuzzy decision: the best worst-case membership.
+    /// The fuzzy pick: the best worst-case membership.
     Fuzzy,
     /// The largest normalised sum of memberships.
     Sum,
@@ -68,13 +68,13 @@ impl Pick {
     /// What the score of a pick means.
     fn reason(self) -> &'static str {
         match self {
-            Self::Fuzzy => "the fuzzy decision: the best worst-case membership over the objectives",
-            Self::Sum => "the largest share of the memberships, summed over the objectives",
+            Self::Fuzzy => "the fuzzy pick: the best worst-case membership over the objectives",
+            Self::Sum => "the largest normalised sum of memberships over the objectives",
             Self::Topsis => {
-                "TOPSIS, equal weights: far from the worst and near the best of every objective"
+                "TOPSIS, equal weights: nearest to the best and farthest from the worst of every objective"
             }
-            Self::Knee => "the knee: furthest from the line between the ends of the front",
-            Self::Index(_) => "the member that was asked for",
+            Self::Knee => "the knee: farthest from the line between the ends of the front",
+            Self::Index(_) => "the design with this index",
         }
     }
 

@@ -1,14 +1,14 @@
-//! A front against the exact front of a lattice: how good it is, and what it missed.
+//! A front compared with the front of a grid sweep: how good it is, and what it missed.
 
 use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
 use crate::search::Quantity;
 
-/// A swept design counts as found when a front member is no worse than it by more than this share
-/// of the exact front's range in every objective: the spacing of thirty members along a front.
+/// A design of the sweep counts as found if a front member is worse by at most this fraction of the
+/// range of the sweep's front in every objective: the spacing of thirty members along a front.
 const FOUND_WITHIN: f64 = 1.0 / 30.0;
 
 impl Certificate {
-    /// Holds a front against the result of a sweep of the same problem.
+    /// Compares a front with the result of a sweep of the same problem.
     ///
     /// The distance of a member is IGD+'s (Ishibuchi et al., EMO 2015): over the exact members, the
     /// least root of the sum of squares of what it is worse by, each objective in units of the
@@ -63,8 +63,8 @@ impl Certificate {
         let worst = self.distances.iter().copied().fold(0.0, f64::max);
         let mean = self.distances.iter().sum::<f64>() / self.distances.len().max(1) as f64;
         let mut text = format!(
-            "certificate: a sweep of {} designs has an exact front of {} members, hypervolume {}; found {}\n\
-             distance to the exact front, as a share of its range: mean {:.2} %, worst {:.2} %\n",
+            "certificate: a grid sweep of {} designs gives a front of {}, hypervolume {}; this search {}\n\
+             distance to the sweep's front, relative to its range: mean {:.2} %, maximum {:.2} %\n",
             self.evaluations,
             self.exact_members,
             volume(self.exact_hypervolume),
@@ -73,9 +73,9 @@ impl Certificate {
             100.0 * worst,
         );
         text += &match &self.missed {
-            None => "no part of the exact front was missed\n".to_owned(),
+            None => "no part of the sweep's front was missed\n".to_owned(),
             Some(missed) => format!(
-                "missed: {} exact members with planes {} to {}, satellites per plane {} to {}, \
+                "missed: {} designs of the sweep's front with planes {} to {}, satellites per plane {} to {}, \
                  inclination {} to {} deg, altitude {} to {} km\n",
                 missed.members,
                 missed.planes[0],

@@ -64,11 +64,11 @@ impl Measure {
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
-            Self::MeanVisible => "mean number of visible LEO satellites",
+            Self::MeanVisible => "mean visible LEO satellites",
             Self::MeanPdop => "mean PDOP",
             Self::P95Pdop => "95 % quantile of PDOP",
             Self::MaxPdop => "maximum PDOP",
-            Self::Availability => "availability (share of the time)",
+            Self::Availability => "availability (fraction of the time)",
             Self::Pdop => "PDOP",
         }
     }
@@ -81,14 +81,14 @@ pub fn quantity_label(name: &str) -> String {
         return name.to_owned();
     };
     let label = match quantity {
-        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR",
-        Quantity::JCost => "J_cost = satellites per visible satellite",
+        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR of PDOP",
+        Quantity::JCost => "J_cost = satellites / mean visible",
         Quantity::MeanPdop => "mean PDOP",
         Quantity::CvarPdop => "CVaR of PDOP",
         Quantity::MaxPdop => "maximum PDOP",
         Quantity::Satellites => "satellites",
         Quantity::Planes => "planes",
-        Quantity::MeanVisible => "mean number of visible LEO satellites",
+        Quantity::MeanVisible => "mean visible LEO satellites",
         Quantity::Availability => "availability",
         Quantity::LaunchCost => "launch cost (satellites)",
     };
@@ -107,7 +107,7 @@ pub enum FigureError {
         reason: &'static str,
     },
     /// The figure does not show that measure.
-    #[error("figure {figure} does not show {measure}; it shows {choices}")]
+    #[error("figure {figure} cannot show {measure}; it shows {choices}")]
     Measure {
         /// The figure.
         figure: Figure,

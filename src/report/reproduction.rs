@@ -69,15 +69,15 @@ fn rows_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("row", LEFT),
         ("design as printed", LEFT),
-        ("mean visible, paper", RIGHT),
+        ("mean visible,\npaper", RIGHT),
         ("ours", RIGHT),
         ("%", RIGHT),
-        ("mean PDOP, paper", RIGHT),
+        ("mean PDOP,\npaper", RIGHT),
         ("ours", RIGHT),
         ("%", RIGHT),
-        ("fitting i (deg)", RIGHT),
-        ("mean visible at that i", RIGHT),
-        ("mean PDOP at that i", RIGHT),
+        ("fitting i\n(deg)", RIGHT),
+        ("mean visible\nat that i", RIGHT),
+        ("mean PDOP\nat that i", RIGHT),
         ("%", RIGHT),
     ]);
     for row in &study.rows {
@@ -117,11 +117,11 @@ const SHOWN_ROWS: [&str; 2] = ["proposed-2", "polar-2"];
 fn sensitivity_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("assumption", LEFT),
-        ("mean visible, proposed-2", RIGHT),
+        ("mean visible,\nproposed-2", RIGHT),
         ("change", RIGHT),
         ("mean PDOP", RIGHT),
         ("change", RIGHT),
-        ("mean visible, polar-2", RIGHT),
+        ("mean visible,\npolar-2", RIGHT),
         ("change", RIGHT),
         ("mean PDOP", RIGHT),
         ("change", RIGHT),
@@ -157,7 +157,7 @@ fn searches_table(study: &Reproduction) -> Table {
         ("pick", LEFT),
         ("mean visible", RIGHT),
         ("mean PDOP", RIGHT),
-        ("maximum PDOP", RIGHT),
+        ("maximum\nPDOP", RIGHT),
         ("J_pos", RIGHT),
         ("J_cost", RIGHT),
     ]);

@@ -19,7 +19,7 @@ pub struct SeedRun {
     pub evaluations: u64,
     /// Members of its front.
     pub front_size: usize,
-    /// Pick of the fuzzy decision.
+    /// The fuzzy pick.
     pub pick: Option<String>,
 }
 
@@ -123,7 +123,7 @@ impl SeedsResult {
                 std_dev,
             } = spread;
             text += &format!(
-                "hypervolume over {} seeds: mean {mean:.5}, least {min:.5}, greatest {max:.5}, \
+                "hypervolume over {} seeds: mean {mean:.5}, minimum {min:.5}, maximum {max:.5}, \
                  standard deviation {std_dev:.5}\n",
                 self.seeds.len()
             );

@@ -82,7 +82,7 @@ pub struct FrontMember {
     pub membership: f64,
     /// Fuzzy membership: the normalised sum over the objectives.
     pub membership_sum: f64,
-    /// Whether this is the pick of the fuzzy decision.
+    /// Whether this is the fuzzy pick.
     pub chosen: bool,
 }
 
@@ -173,7 +173,7 @@ pub struct OptimizeResult {
 }
 
 impl OptimizeResult {
-    /// The pick of the fuzzy decision.
+    /// The fuzzy pick.
     #[must_use]
     pub fn chosen(&self) -> Option<&FrontMember> {
         self.front.iter().find(|member| member.chosen)

@@ -236,7 +236,7 @@ fn the_parts_of_a_large_constellation_are_read_together() {
         } else {
             // SP3-c has no room for names.
             assert!(
-                evaluated.stderr.contains("given twice"),
+                evaluated.stderr.contains("appears twice"),
                 "{}",
                 evaluated.stderr
             );

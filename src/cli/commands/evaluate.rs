@@ -142,7 +142,7 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     let weight = scenario.objectives.cvar_weight;
     let tail = 100.0 * (1.0 - metrics.cvar_level);
     let threshold = scenario.objectives.availability_pdop;
-    let seen = "LEO satellites in view, mean over points and times";
+    let seen = "LEO satellites in view, mean over points and instants";
     row(
         "mean visible",
         Some(metrics.mean_visible),
@@ -151,7 +151,7 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     );
     row("mean PDOP", metrics.mean_pdop, 4, String::new());
     row(
-        "CVaR PDOP",
+        "CVaR of PDOP",
         metrics.cvar_pdop,
         4,
         format!(
@@ -160,14 +160,14 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
         ),
     );
     row("median PDOP", metrics.p50_pdop, 4, String::new());
-    row("95 % PDOP", metrics.p95_pdop, 4, String::new());
-    row("99 % PDOP", metrics.p99_pdop, 4, String::new());
+    row("95 % quantile of PDOP", metrics.p95_pdop, 4, String::new());
+    row("99 % quantile of PDOP", metrics.p99_pdop, 4, String::new());
     row("maximum PDOP", metrics.max_pdop, 4, String::new());
     row(
         "solved",
         Some(100.0 * metrics.solved_fraction),
         3,
-        "% of points and times".to_owned(),
+        "% of points and instants".to_owned(),
     );
     row(
         "available",
@@ -175,12 +175,17 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
         3,
         format!("% with PDOP <= {threshold}"),
     );
-    row("J_pos", metrics.j_pos, 4, format!("mean + {weight} CVaR"));
+    row(
+        "J_pos",
+        metrics.j_pos,
+        4,
+        format!("mean PDOP + {weight} CVaR of PDOP"),
+    );
     row(
         "J_cost",
         metrics.j_cost,
         4,
-        "satellites per visible satellite".to_owned(),
+        "satellites / mean visible".to_owned(),
     );
     let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
     format!(

@@ -232,10 +232,10 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         ("T", right),
         ("i (deg)", right),
         ("h (km)", right),
-        ("N visible", right),
-        ("E[PDOP]", right),
-        ("CVaR", right),
-        ("max PDOP", right),
+        ("mean\nvisible", right),
+        ("mean\nPDOP", right),
+        ("CVaR of\nPDOP", right),
+        ("maximum\nPDOP", right),
         ("J_pos", right),
         ("J_cost", right),
         ("membership", right),
@@ -264,7 +264,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     }
     if let Some(chosen) = result.chosen() {
         text += &format!(
-            "* chosen by fuzzy decision: {}, the best worst-case membership ({:.3}) over the objectives\n",
+            "* fuzzy pick: {}, the best worst-case membership over the objectives ({:.3})\n",
             chosen.design.notation, chosen.membership
         );
     }
@@ -278,7 +278,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     text
 }
 
-/// What the other methods of decision pick, and why.
+/// The picks of the other methods, and why.
 fn other_picks(result: &OptimizeResult) -> String {
     let points: Vec<Vec<f64>> = result.front.iter().map(FrontMember::minimised).collect();
     let mut text = String::new();

@@ -142,14 +142,14 @@ products! {
     }
     /// GMAT: a script that propagates the design under J2 alone.
     Gmat = "gmat" {
-        help: &["GMAT script of the design under J2 alone, with the field that it loads"],
+        help: &["GMAT script of the design under J2 alone, with its gravity field file"],
         has_frame: false,
-        read_back: Err("a script holds no states until GMAT has run it"),
+        read_back: Err("a script has no states until GMAT runs it"),
         write: ProductWriter::Design(|source, files| source.gmat(files)),
     }
     /// CZML: satellites, orbits and region for CesiumJS.
     Czml = "czml" {
-        help: &["CesiumJS: satellites, orbits, GNSS, and the region coloured by mean PDOP"],
+        help: &["CZML for CesiumJS: satellites, orbits, GNSS, and the region coloured by mean PDOP"],
         has_frame: false,
         read_back: Ok(ReadBack {
             files: Grouping::Together,
@@ -160,16 +160,16 @@ products! {
     }
     /// GeoJSON: region with metrics, ground tracks, footprints.
     Geojson = "geojson" {
-        help: &["for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
+        help: &["GeoJSON for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
         has_frame: false,
-        read_back: Err("a map of the ground holds no orbits"),
+        read_back: Err("a map of the ground has no orbits"),
         write: ProductWriter::Scenario(|source, files, scene| source.geojson(files, scene)),
     }
     /// KML: the same for Google Earth.
     Kml = "kml" {
-        help: &["for Google Earth: the same in one document"],
+        help: &["KML for Google Earth: the same in one document"],
         has_frame: false,
-        read_back: Err("a map of the ground holds no orbits"),
+        read_back: Err("a map of the ground has no orbits"),
         write: ProductWriter::Scenario(|source, files, scene| source.kml(files, scene)),
     }
     /// YUMA almanacs of the nominal GNSS.
@@ -194,12 +194,12 @@ products! {
     Metrics = "metrics" {
         help: &["tables of the metrics by ground point and by instant"],
         has_frame: false,
-        read_back: Err("the tables hold metrics, no satellites"),
+        read_back: Err("the tables have metrics, not satellites"),
         write: ProductWriter::Scenario(|source, files, scene| source.metrics(files, scene)),
     }
     /// States that SGP4 gives for the element sets as written, for comparing another SGP4.
     TleStates = "tle-states" {
-        help: &["table of what SGP4 makes of the element sets as written"],
+        help: &["table of SGP4 states from the TLEs as written, to compare another SGP4"],
         has_frame: false,
         // States of SGP4 have the theory and the digits of the element sets.
         read_back: Ok(ReadBack {

@@ -27,7 +27,7 @@ pub enum FleetError {
     #[error(transparent)]
     Propagation(#[from] EphemerisError),
     /// Two satellites of one name.
-    #[error("satellite {0} is given twice")]
+    #[error("satellite {0} appears twice")]
     Repeated(String),
     /// A satellite without a sample at an instant of the study.
     #[error(

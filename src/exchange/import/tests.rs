@@ -143,7 +143,7 @@ fn what_makes_no_constellation_is_refused() {
     assert!(mixed.to_string().contains("sampled states"), "{mixed}");
     oem.append(oem.clone()).unwrap();
     let twice = oem.propagate(grid(), Model::J2).err().unwrap();
-    assert_eq!(twice.to_string(), "satellite NW-P01-S01 is given twice");
+    assert_eq!(twice.to_string(), "satellite NW-P01-S01 appears twice");
     assert_eq!(
         Fleet::Sampled(Vec::new())
             .propagate(grid(), Model::J2)

@@ -172,7 +172,7 @@ pub(crate) enum Item<'a> {
 pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
     if line.text.len() > LINE {
         let message = format!(
-            "the line has {} characters; {LINE} are allowed",
+            "the line has {} characters; the limit is {LINE}",
             line.text.len()
         );
         findings.warning((line.number, LINE + 1), "ccsds-line-length", message);
@@ -288,12 +288,12 @@ impl KvnBlock {
             return;
         };
         if std::mem::replace(&mut self.seen[index], true) {
-            let message = format!("{} is given twice", pair.key);
+            let message = format!("{} appears twice", pair.key);
             findings.error(pair.key_place, "ccsds-repeated", message);
             return;
         }
         if let Some(last) = self.last.filter(|last| self.ordered && *last > index) {
-            let message = format!("{} stands after {}", pair.key, self.table[last].name);
+            let message = format!("{} must come before {}", pair.key, self.table[last].name);
             findings.warning(pair.key_place, "ccsds-order", message);
         }
         self.last = self.last.max(Some(index));
@@ -418,7 +418,7 @@ pub(crate) fn read_number(
     }
     let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();
     if digits > DIGITS {
-        let message = format!("the number has {digits} digits; {DIGITS} are allowed");
+        let message = format!("the number has {digits} digits; the limit is {DIGITS}");
         findings.warning(place, "ccsds-digits", message);
     }
     Some(value)

@@ -27,7 +27,7 @@ use std::io::{self, Write};
 
 /// What is said of a message in TEME, which is only written when it is asked for.
 pub(crate) const TEME_NOTE: &str =
-    "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
+    "CCSDS 502.0-B-3 (4.2.4.9) reserves TEME for OMMs made from TLEs; some readers reject it here";
 
 keywords! {
     /// How a message is written down.

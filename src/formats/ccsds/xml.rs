@@ -138,7 +138,7 @@ impl<R: BufRead> Nodes<R> {
             let node = match self.reader.read_event_into(&mut buffer) {
                 Ok(Event::Eof) => {
                     if self.depth > 0 || !self.any {
-                        let message = "the file ends inside an element, or has none";
+                        let message = "the file ends inside an element, or has no elements";
                         findings.error(place, "xml-truncated", message);
                     }
                     self.ended = true;
@@ -177,12 +177,20 @@ impl<R: BufRead> Nodes<R> {
                     let resolved = resolved(&reference);
                     match resolved {
                         Some(text) => self.text(&text, place, findings),
-                        None => self.refuse(place, "an entity that XML does not define", findings),
+                        None => self.refuse(
+                            place,
+                            "the entity is not one that XML predefines",
+                            findings,
+                        ),
                     }
                     None
                 }
                 Ok(Event::DocType(_)) => {
-                    self.refuse(place, "a document type does not belong here", findings);
+                    self.refuse(
+                        place,
+                        "a document type declaration is not allowed",
+                        findings,
+                    );
                     None
                 }
                 Ok(Event::Decl(_) | Event::PI(_) | Event::Comment(_)) => None,
@@ -221,9 +229,9 @@ impl<R: BufRead> Nodes<R> {
     fn text(&mut self, text: &str, place: (usize, usize), findings: &mut FindingList) {
         match &mut self.held {
             Some(held) if held.text.len() + text.len() <= MAX_EVENT => held.text.push_str(text),
-            Some(_) => self.refuse(place, "a text is too long", findings),
+            Some(_) => self.refuse(place, "the text of an element is too long", findings),
             None if text.trim().trim_start_matches('\u{feff}').is_empty() => {}
-            None => self.refuse(place, "text outside an element of its own", findings),
+            None => self.refuse(place, "text must be in an element of its own", findings),
         }
     }
 }

@@ -98,7 +98,7 @@ impl Sp3Parser {
             [b'P', ..] => self.position(line, findings),
             [b'V', ..] => self.velocity(line, findings),
             _ if text == "EOF" => self.ended = true,
-            _ => findings.error(place, "sp3-line", "a line of no kind that SP3 has"),
+            _ => findings.error(place, "sp3-line", "not a line of SP3"),
         }
     }
 
@@ -208,7 +208,7 @@ impl Sp3Parser {
         let text = &line.text;
         let id = text.get(1..4).unwrap_or_default();
         let Some(index) = self.file.ids.iter().position(|known| known == id) else {
-            let message = format!("'{id}' is not in the header");
+            let message = format!("satellite '{id}' is not in the header");
             findings.error((line.number, 2), "sp3-id", message);
             return None;
         };
@@ -275,13 +275,16 @@ impl Sp3Parser {
         let (satellites, epochs) = self.announced;
         if self.file.ids.len() != satellites {
             let message = format!(
-                "{satellites} satellites are announced; {} are named",
+                "the header gives {satellites} satellites but names {}",
                 self.file.ids.len()
             );
             findings.error(place, "sp3-count", message);
         }
         if self.epochs != epochs {
-            let message = format!("{epochs} epochs are announced; there are {}", self.epochs);
+            let message = format!(
+                "the header gives {epochs} epochs, but there are {}",
+                self.epochs
+            );
             findings.error(place, "sp3-count", message);
         }
         self.file

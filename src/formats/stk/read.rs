@@ -98,9 +98,7 @@ impl StkParser {
             StkSection::Before if is(key, "BEGIN") && is(value, "Ephemeris") => {
                 self.part = StkSection::Keywords
             }
-            StkSection::Before => {
-                findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here")
-            }
+            StkSection::Before => findings.error(place, "stk-begin", "expected BEGIN Ephemeris"),
             StkSection::Keywords => self.keyword(place, (key, value), line, findings),
             StkSection::Table if is(key, "END") && is(value, "Ephemeris") => {
                 self.part = StkSection::After
@@ -122,7 +120,7 @@ impl StkParser {
         let value_place = (line.number, line.text.find(value).unwrap_or(0) + 1);
         let known = |known: bool, findings: &mut FindingList| {
             if !known {
-                let message = format!("{key} '{value}' is unknown here");
+                let message = format!("{key} '{value}' is not supported");
                 findings.error(value_place, "stk-value", message);
             }
         };
@@ -160,7 +158,7 @@ impl StkParser {
             }
             _ if PASSED_OVER.iter().any(|passed| is(key, passed)) => {}
             _ => {
-                let message = format!("keyword {key} is not one that is read here");
+                let message = format!("keyword {key} is not supported");
                 findings.error(place, "stk-keyword", message);
             }
         }
@@ -237,13 +235,13 @@ impl StkParser {
         match self.points {
             Some((points, place)) if points != self.states.len() => {
                 let message = format!(
-                    "{points} points are announced; there are {}",
+                    "NumberOfEphemerisPoints is {points}, but there are {}",
                     self.states.len()
                 );
                 findings.error(place, "stk-count", message);
             }
             _ if self.states.is_empty() => {
-                findings.error((number, 1), "stk-empty", "there is no point");
+                findings.error((number, 1), "stk-empty", "the table has no points");
             }
             _ if self.positions_only => self.derive_velocities(number, findings),
             _ => {}

@@ -110,7 +110,7 @@ impl<R: BufRead> Objects<R> {
     pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
         while self.state != ScanState::End {
             let Some(byte) = self.byte()? else {
-                let message = "the array is not closed, or there is none";
+                let message = "the array is missing or not closed";
                 findings.error((self.place.0, self.place.1 + 1), "json-truncated", message);
                 self.state = ScanState::End;
                 return Ok(None);

@@ -75,7 +75,11 @@ pub fn parse(
     if let Some(lonely) = name {
         missing_lines(&lonely, findings);
     } else if !any {
-        findings.error((lines.number().max(1), 1), "tle-empty", "no element set");
+        findings.error(
+            (lines.number().max(1), 1),
+            "tle-empty",
+            "the file has no element sets",
+        );
     }
     Ok(())
 }
@@ -131,7 +135,7 @@ fn column_fits(class: u8, byte: u8) -> Result<(), &'static str> {
         ),
         b'L' => (
             byte.is_ascii_uppercase() || byte == b' ',
-            "a capital or a blank",
+            "a capital letter or a blank",
         ),
         b'U' => (matches!(byte, b'U' | b'C' | b'S'), "U, C or S"),
         b'+' => (matches!(byte, b' ' | b'+' | b'-'), "a blank, + or -"),
@@ -158,7 +162,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     }
     for (at, (class, byte)) in columns.iter().zip(text).enumerate() {
         if let Err(expected) = column_fits(*class, *byte) {
-            let message = format!("'{}' stands where {expected} belongs", char::from(*byte));
+            let message = format!("expected {expected}, found '{}'", char::from(*byte));
             findings.error((line.number, at + 1), "tle-column", message);
             return false;
         }
@@ -166,7 +170,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     let sum = checksum(&text[..LINE - 1]);
     if u32::from(text[LINE - 1] - b'0') != sum {
         let message = format!(
-            "checksum {} is written; the line sums to {sum}",
+            "the checksum is {}, but the line sums to {sum}",
             char::from(text[LINE - 1])
         );
         findings.error((line.number, LINE), "tle-checksum", message);
@@ -260,7 +264,10 @@ fn checked_name(line: &Line, findings: &mut FindingList) -> Option<String> {
     if name.len() <= NAME {
         return Some(name.to_owned());
     }
-    let message = format!("the name has {} characters; {NAME} fit", name.len());
+    let message = format!(
+        "the name has {} characters; the limit is {NAME}",
+        name.len()
+    );
     findings.error((line.number, NAME + 1), "tle-name", message);
     None
 }
@@ -272,7 +279,7 @@ fn ranges_fit(first: &Line, second: &Line, findings: &mut FindingList) -> bool {
     let mut check = |line: &Line, (from, to): (usize, usize), name: &str, most: f64| {
         let value = number(line, from, to);
         if !matches!(value, Ok(value) if (0.0..=most).contains(&value)) {
-            let message = format!("{name} '{}' is not from 0 to {most}", &line.text[from..to]);
+            let message = format!("{name} '{}' is outside 0 to {most}", &line.text[from..to]);
             findings.error((line.number, from + 1), "tle-range", message);
             fits = false;
         }

@@ -1,22 +1,22 @@
-//! What the objectives do not depend on, by varying one variable at a time.
+//! Variables that objectives do not depend on, found by varying one variable at a time.
 
 use super::listed;
 use crate::optimize::{Individual, Problem};
 use crate::run::Diagnostic;
 use crate::search::{DesignProblem, Quantity};
 
-/// Relative change of an objective, over the whole interval of a variable, below which it does
-/// not depend on it in practice.
+/// Relative change of an objective over the full range of a variable below which it does not
+/// depend on it in practice.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// One variable moved to both ends of its interval, all others as chosen.
+/// One variable set to both ends of its range, with all others as in the chosen design.
 struct Variation {
     variable: String,
     /// Relative change of each objective.
     changes: Vec<f64>,
 }
 
-/// Objectives that some variables leave as they are, and variables that none depends on.
+/// Objectives that do not depend on some variables, and variables that no objective depends on.
 pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> Vec<Diagnostic> {
     let variations = variations(problem, chosen);
     let mut found = Vec::new();
@@ -26,14 +26,14 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         found.push(Diagnostic::new(
             &format!("idle:{name}"),
             format!(
-                "no objective depends on {name}: over its whole interval, the rest as chosen, none \
-                 changes by {} %",
+                "no objective depends on `{name}`: over its full range, with the other variables as in \
+                 the chosen design, none changes by {} %",
                 100.0 * NEGLIGIBLE
             ),
         ));
     }
     for (m, objective) in problem.goals().objectives.iter().enumerate() {
-        // What is counted or computed from few variables by definition is not a discovery.
+        // Counts, and quantities that use few variables by definition, are not worth reporting.
         if matches!(
             objective,
             Quantity::Satellites | Quantity::Planes | Quantity::LaunchCost
@@ -50,8 +50,8 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         found.push(Diagnostic::new(
             &format!("independent:{objective}"),
             format!(
-                "{objective} does not depend on {}: over the whole interval of each, the rest as \
-                 chosen, it changes by less than {} %{}",
+                "`{objective}` does not depend on {}: over the full range of each, with the other \
+                 variables as in the chosen design, it changes by less than {} %{}",
                 listed(&names),
                 100.0 * NEGLIGIBLE,
                 free_satellites(*objective, &names)
@@ -65,7 +65,7 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
 fn free_satellites(objective: Quantity, names: &[&str]) -> &'static str {
     let sizes = ["planes", "satellites-per-plane"];
     if objective == Quantity::JCost && sizes.iter().any(|size| names.contains(size)) {
-        "; it is one over the share of satellites in view, so more satellites cost nothing: \
+        "; it is one over the fraction of satellites in view, so additional satellites cost nothing; \
          minimise satellites, planes or launch-cost if they should"
     } else {
         ""

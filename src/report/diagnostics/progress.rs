@@ -1,4 +1,4 @@
-//! Whether a search still moves at its end.
+//! Whether a search is still improving at its end.
 
 use crate::optimize::Record;
 use crate::run::Diagnostic;
@@ -6,18 +6,18 @@ use crate::run::Diagnostic;
 /// Relative rise of the hypervolume that counts as progress.
 const RISE: f64 = 1e-4;
 
-/// Share of the generations without progress from which on it is worth saying.
+/// Fraction of the generations without progress above which this is reported.
 const IDLE_SHARE: f64 = 1.0 / 3.0;
 
-/// The last share of the generations, and the relative rise in it from which on more of them
+/// The last fraction of the generations, and the relative rise during it above which more of them
 /// would help.
 const LAST_SHARE: f64 = 0.2;
 const LAST_RISE: f64 = 1e-3;
 
-/// Fewer generations than this show nothing.
+/// Fewer generations than this are not judged.
 const FEWEST_GENERATIONS: usize = 5;
 
-/// What the history of the hypervolume says about the number of generations.
+/// Whether the history of the hypervolume calls for more generations.
 pub(super) fn of_history(history: &[Record]) -> Option<Diagnostic> {
     let volumes: Vec<f64> = history
         .iter()
@@ -38,8 +38,8 @@ pub(super) fn of_history(history: &[Record]) -> Option<Diagnostic> {
         return Some(Diagnostic::new(
             "no-progress",
             format!(
-                "the hypervolume has not risen by more than {} % in the last {idle} of {count} \
-                 generations: more of them will hardly help",
+                "the hypervolume rose by less than {} % in the last {idle} of {count} generations; \
+                 more generations are unlikely to help",
                 100.0 * RISE
             ),
         ));
@@ -50,8 +50,8 @@ pub(super) fn of_history(history: &[Record]) -> Option<Diagnostic> {
         Diagnostic::new(
             "still-improving",
             format!(
-                "the hypervolume rose by {:.2} % in the last {tail} of {count} generations: more of \
-                 them may help",
+                "the hypervolume still rose by {:.2} % in the last {tail} of {count} generations; \
+                 consider more generations",
                 100.0 * (last - before) / last
             ),
         )
@@ -83,7 +83,7 @@ mod tests {
         let mut flat = rising.clone();
         flat.extend([10.0; 6]);
         assert_eq!(code(&flat).as_deref(), Some("no-progress"));
-        // Slow but steady: neither idle nor in need of more.
+        // Slow but steady: neither stalled nor in need of more.
         let steady: Vec<f64> = (0..10_u8).map(|k| 1.0 + 3e-4 * f64::from(k)).collect();
         assert_eq!(code(&steady), None);
         assert_eq!(code(&rising[..4]), None);

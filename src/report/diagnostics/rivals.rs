@@ -1,12 +1,12 @@
-//! A front against another search, and a search against itself with other seeds.
+//! A front compared with another search, and with the same search under other seeds.
 
 use crate::optimize::dominates;
 use crate::run::Diagnostic;
 
-/// Relative standard deviation of the hypervolume up to which the seed does not matter.
+/// Relative standard deviation of the hypervolume up to which seeds agree.
 const STEADY: f64 = 0.005;
 
-/// How many members of a front a sweep dominates, objectives as they are minimised; `None` when
+/// How many members of a front a grid sweep dominates, with all objectives minimised; `None` if
 /// there is nothing to compare.
 #[must_use]
 pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic> {
@@ -18,24 +18,24 @@ pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic
     let (code, consequence) = if count == 0 {
         (
             "not-dominated-by-sweep",
-            "the search found nothing worse than the sweep",
+            "the front is as good as the sweep",
         )
     } else {
         (
             "dominated-by-sweep",
-            "a larger budget would find better designs",
+            "a larger population or more generations would find better designs",
         )
     };
     Some(Diagnostic::new(
         code,
         format!(
-            "the sweep dominates {count} of {} front members: {consequence}",
+            "the grid sweep dominates {count} of {} designs of the front: {consequence}",
             front.len()
         ),
     ))
 }
 
-/// What the spread of the hypervolume over several seeds says.
+/// Whether several seeds agree, from the spread of their hypervolumes.
 #[must_use]
 pub fn seed_spread(mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> {
     if seeds < 2 || mean <= 0.0 {
@@ -43,18 +43,18 @@ pub fn seed_spread(mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> 
     }
     let relative = std_dev / mean;
     let (code, consequence) = if relative <= STEADY {
-        ("seeds-agree", "one of them is as good as another")
+        ("seeds-agree", "any seed will do")
     } else {
         (
             "seeds-differ",
-            "a single run is not to be trusted; take more generations or a larger population",
+            "do not rely on a single run; use more generations or a larger population",
         )
     };
     Some(Diagnostic::new(
         code,
         format!(
-            "over {seeds} seeds the hypervolume spreads by {:.2} % of its mean (standard \
-             deviation): {consequence}",
+            "over {seeds} seeds the standard deviation of the hypervolume is {:.2} % of its mean: \
+             {consequence}",
             100.0 * relative
         ),
     ))

@@ -32,7 +32,7 @@ pub(in crate::report) fn at_epoch(measure: Measure, epoch: &EpochMetrics) -> Opt
 fn label_over_points(measure: Measure) -> &'static str {
     match measure {
         Measure::MeanVisible => "E_g(N_visible): visible LEO satellites, mean over the points",
-        Measure::MaxPdop => "maximum PDOP of the points",
+        Measure::MaxPdop => "maximum PDOP over the points",
         _ => "E_g(PDOP): mean PDOP over the points",
     }
 }
@@ -77,7 +77,7 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     }
     layers.retain(|layer| !layer.points.is_empty());
     if layers.is_empty() {
-        let reason = "no sample is solved";
+        let reason = "all samples are unsolved";
         return Err(FigureError::Nothing { figure, reason });
     }
     let x = match measure {
@@ -87,7 +87,7 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     let chart = PlaneChart {
         title: "Cumulative distribution".to_owned(),
         x: x.to_owned(),
-        y: "share at or below".to_owned(),
+        y: "fraction at or below".to_owned(),
         layers,
     };
     Ok(Plate {
@@ -117,7 +117,7 @@ fn tail_marks(profile: &Profile) -> Vec<Layer> {
             format!("{percent} % quantile {:.4}", tail.value_at_risk),
             tail.value_at_risk,
         ),
-        line(format!("CVaR {:.4}", tail.cvar), tail.cvar),
+        line(format!("CVaR of PDOP {:.4}", tail.cvar), tail.cvar),
     ]
 }
 
@@ -171,7 +171,7 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
     layers.reverse();
     layers.retain(|layer| !layer.points.is_empty());
     if layers.is_empty() {
-        let reason = "no sample is solved";
+        let reason = "all samples are unsolved";
         return Err(FigureError::Nothing { figure, reason });
     }
     let chart = PlaneChart {
@@ -228,7 +228,7 @@ pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
             format!("hypervolume at ({})", at.join(", "))
         }
         (true, None) => "hypervolume".to_owned(),
-        (false, _) => "designs in the front".to_owned(),
+        (false, _) => "designs on the front".to_owned(),
     };
     let chart = PlaneChart {
         title: "Convergence of the search".to_owned(),

@@ -112,7 +112,7 @@ pub fn pareto(
     let chosen = run.chosen().map(|n| &run.front[n]);
     let at = chosen.and_then(|m| Some((m.objectives.first()?.1, m.objectives.get(1)?.1)));
     layers.push(layer(
-        "fuzzy choice",
+        "fuzzy pick",
         at.into_iter().collect(),
         Style::Marks(0),
     ));

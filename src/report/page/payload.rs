@@ -286,7 +286,7 @@ impl Front {
                 ("mean visible", column(&|m| Some(m.metrics.mean_visible))),
                 ("mean PDOP", column(&|m| m.metrics.mean_pdop)),
                 ("CVaR of PDOP", column(&|m| m.metrics.cvar_pdop)),
-                ("95 % PDOP", column(&|m| m.metrics.p95_pdop)),
+                ("95 % quantile of PDOP", column(&|m| m.metrics.p95_pdop)),
                 ("maximum PDOP", column(&|m| m.metrics.max_pdop)),
                 ("availability", column(&|m| Some(m.metrics.availability))),
                 ("solved", column(&|m| Some(m.metrics.solved_fraction))),

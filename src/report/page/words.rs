@@ -1,4 +1,4 @@
-//! What the page says in words and tables.
+//! The texts and tables of the page.
 
 use super::Page;
 use crate::earth;
@@ -8,11 +8,11 @@ use crate::run::{FrontMember, Hypervolume, Run, VERSION};
 use crate::scenario::{Algorithm, Keyword, Quantity, Region, Scenario};
 use crate::units::round_decimal;
 
-/// The beginning of the page.
+/// The summary at the top of the page.
 pub(super) struct PageSummary {
-    /// What was studied and found.
+    /// The study and its result.
     pub(super) paragraphs: Vec<String>,
-    /// What the program noticed.
+    /// Diagnostics of the search.
     pub(super) notes: Vec<String>,
     /// What is missing.
     pub(super) gaps: Vec<String>,
@@ -54,13 +54,13 @@ pub(super) fn title(run: &Run) -> String {
     }
 }
 
-/// The name of an algorithm as the literature writes it.
+/// The name of an algorithm as written in the literature.
 fn algorithm_title(word: &str) -> &str {
     match Algorithm::from_keyword(word) {
         Ok(Algorithm::Nsga2) => "NSGA-II",
         Ok(Algorithm::Mopso) => "MOPSO",
         Ok(Algorithm::Random) => "Random search",
-        Ok(Algorithm::Exhaustive) => "The exhaustive search",
+        Ok(Algorithm::Exhaustive) => "Exhaustive search",
         Err(_) => word,
     }
 }
@@ -82,7 +82,7 @@ impl PageSummary {
         let (cut, all) = (places_with_cuts.len(), run.front.len());
         if page.evaluator.is_some() && cut < all {
             gaps.push(format!(
-                "this page holds the maps and series of {cut} of the {all} designs on the front; \
+                "this page has the maps and series of {cut} of the {all} designs on the front; \
                  use navwalker plot --pick N for the others"
             ));
         }
@@ -94,7 +94,7 @@ impl PageSummary {
     }
 }
 
-/// Where, when and with what.
+/// Region, time span and GNSS.
 fn setting(scenario: &Scenario) -> String {
     let region = match &scenario.region {
         Region::Grid(grid) => {
@@ -109,7 +109,7 @@ fn setting(scenario: &Scenario) -> String {
                 longitude_label(east)
             )
         }
-        Region::Points { file } => format!("the points of {file}"),
+        Region::Points { file } => format!("the points in {file}"),
     };
     let gnss: Vec<&str> = scenario
         .gnss
@@ -127,7 +127,7 @@ fn setting(scenario: &Scenario) -> String {
             .join(" and ")
     };
     format!(
-        "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
+        "Low-Earth-orbit constellations that augment {gnss} over {region}, sampled every {} s for {} h from \
          {}; elevation mask {}\u{b0}.",
         scenario.time.step_s,
         scenario.time.duration_h,
@@ -198,8 +198,8 @@ fn choice(run: &Run) -> Option<String> {
         .collect();
     let metrics = &member.metrics;
     Some(format!(
-        "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}. \
-         On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
+        "The fuzzy pick is {} ({}), with the best worst-case membership on the front, {}. \
+         On average {} LEO satellites are in view; mean PDOP is {}, CVaR of PDOP {}, maximum PDOP {}.",
         member.design.notation,
         objectives.join(", "),
         number(Some(member.membership)),
@@ -230,7 +230,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
     run.objective_names().iter().filter_map(of).collect()
 }
 
-/// The members of the table: at most `most`, evenly over the front, and the chosen one.
+/// The members in the table: at most `most`, evenly spaced over the front, plus the chosen one.
 pub(super) fn members(run: &Run, most: usize) -> Vec<MemberRow> {
     let all = &run.front;
     let shown = all.len().min(most);
@@ -318,7 +318,7 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
     row.collect()
 }
 
-/// What every number rests on.
+/// The conventions behind every number.
 pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         (
@@ -338,13 +338,13 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         ),
         (
             "PDOP",
-            "unit-weight least squares; samples without a solution are excluded"
+            "unit-weight least squares; unsolved samples are excluded"
                 .to_owned(),
         ),
         (
             "Quantiles and CVaR",
-            "order statistics; CVaR is the mean of the worst share, with fractional weight on its \
-             quantile (Rockafellar and Uryasev)"
+            "order statistics; CVaR is the mean of the worst 1 - \u{3b1} of the samples, with fractional weight \
+             on the quantile (Rockafellar and Uryasev)"
                 .to_owned(),
         ),
     ];
@@ -361,7 +361,7 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         format!("run by navwalker {by}; this page by navwalker {VERSION}"),
     ));
     rows.push((
-        "Parts of this page",
+        "Credits",
         "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \
          (public domain)"
             .to_owned(),
@@ -387,7 +387,7 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         (
             "Objectives",
             format!(
-                "{}; \u{3bb} = {}, \u{3b1} = {}; available means PDOP at most {}",
+                "{}; CVaR weight \u{3bb} = {}, CVaR level \u{3b1} = {}; available means PDOP at most {}",
                 run_names(scenario),
                 objectives.cvar_weight,
                 objectives.cvar_level,

@@ -131,7 +131,7 @@ impl OemParser {
             }
             (OemSection::Covariance(covariance), _) if covariance.is_untouched() => return,
             _ => {
-                let message = "a comment may stand only at the beginning of a section (7.8.9)";
+                let message = "a comment is allowed only at the beginning of a section (7.8.9)";
                 findings.warning((number, 1), "oem-comment", message);
                 return;
             }
@@ -236,7 +236,7 @@ impl OemParser {
             OemSection::Ephemeris | OemSection::BetweenSegments => self.end_segment(findings, take),
             OemSection::Header => {
                 self.header = header(&self.header_block, number, findings);
-                findings.error((number, 1), "oem-truncated", "the message has no segment");
+                findings.error((number, 1), "oem-truncated", "the message has no segments");
             }
             OemSection::Metadata(_) => {
                 findings.error((number, 1), "oem-truncated", "META_STOP is missing");
@@ -258,7 +258,7 @@ pub(super) fn check_time_system(
 ) {
     let first = first.get_or_insert_with(|| metadata.time_system.clone());
     if *first != metadata.time_system {
-        let message = format!("TIME_SYSTEM was {first} before; it must not change");
+        let message = format!("TIME_SYSTEM was {first} in the first segment and must not change");
         findings.error(block.place("TIME_SYSTEM"), "oem-time-system", message);
     }
 }
@@ -272,9 +272,10 @@ pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: 
         None => 1,
     };
     if lines == 0 {
-        findings.error(place, "oem-empty", "the segment has no ephemeris line");
+        findings.error(place, "oem-empty", "the segment has no ephemeris lines");
     } else if lines < needed {
-        let message = format!("{lines} lines do not carry the interpolation; it needs {needed}");
+        let message =
+            format!("{lines} lines are too few for the interpolation, which needs {needed}");
         findings.warning(place, "oem-interpolation", message);
     }
     if segment
@@ -415,7 +416,7 @@ impl Covariance {
         self.rows += 1;
         let fields: Vec<_> = words(&line.text).take(8).collect();
         if self.rows > 6 || fields.len() != self.rows || self.block.is_none() {
-            let message = "not the next row of a lower triangular 6x6 matrix behind its EPOCH";
+            let message = "not the next row of a lower triangular 6x6 matrix after its EPOCH";
             findings.error((line.number, 1), "oem-covariance", message);
             return;
         }

@@ -141,7 +141,7 @@ pub fn parse_xml(
         }
     }
     if !any {
-        findings.error(nodes.place(), "oem-empty", "there is no message");
+        findings.error(nodes.place(), "oem-empty", "the file has no message");
     }
     Ok(())
 }
@@ -268,7 +268,7 @@ impl Message {
     fn end(self, place: (usize, usize), findings: &mut FindingList) -> Option<Oem> {
         let header = header(&self.header, place.0, findings);
         if self.segments.is_empty() {
-            findings.error(place, "oem-empty", "the message has no segment");
+            findings.error(place, "oem-empty", "the message has no segments");
         }
         Some(Oem {
             header: header?,

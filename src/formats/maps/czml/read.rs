@@ -100,7 +100,7 @@ pub fn parse(
         }
     }
     if first && !findings.is_full() {
-        findings.error((1, 1), "czml-document", "there is no packet");
+        findings.error((1, 1), "czml-document", "the document has no packets");
     }
     Ok(())
 }
@@ -140,7 +140,8 @@ fn track(packet: &Value) -> Result<Option<CzmlTrack>, PacketFault> {
         .as_str()
         .unwrap_or("LINEAR");
     if !["LAGRANGE", "LINEAR"].contains(&algorithm) {
-        let message = format!("interpolation {algorithm} is not read, only LAGRANGE and LINEAR");
+        let message =
+            format!("interpolation {algorithm} is not supported, only LAGRANGE and LINEAR");
         return Err(("czml-interpolation", "interpolationAlgorithm", message));
     }
     let degree = match algorithm {
@@ -185,7 +186,7 @@ fn frame(position: &Value) -> Result<Frame, PacketFault> {
 fn nodes(cartesian: &[Value]) -> Result<Vec<(f64, Vector3<f64>)>, PacketFault> {
     let broken = |message: &str| ("czml-samples", "cartesian", message.to_owned());
     let numbers: Option<Vec<f64>> = cartesian.iter().map(Value::as_f64).collect();
-    let numbers = numbers.ok_or_else(|| broken("a sample is not of numbers"))?;
+    let numbers = numbers.ok_or_else(|| broken("a sample is not a number"))?;
     if numbers.len() % 4 != 0 || numbers.len() < 8 {
         return Err(broken("samples are [seconds, x, y, z, ...], two or more"));
     }

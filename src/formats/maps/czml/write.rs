@@ -359,7 +359,7 @@ fn place(
         "name": format!("{}°, {}°", point.latitude_deg, point.longitude_deg),
         "parent": "region",
         "description": format!(
-            "<table><tr><td>mean PDOP</td><td>{}</td></tr><tr><td>95 % PDOP</td><td>{}</td></tr>\
+            "<table><tr><td>mean PDOP</td><td>{}</td></tr><tr><td>95 % quantile of PDOP</td><td>{}</td></tr>\
              <tr><td>mean visible</td><td>{:.2}</td></tr><tr><td>availability</td><td>{:.4}</td></tr>\
              </table>",
             text(point.mean_pdop), text(point.p95_pdop), point.mean_visible, point.availability
