@@ -168,13 +168,12 @@ impl Run {
             Ok(bytes) => match Scenario::parse::<&str>(SCENARIO, bytes, &[]) {
                 Ok(scenario) => self.scenario = Some(scenario),
                 Err(problems) => self.gaps.push(format!(
-                    "{SCENARIO} is not a scenario of this version, so that nothing can be computed \
-                     anew: {}",
+                    "{SCENARIO} is not a scenario of this version, so nothing can be recomputed: {}",
                     first_line(&problems.to_string())
                 )),
             },
             Err(reason) => self.gaps.push(format!(
-                "{SCENARIO} is missing, so that nothing can be computed anew: {reason}"
+                "{SCENARIO} is missing, so nothing can be recomputed: {reason}"
             )),
         }
     }
@@ -196,7 +195,7 @@ impl Run {
         let lost = before - self.front.len();
         if lost > 0 {
             self.gaps.push(format!(
-                "{lost} front members lack an objective of the scenario and are left out"
+                "{lost} designs of the front lack an objective of the scenario and are left out"
             ));
         }
     }
@@ -212,18 +211,19 @@ impl Run {
         self.front = members.filter_map(Result::ok).collect();
         if self.front.len() < count {
             let lost = count - self.front.len();
-            self.gaps
-                .push(format!("{lost} of {count} front members cannot be read"));
+            self.gaps.push(format!(
+                "{lost} of {count} designs of the front cannot be read"
+            ));
         }
         if self.front.is_empty() {
             self.gaps
-                .push("the front has no member that can be shown".to_owned());
+                .push("the front has no design that can be shown".to_owned());
         }
         match serde_json::from_value(value) {
             Ok(search) => self.search = Some(search),
-            Err(error) => self.gaps.push(format!(
-                "{FRONT_JSON} does not say how the search went: {error}"
-            )),
+            Err(error) => self
+                .gaps
+                .push(format!("{FRONT_JSON} has no record of the search: {error}")),
         }
     }
 
@@ -232,8 +232,8 @@ impl Run {
             && search.version != VERSION
         {
             self.gaps.push(format!(
-                "the run was made by version {}; this page by version {VERSION}, which computed \
-                 maps and series anew",
+                "the run was made by version {}; this page by version {VERSION}, which recomputed \
+                 maps and series",
                 search.version
             ));
         }

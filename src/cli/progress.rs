@@ -4,7 +4,7 @@ use crate::cli::output;
 use crate::optimize::Strategy;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar, or nothing where nobody would see it.
+/// A progress bar, or nothing if stderr is not a terminal.
 pub(crate) struct SearchBar(Option<ProgressBar>);
 
 impl SearchBar {
@@ -23,7 +23,7 @@ impl SearchBar {
         Self(Some(bar))
     }
 
-    /// Shows where the search is.
+    /// Shows the progress of the search.
     pub(crate) fn show(&self, search: &impl Strategy) {
         let Some(bar) = &self.0 else { return };
         let progress = search.progress();
@@ -60,7 +60,7 @@ impl FileCount {
         Self(Some(bar))
     }
 
-    /// Another file has been begun.
+    /// Counts a file that has been started.
     pub(crate) fn one_more(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);

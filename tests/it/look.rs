@@ -187,7 +187,7 @@ fn figures_that_are_not_there_say_why() {
             "figure series does not show availability",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
-        (&["--figure", "map", "--pick", "99"], "no such member"),
+        (&["--figure", "map", "--pick", "99"], "no such design"),
         (&["--figure", "map", "--out", "map.gif"], "use --as"),
         (
             &["--figure", "map", "--out", "nowhere/map.svg"],

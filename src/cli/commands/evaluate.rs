@@ -86,7 +86,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     })
 }
 
-/// All dilutions and the series, as far as they were asked for.
+/// All dilutions of precision and the series, as requested.
 fn further(
     args: &EvaluateArgs,
     evaluator: &Evaluator,

@@ -21,7 +21,7 @@ enum Against {
     Files(PathBuf),
 }
 
-/// The targets that were typed; one with a dot or a slash in it is a file or a directory.
+/// The targets on the command line; one with a dot or a slash is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {
     let one = |name: &String| {
         if name.contains(['.', '/', '\\']) {
@@ -76,8 +76,8 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     })
 }
 
-/// What a target stands for; of all standards the tables of the paper only for its own study, as no
-/// other has its mask.
+/// The standards a target covers; `all` includes the paper's tables only for the paper's own study,
+/// since no other has its mask.
 fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     let ours = &study.scenario;
     let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
@@ -90,7 +90,7 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     Ok(target.each().filter(applies).collect())
 }
 
-/// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
+/// The comparisons for a path: a file, the formats of an export, or all files in a directory.
 fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_one = |file: &Path| -> Result<Vec<Comparand>> {
         let opened = File::open(file);
@@ -109,7 +109,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
             all.extend(read_one(&file)?);
         }
         if all.is_empty() {
-            bail!("{} has no file to compare with", path.display());
+            bail!("{} has no files to compare with", path.display());
         }
         return Ok(vec![(name, all)]);
     }
@@ -126,7 +126,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     }
     if by_format.is_empty() {
         bail!(
-            "{} has no file in a format that can be compared: {}",
+            "{} has no files in a format that can be compared: {}",
             path.display(),
             COMPARED.join(", ")
         );
@@ -134,7 +134,7 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     Ok(by_format.into_iter().collect())
 }
 
-/// Formats of an export that are read back.
+/// Formats of an export that can be read back.
 const COMPARED: [&str; 8] = [
     "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
 ];

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Tables of all seeds.
 const TABLE: [&str; 2] = ["seeds.csv", "seeds.json"];
 
-/// What the run directories of the seeds start with.
+/// Prefix of the run directories of the seeds.
 const RUN: &str = "seed-";
 
 pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) -> Result<Status> {
@@ -23,7 +23,7 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
         .ok()
         .and_then(|more| first.checked_add(more));
     let last =
-        last.with_context(|| format!("{count} seeds from {first} on exceed {}", u64::MAX))?;
+        last.with_context(|| format!("{count} seeds starting at {first} exceed {}", u64::MAX))?;
     let name = &study.scenario.name;
     let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
     let out = args.out.clone().unwrap_or_else(default_out);
@@ -79,7 +79,7 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
     Ok(status(&result.first))
 }
 
-/// Refuses a directory that holds anything but runs of seeds and their tables.
+/// Rejects a directory with anything but runs of seeds and their tables.
 fn require_seeds(directory: &Path) -> Result<()> {
     if files::is_vacant(directory)? {
         return Ok(());
