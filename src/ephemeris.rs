@@ -49,7 +49,7 @@ impl Ephemeris {
     /// A design propagated by `model` from the epoch of the grid.
     ///
     /// # Errors
-    /// When the model refuses the orbit of a satellite.
+    /// If the model refuses the orbit of a satellite.
     pub fn of_design(
         design: &Design,
         model: Model,

@@ -213,7 +213,7 @@ impl Evaluator {
     /// Prepares everything that does not depend on the design.
     ///
     /// # Errors
-    /// When a GNSS satellite cannot be propagated.
+    /// If a GNSS satellite cannot be propagated.
     pub fn new(setup: Setup) -> Result<Self, EphemerisError> {
         Self::with_instructions(setup, InstructionSet::detect())
     }
@@ -222,7 +222,7 @@ impl Evaluator {
     /// one that the processor lacks is replaced by [`InstructionSet::Baseline`].
     ///
     /// # Errors
-    /// When a GNSS satellite cannot be propagated.
+    /// If a GNSS satellite cannot be propagated.
     pub fn with_instructions(
         setup: Setup,
         instructions: InstructionSet,
@@ -256,7 +256,7 @@ impl Evaluator {
     /// The metrics of a design under the model of the setup.
     ///
     /// # Errors
-    /// When the model cannot propagate a satellite of the design.
+    /// If the model cannot propagate a satellite of the design.
     pub fn evaluate(&self, design: &Design) -> Result<Metrics, EphemerisError> {
         Ok(self.evaluate_counted(design)?.0)
     }
@@ -264,7 +264,7 @@ impl Evaluator {
     /// The metrics of a design, and how many samples f32 could not hold.
     ///
     /// # Errors
-    /// When the model cannot propagate a satellite of the design.
+    /// If the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
         self.counted(StateSource::Design(design, &ephemeris))
@@ -273,7 +273,7 @@ impl Evaluator {
     /// The metrics of any satellites, on the grid of the setup.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         Ok(self.counted(StateSource::Ephemeris(ephemeris))?.0)
     }
@@ -291,7 +291,7 @@ impl Evaluator {
     /// sample after the other, in f64, and about twenty times slower.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn evaluate_plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         let evaluated = plain::evaluate(self, ephemeris)?;
         Ok(self.metrics(&evaluated, ephemeris))

@@ -21,7 +21,7 @@ pub trait Propagator: Send + Sync {
     /// The TEME state `elapsed_s` seconds after the epoch of the elements.
     ///
     /// # Errors
-    /// When the theory has no state for that instant.
+    /// If the theory has no state for that instant.
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError>;
 }
 
@@ -80,7 +80,7 @@ impl Model {
     /// The propagator of this model for mean elements given at `epoch`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 refuses the elements.
     pub fn propagator(
         self,
         elements: &MeanElements,

@@ -244,7 +244,7 @@ impl OptimizeResult {
     /// Reads `front.json` strictly: every member and everything that came with them.
     ///
     /// # Errors
-    /// When the bytes are not the front of a run.
+    /// If the bytes are not the front of a run.
     pub fn read(front_json: &[u8]) -> serde_json::Result<Self> {
         serde_json::from_slice(front_json)
     }

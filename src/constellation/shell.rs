@@ -154,7 +154,7 @@ impl Design {
     /// The same design on an ellipse: the semi-major axis stays R + altitude.
     ///
     /// # Errors
-    /// When the eccentricity is outside [0, 0.9) or the perigee not above ground.
+    /// If the eccentricity is outside [0, 0.9) or the perigee not above ground.
     pub fn with_ellipse(
         self,
         eccentricity: f64,

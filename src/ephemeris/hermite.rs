@@ -32,7 +32,7 @@ impl Hermite {
     /// measured on the states of one satellite. None if there is only one sample.
     ///
     /// # Errors
-    /// When the satellite cannot be propagated.
+    /// If the satellite cannot be propagated.
     pub fn measured<F: ReferenceFrame>(
         sampled: &Sampled<'_, F>,
         satellite: &EphemerisSatellite,

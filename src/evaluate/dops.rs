@@ -83,7 +83,7 @@ impl Evaluator {
     /// PDOP is that of the metrics.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
         let setup = self.setup();
         let systems: Vec<_> = setup

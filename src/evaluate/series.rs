@@ -74,7 +74,7 @@ impl Evaluator {
     /// The metrics of any satellites per instant and per point, by the plain path.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
         let setup = self.setup();
         let mut epochs = vec![EpochSums::default(); setup.grid.len()];

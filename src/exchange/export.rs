@@ -37,7 +37,7 @@ pub trait Sink: Sync {
     /// Begins a file.
     ///
     /// # Errors
-    /// When the file cannot be begun.
+    /// If the file cannot be begun.
     fn create(&self, path: &str) -> io::Result<Self::File>;
 }
 
@@ -124,7 +124,7 @@ pub struct Request<'a> {
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// When a satellite cannot be propagated or named, an element or the scenario does not fit its
+/// If a satellite cannot be propagated or named, an element or the scenario does not fit its
 /// format, a file cannot be written, or a product needs the scenario.
 pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, WriteError> {
     let source = ExportSource::new(request.subject, request.choices)?;

@@ -70,7 +70,7 @@ impl Fleet {
     /// Reads a file in `format`, or in the one that its beginning and its name show.
     ///
     /// # Errors
-    /// When the file breaks its format, or its states mean nothing here.
+    /// If the file breaks its format, or its states mean nothing here.
     pub fn read(
         mut input: impl BufRead,
         format: Option<Format>,
@@ -194,7 +194,7 @@ impl Fleet {
     /// Adds the satellites of another file.
     ///
     /// # Errors
-    /// When they propagate by another theory.
+    /// If they propagate by another theory.
     pub fn append(&mut self, other: Self) -> Result<(), ReadFleetError> {
         match (&mut *self, other) {
             (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),

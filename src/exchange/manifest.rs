@@ -176,7 +176,7 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// When the text is not a manifest; the error names line and column.
+    /// If the text is not a manifest; the error names line and column.
     pub fn read(input: impl io::Read) -> Result<Self, serde_json::Error> {
         serde_json::from_reader(input)
     }
@@ -200,7 +200,7 @@ impl<W: Write> HashingWriter<W> {
     /// Flushes, and gives the hash of all bytes in lower-case hexadecimal digits.
     ///
     /// # Errors
-    /// When the destination cannot be flushed.
+    /// If the destination cannot be flushed.
     pub fn finish(mut self) -> io::Result<String> {
         self.inner.flush()?;
         let digest = self.hash.finalize();

@@ -120,7 +120,7 @@ impl<'a> Original<'a> {
     /// Evaluates the design.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn new(evaluator: &'a Evaluator, design: &Design) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
         Ok(Self {
@@ -169,7 +169,7 @@ impl<'a> Original<'a> {
     /// made, if they have any.
     ///
     /// # Errors
-    /// When the satellites do not propagate the study, or are not those of the design.
+    /// If the satellites do not propagate the study, or are not those of the design.
     pub fn check(
         &self,
         product: &ReadBack,

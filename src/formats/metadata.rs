@@ -58,7 +58,7 @@ impl CatalogNumber {
     /// The number, if a TLE can hold it.
     ///
     /// # Errors
-    /// When it is past [`Self::LAST`].
+    /// If it is past [`Self::LAST`].
     pub fn new(number: u32) -> Result<Self, IdentityError> {
         if number <= Self::LAST {
             Ok(Self(number))
@@ -133,7 +133,7 @@ impl Object {
     /// without I and O. The same place has the same identity in every export.
     ///
     /// # Errors
-    /// When the formats cannot tell so many satellites apart.
+    /// If the formats cannot tell so many satellites apart.
     pub fn numbered(name: &str, index: usize, epoch: Epoch) -> Result<Self, IdentityError> {
         if index >= Self::MOST {
             return Err(IdentityError::Designator { index });
@@ -151,7 +151,7 @@ impl Object {
     /// The identities of satellites in their order.
     ///
     /// # Errors
-    /// When the formats cannot tell so many satellites apart.
+    /// If the formats cannot tell so many satellites apart.
     pub fn all(
         satellites: &[EphemerisSatellite],
         epoch: Epoch,

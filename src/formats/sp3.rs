@@ -119,7 +119,7 @@ const ID_LINES: usize = 5;
 /// `satellites` are named `letter` 01, 02 … in their order.
 ///
 /// # Errors
-/// When they do not fit a file, a satellite has no state, or the output fails.
+/// If they do not fit a file, a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     version: Sp3Version,

@@ -79,7 +79,7 @@ fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
 /// Writes one element set: its name, if it has one, and its two lines.
 ///
 /// # Errors
-/// When an element does not fit its columns, or the output fails.
+/// If an element does not fit its columns, or the output fails.
 pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteError> {
     if let Some(name) = &set.object_name {
         writeln!(out, "{}", name_field(name)?)?;
@@ -93,7 +93,7 @@ pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteErro
 /// The two lines of an element set, with their checksums.
 ///
 /// # Errors
-/// When an element does not fit its columns.
+/// If an element does not fit its columns.
 pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
     let number = u32::try_from(set.norad_id).unwrap_or(u32::MAX);
     let number = CatalogNumber::new(number)?;
@@ -131,7 +131,7 @@ pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
 /// The element set that a reader finds in the two lines.
 ///
 /// # Errors
-/// When an element does not fit its columns.
+/// If an element does not fit its columns.
 pub fn as_written(set: &sgp4::Elements) -> Result<sgp4::Elements, TleFieldError> {
     let [first, second] = lines(set)?;
     let name = set.object_name.clone();

@@ -12,7 +12,7 @@ pub enum Pick {
     Sum,
     /// TOPSIS with equal weights.
     Topsis,
-    /// The member that bulges furthest towards the ideal point.
+    /// The member that bulges farthest towards the ideal point.
     Knee,
     /// A member by its index, from 1.
     Index(usize),
@@ -21,13 +21,13 @@ pub enum Pick {
 /// A member that was picked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picked {
-    /// Its place in the front, from 0.
+    /// Its position in the front, from 0.
     pub place: usize,
-    /// Why it is that one, in words.
+    /// Why, in words.
     pub reason: String,
 }
 
-/// A word that names no pick.
+/// A text that is not a pick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("expected fuzzy, sum, topsis, knee, or the index of a front member from 1")]
 pub struct UnknownPick;
@@ -50,10 +50,10 @@ impl std::str::FromStr for Pick {
 }
 
 impl Pick {
-    /// The methods, for tables of what each picks.
+    /// The methods, for tables of their picks.
     pub const METHODS: [Self; 4] = [Self::Fuzzy, Self::Sum, Self::Topsis, Self::Knee];
 
-    /// The word that reads back to the pick.
+    /// The keyword of the pick.
     #[must_use]
     pub fn keyword(self) -> String {
         match self {
@@ -65,7 +65,7 @@ impl Pick {
         }
     }
 
-    /// What the score of a pick means.
+    /// The meaning of a pick's score.
     fn reason(self) -> &'static str {
         match self {
             Self::Fuzzy => "the fuzzy pick: the best worst-case membership over the objectives",
@@ -78,8 +78,8 @@ impl Pick {
         }
     }
 
-    /// Picks among members whose objectives are all minimised; `None` when there is no such member
-    /// or the members cannot be scored.
+    /// Picks among members whose objectives are all minimised; `None` if there is no such member or
+    /// the members cannot be scored.
     #[must_use]
     pub fn apply(self, members: &[Vec<f64>]) -> Option<Picked> {
         let scores = match self {

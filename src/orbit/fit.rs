@@ -41,7 +41,7 @@ type Unknowns = Vector6<f64>;
 /// Fits a set to TEME positions (seconds after `origin`, km), starting from `start`.
 ///
 /// # Errors
-/// When SGP4 refuses the set that the fit starts from.
+/// If SGP4 refuses the set that the fit starts from.
 pub fn fit(
     start: &sgp4::Elements,
     positions: &[(f64, Position<Teme>)],

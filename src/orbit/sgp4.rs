@@ -137,7 +137,7 @@ impl Sgp4Orbit {
     /// SGP4 without drag from unrounded mean elements at `epoch`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 refuses the elements.
     pub fn from_mean_elements(
         elements: &MeanElements,
         epoch: Epoch,
@@ -154,7 +154,7 @@ impl Sgp4Orbit {
     /// The same by any variant of SGP4.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 refuses the elements.
     pub fn from_mean_elements_with(
         elements: &MeanElements,
         epoch: Epoch,
@@ -177,7 +177,7 @@ impl Sgp4Orbit {
     /// SGP4 from an element set as read from a file; time runs from `origin`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 refuses the elements.
     pub fn from_element_set(
         set: &::sgp4::Elements,
         origin: Epoch,
@@ -188,7 +188,7 @@ impl Sgp4Orbit {
     /// The same by any variant of SGP4.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 refuses the elements.
     pub fn from_element_set_with(
         set: &::sgp4::Elements,
         origin: Epoch,

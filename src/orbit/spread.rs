@@ -16,7 +16,7 @@ impl PropagatorDistance {
     /// The distances between two propagators over the samples of `grid`.
     ///
     /// # Errors
-    /// When one of them has no state.
+    /// If one of them has no state.
     pub fn between(
         one: &dyn Propagator,
         other: &dyn Propagator,

@@ -10,9 +10,9 @@ const FOUND_WITHIN: f64 = 1.0 / 30.0;
 impl Certificate {
     /// Compares a front with the result of a sweep of the same problem.
     ///
-    /// The distance of a member is IGD+'s (Ishibuchi et al., EMO 2015): over the exact members, the
-    /// least root of the sum of squares of what it is worse by, each objective in units of the
-    /// exact front's range. It is 0 for a member that no exact member beats.
+    /// The distance of a member is that of IGD+ (Ishibuchi et al., EMO 2015): the minimum over the
+    /// members of the sweep's front of the root sum of squares by which it is worse, with each
+    /// objective in units of that front's range. It is 0 for a member that none of them dominates.
     #[must_use]
     pub fn new(found: &OptimizeResult, sweep: &OptimizeResult, objectives: &[Quantity]) -> Self {
         let exact: Vec<Vec<f64>> = sweep
@@ -119,7 +119,7 @@ fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {
         .collect()
 }
 
-/// Width of the exact front in each objective; 1 where it has none.
+/// Range of the exact front in each objective; 1 if it is zero.
 fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
     let range = |n: usize| {
         let values = || points.iter().map(|point| point[n]);
@@ -134,7 +134,7 @@ fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
     (0..objectives).map(range).collect()
 }
 
-/// What `point` is worse by than `target` in each objective, in units of the ranges.
+/// How much worse `point` is than `target` in each objective, in units of the ranges.
 fn worse_by(point: &[f64], target: &[f64], ranges: &[f64]) -> Vec<f64> {
     let differences = point.iter().zip(target).zip(ranges);
     differences

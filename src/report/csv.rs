@@ -11,7 +11,7 @@ use ::csv::Writer;
 use serde::Serialize;
 use std::io;
 
-/// Designs and their metrics, one a row.
+/// Designs and their metrics, one per row.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -51,7 +51,7 @@ pub fn constellation_csv(result: &ConstellationResult) -> io::Result<String> {
     text(writer)
 }
 
-/// Records whose fields are the columns, one a row: instants or points of a series.
+/// Records whose fields are the columns, one per row: instants or points of a series.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -61,7 +61,7 @@ pub fn records_csv(rows: &[impl Serialize]) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The dilutions of precision of a design, one a row: name, mean, quantiles, maximum and tail.
+/// The dilutions of precision of a design, one per row: name, mean, quantiles, maximum and tail.
 ///
 /// # Errors
 /// Never for a table in memory.

@@ -12,7 +12,7 @@ use crate::study::paper::{Expected, Reproduction, Statement, Verdict};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What `reproduce` prints.
+/// The output of `reproduce`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReproduceResult {
     /// The study.

@@ -13,7 +13,7 @@ use std::io;
 pub struct SeedRun {
     /// Its seed.
     pub seed: u64,
-    /// Volume that its front dominates.
+    /// Hypervolume of its front.
     pub hypervolume: Option<f64>,
     /// Designs evaluated.
     pub evaluations: u64,
@@ -40,11 +40,11 @@ impl From<&OptimizeResult> for SeedRun {
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
-    /// Least.
+    /// Minimum.
     pub min: f64,
-    /// Greatest.
+    /// Maximum.
     pub max: f64,
-    /// Standard deviation of the sample, by n - 1; 0 for one seed.
+    /// Sample standard deviation (n - 1); 0 for one seed.
     pub std_dev: f64,
 }
 
@@ -62,8 +62,8 @@ impl Spread {
     }
 }
 
-/// What `optimize --seeds` prints: the result of the first seed, which nobody picked for being the
-/// best, and what all of them reached.
+/// The output of `optimize --seeds`: the result of the first seed, which is not selected for being
+/// the best, and the summary of all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeedsResult {
     /// The result of the first seed.
@@ -76,7 +76,7 @@ pub struct SeedsResult {
 }
 
 impl SeedsResult {
-    /// The result of searches that differ in their seed alone; `None` without any.
+    /// The result of searches that differ only in their seed; `None` without any.
     #[must_use]
     pub fn new(results: Vec<OptimizeResult>) -> Option<Self> {
         let seeds: Vec<SeedRun> = results.iter().map(SeedRun::from).collect();
@@ -131,7 +131,7 @@ impl SeedsResult {
         text
     }
 
-    /// The seeds, one a row.
+    /// The seeds, one per row.
     ///
     /// # Errors
     /// Never for a table in memory.

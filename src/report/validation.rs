@@ -397,7 +397,7 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
     text
 }
 
-/// The checks of a validation, one a row.
+/// The checks of a validation, one per row.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -405,7 +405,7 @@ pub fn checks_csv(checks: &[Check]) -> std::io::Result<String> {
     super::records_csv(checks)
 }
 
-/// The checks as `JUnit` XML: a test case each, with the value as its output.
+/// The checks as `JUnit` XML: one test case each, with the value as its output.
 #[must_use]
 pub fn checks_junit(checks: &[Check]) -> String {
     let failures = checks.iter().filter(|check| !check.passed).count();

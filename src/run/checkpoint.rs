@@ -82,7 +82,7 @@ pub fn write(identity: &Identity, search: &Search) -> serde_json::Result<String>
 /// Reads a checkpoint.
 ///
 /// # Errors
-/// When it is not whole.
+/// If it is not whole.
 pub fn read(bytes: &[u8]) -> Result<(Identity, Search), CheckpointError> {
     let text = str::from_utf8(bytes).map_err(CheckpointError::Text)?;
     let (header, state) = text.split_once('\n').ok_or(CheckpointError::Short)?;

@@ -44,7 +44,7 @@ impl<'de> Deserializer<'de> for Listener<'_> {
 /// The values of the fields `names` of a struct, in that order, as the cells of a row.
 ///
 /// # Errors
-/// When the struct cannot be serialised.
+/// If the struct cannot be serialised.
 pub(crate) fn cells(row: &impl Serialize, names: &[&str]) -> serde_json::Result<Vec<String>> {
     let value = serde_json::to_value(row)?;
     Ok(names.iter().map(|name| cell(&value[*name])).collect())

@@ -89,7 +89,7 @@ impl Scenario {
     /// The samples in time.
     ///
     /// # Errors
-    /// When the span has no sample or too many.
+    /// If the span has no sample or too many.
     pub fn time_grid(&self) -> Result<TimeGrid, TimeError> {
         let epoch = Epoch::from_utc(self.time.epoch);
         TimeGrid::new(
@@ -102,7 +102,7 @@ impl Scenario {
     /// The design that is validated when none is named.
     ///
     /// # Errors
-    /// When its notation describes no design.
+    /// If its notation describes no design.
     pub fn reference_design(&self) -> Result<Design, SetupError> {
         Ok(self.reference_design.parse()?)
     }
@@ -111,7 +111,7 @@ impl Scenario {
     /// scenario names, by the path as written.
     ///
     /// # Errors
-    /// When a file cannot be read, or the values together leave no point or sample.
+    /// If a file cannot be read, or the values together leave no point or sample.
     pub fn setup(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Setup, SetupError> {
         let visibility = &self.visibility;
         let setup = Setup::new(self.time_grid()?, self.sites(read)?)

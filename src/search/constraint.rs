@@ -1,4 +1,4 @@
-//! Bounds that a feasible design keeps, written like `max-pdop <= 2.5`.
+//! Bounds that a feasible design must meet, written like `max-pdop <= 2.5`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use super::Quantity;
 use crate::keyword::{Keyword, UnknownKeyword, keywords};
 
 keywords! {
-    /// The side of its bound on which a constrained quantity must stay.
+    /// The side of its bound on which a constrained quantity must be.
     Relation {
         /// The quantity is at most the bound.
         AtMost = "<=",
@@ -16,12 +16,12 @@ keywords! {
     }
 }
 
-/// A bound that a feasible design keeps.
+/// A bound that a feasible design must meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constraint {
     /// What is bounded.
     pub quantity: Quantity,
-    /// On which side.
+    /// The side.
     pub relation: Relation,
     /// The bound, in the unit of the quantity.
     pub bound: f64,
@@ -30,7 +30,7 @@ pub struct Constraint {
 /// Why a text is not a constraint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
-    /// There is neither `<=` nor `>=` in it.
+    /// It has neither `<=` nor `>=`.
     #[error(
         "found {found:?}, expected a quantity, <= or >=, and a number, as in \"max-pdop <= 2.5\""
     )]
@@ -50,8 +50,8 @@ pub enum ConstraintError {
 }
 
 impl Constraint {
-    /// How far a value is from keeping the bound, relative to the bound (absolute for bounds
-    /// below 1); 1 for a value that does not exist.
+    /// How far a value is from meeting the bound, relative to the bound (absolute for bounds below
+    /// 1); 1 for a missing value.
     #[must_use]
     pub fn violation(&self, value: Option<f64>) -> f64 {
         let Some(value) = value else { return 1.0 };
@@ -80,7 +80,7 @@ impl FromStr for Constraint {
         Ok(Self {
             quantity: quantity.trim().parse()?,
             relation,
-            // Adding zero turns -0 into 0, so that equal bounds are written alike.
+            // Adding zero turns -0 into 0, so that equal bounds are written identically.
             bound: number.ok_or_else(|| ConstraintError::Bound {
                 found: bound.to_owned(),
             })? + 0.0,

@@ -184,7 +184,7 @@ fn figures_that_are_not_there_say_why() {
         ),
         (
             &["--figure", "series", "--measure", "availability"],
-            "figure series does not show availability",
+            "figure series cannot show availability",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
         (&["--figure", "map", "--pick", "99"], "no such design"),

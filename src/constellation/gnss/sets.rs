@@ -85,7 +85,7 @@ impl ElementSets {
     /// A satellite is named as in its set, or by its catalogue number.
     ///
     /// # Errors
-    /// When there is no set, a satellite has two, or SGP4 refuses one.
+    /// If there is no set, a satellite has two, or SGP4 refuses one.
     pub fn new(name: &str, sets: &[::sgp4::Elements]) -> Result<Self, ElementSetError> {
         let system = || name.to_owned();
         if sets.is_empty() {

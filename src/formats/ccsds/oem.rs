@@ -142,7 +142,7 @@ impl Segment {
     /// The states in the library's terms.
     ///
     /// # Errors
-    /// When the centre is not the Earth, or the frame or the time system is unknown.
+    /// If the centre is not the Earth, or the frame or the time system is unknown.
     pub fn trajectory(&self) -> Result<Trajectory, TrajectoryError> {
         let metadata = &self.metadata;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {

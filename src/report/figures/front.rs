@@ -8,19 +8,19 @@ use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
 use crate::search::Goals;
 
-/// A design that is shown beside the front.
+/// A design shown for comparison with the front.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Walker notation.
     pub notation: String,
-    /// The objectives of the run, in their own directions; `None` for one without a value.
+    /// The objectives of the run, in their original sense; `None` for one without a value.
     pub objectives: Vec<Option<f64>>,
 }
 
 impl Baseline {
-    /// A design with its objectives; `None` when it cannot be propagated.
+    /// A design with its objectives; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluate(
         name: &str,
@@ -41,7 +41,7 @@ impl Baseline {
 /// The front of another run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedFront {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its members.
     pub front: Vec<FrontMember>,
@@ -57,11 +57,11 @@ struct FrontRow<'a> {
     membership: Option<f64>,
 }
 
-/// Figure 2a of the paper: the front, the fronts of earlier generations behind it, and designs and
-/// fronts beside it. The plane is that of the first two objectives.
+/// Figure 2a of the paper: the front in the plane of the first two objectives, with earlier
+/// generations behind it, and designs and fronts for comparison.
 ///
 /// # Errors
-/// When the run has no front or only one objective.
+/// If the run has no front or only one objective.
 pub fn pareto(
     run: &Run,
     baselines: &[Baseline],
@@ -171,7 +171,7 @@ fn rows<'a>(
     rows
 }
 
-/// The fronts of earlier generations, point by point, in the objectives' own directions.
+/// The fronts of earlier generations, point by point, in the original sense of the objectives.
 pub(in crate::report) fn earlier(run: &Run, names: &[String]) -> Vec<(u64, Vec<f64>)> {
     let quantities: Vec<_> = names
         .iter()

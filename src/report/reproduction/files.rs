@@ -125,7 +125,7 @@ fn sensitivity_csv(study: &Reproduction) -> io::Result<String> {
     text(writer)
 }
 
-/// Figure 2: places in the plane of both objectives, with the fuzzy values over each set.
+/// Figure 2: designs in the plane of both objectives, with their fuzzy memberships over each set.
 fn places_csv(places: &[PlacedDesign]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([

@@ -40,7 +40,7 @@ const CELL_OPACITY: u8 = 130;
 /// each constellation.
 ///
 /// # Errors
-/// When a satellite has no state, or the output fails.
+/// If a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     scene: &Scene<'_>,
