@@ -1,20 +1,20 @@
-//! The part of the geometry that no design changes: the GNSS, once per setup.
+//! The part of the geometry that is the same for all designs: the GNSS, once per setup.
 
 use super::Setup;
 use crate::dop::{ClockGroup, Clocks, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
-/// What the GNSS contribute at one point and time.
+/// The contribution of the GNSS at one point and instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlainGnssSample {
-    /// Systems with clocks of their own.
+    /// Systems with their own clocks.
     pub(super) own_clocks: Geometry,
     /// Satellites that share their clock with the LEO design.
     pub(super) shared_clock: ClockGroup,
 }
 
-/// The GNSS geometry of every sample, time by time.
+/// The GNSS geometry of every sample, instant by instant.
 pub(super) struct FixedGeometry {
     samples: Vec<PlainGnssSample>,
     sites: usize,
@@ -33,7 +33,7 @@ impl FixedGeometry {
         })
     }
 
-    /// The samples of all points at time `k`.
+    /// The samples of all points at instant `k`.
     pub(super) fn at(&self, k: usize) -> &[PlainGnssSample] {
         &self.samples[k * self.sites..(k + 1) * self.sites]
     }

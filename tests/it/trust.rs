@@ -187,7 +187,7 @@ fn what_does_not_matter_is_said() {
             .as_str()
             .unwrap()
     };
-    assert!(message("independent:availability").contains("planes and satellites-per-plane"));
+    assert!(message("independent:availability").contains("`planes` and `satellites-per-plane`"));
     for variable in ["inclination-deg", "altitude-km"] {
         assert!(message(&format!("idle:{variable}")).contains(variable));
     }

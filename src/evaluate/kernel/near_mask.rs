@@ -1,4 +1,4 @@
-//! Samples in which a satellite is too close to the mask for f32: once more by the definitions.
+//! Samples in which a satellite is too close to the mask for f32, recomputed by definition.
 
 use super::super::Setup;
 use super::fixed::FixedSample;
@@ -9,14 +9,14 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use nalgebra::Vector3;
 
-/// All satellites, and when.
+/// All satellites, and the instant.
 pub(super) struct Satellites<'a> {
     pub(super) ephemeris: &'a Ephemeris,
     pub(super) elapsed_s: f64,
     pub(super) rotation: EarthRotation,
 }
 
-/// Settles all doubts of one sample.
+/// Resolves all doubtful decisions of one sample.
 pub(super) fn settle(
     setup: &Setup,
     scene: &SampleContext,

@@ -82,7 +82,7 @@ impl Fleet {
     /// The satellites on the grid of a study; `model` propagates mean elements.
     ///
     /// # Errors
-    /// If no satellites or one twice, a theory refuses one, or its samples do not cover
+    /// If there are no satellites, one appears twice, a theory rejects one, or samples do not cover
     /// the grid.
     pub fn propagate(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, FleetError> {
         if self.is_empty() {
