@@ -1,6 +1,6 @@
-//! A run: the files of its directory and what they hold, written and read by the same types.
+//! A run: the files of its directory and their contents, written and read by the same types.
 //!
-//! Reading is lenient: what is damaged or missing is named, and the rest is kept.
+//! Reading is lenient: damaged or missing parts are reported, and the rest is used.
 
 pub mod checkpoint;
 pub(crate) mod columns;
@@ -22,12 +22,12 @@ use crate::scenario::Scenario;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// The version of this program, which every result carries.
+/// The version of this program, included in every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The scenario with everything that was overridden.
+/// The scenario, including overrides.
 pub const SCENARIO: &str = "scenario.toml";
-/// The front and how the search went.
+/// The front and the record of the search.
 pub const FRONT_JSON: &str = "front.json";
 /// The front as a table.
 pub const FRONT_CSV: &str = "front.csv";
@@ -44,7 +44,7 @@ pub const VALIDATION: &str = "validation";
 /// The result of a validation, in its directory.
 pub const VALIDATION_REPORT: &str = "report.json";
 
-/// The files that a run writes; whatever else lies in its directory was put there about it.
+/// The files that a run writes; anything else in its directory was added later.
 pub const FILES: [&str; 7] = [
     CHECKPOINT,
     PREVIOUS_CHECKPOINT,
@@ -77,14 +77,14 @@ pub fn result_files(
     ])
 }
 
-/// What could be read of a run.
+/// The readable parts of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
-    /// The study; `None` when it is missing or not a scenario.
+    /// The study; `None` if it is missing or not a scenario.
     pub scenario: Option<Scenario>,
     /// Members of the front that could be read.
     pub front: Vec<FrontMember>,
-    /// How the search went; `None` when it is missing or damaged.
+    /// The record of the search; `None` if it is missing or damaged.
     pub search: Option<SearchSummary>,
     /// One record per generation.
     pub history: Vec<Record>,
@@ -95,7 +95,7 @@ pub struct Run {
     pub gaps: Vec<String>,
 }
 
-/// The bytes of a run's files; `Err` says why there are none.
+/// The bytes of a run's files, or why there are none.
 #[derive(Debug, Clone)]
 pub struct RunFiles {
     /// [`SCENARIO`].
@@ -104,12 +104,12 @@ pub struct RunFiles {
     pub front: Result<Vec<u8>, String>,
     /// [`HISTORY_JSON`].
     pub history: Result<Vec<u8>, String>,
-    /// The `report.json` of a validation, where there is one.
+    /// The `report.json` of a validation, if there is one.
     pub validation: Option<Vec<u8>>,
 }
 
 impl Run {
-    /// Reads what can be read.
+    /// Reads everything that is readable.
     #[must_use]
     pub fn read(files: &RunFiles) -> Self {
         let mut run = Self::default();
@@ -178,7 +178,7 @@ impl Run {
         }
     }
 
-    /// Brings every member's objectives into the scenario's order; a member that lacks one goes.
+    /// Puts every member's objectives into the scenario's order; drops members that lack one.
     fn sort_objectives(&mut self) {
         let names = self.objective_names();
         let before = self.front.len();
@@ -200,7 +200,7 @@ impl Run {
         }
     }
 
-    /// Reads the members one by one, and then what came with them.
+    /// Reads the members one by one, and then the record of the search.
     fn read_front(&mut self, mut value: Value) {
         let written = match value.get_mut("front").map(Value::take) {
             Some(Value::Array(members)) => members,
@@ -241,7 +241,7 @@ impl Run {
 }
 
 impl OptimizeResult {
-    /// Reads `front.json` strictly: every member and everything that came with them.
+    /// Reads `front.json` strictly: every member and the record of the search.
     ///
     /// # Errors
     /// If the bytes are not the front of a run.
@@ -250,7 +250,7 @@ impl OptimizeResult {
     }
 }
 
-/// Reads one file; the error names it and what is wrong.
+/// Reads one file; the error names it and the problem.
 fn json<T: DeserializeOwned>(name: &str, bytes: &Result<Vec<u8>, String>) -> Result<T, String> {
     let bytes = bytes
         .as_ref()

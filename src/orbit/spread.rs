@@ -1,4 +1,4 @@
-//! How far two propagators of one satellite lie apart.
+//! Distance between two propagations of one satellite.
 
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::TimeGrid;
@@ -33,7 +33,7 @@ impl PropagatorDistance {
         Ok(Self { max_km, rms_km })
     }
 
-    /// The larger of each distance: that of the satellite which loses most.
+    /// The larger of each distance: that of the satellite with the largest loss.
     pub fn widen(&mut self, other: &Self) {
         self.max_km = self.max_km.max(other.max_km);
         self.rms_km = self.rms_km.max(other.rms_km);

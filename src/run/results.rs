@@ -1,4 +1,4 @@
-//! The results that the files of a run hold, and that `--format json` prints.
+//! The results in the files of a run, as printed by `--format json`.
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
@@ -7,10 +7,10 @@ use crate::optimize::Record;
 use crate::search::Quantity;
 use serde::{Deserialize, Serialize};
 
-/// A design, spelled out.
+/// A design, field by field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignSummary {
-    /// Walker notation that reads back to the design.
+    /// Walker notation of the design.
     pub notation: String,
     /// `delta`, `star` or `lattice`.
     pub pattern: String,
@@ -50,19 +50,19 @@ impl From<&Design> for DesignSummary {
 }
 
 impl DesignSummary {
-    /// The design of the notation; `None` when the notation is not one.
+    /// The design of the notation; `None` if the notation is invalid.
     #[must_use]
     pub fn design(&self) -> Option<Design> {
         self.notation.parse().ok()
     }
 }
 
-/// Which study a result belongs to.
+/// The study of a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioStamp {
     /// Its name.
     pub name: String,
-    /// What [`Scenario::hash`](crate::scenario::Scenario::hash) gives.
+    /// Its [`Scenario::hash`](crate::scenario::Scenario::hash).
     pub hash: String,
 }
 
@@ -75,10 +75,10 @@ pub struct FrontMember {
     pub design: DesignSummary,
     /// Its metrics.
     pub metrics: Metrics,
-    /// Value of each objective by name, in its own direction.
+    /// Value of each objective by name, in its original sense.
     #[serde(with = "by_name")]
     pub objectives: Vec<(String, f64)>,
-    /// Fuzzy membership: the least over the objectives.
+    /// Fuzzy membership: the worst case over the objectives.
     pub membership: f64,
     /// Fuzzy membership: the normalised sum over the objectives.
     pub membership_sum: f64,
@@ -134,7 +134,7 @@ pub struct Hypervolume {
     pub reference: Option<Vec<f64>>,
 }
 
-/// How a search went: what a front comes with.
+/// The record of a search that accompanies its front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchSummary {
     /// Designs evaluated.
@@ -145,12 +145,12 @@ pub struct SearchSummary {
     pub seed: u64,
     /// Name of the algorithm.
     pub algorithm: String,
-    /// Generations done, and asked for.
+    /// Generations done, and in total.
     pub generations: [u64; 2],
-    /// What the program notices.
+    /// Diagnostics.
     #[serde(default)]
     pub diagnostics: Vec<Diagnostic>,
-    /// What a sweep of the same problem says of the front, when it was asked for.
+    /// Comparison with a sweep of the same problem, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// The study.
@@ -159,12 +159,12 @@ pub struct SearchSummary {
     pub version: String,
 }
 
-/// What `optimize` prints, and what `front.json` holds.
+/// The output of `optimize` and the content of `front.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OptimizeResult {
     /// The front, by the first objective.
     pub front: Vec<FrontMember>,
-    /// How the search went.
+    /// The record of the search.
     #[serde(flatten)]
     pub search: SearchSummary,
     /// One record per generation; goes to the history files.
@@ -180,27 +180,27 @@ impl OptimizeResult {
     }
 }
 
-/// What a sweep says of a front.
+/// Comparison of a front with that of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Designs that the sweep evaluated.
     pub evaluations: u64,
-    /// Members of the exact front of the lattice.
+    /// Members of the sweep's front, which is exact on its grid.
     pub exact_members: usize,
-    /// Hypervolume of the exact front of the lattice.
+    /// Hypervolume of the sweep's front.
     pub exact_hypervolume: Option<f64>,
     /// Hypervolume of the certified front.
     pub found_hypervolume: Option<f64>,
-    /// Distance of each front member to the exact front, in the order of the front.
+    /// Distance of each front member to the sweep's front, in the order of the front.
     pub distances: Vec<f64>,
-    /// The exact members that no front member comes near to, if any.
+    /// The members of the sweep's front with no front member close to them, if any.
     pub missed: Option<Missed>,
 }
 
-/// A part of the exact front that a search did not find, by the ranges of its designs.
+/// A part of the sweep's front that a search did not find, given by the ranges of its designs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Missed {
-    /// Exact members that were not found.
+    /// Members that were not found.
     pub members: usize,
     /// Planes, lowest and highest.
     pub planes: [usize; 2],
@@ -212,7 +212,7 @@ pub struct Missed {
     pub altitude_km: [f64; 2],
 }
 
-/// Something worth knowing about a result, in plain words.
+/// A diagnostic message about a result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// Stable name, for programs.

@@ -7,7 +7,7 @@ use crate::optimize::Record;
 use csv::Writer;
 use std::io;
 
-/// The front of a search, one member a row: its fields, those of its design and metrics among them.
+/// The front of a search, one member per row, including the fields of its design and metrics.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -16,7 +16,7 @@ pub fn front_csv(result: &OptimizeResult) -> io::Result<String> {
     let header = fields::<FrontMember>().iter().flat_map(|name| match *name {
         "design" => fields::<DesignSummary>(),
         "metrics" => fields::<Metrics>(),
-        // Objectives are metrics by another name.
+        // Objectives are metrics under another name.
         "objectives" => &[],
         _ => std::slice::from_ref(name),
     });
@@ -36,7 +36,7 @@ pub fn front_csv(result: &OptimizeResult) -> io::Result<String> {
     text(writer)
 }
 
-/// The generations of a search, one a row; `best_<objective>` as the optimiser minimises it.
+/// The generations of a search, one per row; `best_<objective>` as the optimiser minimises it.
 ///
 /// # Errors
 /// Never for a table in memory.

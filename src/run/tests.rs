@@ -76,7 +76,7 @@ fn members_are_kept_when_the_rest_is_damaged() {
     assert!(has_gap(&run, "front.json has no record of the search"));
 }
 
-/// What is written is read again, to the byte.
+/// Results round-trip to the byte.
 #[test]
 fn results_are_read_back_as_they_were_written() {
     let result = OptimizeResult {

@@ -264,8 +264,8 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     }
     if let Some(chosen) = result.chosen() {
         text += &format!(
-            "* fuzzy pick: {}, the best worst-case membership over the objectives ({:.3})\n",
-            chosen.design.notation, chosen.membership
+            "* fuzzy pick: {} {}, the best worst-case membership over the objectives ({:.3})\n",
+            chosen.index, chosen.design.notation, chosen.membership
         );
     }
     text += &other_picks(result);
