@@ -1,7 +1,7 @@
 //! Satellites read from a file of any format, propagated by the theory that the file implies.
 //!
 //! Element sets (TLE, OMM) propagate by SGP4; tables of mean elements, and parameter messages that hold
-//! them, by the model of the study; sampled states stand as they are, at their samples.
+//! them, by the model of the study; sampled states are used as they are, at their samples.
 
 mod propagation;
 
@@ -22,7 +22,7 @@ use crate::time::Epoch;
 use std::io::BufRead;
 use thiserror::Error;
 
-/// Satellites as files give them.
+/// Satellites as read from files.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fleet {
     /// Element sets for SGP4.
@@ -38,13 +38,13 @@ pub enum Fleet {
 /// Why a file gives no satellites.
 #[derive(Debug, Error)]
 pub enum ReadFleetError {
-    /// It breaks a rule of its format.
+    /// It violates its format.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// Its states cannot be brought to a frame of ours.
+    /// Its states cannot be transformed to a known frame.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// A parameter message of another program: one state, and no theory to propagate it by.
+    /// A parameter message of another program: one state, and no theory to propagate it.
     #[error("{name}: the message has a state at one instant but no mean elements to propagate")]
     NoTheory {
         /// The satellite.
@@ -53,9 +53,9 @@ pub enum ReadFleetError {
     /// Files of one constellation that propagate by different theories.
     #[error("one file has {first} and another {second}; give files of one kind")]
     Mixed {
-        /// What the first holds.
+        /// The content of the first.
         first: &'static str,
-        /// What the other holds.
+        /// The content of the other.
         second: &'static str,
     },
     /// A satellite whose file has a single sample without a velocity, or two at one instant.
@@ -67,10 +67,10 @@ pub enum ReadFleetError {
 }
 
 impl Fleet {
-    /// Reads a file in `format`, or in the one that its beginning and its name show.
+    /// Reads a file in `format`, or in the format detected from its beginning and its name.
     ///
     /// # Errors
-    /// If the file breaks its format, or its states mean nothing here.
+    /// If the file violates its format, or its states are in an unknown frame or time system.
     pub fn read(
         mut input: impl BufRead,
         format: Option<Format>,
@@ -163,7 +163,7 @@ impl Fleet {
         Ok(Self::Sampled(trajectories))
     }
 
-    /// Names sampled satellites by their place, from 1: for files whose ids start again in each, as in
+    /// Names sampled satellites by their position, from 1: for files that each restart their ids, such as
     /// the parts of a large constellation in SP3.
     pub fn name_by_place(&mut self) {
         if let Self::Sampled(trajectories) = self {
@@ -173,7 +173,7 @@ impl Fleet {
         }
     }
 
-    /// The file names no satellite: it is called as its file is.
+    /// The file does not name its satellite, which gets the name of the file.
     fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
         let file_name = file_name.unwrap_or("satellite");
         let file_name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
@@ -211,7 +211,7 @@ impl Fleet {
         Ok(())
     }
 
-    /// What it holds, in words.
+    /// Its content, in words.
     #[must_use]
     pub fn content(&self) -> &'static str {
         match self {
@@ -233,15 +233,15 @@ impl Fleet {
         }
     }
 
-    /// Whether no satellites.
+    /// Whether there are no satellites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Puts the states of a later segment behind those of an earlier one, in the order of time;
-/// segments may share an instant or overlap, and then the earlier one's states stand.
+/// Merges the states of a later segment with those of an earlier one, in time order; if segments
+/// share an instant or overlap, the states of the earlier one are used.
 fn join(before: &mut Vec<(Epoch, State<Frame>)>, next: Vec<(Epoch, State<Frame>)>) {
     before.extend(next);
     if !before.is_sorted_by(|(one, _), (other, _)| one < other) {
@@ -252,7 +252,7 @@ fn join(before: &mut Vec<(Epoch, State<Frame>)>, next: Vec<(Epoch, State<Frame>)
 }
 
 /// SP3 names a realisation of the Earth-fixed frame in five characters, as `IGS14`, `WGS84`,
-/// `ITR08`; positions are Earth-fixed also where the name is left out.
+/// `ITR08`; positions are Earth-fixed even without a name.
 fn frame_of_sp3(name: &str) -> Result<Frame, UnknownKeyword> {
     let earth_fixed = ["IGS", "IGB", "WGS", "ITR", "PZ", "SLR", "UNDEF"];
     let upper = name.to_ascii_uppercase();

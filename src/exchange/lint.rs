@@ -1,5 +1,5 @@
-//! Checks a file against its format: what a reader refuses, and what it lets pass although the
-//! standard forbids it.
+//! Checks a file against its format: what a reader rejects, and what it accepts although the standard
+//! forbids it.
 
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
@@ -43,11 +43,11 @@ keywords! {
     }
 }
 
-/// Bytes that are looked at to tell the format.
+/// Bytes from which the format is detected.
 const PROBE: usize = 1024;
 
 impl Format {
-    /// The format that the beginning of a file shows, or else its name.
+    /// The format detected from the beginning of a file, or else from its name.
     #[must_use]
     pub fn of(beginning: &[u8], file_name: Option<&str>) -> Self {
         let beginning = &beginning[..beginning.len().min(PROBE)];
@@ -93,17 +93,17 @@ impl Format {
     }
 }
 
-/// What a check of a file says.
+/// The result of checking a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LintReport {
     /// The format that it was checked against.
     pub format: Format,
-    /// What it breaks, in the order of the file as far as it goes.
+    /// The violations, mostly in the order of the file.
     pub findings: Vec<Finding>,
 }
 
-/// Checks a file against `format`, or against the one that its beginning and its name show; looks
-/// for up to `limit` findings.
+/// Checks a file against `format`, or against the format detected from its beginning and its name, for
+/// up to `limit` findings.
 ///
 /// # Errors
 /// A failure of the input.
@@ -137,7 +137,7 @@ pub fn lint(
     Ok(LintReport { format, findings })
 }
 
-/// Element sets, none of which may stand twice.
+/// Element sets, none of which may appear twice.
 fn lint_tle(input: impl BufRead, findings: &mut FindingList) -> io::Result<()> {
     let mut known = HashSet::new();
     let mut repeated = Vec::new();
@@ -244,7 +244,7 @@ mod tests {
         );
     }
 
-    /// A line without end costs no memory and no time to speak of: 64 MiB here.
+    /// An endless line costs hardly any memory or time: 64 MiB here.
     #[test]
     fn endless_lines_are_passed_over() {
         for format in Format::ALL {

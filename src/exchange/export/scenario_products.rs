@@ -1,4 +1,4 @@
-//! The products from which another program rebuilds the study: STK, GMAT, almanacs.
+//! The products with which another program reproduces the study: STK, GMAT, almanacs.
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
@@ -17,7 +17,7 @@ use crate::keyword::Keyword;
 use crate::orbit::Model;
 use std::io::Write;
 
-/// Where the files are that build the scenario in STK, its GNSS among them.
+/// Directory of the files that build the scenario in STK, including its GNSS.
 pub(super) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
 
 /// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
@@ -98,7 +98,7 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    /// A satellite of the design: elements where STK has the theory, or else its ephemeris.
+    /// A satellite of the design: elements if STK has the theory, otherwise its ephemeris.
     fn setting(&self, satellite: &Satellite, name: &str) -> Setting {
         match self.subject.model {
             Model::J2 => Setting::J2(satellite.elements),

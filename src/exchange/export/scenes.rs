@@ -1,4 +1,4 @@
-//! The products that show or rebuild a whole scenario.
+//! The products that show or reproduce a complete scenario.
 
 use super::products::ProductFiles;
 use super::source::ExportSource;

@@ -10,23 +10,23 @@ use crate::time::{Epoch, TimeGrid};
 use std::collections::HashSet;
 use thiserror::Error;
 
-/// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
+/// Time within which a sample belongs to an instant, s: 7 mm along a low orbit, and more than the
 /// 10 ns of SP3 and the microseconds of some writers.
 const SAME_INSTANT_S: f64 = 1e-6;
 
 /// Why the satellites of a file do not propagate a study.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FleetError {
-    /// No satellite.
+    /// No satellites.
     #[error("no satellites")]
     Empty,
-    /// Element sets that make no constellation.
+    /// Element sets that do not form a constellation.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
-    /// A model that refuses the elements.
+    /// A model that rejects the elements.
     #[error(transparent)]
     Propagation(#[from] EphemerisError),
-    /// Two satellites of one name.
+    /// Two satellites with the same name.
     #[error("satellite {0} appears twice")]
     Repeated(String),
     /// A satellite without a sample at an instant of the study.
@@ -134,7 +134,7 @@ fn propagated(name: &str, propagator: impl Propagator + 'static) -> EphemerisSat
     }
 }
 
-/// Satellites of one file share its frame, so that its rotations are kept from one to the next.
+/// Satellites of one file share its frame, so its rotations are reused from one to the next.
 fn sampled(
     trajectories: &[Trajectory],
     grid: TimeGrid,
