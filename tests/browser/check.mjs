@@ -105,6 +105,9 @@ test("the paper's report is light, loads fast and follows a click", async () => 
   assert.equal(await page.locator("#badge").isVisible(), true);
   assert.deepEqual(trouble, []);
   await wholePage(page, "desktop");
+  // The picture in the README: trade-off, selected design and the first maps.
+  const top = await page.evaluate(() => document.getElementById("tradeoff").offsetTop);
+  await page.screenshot({ path: `${shots}/readme.png`, fullPage: true, clip: { x: 0, y: top, width: 1280, height: 1230 } });
   await context.close();
 });
 

@@ -289,7 +289,10 @@ impl Front {
                 ("95 % quantile of PDOP", column(&|m| m.metrics.p95_pdop)),
                 ("maximum PDOP", column(&|m| m.metrics.max_pdop)),
                 ("availability", column(&|m| Some(m.metrics.availability))),
-                ("solved", column(&|m| Some(m.metrics.solved_fraction))),
+                (
+                    "solved fraction",
+                    column(&|m| Some(m.metrics.solved_fraction)),
+                ),
             ],
             variables: vec![
                 ("satellites", of_design(|d| d.satellite_count() as f64)),

@@ -1,6 +1,7 @@
 //! The texts and tables of the page.
 
 use super::Page;
+use crate::constellation::gnss::Preset;
 use crate::earth;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
@@ -115,7 +116,7 @@ fn setting(scenario: &Scenario) -> String {
         .gnss
         .constellations
         .iter()
-        .map(|c| c.keyword())
+        .map(|preset| preset_title(*preset))
         .collect();
     let gnss = if gnss.is_empty() && scenario.gnss.files.is_empty() {
         "no GNSS".to_owned()
@@ -134,6 +135,16 @@ fn setting(scenario: &Scenario) -> String {
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
         scenario.visibility.mask_deg
     )
+}
+
+/// The name of a GNSS as its operator writes it.
+fn preset_title(preset: Preset) -> &'static str {
+    match preset {
+        Preset::Beidou3 => "BeiDou-3",
+        Preset::Gps => "GPS",
+        Preset::Galileo => "Galileo",
+        Preset::Glonass => "GLONASS",
+    }
 }
 
 fn latitude_label(degrees: f64) -> String {
