@@ -186,7 +186,8 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     let points: Vec<Vec<f64>> = found.front.iter().map(FrontMember::minimised).collect();
     let Some(picked) = pick.apply(&points) else {
         bail!(
-            "no such design: the front in {} has {}",
+            "cannot pick {}: the front in {} has {} designs",
+            pick.keyword(),
             path.display(),
             points.len()
         );

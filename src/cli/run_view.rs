@@ -71,7 +71,13 @@ impl RunView {
         let members = &self.run.front;
         let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
         let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| format!("no such design: the front has {}", members.len()))
+        found.with_context(|| {
+            format!(
+                "cannot pick {}: the front has {} designs",
+                pick.keyword(),
+                members.len()
+            )
+        })
     }
 }
 

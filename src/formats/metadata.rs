@@ -1,4 +1,4 @@
-//! What every exported file says of itself: who and what it describes, and under which
+//! The metadata in every exported file: its originator and content, and under which
 //! conventions.
 
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
@@ -223,7 +223,7 @@ impl fmt::Display for Theory {
     }
 }
 
-/// What a file says of its content.
+/// The description of a file's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
     /// Who made the file.

@@ -25,7 +25,7 @@ const NAME: usize = 24;
 /// Nanoseconds in 1e-8 day, the step of a TLE epoch.
 const EPOCH_STEP_NS: i64 = 864_000;
 
-/// An element that does not fit its columns.
+/// An element that exceeds its columns.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TleFieldError {
     /// A number out of the range of its columns.
@@ -38,7 +38,7 @@ pub enum TleFieldError {
         /// What would fit.
         bound: &'static str,
     },
-    /// A text that does not fit its columns.
+    /// A text that exceeds its columns.
     #[error("a TLE cannot hold {field} '{value}'; {bound}")]
     Text {
         /// The element.
@@ -79,7 +79,7 @@ fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
 /// Writes one element set: its name, if it has one, and its two lines.
 ///
 /// # Errors
-/// If an element does not fit its columns, or the output fails.
+/// If an element exceeds its columns, or the output fails.
 pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteError> {
     if let Some(name) = &set.object_name {
         writeln!(out, "{}", name_field(name)?)?;
@@ -93,7 +93,7 @@ pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteErro
 /// The two lines of an element set, with their checksums.
 ///
 /// # Errors
-/// If an element does not fit its columns.
+/// If an element exceeds its columns.
 pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
     let number = u32::try_from(set.norad_id).unwrap_or(u32::MAX);
     let number = CatalogNumber::new(number)?;
@@ -131,7 +131,7 @@ pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
 /// The element set that a reader finds in the two lines.
 ///
 /// # Errors
-/// If an element does not fit its columns.
+/// If an element exceeds its columns.
 pub fn as_written(set: &sgp4::Elements) -> Result<sgp4::Elements, TleFieldError> {
     let [first, second] = lines(set)?;
     let name = set.object_name.clone();

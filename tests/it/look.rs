@@ -187,7 +187,10 @@ fn figures_that_are_not_there_say_why() {
             "figure series cannot show availability",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
-        (&["--figure", "map", "--pick", "99"], "no such design"),
+        (
+            &["--figure", "map", "--pick", "99"],
+            "cannot pick 99: the front has",
+        ),
         (&["--figure", "map", "--out", "map.gif"], "use --as"),
         (
             &["--figure", "map", "--out", "nowhere/map.svg"],

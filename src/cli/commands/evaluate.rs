@@ -164,16 +164,16 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     row("99 % quantile of PDOP", metrics.p99_pdop, 4, String::new());
     row("maximum PDOP", metrics.max_pdop, 4, String::new());
     row(
-        "solved",
-        Some(100.0 * metrics.solved_fraction),
-        3,
-        "% of points and instants".to_owned(),
+        "solved fraction",
+        Some(metrics.solved_fraction),
+        5,
+        "of points and instants".to_owned(),
     );
     row(
-        "available",
-        Some(100.0 * metrics.availability),
-        3,
-        format!("% with PDOP <= {threshold}"),
+        "availability",
+        Some(metrics.availability),
+        5,
+        format!("fraction with PDOP <= {threshold}"),
     );
     row(
         "J_pos",

@@ -116,7 +116,7 @@ pub(crate) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::R
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Need {
     Mandatory,
-    /// Mandatory in the standard, but so often missing that a reader goes on.
+    /// Mandatory in the standard, but so often missing that readers continue without it.
     Expected,
     Optional,
 }
@@ -135,7 +135,7 @@ pub(crate) const fn must(name: &'static str) -> KvnKeyword {
     }
 }
 
-/// A keyword that must be there by the standard, without which a reader goes on.
+/// A keyword that must be there by the standard, which a reader can do without.
 pub(crate) const fn should(name: &'static str) -> KvnKeyword {
     KvnKeyword {
         name,
@@ -283,7 +283,7 @@ impl KvnBlock {
     /// Takes a keyword of the table.
     pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         let Some(index) = self.index(pair.key) else {
-            let message = format!("keyword {} does not belong here", pair.key);
+            let message = format!("keyword {} is not allowed here", pair.key);
             findings.error(pair.key_place, "ccsds-keyword", message);
             return;
         };
@@ -311,7 +311,7 @@ impl KvnBlock {
         });
     }
 
-    /// Takes a keyword of the table whose key and value stand at one place, as in XML.
+    /// Takes a keyword of the table whose key and value have the same position, as in XML.
     pub(crate) fn accept_at(
         &mut self,
         (key, value): (&str, &str),
@@ -353,13 +353,13 @@ impl KvnBlock {
         self.placed(key).map(|value| value.text.clone())
     }
 
-    /// A time; a finding if it is none.
+    /// A time; a finding if it is invalid.
     pub(crate) fn stamp(&self, key: &str, findings: &mut FindingList) -> Option<NaiveDateTime> {
         let value = self.placed(key)?;
         read_stamp(&value.text, value.place, findings)
     }
 
-    /// A number, behind which its unit in brackets may stand; a finding if it is none.
+    /// A number, behind which its unit in brackets may stand; a finding if it is invalid.
     pub(crate) fn number(&self, key: &str, findings: &mut FindingList) -> Option<f64> {
         let value = self.placed(key)?;
         let text = match value.text.split_once('[') {
@@ -369,7 +369,7 @@ impl KvnBlock {
         read_number(text, value.place, findings)
     }
 
-    /// A count; a finding if it is none.
+    /// A count; a finding if it is invalid.
     pub(crate) fn count(&self, key: &str, findings: &mut FindingList) -> Option<u64> {
         let value = self.placed(key)?;
         let parsed = value.text.parse().ok();
@@ -381,7 +381,7 @@ impl KvnBlock {
     }
 }
 
-/// Reads a time of 7.5.10; a finding if it is none.
+/// Reads a time of 7.5.10; a finding if it is invalid.
 pub(crate) fn read_stamp(
     text: &str,
     place: (usize, usize),
@@ -395,7 +395,7 @@ pub(crate) fn read_stamp(
     stamp
 }
 
-/// Reads a number of 7.5.4 to 7.5.7; a finding if it is none.
+/// Reads a number of 7.5.4 to 7.5.7; a finding if it is invalid.
 pub(crate) fn read_number(
     text: &str,
     place: (usize, usize),

@@ -3,7 +3,7 @@
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Longest object that is kept, in bytes.
+/// Maximum size of an object, in bytes.
 const MAX_OBJECT: usize = 1 << 20;
 
 /// An object of the array.

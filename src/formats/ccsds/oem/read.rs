@@ -145,7 +145,7 @@ impl OemParser {
             OemSection::Metadata(block) => block.accept(pair, findings),
             OemSection::Covariance(covariance) => covariance.pair(pair, findings),
             OemSection::Ephemeris | OemSection::BetweenSegments => {
-                let message = format!("keyword {} does not belong here", pair.key);
+                let message = format!("keyword {} is not allowed here", pair.key);
                 findings.error(pair.key_place, "ccsds-keyword", message);
             }
         }
@@ -289,7 +289,7 @@ pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: 
 }
 
 fn misplaced_marker(marker: &str, number: usize, findings: &mut FindingList) {
-    let message = format!("{marker} does not belong here");
+    let message = format!("{marker} is not allowed here");
     findings.error((number, 1), "oem-marker", message);
 }
 

@@ -224,7 +224,7 @@ impl Message {
             (OemXmlSection::Covariance, _) => {}
             (OemXmlSection::Data, None) if is_comment => {}
             (OemXmlSection::Body | OemXmlSection::Data, _) => {
-                let message = format!("element {name} does not belong here");
+                let message = format!("element {name} is not allowed here");
                 findings.error(place, "ccsds-keyword", message);
             }
         }
