@@ -11,7 +11,7 @@ use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::TimeGrid;
 use thiserror::Error;
 
-/// A satellite that can be asked for its state.
+/// A satellite with a state at any instant of its span.
 pub struct EphemerisSatellite {
     /// Name, unique in the ephemeris.
     pub name: String,
@@ -31,9 +31,9 @@ pub struct EphemerisError {
     pub source: PropagationError,
 }
 
-/// Satellites and the instants at which they are looked at.
+/// Satellites and the instants at which they are sampled.
 ///
-/// States are computed when asked for, so that a product can stream ten thousand satellites.
+/// States are computed on demand, so that a product can stream ten thousand satellites.
 pub struct Ephemeris {
     grid: TimeGrid,
     satellites: Vec<EphemerisSatellite>,

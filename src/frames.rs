@@ -6,7 +6,7 @@
 //!
 //! Elements and propagation live in TEME, the true equator and mean equinox of date of
 //! SGP4 (Vallado et al., AIAA 2006-6753, appendix C). What is called Earth-fixed here is
-//! the pseudo-Earth-fixed frame: TEME turned by mean sidereal time (IAU 1982), UT1 = UTC,
+//! the pseudo-Earth-fixed frame: TEME rotated by mean sidereal time (IAU 1982), UT1 = UTC,
 //! without polar motion. In low orbit it lies within 30 m of an ITRF.
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
@@ -33,7 +33,7 @@ keywords! {
     }
 }
 
-/// R₃(θ): coordinates in axes that are turned by `angle_rad` about z.
+/// R₃(θ): coordinates in axes rotated by `angle_rad` about z.
 fn axes_turned_about_z(angle_rad: f64) -> Matrix3<f64> {
     let (s, c) = angle_rad.sin_cos();
     Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0)

@@ -68,7 +68,7 @@ pub enum Sp3Error {
     /// An instant outside the weeks that a file can count.
     #[error("SP3 covers 9999 weeks from 1980-01-06; {0} in GPS time is outside them")]
     Instant(NaiveDateTime),
-    /// A letter that is none.
+    /// An invalid letter.
     #[error("'{0}' is not a capital letter, as SP3 identifiers need")]
     Letter(char),
     /// A coordinate or a velocity that is too large.
@@ -81,7 +81,7 @@ pub enum Sp3Error {
         /// The value.
         value: f64,
     },
-    /// The letter of a GNSS for the satellites of a design beside it.
+    /// The letter of an exported GNSS, chosen for the satellites of the design.
     #[error("'{letter}' is the SP3 letter of {preset}; choose another for the design")]
     LetterOfGnss {
         /// The letter.
@@ -119,7 +119,7 @@ const ID_LINES: usize = 5;
 /// `satellites` are named `letter` 01, 02 … in their order.
 ///
 /// # Errors
-/// If they do not fit a file, a satellite has no state, or the output fails.
+/// If a file cannot hold them, a satellite has no state, or writing fails.
 pub fn write(
     out: &mut impl Write,
     version: Sp3Version,
@@ -191,7 +191,7 @@ fn write_first_lines(
     )
 }
 
-/// Whether four digits tell the week of an instant.
+/// Whether four digits are enough for the week of an instant.
 fn has_a_week(at: NaiveDateTime) -> bool {
     (0..=9999).contains(&(at - gps_zero()).num_days().div_euclid(7))
 }

@@ -232,7 +232,7 @@ struct PlacedValue {
     place: (usize, usize),
 }
 
-/// The values of one table of keywords, as they come in.
+/// The values of one table of keywords, in the order read.
 pub(crate) struct KvnBlock {
     table: Vec<&'static KvnKeyword>,
     values: Vec<Option<PlacedValue>>,

@@ -25,7 +25,7 @@ use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
 
-/// What is said of a message in TEME, which is only written when it is asked for.
+/// The remark on a message in TEME, which is only written on request.
 pub(crate) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) reserves TEME for OMMs made from TLEs; some readers reject it here";
 
@@ -83,7 +83,7 @@ pub struct SegmentMetadata {
 /// A segment: its metadata and its ephemeris lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
-    /// What it says of itself.
+    /// Its metadata.
     pub metadata: SegmentMetadata,
     /// Comments before the first ephemeris line.
     pub comments: Vec<String>,
@@ -162,7 +162,7 @@ impl Segment {
     }
 }
 
-/// What the segment of a satellite says of itself.
+/// The metadata of a satellite's segment.
 pub(crate) fn segment_metadata(
     metadata: &Metadata,
     object: &Object,
@@ -177,7 +177,7 @@ pub(crate) fn segment_metadata(
     if metadata.frame == Frame::Teme {
         comments.push(TEME_NOTE.to_owned());
     }
-    // 7.8.12 c asks for the accuracy.
+    // 7.8.12 c requires the accuracy.
     if let Some(hermite) = hermite {
         comments.push(format!(
             "Error of this interpolation halfway between lines: at most {:.1e} km",

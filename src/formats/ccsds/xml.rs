@@ -1,6 +1,6 @@
 //! Elements of an XML file, with their places, for the Navigation Data Messages.
 //!
-//! Leaves are told from elements with children; memory is bounded by the length of one tag or
+//! Leaves are distinguished from elements with children; memory is bounded by the length of one tag or
 //! text and by the depth. Document types and entities other than the five of XML are refused.
 
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
@@ -250,7 +250,7 @@ fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
     }
 }
 
-/// Text of an event; bytes that are no UTF-8 become replacement characters, which no field takes.
+/// Text of an event; bytes that are not UTF-8 become replacement characters, which no field takes.
 fn name_of(bytes: impl AsRef<[u8]>) -> String {
     String::from_utf8_lossy(bytes.as_ref()).into_owned()
 }
@@ -262,7 +262,7 @@ fn resolved(reference: &BytesRef<'_>) -> Option<String> {
     resolve_predefined_entity(&name_of(reference.as_ref())).map(str::to_owned)
 }
 
-/// What the outermost element says of its schema (CCSDS 505.0-B-2, section 4).
+/// The schema attributes of the outermost element (CCSDS 505.0-B-2, section 4).
 fn schema(version: CcsdsVersion) -> String {
     let schema = match version {
         CcsdsVersion::V2 => "ndmxml-2.0.0-master-2.0.xsd",

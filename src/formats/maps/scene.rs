@@ -91,7 +91,7 @@ impl<'a> Scene<'a> {
         Some(cell(grid, [point.longitude_deg, point.latitude_deg]))
     }
 
-    /// What another program must be told to get the same numbers, a sentence each.
+    /// The settings another program needs to get the same numbers, one sentence each.
     #[must_use]
     pub fn assumptions(&self) -> Vec<String> {
         let setup = self.setup();

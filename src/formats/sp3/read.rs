@@ -45,7 +45,7 @@ struct Sp3Parser {
     at: Option<Epoch>,
     /// Satellites whose position at this epoch is marked as missing.
     missing: Vec<usize>,
-    /// Seconds by which the time system of the file, when it is none of ours, is behind ours.
+    /// Seconds by which the time system of the file is behind ours, if it is not one of ours.
     behind_s: f64,
     ended: bool,
     any: bool,
@@ -231,7 +231,7 @@ impl Sp3Parser {
         let (Some((index, position_km)), Some(at)) = (self.record(line, findings), self.at) else {
             return;
         };
-        // A position of zeros stands for a missing one.
+        // A position of zeros means a missing one.
         if position_km.norm_squared() == 0.0 {
             self.missing.push(index);
             return;

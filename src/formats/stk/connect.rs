@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// The elements stand in metres and degrees, perigee before node, as "SetState Classical" has
+    /// The elements are in metres and degrees, perigee before node, as "SetState Classical" has
     /// them; a star pattern has its nodes over half a turn.
     #[test]
     fn commands_hold_the_design() {

@@ -41,7 +41,7 @@ impl JsonObject {
         let text = |(key, value): (String, serde_json::Value)| match value {
             serde_json::Value::String(text) => Some((key, text)),
             serde_json::Value::Number(number) => Some((key, number.to_string())),
-            // Null stands for a value that is not given.
+            // Null is a missing value.
             _ => None,
         };
         Some(members.into_iter().filter_map(text).collect())

@@ -124,7 +124,7 @@ const FIRST: &[u8; LINE] = b"1 A____U _____LLL ##__#.######## +.######## +#####-
 const SECOND: &[u8; LINE] =
     b"2 A____ __#.#### __#.#### ####### __#.#### __#.#### _#.########____##";
 
-/// Whether a byte may stand in a column, with what may stand there.
+/// Whether a byte is allowed in a column, and what is allowed there.
 fn column_fits(class: u8, byte: u8) -> Result<(), &'static str> {
     let (fits, expected) = match class {
         b'#' => (byte.is_ascii_digit(), "a digit"),
@@ -186,7 +186,7 @@ fn record(
     second: &Line,
     findings: &mut FindingList,
 ) -> Option<TleRecord> {
-    // Both lines are looked at before giving up, so that a linter sees what is wrong with each.
+    // Both lines are checked before giving up, so that a linter reports the problems of each.
     let first_fits = line_fits(first, FIRST, findings);
     let second_fits = line_fits(second, SECOND, findings);
     if !(first_fits && second_fits) {
@@ -230,7 +230,7 @@ fn record(
     }
 }
 
-/// The element set of two lines whose columns have been looked at.
+/// The element set of two lines whose columns have been checked.
 pub(super) fn set_of_lines(
     name: Option<String>,
     [one, two]: [&str; 2],

@@ -16,7 +16,7 @@ use std::io::Write;
 pub struct OemWriter<'a> {
     /// Version of the messages.
     pub version: CcsdsVersion,
-    /// What they say of themselves.
+    /// Their metadata.
     pub metadata: &'a Metadata,
     /// The satellites in the frame of the messages.
     pub sampled: &'a Sampled<'a, Frame>,

@@ -48,7 +48,7 @@ impl Oem {
     }
 }
 
-/// Writes what stands before the states of a segment.
+/// Writes the part of a segment before its states.
 pub(super) fn begin_segment(
     out: &mut impl Write,
     metadata: &SegmentMetadata,
@@ -157,7 +157,7 @@ enum OemXmlSection {
     Covariance,
 }
 
-/// A message as it comes in.
+/// A message while it is read.
 struct Message {
     part: OemXmlSection,
     header: KvnBlock,

@@ -61,7 +61,7 @@ impl CzmlTrack {
     }
 }
 
-/// Reads the satellites; those of a GNSS that `navwalker` wrote beside a design are passed over.
+/// Reads the satellites; those of a GNSS that `navwalker` wrote in addition to a design are skipped.
 ///
 /// # Errors
 /// The first finding, or a failure of the input.

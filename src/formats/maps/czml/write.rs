@@ -24,7 +24,7 @@ const SPACINGS_S: [f64; 9] = [
     3600.0, 1800.0, 1200.0, 600.0, 300.0, 120.0, 60.0, 30.0, 10.0,
 ];
 
-/// Most intervals between samples that are looked at for the error of a spacing.
+/// Maximum number of intervals between samples that are checked for the error of a spacing.
 const INTERVALS: usize = 500;
 
 /// Samples beyond each end.
