@@ -25,7 +25,7 @@ use clap::Parser;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// How a command ended, as its exit status.
+/// The exit status of a command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Status {
     /// Done.
@@ -38,7 +38,7 @@ enum Status {
     Interrupted = 130,
 }
 
-/// Runs the command line `args`, the name of the program first, and says how it ended.
+/// Runs the command line `args`, which begins with the program name, and returns its exit status.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     output::choose_colors();
     let cli = match Cli::try_parse_from(args) {

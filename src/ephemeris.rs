@@ -13,7 +13,7 @@ use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::TimeGrid;
 use thiserror::Error;
 
-/// A satellite that can be asked for its state.
+/// A satellite with a state at any instant of its span.
 pub struct EphemerisSatellite {
     /// Name, unique in the ephemeris.
     pub name: String,
@@ -33,9 +33,9 @@ pub struct EphemerisError {
     pub source: PropagationError,
 }
 
-/// Satellites and the instants at which they are looked at.
+/// Satellites and the instants at which they are sampled.
 ///
-/// States are computed when asked for, so that a product can stream ten thousand satellites.
+/// States are computed on demand, so that a product can stream ten thousand satellites.
 pub struct Ephemeris {
     grid: TimeGrid,
     satellites: Vec<EphemerisSatellite>,
@@ -51,7 +51,7 @@ impl Ephemeris {
     /// A design propagated by `model` from the epoch of the grid.
     ///
     /// # Errors
-    /// When the model refuses the orbit of a satellite.
+    /// If the model refuses the orbit of a satellite.
     pub fn of_design(
         design: &Design,
         model: Model,

@@ -1,8 +1,8 @@
-//! Designs and ephemerides to metrics.
+//! From designs and ephemerides to metrics.
 //!
-//! An [`Evaluator`] holds what does not depend on the design: the ground points, the sidereal
-//! rotation of every sample and the geometry of the GNSS. It is immutable and can be shared by
-//! threads; the result of a design does not depend on which thread computes it.
+//! An [`Evaluator`] has everything that does not depend on the design: the ground points, the sidereal
+//! rotation of every instant and the geometry of the GNSS. It is immutable and can be shared between
+//! threads; the result of a design does not depend on the thread.
 
 mod dops;
 mod fixed;
@@ -31,9 +31,9 @@ use metrics::Evaluated;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
 
-/// Everything that an evaluation depends on, but for the design.
+/// Everything that an evaluation depends on, except the design.
 ///
-/// [`Setup::new`] takes what has no default; the `with_` methods change the rest.
+/// [`Setup::new`] takes the parameters without a default; the `with_` methods change the others.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Setup {
@@ -45,19 +45,19 @@ pub struct Setup {
     pub mask: Mask,
     /// Elevation mask of the GNSS satellites.
     pub gnss_mask: Mask,
-    /// A skyline that every satellite must clear besides its mask, the same at all points.
+    /// A mask by azimuth that every satellite must clear in addition, the same at all points.
     pub skyline: Option<MaskTable>,
-    /// GNSS in view, each with a clock of its own if clocks are per system.
+    /// GNSS in view, each with its own clock if clocks are per system.
     pub gnss: Vec<System>,
     /// Clock states.
     pub clocks: Clocks,
-    /// How observations count in least squares.
+    /// The weights of observations in least squares.
     pub observation_weights: ObservationWeights,
     /// PDOP above which a sample counts as unsolved.
     pub pdop_cap: f64,
     /// Theory that propagates the LEO design.
     pub model: Model,
-    /// How the samples are turned into metrics.
+    /// Parameters of the metrics.
     pub metrics: MetricOptions,
 }
 
@@ -91,13 +91,13 @@ impl Setup {
         }
     }
 
-    /// An elevation mask for the GNSS satellites alone.
+    /// A separate elevation mask for the GNSS satellites.
     #[must_use]
     pub fn with_gnss_mask(self, gnss_mask: Mask) -> Self {
         Self { gnss_mask, ..self }
     }
 
-    /// A skyline that every satellite must clear besides its mask.
+    /// A mask by azimuth that every satellite must clear in addition.
     #[must_use]
     pub fn with_skyline(self, skyline: MaskTable) -> Self {
         Self {
@@ -118,7 +118,7 @@ impl Setup {
         Self { clocks, ..self }
     }
 
-    /// How observations count in least squares.
+    /// The weights of observations in least squares.
     #[must_use]
     pub fn with_observation_weights(self, observation_weights: ObservationWeights) -> Self {
         Self {
@@ -139,7 +139,7 @@ impl Setup {
         Self { model, ..self }
     }
 
-    /// How the samples are turned into metrics.
+    /// Parameters of the metrics.
     #[must_use]
     pub fn with_metrics(self, metrics: MetricOptions) -> Self {
         Self { metrics, ..self }
@@ -151,14 +151,14 @@ impl Setup {
         self.sites.len() * self.grid.len()
     }
 
-    /// Whether all points count the same.
+    /// Whether all points have the same weight.
     #[must_use]
     pub fn has_equal_weights(&self) -> bool {
         let mut pairs = self.sites.windows(2);
         pairs.all(|pair| pair[0].weight == pair[1].weight)
     }
 
-    /// Memory that an [`Evaluator`] and `threads` concurrent evaluations take at most, bytes.
+    /// Maximum memory of an [`Evaluator`] and `threads` concurrent evaluations, bytes.
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
         if self.suits_kernel() {
@@ -170,14 +170,14 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel counts every point and every observation the same, under one elevation.
+    /// The kernel supports only equal weights and a mask that does not depend on azimuth.
     fn suits_kernel(&self) -> bool {
         self.has_equal_weights()
             && self.skyline.is_none()
             && self.observation_weights == ObservationWeights::Unit
     }
 
-    /// The unit vector to a satellite (Earth-fixed axes) that clears the mask and the skyline.
+    /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.
     #[must_use]
     pub fn line_of_sight(
         &self,
@@ -203,9 +203,9 @@ impl Setup {
 pub struct Evaluator {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
-    /// For the setups that it suits.
+    /// For the setups that it supports.
     kernel: Option<Kernel>,
-    /// For the plain path, made when it is first asked for.
+    /// For the plain path, created on first use.
     fixed: OnceLock<FixedGeometry>,
 }
 
@@ -213,7 +213,7 @@ impl Evaluator {
     /// Prepares everything that does not depend on the design.
     ///
     /// # Errors
-    /// When a GNSS satellite cannot be propagated.
+    /// If a GNSS satellite cannot be propagated.
     pub fn new(setup: Setup) -> Result<Self, EphemerisError> {
         Self::with_instructions(setup, InstructionSet::detect())
     }
@@ -222,7 +222,7 @@ impl Evaluator {
     /// one that the processor lacks is replaced by [`InstructionSet::Baseline`].
     ///
     /// # Errors
-    /// When a GNSS satellite cannot be propagated.
+    /// If a GNSS satellite cannot be propagated.
     pub fn with_instructions(
         setup: Setup,
         instructions: InstructionSet,
@@ -247,7 +247,7 @@ impl Evaluator {
         })
     }
 
-    /// What the evaluations depend on.
+    /// The setup of the evaluations.
     #[must_use]
     pub fn setup(&self) -> &Setup {
         &self.setup
@@ -256,24 +256,24 @@ impl Evaluator {
     /// The metrics of a design under the model of the setup.
     ///
     /// # Errors
-    /// When the model cannot propagate a satellite of the design.
+    /// If the model cannot propagate a satellite of the design.
     pub fn evaluate(&self, design: &Design) -> Result<Metrics, EphemerisError> {
         Ok(self.evaluate_counted(design)?.0)
     }
 
-    /// The metrics of a design, and how many samples f32 could not hold.
+    /// The metrics of a design, and how many samples were recomputed in f64.
     ///
     /// # Errors
-    /// When the model cannot propagate a satellite of the design.
+    /// If the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
         self.counted(StateSource::Design(design, &ephemeris))
     }
 
-    /// The metrics of any satellites, on the grid of the setup.
+    /// The metrics of some satellites, on the grid of the setup.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         Ok(self.counted(StateSource::Ephemeris(ephemeris))?.0)
     }
@@ -287,11 +287,11 @@ impl Evaluator {
         Ok((self.metrics(&evaluated, ephemeris), rechecks))
     }
 
-    /// The metrics of any satellites by the plain path, which the kernel is tested against: one
-    /// sample after the other, in f64, and about twenty times slower.
+    /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in
+    /// f64, and about twenty times slower.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn evaluate_plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         let evaluated = plain::evaluate(self, ephemeris)?;
         Ok(self.metrics(&evaluated, ephemeris))

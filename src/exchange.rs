@@ -1,5 +1,5 @@
-//! From designs to files and back: exports with their manifest, constellations from files, reading
-//! products back, and checking files against their standards.
+//! From designs to files and back: exports with their manifest, constellations from files, products
+//! read back, and files checked against their standards.
 
 pub mod export;
 pub mod import;

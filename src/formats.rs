@@ -1,7 +1,7 @@
 //! The files that other tools read, and what is read from theirs.
 //!
 //! A writer takes an `impl Write`, a reader an `impl BufRead`; no function here knows a path.
-//! What a file says of itself comes from [`metadata`]; what a reader objects to is a
+//! The metadata of a file come from [`metadata`]; what a reader objects to is a
 //! [`finding::Finding`] with the line, the column and the rule of the standard.
 
 pub mod ccsds;
@@ -34,14 +34,14 @@ pub enum WriteError {
     /// A satellite has no state at an instant of the file.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
-    /// An element does not fit the columns of a TLE.
+    /// An element exceeds the columns of a TLE.
     #[error(transparent)]
     Tle(#[from] tle::TleFieldError),
     /// SP3 does not hold the satellites.
     #[error(transparent)]
     Sp3(#[from] sp3::Sp3Error),
     /// A product that shows a scenario, without one.
-    #[error("{0} shows the whole scenario; it needs the region and the GNSS")]
+    #[error("{0} shows the complete scenario; it needs the region and the GNSS")]
     NoScene(&'static str),
     /// Something of the scenario that the format has no words for.
     #[error("{product} cannot say {what}; {instead}")]

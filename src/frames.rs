@@ -6,9 +6,9 @@
 //!
 //! Elements and propagation live in TEME, the true equator and mean equinox of date of
 //! SGP4 (Vallado et al., AIAA 2006-6753, appendix C). What is called Earth-fixed here is
-//! the pseudo-Earth-fixed frame: TEME turned by mean sidereal time (IAU 1982), UT1 = UTC at the
-//! epoch of the scenario, without polar motion. It is off an ITRF by |UT1 - UTC| of the epoch and by
-//! polar motion: 360 m in low orbit on 2015-06-30, 0.5 km at most ([M-18](crate::models#m-18)).
+//! the pseudo-Earth-fixed frame: TEME rotated by mean sidereal time (IAU 1982), UT1 = UTC at the
+//! epoch of the scenario, without polar motion. It differs from an ITRF by |UT1 - UTC| at the epoch
+//! and by polar motion: 360 m in low orbit on 2015-06-30, at most 0.5 km ([M-18](crate::models#m-18)).
 
 use crate::earth::{GMST_RATE_RAD_S, Surface};
 use crate::keyword::keywords;
@@ -34,7 +34,7 @@ keywords! {
     }
 }
 
-/// R₃(θ): coordinates in axes that are turned by `angle_rad` about z.
+/// R₃(θ): coordinates in axes rotated by `angle_rad` about z.
 fn axes_turned_about_z(angle_rad: f64) -> Matrix3<f64> {
     let (s, c) = angle_rad.sin_cos();
     Matrix3::new(c, s, 0.0, -s, c, 0.0, 0.0, 0.0, 1.0)

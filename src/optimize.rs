@@ -1,8 +1,8 @@
-//! Multi-objective optimisation that knows nothing of satellites.
+//! Multi-objective optimisation, independent of satellites.
 //!
 //! A [`Problem`] has variables with bounds, objectives that are all minimised, and
 //! one constraint violation; a [`Strategy`] sends it batches of genomes, one batch
-//! a step, and is itself the checkpoint from which it can go on.
+//! per step, and is itself the checkpoint from which it can resume.
 //!
 //! ```
 //! use navwalker::optimize::{

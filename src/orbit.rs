@@ -23,28 +23,28 @@ pub trait Propagator: Send + Sync {
     /// The TEME state `elapsed_s` seconds after the epoch of the elements.
     ///
     /// # Errors
-    /// When the theory has no state for that instant.
+    /// If the theory has no state for that instant.
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError>;
 }
 
-/// Why a theory gives no state.
+/// Why a theory has no state.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum PropagationError {
-    /// SGP4 refuses the elements at their epoch.
+    /// SGP4 rejects the elements at their epoch.
     #[error("SGP4 rejects these elements: {reason}")]
     Sgp4Elements {
-        /// What SGP4 says.
+        /// The message of SGP4.
         reason: String,
     },
-    /// SGP4 gives up at a later time, as when drag drives the eccentricity out of its range.
+    /// SGP4 fails at a later time, for example because drag drives the eccentricity out of range.
     #[error("SGP4 fails at {at}: {reason}")]
     Sgp4State {
         /// The instant.
         at: Epoch,
-        /// What SGP4 says.
+        /// The message of SGP4.
         reason: String,
     },
-    /// SGP4 puts the satellite under the ground.
+    /// SGP4 puts the satellite below the ground.
     #[error(
         "the orbit has decayed at {at}: SGP4 gives a radius of {radius_km:.3} km, below the {least_km} km of the Earth"
     )]
@@ -56,15 +56,15 @@ pub enum PropagationError {
         /// Equatorial radius of the theory, km.
         least_km: f64,
     },
-    /// A theory gives a state that cannot be one of an Earth orbit.
+    /// A theory gives a state that is impossible for an Earth orbit.
     #[error("at {at} {problem}")]
     Implausible {
         /// The instant.
         at: Epoch,
-        /// What cannot be.
+        /// What is impossible about it.
         problem: ImplausibleState,
     },
-    /// A sampled trajectory is asked between or beyond its samples.
+    /// A sampled trajectory has no sample at this instant.
     #[error("there is no sample {elapsed_s} s after the epoch")]
     NotSampled {
         /// Seconds since the epoch.
@@ -73,7 +73,7 @@ pub enum PropagationError {
 }
 
 keywords! {
-    /// The theories that a scenario can propagate its LEO design with.
+    /// The theories with which a scenario can propagate its LEO design.
     Model {
         /// Secular J2 on the node, the perigee and the mean anomaly.
         J2 = "j2",
@@ -90,7 +90,7 @@ impl Model {
     /// The propagator of this model for mean elements given at `epoch`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 rejects the elements.
     pub fn propagator(
         self,
         elements: &MeanElements,

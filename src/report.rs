@@ -1,4 +1,4 @@
-//! Results as people and programs read them.
+//! Results in formats for people and for programs.
 
 mod baseline;
 mod certificate;

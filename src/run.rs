@@ -1,6 +1,6 @@
-//! A run: the files of its directory and what they hold, written and read by the same types.
+//! A run: the files of its directory and their contents, written and read by the same types.
 //!
-//! Reading is lenient: what is damaged or missing is named, and the rest is kept.
+//! Reading is lenient: damaged or missing parts are reported, and the rest is used.
 
 pub mod checkpoint;
 pub(crate) mod columns;
@@ -23,12 +23,12 @@ use crate::scenario::Scenario;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// The version of this program, which every result carries.
+/// The version of this program, included in every result.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The scenario with everything that was overridden.
+/// The scenario, including overrides.
 pub const SCENARIO: &str = "scenario.toml";
-/// The front and how the search went.
+/// The front and the record of the search.
 pub const FRONT_JSON: &str = "front.json";
 /// The front as a table.
 pub const FRONT_CSV: &str = "front.csv";
@@ -49,7 +49,7 @@ pub const VALIDATION: &str = "validation";
 /// The result of a validation, in its directory.
 pub const VALIDATION_REPORT: &str = "report.json";
 
-/// What a run writes; whatever else lies in its directory was put there about it.
+/// The files and directories that a run writes; anything else in its directory was added later.
 pub const FILES: [&str; 9] = [
     MANIFEST,
     INPUTS,
@@ -84,14 +84,14 @@ pub fn result_files(
     ])
 }
 
-/// What could be read of a run.
+/// The readable parts of a run.
 #[derive(Debug, Clone, Default)]
 pub struct Run {
-    /// The study; `None` when it is missing or not a scenario.
+    /// The study; `None` if it is missing or not a scenario.
     pub scenario: Option<Scenario>,
     /// Members of the front that could be read.
     pub front: Vec<FrontMember>,
-    /// How the search went; `None` when it is missing or damaged.
+    /// The record of the search; `None` if it is missing or damaged.
     pub search: Option<SearchSummary>,
     /// One record per generation.
     pub history: Vec<Record>,
@@ -102,7 +102,7 @@ pub struct Run {
     pub gaps: Vec<String>,
 }
 
-/// The bytes of a run's files; `Err` says why there are none.
+/// The bytes of a run's files, or why there are none.
 #[derive(Debug, Clone)]
 pub struct RunFiles {
     /// [`SCENARIO`].
@@ -111,12 +111,12 @@ pub struct RunFiles {
     pub front: Result<Vec<u8>, String>,
     /// [`HISTORY_JSON`].
     pub history: Result<Vec<u8>, String>,
-    /// The `report.json` of a validation, where there is one.
+    /// The `report.json` of a validation, if there is one.
     pub validation: Option<Vec<u8>>,
 }
 
 impl Run {
-    /// Reads what can be read.
+    /// Reads everything that is readable.
     #[must_use]
     pub fn read(files: &RunFiles) -> Self {
         let mut run = Self::default();
@@ -141,7 +141,7 @@ impl Run {
         run
     }
 
-    /// The pick of the fuzzy decision, by place in the members.
+    /// The fuzzy pick, by position in the members.
     #[must_use]
     pub fn chosen(&self) -> Option<usize> {
         self.front.iter().position(|member| member.chosen)
@@ -188,18 +188,17 @@ impl Run {
             Ok(bytes) => match Scenario::parse::<&str>(SCENARIO, bytes, &[]) {
                 Ok(scenario) => self.scenario = Some(scenario),
                 Err(problems) => self.gaps.push(format!(
-                    "{SCENARIO} is not a scenario of this version, so that nothing can be computed \
-                     anew: {}",
+                    "{SCENARIO} is not a scenario of this version, so nothing can be recomputed: {}",
                     first_line(&problems.to_string())
                 )),
             },
             Err(reason) => self.gaps.push(format!(
-                "{SCENARIO} is missing, so that nothing can be computed anew: {reason}"
+                "{SCENARIO} is missing, so nothing can be recomputed: {reason}"
             )),
         }
     }
 
-    /// Brings every member's objectives into the scenario's order; a member that lacks one goes.
+    /// Puts every member's objectives into the scenario's order; drops members that lack one.
     fn sort_objectives(&mut self) {
         let names = self.objective_names();
         let before = self.front.len();
@@ -216,12 +215,12 @@ impl Run {
         let lost = before - self.front.len();
         if lost > 0 {
             self.gaps.push(format!(
-                "{lost} front members lack an objective of the scenario and are left out"
+                "{lost} designs of the front lack an objective of the scenario and are left out"
             ));
         }
     }
 
-    /// Reads the members one by one, and then what came with them.
+    /// Reads the members one by one, and then the record of the search.
     fn read_front(&mut self, mut value: Value) {
         let written = match value.get_mut("front").map(Value::take) {
             Some(Value::Array(members)) => members,
@@ -232,18 +231,19 @@ impl Run {
         self.front = members.filter_map(Result::ok).collect();
         if self.front.len() < count {
             let lost = count - self.front.len();
-            self.gaps
-                .push(format!("{lost} of {count} front members cannot be read"));
+            self.gaps.push(format!(
+                "{lost} of {count} designs of the front cannot be read"
+            ));
         }
         if self.front.is_empty() {
             self.gaps
-                .push("the front has no member that can be shown".to_owned());
+                .push("the front has no design that can be shown".to_owned());
         }
         match serde_json::from_value(value) {
             Ok(search) => self.search = Some(search),
-            Err(error) => self.gaps.push(format!(
-                "{FRONT_JSON} does not say how the search went: {error}"
-            )),
+            Err(error) => self
+                .gaps
+                .push(format!("{FRONT_JSON} has no record of the search: {error}")),
         }
     }
 
@@ -252,8 +252,8 @@ impl Run {
             && search.version != VERSION
         {
             self.gaps.push(format!(
-                "the run was made by version {}; this page by version {VERSION}, which computed \
-                 maps and series anew",
+                "the run was made by version {}; this page by version {VERSION}, which recomputed \
+                 maps and series",
                 search.version
             ));
         }
@@ -261,16 +261,16 @@ impl Run {
 }
 
 impl OptimizeResult {
-    /// Reads `front.json` strictly: every member and everything that came with them.
+    /// Reads `front.json` strictly: every member and the record of the search.
     ///
     /// # Errors
-    /// When the bytes are not the front of a run.
+    /// If the bytes are not the front of a run.
     pub fn read(front_json: &[u8]) -> serde_json::Result<Self> {
         serde_json::from_slice(front_json)
     }
 }
 
-/// Reads one file; the error names it and what is wrong.
+/// Reads one file; the error names it and the problem.
 fn json<T: DeserializeOwned>(name: &str, bytes: &Result<Vec<u8>, String>) -> Result<T, String> {
     let bytes = bytes
         .as_ref()

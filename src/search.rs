@@ -1,4 +1,4 @@
-//! The one adapter between the optimisers, which know vectors, and the evaluator, which knows
+//! The adapter between the optimisers, which work on vectors, and the evaluator, which works on
 //! designs.
 
 mod constraint;
@@ -29,7 +29,7 @@ const INCLINATION: usize = 2;
 const ALTITUDE: usize = 3;
 const PHASING: usize = 4;
 
-/// The designs among which is searched; every interval includes its limits.
+/// The search space; every interval includes its limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DesignSpace {
     /// The pattern of all designs.
@@ -44,9 +44,9 @@ pub struct DesignSpace {
     pub altitude_km: [f64; 2],
     /// Phasing F, or `N_c` of a lattice; cut at P - 1.
     pub phasing: [u32; 2],
-    /// Eccentricity; a variable where the limits differ.
+    /// Eccentricity; a variable if the limits differ.
     pub eccentricity: [f64; 2],
-    /// Argument of perigee, degrees; a variable where the limits differ.
+    /// Argument of perigee, degrees; a variable if the limits differ.
     pub arg_perigee_deg: [f64; 2],
 }
 
@@ -64,11 +64,11 @@ pub struct SweepSteps {
 }
 
 impl DesignSpace {
-    /// The space of the vectors (P, S, i, h, F[, e][, ω]); e and ω only where they vary, so that
+    /// The space of the vectors (P, S, i, h, F[, e][, ω]); e and ω only if they vary, so that
     /// circular searches draw the same random numbers with and without them.
     ///
     /// # Errors
-    /// When an interval is reversed.
+    /// If an interval is reversed.
     pub fn vectors(&self) -> Result<Space, OptimizeError> {
         let integer = |name: &str, [lo, hi]: [u32; 2]| Variable {
             name: name.to_owned(),
@@ -98,7 +98,7 @@ impl DesignSpace {
     }
 
     /// The steps of a sweep, in the order of the vectors: inclination and altitude, eccentricity and
-    /// argument of perigee as given, 1 for what is counted.
+    /// argument of perigee as given, 1 for counts.
     #[must_use]
     pub fn steps(&self, sweep: SweepSteps) -> Vec<f64> {
         let mut steps = vec![1.0, 1.0, sweep.inclination_deg, sweep.altitude_km, 1.0];
@@ -117,14 +117,14 @@ impl DesignSpace {
         (next(self.eccentricity), next(self.arg_perigee_deg))
     }
 
-    /// The phasings that occur: each limit cut for the planes that cut it most, or least.
+    /// The phasings that occur: the limits, capped at P - 1 for the fewest and the most planes.
     fn cut_phasing(&self) -> [u32; 2] {
         let cut = |n: usize| self.phasing[n].min(self.planes[n].saturating_sub(1));
         [cut(0), cut(1)]
     }
 
-    /// Keeps the phasing between its limits, both cut at P - 1, and brings inclination and altitude to their resolution, so that
-    /// a design is written in few digits and equal designs are equal vectors.
+    /// Brings the phasing between its limits, both capped at P - 1, and rounds inclination and altitude
+    /// to their resolution, so that a design has few digits and equal designs are equal vectors.
     fn repair(&self, genome: &mut [f64]) {
         let lowest = f64::from(self.phasing[0]);
         genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
@@ -148,7 +148,7 @@ impl DesignSpace {
     /// The design of a vector.
     ///
     /// # Errors
-    /// When the vector is not a design: an ellipse whose perigee is not above ground.
+    /// If the vector is not a design: an ellipse whose perigee is not above ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
         Design::new(DesignParameters {
@@ -166,17 +166,17 @@ impl DesignSpace {
     }
 }
 
-/// Whether an interval leaves a choice.
+/// Whether an interval has more than one value.
 fn varies([lo, hi]: [f64; 2]) -> bool {
     lo < hi
 }
 
-/// What a search is for.
+/// The goals of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Goals {
     /// Quantities to optimise, each in its own direction.
     pub objectives: Vec<Quantity>,
-    /// Bounds that a feasible design keeps.
+    /// Bounds that a feasible design must meet.
     pub constraints: Vec<Constraint>,
     /// Parameters of the launch cost.
     pub launch_cost: LaunchCost,
@@ -209,7 +209,7 @@ impl<'a> DesignProblem<'a> {
     /// The search for `goals` among `designs`.
     ///
     /// # Errors
-    /// When an interval of the space is reversed.
+    /// If an interval of the space is reversed.
     pub fn new(
         evaluator: &'a Evaluator,
         designs: DesignSpace,
@@ -226,19 +226,19 @@ impl<'a> DesignProblem<'a> {
         })
     }
 
-    /// What the search is for.
+    /// The goals of the search.
     #[must_use]
     pub fn goals(&self) -> &Goals {
         &self.goals
     }
 
-    /// The designs among which is searched.
+    /// The search space.
     #[must_use]
     pub fn designs(&self) -> &DesignSpace {
         &self.designs
     }
 
-    /// A design and its metrics, for a vector of the space; `None` when it cannot be propagated.
+    /// A design and its metrics, for a vector of the space; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
         let design = self.designs.design(genome).ok()?;
@@ -310,7 +310,7 @@ impl Problem for DesignProblem<'_> {
         self.designs.repair(genome);
     }
 
-    /// In parallel over the designs; the answers come back in the order of the batch.
+    /// Parallel over the designs; results are in the order of the batch.
     fn evaluate(&self, batch: &[Vec<f64>]) -> Vec<Evaluation> {
         batch.par_iter().map(|genome| self.answer(genome)).collect()
     }

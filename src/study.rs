@@ -1,3 +1,3 @@
-//! Published studies, repeated: their tables beside ours, each statement judged by a rule.
+//! Published studies, reproduced: their tables next to ours, with a computed verdict on each statement.
 
 pub mod paper;

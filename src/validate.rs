@@ -1,7 +1,8 @@
 //! Checks against standards that this library did not write: residuals, budgets and gates.
 //!
-//! What is on trial are the [`Parts`] of the library; a [`Subject`] is a design in a study, with
-//! the parts that propagate and see it. A target (a standard) takes a subject and gives [`Findings`].
+//! The [`Parts`] of the library are under test; a [`Subject`] is a design in a study together with
+//! the parts that propagate it and decide what is visible. A target (a standard) turns a subject
+//! into [`Findings`].
 
 pub mod analytic;
 mod check;
@@ -35,18 +36,18 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use thiserror::Error;
 
-/// A crate that validations lean on.
+/// A crate that validations rely on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Judge {
     /// Its name.
     pub name: Cow<'static, str>,
-    /// The version that is built in.
+    /// The version built in.
     pub version: Cow<'static, str>,
-    /// What it judges.
+    /// What it is used for.
     pub role: Cow<'static, str>,
 }
 
-/// The crates whose word counts, in the versions that the lock file pins.
+/// The crates that act as references, in the versions pinned by the lock file.
 pub const JUDGES: [Judge; 4] = [
     Judge {
         name: Cow::Borrowed("sgp4"),
@@ -73,7 +74,7 @@ pub const JUDGES: [Judge; 4] = [
 /// What a validation found.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, Default)]
 pub struct Findings {
-    /// The checks, in the order in which they are read.
+    /// The checks, in reading order.
     #[serde(default)]
     pub checks: Vec<Check>,
     /// What a target cannot judge about the model of the study, in sentences.
@@ -94,7 +95,7 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// Whether every gate is met.
+    /// Whether every gate passed.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.failures().next().is_none()
@@ -119,7 +120,7 @@ impl Findings {
 }
 
 keywords! {
-    /// What a design can be held against.
+    /// What a design can be compared with.
     Target {
         /// SGP4: an error budget by cause.
         Sgp4 = "sgp4",
@@ -131,16 +132,16 @@ keywords! {
         Analytic = "analytic",
         /// The tables of the paper.
         Paper = "paper",
-        /// Every one of these that there is for the study.
+        /// All of these that apply to the study.
         All = "all",
     }
 }
 
 impl Target {
-    /// Holds a design against this standard; `All` holds it against each of the others.
+    /// Compares a design with this standard; `All` compares it with each of the others.
     ///
     /// # Errors
-    /// When the validation cannot be carried out.
+    /// If the validation cannot be carried out.
     pub fn findings(self, subject: &Subject<'_>) -> Result<Findings, ValidateError> {
         match self {
             Self::Sgp4 => sgp4::against_sgp4(subject),
@@ -158,7 +159,7 @@ impl Target {
         }
     }
 
-    /// The targets that this one stands for: for `All` each of the others.
+    /// The targets that this one covers: `All` covers each of the others.
     pub fn each(self) -> impl Iterator<Item = Self> {
         let stands_for = move |target: &&Self| match self {
             Self::All => **target != Self::All,
@@ -168,13 +169,13 @@ impl Target {
     }
 }
 
-/// A design in a study, and what propagates and sees it.
+/// A design in a study, with the parts that propagate it and decide what is visible.
 pub struct Subject<'a> {
     /// The design.
     pub design: Design,
     /// The study.
     pub evaluator: &'a Evaluator,
-    /// The parts of the library on trial.
+    /// The parts of the library under test.
     pub parts: Parts,
 }
 
@@ -205,7 +206,7 @@ impl<'a> Subject<'a> {
         self.grid().len() as f64 * self.grid().step_s() / SECONDS_PER_DAY
     }
 
-    /// Elements of the first satellite: all share size, shape and inclination.
+    /// Elements of the first satellite; all satellites share a, e and i.
     fn orbit(&self) -> MeanElements {
         self.design.elements(Slot { plane: 0, index: 0 })
     }
@@ -290,10 +291,10 @@ pub enum ValidateError {
     /// A satellite cannot be propagated.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
-    /// An element does not fit a TLE.
+    /// An element exceeds the columns of a TLE.
     #[error(transparent)]
     Tle(#[from] TleFieldError),
-    /// The study of the paper cannot be repeated.
+    /// The paper's study cannot be reproduced.
     #[error(transparent)]
     Paper(#[from] crate::study::paper::PaperError),
     /// A file cannot be compared.
@@ -302,13 +303,13 @@ pub enum ValidateError {
     /// An integration fails.
     #[error(transparent)]
     Integration(#[from] numerical::integrator::IntegrationError),
-    /// A design of a sweep is none.
+    /// A design of a sweep is invalid.
     #[error(transparent)]
     Design(#[from] crate::constellation::DesignError),
-    /// A span is not a grid of time.
+    /// A span does not give a time grid.
     #[error(transparent)]
     Time(#[from] crate::time::TimeError),
-    /// There is no identity for a satellite.
+    /// No catalogue number or designator is left for a satellite.
     #[error(transparent)]
     Identity(#[from] crate::formats::metadata::IdentityError),
 }

@@ -53,7 +53,7 @@ pub(crate) struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Search for the Pareto set of designs; the main job.
+    /// Search for the Pareto set of designs.
     ///
     /// Runs the algorithm of the scenario, prints the non-dominated designs of its last population
     /// and writes a run directory with the front, the history and a checkpoint of each generation.
@@ -63,7 +63,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Optimize(OptimizeArgs),
 
-    /// Compute visibility, PDOP, its tail and cost of one design, or of satellites from files.
+    /// Compute visibility, PDOP with its tail, and cost of one design or of satellites from files.
     ///
     /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
     #[command(verbatim_doc_comment)]
@@ -76,9 +76,9 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
-    /// Reproduce the paper that this program implements: its tables and figures, ours beside theirs.
+    /// Reproduce the paper that this program implements: its tables and figures next to ours.
     ///
-    /// Every statement of the paper is judged by a computed rule: met, met-under-assumption (one changed
+    /// Every statement of the paper gets a computed verdict: met, met-under-assumption (one is changed
     /// at a time), fitted (the assumption was found from it), input (copied), not-met or unconfirmed.
     /// DIR gets the report and the data of each figure.
     ///
@@ -86,13 +86,13 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
-    /// Export a design to the files other tools read, with a manifest of what each file holds and loses.
+    /// Export a design to files for other tools, with a manifest of what each file contains and loses.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
     #[command(verbatim_doc_comment, after_help = products::help())]
     Export(ExportArgs),
 
-    /// Check a design's propagation against independent standards, with gates that have reasons.
+    /// Check a design's propagation against independent standards, with a gate and a reason for each.
     ///
     /// On trial is the model that the scenario propagates (`propagation.model`): it is the first of each
     /// case. Checks without a gate are for information. The exit status is 1 if a gate fails.
@@ -174,7 +174,7 @@ pub(crate) struct StudyArgs {
 }
 
 impl StudyArgs {
-    /// The scenario that is named, or else the paper's.
+    /// The named scenario, or the paper's.
     pub(crate) fn name(&self) -> &str {
         self.scenario.as_deref().unwrap_or("paper")
     }
@@ -183,7 +183,7 @@ impl StudyArgs {
 /// Output format on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum OutputFormat {
-    /// Tables to read.
+    /// Tables for reading.
     Text,
     /// One JSON object.
     Json,
@@ -213,8 +213,8 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seeds: Option<NonZeroUsize>,
 
-    /// Also sweep the whole search space on the scenario's steps and compare the front with that of
-    /// the grid sweep: both hypervolumes, the distance of each member, and what was missed.
+    /// Also sweep the search space on a grid of the scenario's steps and compare the fronts: both
+    /// hypervolumes, the distance of each design, and what was missed.
     ///
     /// The sweep is a separate run in DIR-sweep, resumed if it exists.
     #[arg(long)]
@@ -224,7 +224,7 @@ pub(crate) struct OptimizeArgs {
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Replace a directory with other contents.
+    /// Replace a directory that holds something else.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -289,7 +289,7 @@ pub(crate) struct EvaluateArgs {
 /// Output format of a study on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum StudyFormat {
-    /// Tables to read.
+    /// Tables for reading.
     Text,
     /// One JSON object.
     Json,
@@ -312,7 +312,7 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Replace a directory with other contents.
+    /// Replace a directory that holds something else.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -396,8 +396,8 @@ pub(crate) struct ExportArgs {
     #[arg(long, value_name = "VERSION", default_value = "d")]
     pub(crate) sp3_version: Sp3Version,
 
-    /// Read every product back, evaluate the scenario from it, and print the difference from the
-    /// design; exit status 1 if it exceeds what the file's digits and theory explain.
+    /// Read every product back, evaluate the scenario with it, and print the difference from the
+    /// design; exit status 1 if it is more than the file's digits and theory explain.
     #[arg(long)]
     pub(crate) check: bool,
 
@@ -419,7 +419,7 @@ pub(crate) struct ExportArgs {
 /// Output format of a validation on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ReportFormat {
-    /// Tables to read.
+    /// Tables for reading.
     Text,
     /// One JSON object.
     Json,

@@ -1,4 +1,4 @@
-//! A small chart of a front for the terminal, in characters of dots.
+//! A small chart of a front for the terminal, in braille dots.
 
 use crate::run::OptimizeResult;
 use textplots::{Chart, Plot, Shape};
@@ -7,11 +7,11 @@ use textplots::{Chart, Plot, Shape};
 const WIDTH: u32 = 120;
 const HEIGHT: u32 = 44;
 
-/// Fewer members are read from the table.
+/// Fewer members are easier to read in the table.
 const FEWEST: usize = 5;
 
-/// The front in the plane of its first two objectives, the first across; `None` where there is
-/// too little to see.
+/// The front in the plane of its first two objectives, the first along the horizontal axis; `None`
+/// if there is too little to see.
 pub(crate) fn front(result: &OptimizeResult) -> Option<String> {
     let plane = |n: usize| -> Option<Vec<f32>> {
         let values = result
@@ -36,7 +36,7 @@ pub(crate) fn front(result: &OptimizeResult) -> Option<String> {
     Some(format!("{} over {}\n{chart}", names[1].0, names[0].0))
 }
 
-/// The least and the greatest value with a margin; `None` when they are the same.
+/// The smallest and the largest value with a margin; `None` if they are equal.
 fn ends(values: &[f32]) -> Option<(f32, f32)> {
     let lo = values.iter().copied().fold(f32::INFINITY, f32::min);
     let hi = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);

@@ -1,4 +1,4 @@
-//! Files and directories that are either whole or absent: written beside, then renamed.
+//! Atomic writes: files and directories are written to a sibling and then renamed.
 
 use anyhow::{Context, Result, bail};
 use std::ffi::OsString;
@@ -6,36 +6,36 @@ use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// Most bytes of a file that is kept in memory as a whole: a scenario, or what it names.
+/// Maximum bytes of a file that is read into memory at once: a scenario, or a file it names.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// The bytes of a file that is not too long to be kept.
+/// The bytes of a file, if it is not too long.
 pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?
         .take(MOST_BYTES + 1)
         .read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MOST_BYTES {
-        let message = format!("the file is longer than {} MiB", MOST_BYTES >> 20);
+        let message = format!("the file is larger than {} MiB", MOST_BYTES >> 20);
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
     }
     Ok(bytes)
 }
 
-/// Writes a file beside its place and renames it.
+/// Writes a file to a sibling and renames it.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     let partial = beside(path);
     let written = File::create(&partial)
         .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
         .and_then(|()| fs::rename(&partial, path));
     if written.is_err() {
-        // What cannot be removed either is named by the error below.
+        // If it cannot be removed either, the error below names it.
         let _ = fs::remove_file(&partial);
     }
     written.with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// Writes files, by their paths from `directory`, each atomically.
+/// Writes files, each atomically, at paths relative to `directory`.
 pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result<()> {
     for (path, bytes) in files {
         let path = directory.join(path);
@@ -47,7 +47,7 @@ pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result
     Ok(())
 }
 
-/// A name next to `path` that no other process of this program uses.
+/// A sibling of `path` that no other process of this program uses.
 fn beside(path: &Path) -> PathBuf {
     let name = path
         .file_name()
@@ -55,19 +55,19 @@ fn beside(path: &Path) -> PathBuf {
     path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
 }
 
-/// A directory that replaces its place when it is complete, and is gone when it is dropped before.
+/// A directory that is moved into place when complete, and removed if dropped before.
 pub(crate) struct StagedDirectory {
     staging: PathBuf,
     place: PathBuf,
 }
 
 impl StagedDirectory {
-    /// An empty directory beside `place`.
+    /// An empty sibling of `place`.
     pub(crate) fn new(place: &Path) -> Result<Self> {
         let place = absolute(place)?;
         let staging = beside(&place);
         fs::create_dir_all(&staging)
-            .with_context(|| format!("cannot create a directory beside {}", place.display()))?;
+            .with_context(|| format!("cannot create a directory next to {}", place.display()))?;
         Ok(Self { staging, place })
     }
 
@@ -76,12 +76,12 @@ impl StagedDirectory {
         &self.staging
     }
 
-    /// Puts the directory in its place, replacing what is there.
+    /// Moves the directory into place, replacing what is there.
     pub(crate) fn commit(self) -> Result<()> {
         self.commit_keeping(&[])
     }
 
-    /// The same, but entries of these names are taken over from what is replaced.
+    /// The same, but keeps the entries with these names from what is replaced.
     pub(crate) fn commit_keeping(self, kept: &[OsString]) -> Result<()> {
         let replace = || -> io::Result<()> {
             if self.place.exists() {
@@ -105,7 +105,7 @@ impl StagedDirectory {
 
 impl Drop for StagedDirectory {
     fn drop(&mut self) {
-        // After a commit there is nothing left to remove.
+        // After a commit nothing is left to remove.
         let _ = fs::remove_dir_all(&self.staging);
     }
 }
@@ -114,7 +114,7 @@ fn absolute(path: &Path) -> Result<PathBuf> {
     std::path::absolute(path).with_context(|| format!("no directory '{}'", path.display()))
 }
 
-/// Whether a directory is missing or has nothing in it.
+/// Whether a directory is missing or empty.
 pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
     match fs::read_dir(path) {
         Ok(mut entries) => Ok(entries.next().is_none()),
@@ -123,7 +123,7 @@ pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
     }
 }
 
-/// Refuses a directory that holds something.
+/// Rejects a directory that is not empty.
 pub(crate) fn require_vacant(path: &Path, force: bool) -> Result<()> {
     if !force && !is_vacant(path)? {
         bail!(

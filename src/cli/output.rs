@@ -4,15 +4,15 @@ use anyhow::Result;
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether hints and warnings are wanted; set once, from the command line.
+/// Whether hints and warnings are printed; set once, from the command line.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
 }
 
-/// Turns colours off where `--no-color` stands on the command line, before that is parsed, so that
-/// errors of parsing heed it too. `NO_COLOR` and a stream that is not a terminal do the same.
+/// Turns colours off if `--no-color` is on the command line, before parsing, so that parse errors
+/// respect it too. `NO_COLOR` and a stream that is not a terminal have the same effect.
 pub(crate) fn choose_colors() {
     let mut options = std::env::args_os().take_while(|argument| argument != "--");
     if options.any(|argument| argument == "--no-color") {
@@ -20,13 +20,12 @@ pub(crate) fn choose_colors() {
     }
 }
 
-/// Terminal codes of the words that begin an error and a warning; stripped where they are not
-/// wanted.
+/// Terminal codes for the words `error` and `warning`; stripped if colours are off.
 const RED: &str = "\x1b[1;31m";
 const YELLOW: &str = "\x1b[1;33m";
 const PLAIN: &str = "\x1b[0m";
 
-/// Whether progress may be drawn: wanted, and on a terminal.
+/// Whether progress may be drawn: not quiet, and on a terminal.
 pub(crate) fn shows_progress() -> bool {
     !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal()
 }
@@ -41,24 +40,24 @@ pub(crate) fn result(text: &str) -> Result<()> {
     Ok(stdout.flush()?)
 }
 
-/// Prints what helps but is not a result.
+/// Prints a hint, which is not part of the result.
 pub(crate) fn hint(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
         to_stderr(text);
     }
 }
 
-/// Prints what the user should know.
+/// Prints a warning.
 pub(crate) fn warning(text: &str) {
     hint(&format!("{YELLOW}warning:{PLAIN} {text}"));
 }
 
-/// Prints why the command could not run, the causes one below the other.
+/// Prints why the command could not run, one cause per line.
 pub(crate) fn error(error: &anyhow::Error) {
     let mut text = format!("{RED}error:{PLAIN} {error}");
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
-        // Some errors already say what their cause says.
+        // Some errors already include the text of their cause.
         if !text.contains(&cause) {
             text += &format!("\n  cause: {cause}");
         }
@@ -67,11 +66,11 @@ pub(crate) fn error(error: &anyhow::Error) {
 }
 
 fn to_stderr(text: &str) {
-    // Where stderr is closed there is nobody to tell.
+    // If stderr is closed, nothing can be reported.
     let _ = writeln!(anstream::stderr().lock(), "{text}");
 }
 
-/// Whether the reader of stdout has gone, as `head` does.
+/// Whether the reader of stdout has closed the pipe, as `head` does.
 pub(crate) fn is_broken_pipe(error: &anyhow::Error) -> bool {
     error.chain().any(|cause| {
         cause

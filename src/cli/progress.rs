@@ -5,7 +5,7 @@ use crate::optimize::Strategy;
 use crate::report::shown;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar, or nothing where nobody would see it.
+/// A progress bar, or nothing if stderr is not a terminal.
 pub(crate) struct SearchBar(Option<ProgressBar>);
 
 impl SearchBar {
@@ -24,7 +24,7 @@ impl SearchBar {
         Self(Some(bar))
     }
 
-    /// Shows where the search is.
+    /// Shows the progress of the search.
     pub(crate) fn show(&self, search: &impl Strategy) {
         let Some(bar) = &self.0 else { return };
         let progress = search.progress();
@@ -62,7 +62,7 @@ impl FileCount {
         Self(Some(bar))
     }
 
-    /// Another file has been begun.
+    /// Counts a file that has been started.
     pub(crate) fn one_more(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);

@@ -23,7 +23,7 @@ pub(crate) struct RunDirectory {
 }
 
 impl RunDirectory {
-    /// The directory at `path` for a run of `study`, with what a run begins with in it.
+    /// The directory at `path` for a run of `study`, with the first files of a run.
     pub(crate) fn open(path: PathBuf, study: &Study, force: bool) -> Result<Self> {
         let run = Self {
             path,
@@ -47,14 +47,14 @@ impl RunDirectory {
         Ok(run)
     }
 
-    /// Puts a directory with only what a run begins with in the place.
+    /// Replaces the directory with one that has only the first files of a run.
     fn begin(&self) -> Result<()> {
         let staged = files::StagedDirectory::new(&self.path)?;
         files::write_all(staged.path(), &self.first_files)?;
         staged.commit()
     }
 
-    /// What the directory holds besides what a run writes, by name.
+    /// Names of the entries that a run does not write.
     fn others(&self) -> Result<Vec<OsString>> {
         let cannot = || format!("cannot read {}", self.path.display());
         let mut others = Vec::new();
@@ -73,7 +73,7 @@ impl RunDirectory {
         if !others.is_empty() {
             let names: Vec<_> = others.iter().map(|name| name.to_string_lossy()).collect();
             output::warning(&format!(
-                "{} is replaced, and with it {}",
+                "replacing {}, including {}",
                 self.path.display(),
                 names.join(", ")
             ));
@@ -81,25 +81,25 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// What the directory holds when it is not this run.
+    /// A description of the contents when they are not this run.
     fn what_else(&self, study: &Study) -> String {
         match self.found_identity() {
             Some(found) if found.version != self.identity.version => {
                 let (theirs, ours) = (found.version, &self.identity.version);
-                format!("a run by version {theirs}, and this is {ours}")
+                format!("a run by version {theirs}; this is version {ours}")
             }
             Some(_) => match study.difference_from_run(&self.path) {
                 Some(difference) => format!("a run of another scenario: {difference}"),
                 None => "a run of another scenario".to_owned(),
             },
             None if self.path.join(CHECKPOINT).exists() => {
-                "a run whose checkpoint is damaged, and no earlier one is intact".to_owned()
+                "a run whose checkpoints are damaged".to_owned()
             }
-            None => "something else than a run of this scenario, seed and version".to_owned(),
+            None => "something other than a run of this scenario, seed and version".to_owned(),
         }
     }
 
-    /// What the directory says it is a run of, by its manifest or either checkpoint.
+    /// The identity of the run in the directory, from its manifest or either checkpoint.
     fn found_identity(&self) -> Option<Identity> {
         if let Ok(Some(manifest)) = read_manifest(&self.path) {
             return Some(manifest.identity);
@@ -112,7 +112,7 @@ impl RunDirectory {
             })
     }
 
-    /// Writes the state of a search, keeping the state before it; before the first there is none.
+    /// Writes the state of a search and keeps the previous one.
     pub(crate) fn save(&self, search: &Search) -> Result<()> {
         let text = checkpoint::write(&self.identity, search)?;
         let path = self.path.join(CHECKPOINT);
@@ -129,7 +129,7 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// The state to go on from: the last whole checkpoint; `None` when there is none at all.
+    /// The state to resume from, the last intact checkpoint; `None` if there is no checkpoint.
     pub(crate) fn resume(&self) -> Result<Option<Search>> {
         let mut damaged = Vec::new();
         for name in [CHECKPOINT, PREVIOUS_CHECKPOINT] {
@@ -140,15 +140,15 @@ impl RunDirectory {
             match checkpoint::read(&bytes) {
                 Ok((identity, search)) if identity == self.identity => {
                     if let Some(reason) = damaged.first() {
-                        output::warning(&format!("{reason}; the one before it is used"));
-                        // Lest it takes the place of the one before at the next generation.
+                        output::warning(&format!("{reason}; resuming from the one before it"));
+                        // Otherwise it would replace the one before at the next generation.
                         fs::remove_file(self.path.join(CHECKPOINT))
                             .with_context(|| format!("cannot write in {}", self.path.display()))?;
                     }
                     return Ok(Some(search));
                 }
                 Ok(_) => bail!(
-                    "{} is of another scenario, seed or version; start over with --force",
+                    "{} belongs to another scenario, seed or version; start over with --force",
                     path.display()
                 ),
                 Err(reason) => damaged.push(format!("{} is damaged: {reason}", path.display())),
@@ -156,13 +156,13 @@ impl RunDirectory {
         }
         match damaged.first() {
             Some(reason) => {
-                bail!("{reason}, and no earlier one is intact; start over without --resume")
+                bail!("{reason}, and no earlier checkpoint is intact; start over without --resume")
             }
             None => Ok(None),
         }
     }
 
-    /// Writes all results beside the directory and puts them in its place.
+    /// Writes all results to a sibling directory and moves it into place.
     pub(crate) fn finish(
         &self,
         scenario: &Scenario,
@@ -189,7 +189,7 @@ impl RunDirectory {
     }
 }
 
-/// The design that `pick` names in the front of a run, and why it is that.
+/// The design that `pick` selects from the front of a run, and why.
 pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     let path = directory.join(FRONT_JSON);
     let bytes = fs::read(&path).with_context(|| {
@@ -199,10 +199,15 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
         )
     })?;
     let found = OptimizeResult::read(&bytes)
-        .with_context(|| format!("{} is not the front of a run", path.display()))?;
+        .with_context(|| format!("{} is not a front written by this program", path.display()))?;
     let points: Vec<Vec<f64>> = found.front.iter().map(FrontMember::minimised).collect();
     let Some(picked) = pick.apply(&points) else {
-        bail!("no such member: {} has {}", path.display(), points.len());
+        bail!(
+            "cannot pick {}: the front in {} has {} designs",
+            pick.keyword(),
+            path.display(),
+            points.len()
+        );
     };
     let design = found.front[picked.place].design.notation.parse()?;
     Ok((design, picked.reason))

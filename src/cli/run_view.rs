@@ -1,4 +1,4 @@
-//! A run as `report` and `plot` show it: what its directory holds, and what is computed from that.
+//! A run as `report` and `plot` show it: the contents of its directory and what follows from them.
 
 use crate::cli::args::RunArgs;
 use crate::cli::output;
@@ -18,20 +18,20 @@ use std::fs;
 use std::io;
 use std::path::Path;
 
-/// A run, and the designs and fronts that are shown beside it.
+/// A run, with the designs and fronts shown for comparison.
 pub(crate) struct RunView {
     pub(crate) run: Run,
     /// Text of the scenario, for the provenance.
     pub(crate) scenario_toml: Option<String>,
-    /// `None` when the scenario cannot be set up any more.
+    /// `None` if the scenario can no longer be set up.
     pub(crate) evaluator: Option<Evaluator>,
-    /// The reference design and those of `--compare`, by their names.
+    /// The reference design and those of `--compare`, with their names.
     pub(crate) beside: Vec<(String, Design)>,
     pub(crate) fronts: Vec<NamedFront>,
 }
 
 impl RunView {
-    /// Reads what there is; fails only where there is no run at all.
+    /// Reads whatever is there; fails only if there is no run at all.
     pub(crate) fn at(args: &RunArgs) -> Result<Self> {
         let files = read(args)?;
         let mut run = Run::read(&files);
@@ -59,7 +59,7 @@ impl RunView {
         })
     }
 
-    /// The designs beside the front with their objectives.
+    /// The designs shown for comparison, with their objectives.
     pub(crate) fn baselines(&self) -> Vec<Baseline> {
         let (Some(evaluator), Some(scenario)) = (&self.evaluator, &self.run.scenario) else {
             return Vec::new();
@@ -73,12 +73,18 @@ impl RunView {
         self.beside.iter().filter_map(evaluated).collect()
     }
 
-    /// The member that is picked.
+    /// The picked member.
     pub(crate) fn pick(&self, pick: Pick) -> Result<&FrontMember> {
         let members = &self.run.front;
         let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
         let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| format!("no such member: the front has {}", members.len()))
+        found.with_context(|| {
+            format!(
+                "cannot pick {}: the front has {} designs",
+                pick.keyword(),
+                members.len()
+            )
+        })
     }
 }
 
@@ -100,15 +106,15 @@ fn read(args: &RunArgs) -> Result<RunFiles> {
     Ok(files)
 }
 
-/// Why a file is not there, without its path, which is not part of a result.
+/// Why a file cannot be read, without its path, which is not part of a result.
 fn reason(error: io::Error) -> String {
     match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        io::ErrorKind::NotFound => "the file does not exist".to_owned(),
         _ => error.to_string(),
     }
 }
 
-/// The validation that is asked for, or the one in the run directory if there is one.
+/// The validation given by the user, or the one in the run directory.
 fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
     match &args.validation {
         Some(path) => {
@@ -125,7 +131,7 @@ fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
     }
 }
 
-/// The evaluator of the run's scenario, where it has one.
+/// The evaluator of the run's scenario, if it has one.
 fn evaluator(directory: &Path, run: &Run) -> Result<Option<Evaluator>> {
     if run.scenario.is_none() {
         return Ok(None);
@@ -146,7 +152,7 @@ fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
     reference.into_iter().chain(compared).collect()
 }
 
-/// The fronts that are asked for, and that of the sweep that certified the run if there is one.
+/// The fronts given by the user, and that of the sweep that certified the run, if any.
 fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
     let mut name = args.directory.file_name().unwrap_or_default().to_owned();
     name.push("-sweep");
@@ -160,7 +166,7 @@ fn front(directory: &Path) -> Result<NamedFront> {
     let path = directory.join(FRONT_JSON);
     let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let found = OptimizeResult::read(&bytes)
-        .with_context(|| format!("{} is not the front of a run", path.display()))?;
+        .with_context(|| format!("{} is not a front written by this program", path.display()))?;
     Ok(NamedFront {
         name: format!("front of {}", found.search.algorithm),
         front: found.front,

@@ -1,4 +1,4 @@
-//! From what was typed to a scenario and what it needs.
+//! From the command line to a scenario and its inputs.
 
 use crate::cli::args::{DesignArgs, StudyArgs};
 use crate::cli::{files, output, run};
@@ -15,7 +15,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// A scenario, and the files that it names.
+/// A scenario and the files that it names.
 #[derive(Clone)]
 pub(crate) struct Study {
     pub(crate) scenario: Scenario,
@@ -37,7 +37,7 @@ struct Written {
 }
 
 impl Study {
-    /// The scenario that was asked for, with its overrides.
+    /// The scenario named on the command line, with its overrides.
     pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
         let name = args.name();
         let (bytes, directory) = read_scenario(name)?;
@@ -48,7 +48,7 @@ impl Study {
         )
     }
 
-    /// The scenario that a run was made with, which names the run's own copies of its files.
+    /// The scenario of a run, which names the run's own copies of its files.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
         let path = directory.join(SCENARIO);
         let bytes = files::read_whole(&path)
@@ -73,14 +73,14 @@ impl Study {
         })
     }
 
-    /// The same study by another algorithm.
+    /// The same study with another algorithm.
     pub(crate) fn with_algorithm(&self, algorithm: Algorithm) -> Self {
         let mut other = self.clone();
         other.scenario.optimizer.algorithm = algorithm;
         other
     }
 
-    /// What results say about the study.
+    /// The identification of the study in results.
     pub(crate) fn stamp(&self) -> Result<ScenarioStamp> {
         Ok(ScenarioStamp {
             name: self.scenario.name.clone(),
@@ -88,7 +88,7 @@ impl Study {
         })
     }
 
-    /// Identifies what is computed, the contents of the scenario's files included.
+    /// Hash of everything that determines the results, including the scenario's files.
     pub(crate) fn hash(&self) -> Result<String> {
         let contents = self.contents()?.iter().map(Vec::as_slice);
         Ok(self.scenario.hash(&contents.collect::<Vec<_>>()))
@@ -178,7 +178,7 @@ impl Study {
         (!told.is_empty()).then(|| told.join(", "))
     }
 
-    /// What an evaluation depends on; refuses what would not fit into memory.
+    /// The setup of an evaluation, if it fits into memory.
     pub(crate) fn setup(&self) -> Result<Setup> {
         let contents = self.contents()?;
         let files = self.scenario.files();
@@ -258,7 +258,7 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
     if !is_path {
         let text = builtin(name).map_err(|unknown| {
             anyhow::anyhow!(
-                "no built-in scenario: {unknown}; a file needs its extension, as in study.toml"
+                "no built-in scenario: {unknown}; a file name needs an extension, as in study.toml"
             )
         })?;
         return Ok((text.as_bytes().to_vec(), PathBuf::new()));
@@ -270,7 +270,7 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
     Ok((bytes, directory))
 }
 
-/// Says before starting that a scenario needs more memory than there is.
+/// Fails before starting if a scenario needs more memory than is available.
 fn check_memory(setup: &Setup) -> Result<()> {
     let needed = setup.memory_bytes(rayon::current_num_threads());
     let Some(available) = available_memory() else {
@@ -279,7 +279,7 @@ fn check_memory(setup: &Setup) -> Result<()> {
     if needed > available {
         let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
         bail!(
-            "{} points x {} samples need {:.1} GiB of memory, {:.1} GiB are available; \
+            "{} points x {} instants need {:.1} GiB of memory, but {:.1} GiB are available; \
              use a coarser region.step-deg or time.step-s, or fewer --threads",
             setup.sites.len(),
             setup.grid.len(),
@@ -290,7 +290,7 @@ fn check_memory(setup: &Setup) -> Result<()> {
     Ok(())
 }
 
-/// Memory that the system can give, bytes; `None` where it does not say (other than Linux).
+/// Available memory, bytes; `None` if unknown (other than Linux).
 fn available_memory() -> Option<u64> {
     let text = fs::read_to_string("/proc/meminfo").ok()?;
     let line = text
@@ -304,7 +304,7 @@ fn available_memory() -> Option<u64> {
 pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result<(Study, Design)> {
     if let Some(directory) = &design.run {
         if let Some(name) = &study.scenario {
-            bail!("a run has its own scenario; leave out '{name}' or --run");
+            bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
         let (picked, why) = run::pick(directory, design.pick)?;

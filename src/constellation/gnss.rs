@@ -43,14 +43,14 @@ impl Preset {
     }
 }
 
-/// A satellite navigation system of a study: satellites that keep one time scale.
+/// A satellite navigation system of a study: satellites with a common time scale.
 #[derive(Debug, Clone)]
 pub enum System {
     /// A nominal constellation.
     Preset(Preset),
     /// Satellites from element sets.
     Sets(ElementSets),
-    /// Satellites as they are given, for any epoch.
+    /// Satellites as given, for any epoch.
     Listed {
         /// The name in results.
         name: String,
@@ -98,16 +98,16 @@ impl From<ElementSets> for System {
 pub struct GnssSatellite {
     /// Name, unique in the constellation.
     pub name: String,
-    /// How it moves.
+    /// Its motion.
     pub orbit: GnssOrbit,
 }
 
-/// The ways in which GNSS satellites propagate.
+/// The ways in which GNSS satellites are propagated.
 #[derive(Debug, Clone)]
 pub enum GnssOrbit {
     /// Mean elements under secular J2.
     Secular(SecularOrbit),
-    /// Circular, inclined, in step with the sidereal rotation: no J2.
+    /// Circular, inclined, synchronous with sidereal time, without J2.
     Geosynchronous(GeosynchronousOrbit),
     /// Held over a longitude of the equator.
     Geostationary {

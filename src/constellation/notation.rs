@@ -6,13 +6,13 @@ use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
-/// The form that a notation has, for error messages.
+/// The form of the notation, for error messages.
 const FORM: &str = "pattern:inclination:T/P/F@altitude[,e=E][,w=DEG], e.g. delta:55:182/13/1@925";
 
 /// Why a text is not a design.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum NotationError {
-    /// The separators are not where they belong.
+    /// The separators are missing or misplaced.
     #[error("'{text}' is not a design; the form is {FORM}")]
     Form {
         /// The text.
@@ -23,7 +23,7 @@ pub enum NotationError {
     Number {
         /// The field.
         field: &'static str,
-        /// What stands there.
+        /// The text found.
         text: String,
     },
     /// An option other than `e` and `w`, or the same one twice.
@@ -35,7 +35,7 @@ pub enum NotationError {
     /// A pattern that does not exist.
     #[error("pattern: {0}")]
     Pattern(#[from] UnknownKeyword),
-    /// Numbers that describe no design.
+    /// Numbers that do not describe a design.
     #[error(transparent)]
     Design(#[from] DesignError),
 }
@@ -111,7 +111,7 @@ impl FromStr for Design {
 }
 
 impl fmt::Display for Design {
-    /// The shortest digits that read back to the same design.
+    /// The shortest digits that round-trip to the same design.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = format!(
             "{}:{}:{}/{}/{}@{}",

@@ -20,7 +20,7 @@ keywords! {
     }
 }
 
-/// Why a set of numbers is not a design.
+/// Why numbers do not describe a design.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DesignError {
     /// No plane.
@@ -56,7 +56,7 @@ pub enum DesignError {
     TooMany {
         /// T.
         satellites: usize,
-        /// Most satellites of a design.
+        /// Maximum number of satellites of a design.
         limit: usize,
     },
     /// Altitude not a positive number below [`Design::MAX_ALTITUDE_KM`].
@@ -93,7 +93,7 @@ pub struct Design {
 }
 
 impl Design {
-    /// Most satellites that a design may have.
+    /// Maximum number of satellites of a design.
     pub const MAX_SATELLITES: usize = 100_000;
 
     /// Largest altitude over the equatorial radius, km.
@@ -154,7 +154,7 @@ impl Design {
     /// The same design on an ellipse: the semi-major axis stays R + altitude.
     ///
     /// # Errors
-    /// When the eccentricity is outside [0, 0.9) or the perigee not above ground.
+    /// If the eccentricity is outside [0, 0.9) or the perigee not above ground.
     pub fn with_ellipse(
         self,
         eccentricity: f64,
@@ -173,7 +173,7 @@ impl Design {
         Ok(self)
     }
 
-    /// Everything but the ellipse.
+    /// Everything except the ellipse.
     #[must_use]
     pub fn parameters(&self) -> DesignParameters {
         self.parameters
@@ -340,7 +340,7 @@ mod tests {
         for f in 0..13 {
             let delta = design(Pattern::Delta, [13, 14, f]).satellites();
             let lattice = design(Pattern::Lattice, [13, 14, (13 - f) % 13]).satellites();
-            // The same places in each plane; the numbering in the plane may start elsewhere.
+            // The same positions in each plane; the numbering within a plane may start elsewhere.
             for d in &delta {
                 let same_place = lattice.iter().any(|l| {
                     let apart = l.elements.mean_anomaly_rad - d.elements.mean_anomaly_rad;

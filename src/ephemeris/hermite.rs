@@ -15,7 +15,7 @@ const TARGET_KM: f64 = 1e-5;
 /// Fewest and most nodes; n nodes make a polynomial of degree 2n - 1.
 const NODES: std::ops::RangeInclusive<usize> = 4..=8;
 
-/// Most intervals between samples that are looked at.
+/// Maximum number of intervals between samples that are checked.
 const INTERVALS: usize = 200;
 
 /// Hermite interpolation of a degree, with its largest error.
@@ -32,7 +32,7 @@ impl Hermite {
     /// measured on the states of one satellite. None if there is only one sample.
     ///
     /// # Errors
-    /// When the satellite cannot be propagated.
+    /// If the satellite cannot be propagated.
     pub fn measured<F: ReferenceFrame>(
         sampled: &Sampled<'_, F>,
         satellite: &EphemerisSatellite,

@@ -8,8 +8,8 @@ use crate::frames::LocalFrame;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
 use serde::Serialize;
 
-/// Statistics of the dilutions of precision over the solved samples, by the weights of their
-/// points; `None` where there is no sample.
+/// Statistics of the dilutions of precision over the solved samples, weighted by point; `None` if
+/// there are no samples.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DopStatistics {
     /// Position and clocks.
@@ -22,7 +22,7 @@ pub struct DopStatistics {
     pub vdop: Option<Summary>,
     /// Clock by clock.
     pub tdop: Vec<ClockDop>,
-    /// Share of the samples that are solved.
+    /// Fraction of the samples that are solved.
     pub solved_fraction: f64,
 }
 
@@ -52,7 +52,7 @@ impl DopStatistics {
 /// The dilution of precision of one clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClockDop {
-    /// The system that keeps the clock: `leo`, or the name of a GNSS; `shared` for one of all.
+    /// The system of the clock: `leo`, or the name of a GNSS; `shared` for one clock of all.
     pub system: String,
     /// Statistics over the solved samples with a satellite of the system in view.
     pub tdop: Option<Summary>,
@@ -70,12 +70,12 @@ struct Collected {
 }
 
 impl Evaluator {
-    /// Every dilution of precision of any satellites together with the GNSS of the setup.
+    /// Every dilution of precision of some satellites together with the GNSS of the setup.
     ///
     /// PDOP is that of the metrics.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
         let setup = self.setup();
         let systems = fixed::systems(setup);

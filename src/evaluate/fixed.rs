@@ -1,4 +1,4 @@
-//! The part of the geometry that no design changes: the GNSS, once per setup.
+//! The part of the geometry that is the same for all designs: the GNSS, once per setup.
 
 use super::{Setup, plain};
 use crate::constellation::gnss::System;
@@ -7,10 +7,10 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::ground::Site;
 
-/// What the GNSS contribute at one point and time.
+/// The contribution of the GNSS at one point and instant.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PlainGnssSample {
-    /// Systems with clocks of their own.
+    /// Systems with their own clocks.
     pub(super) own_clocks: Geometry,
     /// Satellites that share their clock with the LEO design.
     pub(super) shared_clock: ClockGroup,
@@ -55,7 +55,7 @@ pub(super) fn positions(
     systems.iter().map(of_system).collect()
 }
 
-/// The GNSS geometry of every sample, time by time.
+/// The GNSS geometry of every sample, instant by instant.
 pub(super) struct FixedGeometry {
     samples: Vec<PlainGnssSample>,
     sites: usize,
@@ -76,7 +76,7 @@ impl FixedGeometry {
         })
     }
 
-    /// The samples of all points at time `k`.
+    /// The samples of all points at instant `k`.
     pub(super) fn at(&self, k: usize) -> &[PlainGnssSample] {
         &self.samples[k * self.sites..(k + 1) * self.sites]
     }

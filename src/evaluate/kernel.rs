@@ -1,32 +1,32 @@
-//! The fast path of the evaluator. It gives what [`super::plain`] gives; a property test holds
-//! the two together.
+//! The fast path of the evaluator. It gives the same results as [`super::plain`], as a property test
+//! checks.
 //!
 //! # What is summed
 //!
 //! A group of n visible satellites that share a clock contributes Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the
 //! normal matrix of the position ([M-24](crate::models#m-24)). So nine sums and a count over the
 //! visible LEO satellites are all that a sample needs: Σ v vᵀ (five numbers: the sixth follows from
-//! tr Σ v vᵀ = n, but in f64 it is summed too), Σ v and n. The part of the GNSS does not change
-//! between designs and is made once ([`fixed`]). In f32 PDOP² is the sum of the principal minors
-//! over the determinant, in f64 it comes from the factor of the plain path.
+//! tr Σ v vᵀ = n, but f64 sums it too), Σ v and n. The GNSS sums do not change between designs and
+//! are computed once ([`fixed`]). In f32, PDOP² is the sum of the principal minors over the
+//! determinant; in f64, it comes from the factor of the plain path.
 //!
-//! # In what order
+//! # Order of work
 //!
-//! Sample by sample in time. At each: positions of all satellites ([`propagation`]); for each group of
-//! tiles of ground points the satellites that it may see ([`tiles`], [`candidates`]); for each tile
-//! of sixteen points ([`lanes`]) the loop over those that the tile may see, with the ten sums in
-//! registers. Work grows with the pairs that see each other, about twice their number, and not
-//! with points times satellites.
+//! Instant by instant: positions of all satellites ([`propagation`]); for each group of tiles of
+//! ground points the satellites that it may see ([`tiles`], [`candidates`]); for each tile of sixteen
+//! points ([`lanes`]) the loop over those that the tile may see, with the ten sums in registers. Work
+//! is proportional to the number of visible pairs, of which it tests about twice as many, and not to
+//! points times satellites.
 //!
-//! # What f32 cannot hold
+//! # Where f32 is not enough
 //!
-//! The lanes work in f32, which is good to about 1e-7 where geometry is good. Two things are not
-//! left to it ([`sample`]):
+//! The lanes work in f32, which is accurate to about 1e-7 if the geometry is good. Two things are
+//! recomputed ([`sample`]):
 //!
-//! - a decision so close to the mask that rounding might turn it is taken again with the positions
-//!   and the comparison of the plain path ([`settle`]), so that visible satellites are counted
+//! - a decision so close to the mask that rounding might change it is repeated with the positions
+//!   and the comparison of the plain path ([`settle`]), so visible satellites are counted
 //!   exactly;
-//! - PDOP above a limit, or at a threshold, is computed again in f64 lanes; so are the few values
+//! - PDOP above a limit or close to a threshold is recomputed in f64 lanes, and so are the few values
 //!   around each order statistic ([`refine`]).
 //!
 //! Where rounding could turn even a decision of the f64 lanes, that the geometry is not singular or
@@ -35,7 +35,7 @@
 //!
 //! # Statistics
 //!
-//! Values are never sorted, and beyond a number of them not even kept ([`order_statistics`]).
+//! Values are never sorted, and beyond a certain number not even stored ([`order_statistics`]).
 
 mod candidates;
 mod fixed;
@@ -69,13 +69,13 @@ use std::ops::Range;
 use std::sync::Arc;
 use tiles::Tiles;
 
-/// What may be kept in memory; beyond, it is computed again when it is needed, so that memory does
-/// not grow with points times samples.
+/// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
+/// grow with points times instants.
 #[derive(Debug, Clone, Copy)]
 struct Keep {
     /// Values of PDOP between the two passes of the statistics of one design.
     values: usize,
-    /// Bytes of the GNSS part between designs.
+    /// Bytes of the GNSS sums between designs.
     fixed_bytes: usize,
 }
 
@@ -88,10 +88,10 @@ impl Default for Keep {
     }
 }
 
-/// Values of PDOP that are made in one piece of work.
+/// Values of PDOP computed in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
 
-/// PDOP up to which f32 is trusted at most.
+/// Upper limit on the PDOP up to which f32 is trusted.
 const SINGLE_BELOW: f32 = 2.0;
 
 /// Memory of a kernel and of `threads` evaluations at a time, bytes.
@@ -106,7 +106,7 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
     fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES)
 }
 
-/// Samples that were taken again in f64.
+/// Samples recomputed in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Rechecks {
     /// A satellite was too close to the mask.
@@ -118,7 +118,7 @@ pub struct Rechecks {
     pub near_limit: u64,
 }
 
-/// Where the satellites of an evaluation come from.
+/// The source of the satellites of an evaluation.
 #[derive(Clone, Copy)]
 pub(super) enum StateSource<'a> {
     /// A design, and its satellites under the model of the setup.
@@ -127,7 +127,7 @@ pub(super) enum StateSource<'a> {
     Ephemeris(&'a Ephemeris),
 }
 
-/// Everything of the kernel that no design changes.
+/// The part of the kernel that is the same for all designs.
 pub(super) struct Kernel {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
@@ -138,7 +138,7 @@ pub(super) struct Kernel {
     kept_values: usize,
 }
 
-/// Satellites, and the pattern behind them if there is a fast way to propagate it.
+/// Satellites, and their pattern if there is a fast way to propagate it.
 #[derive(Clone, Copy)]
 struct PropagationSource<'a> {
     ephemeris: &'a Ephemeris,
@@ -231,7 +231,7 @@ impl Kernel {
         }
     }
 
-    /// One pass over the samples; the statistics pass over the values twice.
+    /// One pass over the samples and two over the stored values.
     fn keeping(
         &self,
         propagation: PropagationSource<'_>,
@@ -263,7 +263,7 @@ impl Kernel {
         Ok((evaluated, tallies.rechecks))
     }
 
-    /// Takes the order statistics again in f64.
+    /// Recomputes the order statistics in f64.
     fn refine(
         &self,
         propagation: PropagationSource<'_>,
@@ -305,7 +305,7 @@ impl Kernel {
         Ok(())
     }
 
-    /// Two passes over the samples, each on all threads; nothing is kept but counts.
+    /// Two passes over the samples, each on all threads; only counts are stored.
     fn streaming(
         &self,
         propagation: PropagationSource<'_>,
@@ -317,7 +317,7 @@ impl Kernel {
             || Counts::new(self.places),
             |tiles, counts| self.count(tiles, counts),
         )?;
-        // The order of the chunks is kept, so that the sum does not depend on the threads.
+        // The chunks stay in order, so the sum does not depend on the number of threads.
         let tallies = parts
             .iter()
             .fold(Tallies::default(), |all, part| all.merged(part.0));
@@ -337,8 +337,8 @@ impl Kernel {
         Ok((evaluated, tallies.rechecks))
     }
 
-    /// One pass over the samples on all threads. `note` takes the values of a sample into an
-    /// accumulator of integers, in any order, and returns a sum, which is kept for each chunk.
+    /// One pass over the samples on all threads. `note` adds the values of a sample to an accumulator of
+    /// integers, in any order, and returns a sum, which is stored for each chunk.
     fn pass<A: Merge + Send>(
         &self,
         propagation: PropagationSource<'_>,
@@ -381,7 +381,7 @@ impl Kernel {
         })
     }
 
-    /// Pieces of the time grid that do not depend on the threads.
+    /// Pieces of the time grid, independent of the number of threads.
     fn chunks(&self, samples: usize) -> Vec<Range<usize>> {
         let length = (CHUNK_VALUES / self.scene.tiles.slots()).max(1);
         (0..samples)
@@ -390,7 +390,7 @@ impl Kernel {
             .collect()
     }
 
-    /// Evaluates some samples and hands the values of each to `take`.
+    /// Evaluates some samples and passes the values of each to `take`.
     fn run(
         &self,
         propagation: PropagationSource<'_>,

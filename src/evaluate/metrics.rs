@@ -3,7 +3,7 @@
 use crate::stats::{Level, Summary};
 use serde::{Deserialize, Serialize};
 
-/// How samples are turned into metrics.
+/// Parameters of the metrics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MetricOptions {
     /// λ, the weight of the tail in `j_pos`.
@@ -28,11 +28,11 @@ impl Default for MetricOptions {
 /// The metrics of a constellation. Every one is without unit.
 ///
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved
-/// samples, and `None` when there is none. Every point counts with its weight in all of them:
-/// means, shares, quantiles and the tail are those of samples weighted by their point.
+/// samples, and `None` if there are none. Every point counts with its weight in all of them:
+/// means, fractions, quantiles and the tail weight each sample by its point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Metrics {
-    /// N̄, mean number of visible LEO satellites (equation 10 of the paper).
+    /// N̄, mean visible LEO satellites (equation 10 of the paper).
     pub mean_visible: f64,
     /// Mean PDOP.
     pub mean_pdop: Option<f64>,
@@ -48,23 +48,23 @@ pub struct Metrics {
     pub p99_pdop: Option<f64>,
     /// Maximum PDOP.
     pub max_pdop: Option<f64>,
-    /// Share of samples that are solved.
+    /// Fraction of samples that are solved.
     pub solved_fraction: f64,
-    /// Share of samples that are solved with PDOP at most the availability threshold.
+    /// Fraction of samples that are solved with PDOP at most the availability threshold.
     pub availability: f64,
     /// Mean PDOP + λ CVaR (equation 8).
     pub j_pos: Option<f64>,
-    /// Satellites per visible satellite (equation 9); `None` when none is ever visible.
+    /// Satellites / mean visible (equation 9); `None` if none is ever visible.
     pub j_cost: Option<f64>,
 }
 
-/// What an evaluation leaves of its samples, each counted with the weight of its point.
+/// Summary of the samples of an evaluation, weighted by point.
 pub(super) struct Evaluated {
-    /// Mean number of visible LEO satellites.
+    /// Mean visible LEO satellites.
     pub(super) mean_visible: f64,
-    /// Share of samples that are solved.
+    /// Fraction of samples that are solved.
     pub(super) solved: f64,
-    /// Share of samples that are solved with PDOP at most the availability threshold.
+    /// Fraction of samples that are solved with PDOP at most the availability threshold.
     pub(super) available: f64,
     /// Statistics of the PDOP of the solved samples.
     pub(super) summary: Option<Summary>,

@@ -1,5 +1,5 @@
-//! The plain path: one sample after the other, in f64, by the definitions. It is the reference
-//! that the kernel is tested against, and serves the setups that the kernel does not.
+//! The plain path: sample by sample in f64, by definition. It is the reference for tests of the kernel
+//! and evaluates setups that the kernel does not support.
 
 use super::fixed::PlainGnssSample;
 use super::metrics::Evaluated;
@@ -10,7 +10,7 @@ use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
 use crate::visibility::Mask;
 
-/// One point at one time.
+/// One point at one instant.
 pub(super) struct PlainSample {
     /// Index into the instants of the grid.
     pub(super) time: usize,
@@ -59,7 +59,7 @@ fn summary(setup: &Setup, mut pdop: Vec<Weighted>) -> Option<Summary> {
     }
 }
 
-/// Calls `see` for every sample, time by time and point by point.
+/// Calls `see` for every sample, instant by instant and point by point.
 pub(super) fn visit(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,

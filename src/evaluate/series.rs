@@ -1,4 +1,4 @@
-//! Metrics per instant and per point: what figures and maps are drawn from.
+//! Metrics per instant and per point, for figures and maps.
 
 use super::Evaluator;
 use super::plain::{self, PlainSample};
@@ -8,18 +8,18 @@ use crate::stats::{Level, Weighted, quantile};
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
 
-/// One instant, over all points; every point counts with its weight ([M-31](crate::models#m-31)).
+/// One instant, over all points with their weights ([M-31](crate::models#m-31)).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct EpochMetrics {
     /// Seconds since the epoch of the grid.
     pub elapsed_s: f64,
-    /// Mean number of visible LEO satellites, equation (22) of the paper.
+    /// Mean visible LEO satellites, equation (22) of the paper.
     pub mean_visible: f64,
-    /// Mean PDOP over the solved points, equation (24); `None` when no point is solved.
+    /// Mean PDOP over the solved points, equation (24); `None` if no point is solved.
     pub mean_pdop: Option<f64>,
     /// Maximum PDOP of a solved point: its maximum over time is equation (23).
     pub max_pdop: Option<f64>,
-    /// Share of the points that are solved.
+    /// Fraction of the points that are solved.
     pub solved_fraction: f64,
 }
 
@@ -30,17 +30,17 @@ pub struct PointMetrics {
     pub latitude_deg: f64,
     /// East longitude, degrees, as given.
     pub longitude_deg: f64,
-    /// Mean number of visible LEO satellites.
+    /// Mean visible LEO satellites.
     pub mean_visible: f64,
-    /// Mean PDOP over the solved instants; `None` when there is none.
+    /// Mean PDOP over the solved instants; `None` if there are none.
     pub mean_pdop: Option<f64>,
     /// 95 % quantile of PDOP over the solved instants.
     pub p95_pdop: Option<f64>,
     /// Maximum PDOP of a solved instant.
     pub max_pdop: Option<f64>,
-    /// Share of the instants that are solved.
+    /// Fraction of the instants that are solved.
     pub solved_fraction: f64,
-    /// Share of the instants that are solved with PDOP at most the availability threshold.
+    /// Fraction of the instants that are solved with PDOP at most the availability threshold.
     pub availability: f64,
     /// What the point is called, if anything.
     #[serde(serialize_with = "name")]
@@ -69,7 +69,7 @@ pub struct Series {
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, in the order of the setup.
     pub points: Vec<PointMetrics>,
-    /// PDOP of every solved sample with the weight of its point, rising.
+    /// PDOP of every solved sample with the weight of its point, in ascending order.
     pub pdop: Vec<Weighted>,
 }
 
@@ -83,7 +83,7 @@ struct EpochSums {
     max: Option<f64>,
 }
 
-/// What one point collects over the instants.
+/// Sums of one point over the instants.
 #[derive(Clone, Default)]
 struct PointSums {
     visible: u64,
@@ -91,10 +91,10 @@ struct PointSums {
 }
 
 impl Evaluator {
-    /// The metrics of any satellites per instant and per point, by the plain path.
+    /// The metrics of some satellites per instant and per point, by the plain path.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
         let setup = self.setup();
         let mut epochs = vec![EpochSums::default(); setup.grid.len()];

@@ -1,4 +1,4 @@
-//! A study for the tests of this crate.
+//! A study for tests.
 
 use super::Setup;
 use crate::constellation::gnss::Preset;
@@ -6,7 +6,7 @@ use crate::ground::Site;
 use crate::time::TimeGrid;
 use crate::visibility::Mask;
 
-/// The paper's assumptions over any points and instants, with one mask for all satellites.
+/// The paper's assumptions with given points and instants, and one mask for all satellites.
 pub(crate) fn setup(grid: TimeGrid, sites: Vec<Site>, mask_deg: f64) -> Setup {
     Setup::new(grid, sites)
         .with_mask(Mask::from_degrees(mask_deg).unwrap())

@@ -23,7 +23,7 @@ pub(super) fn setup(latitude_deg: [f64; 2], surface: Surface) -> Setup {
 
 /// Time-mean visible count of a circular constellation from one latitude of a sphere, by a
 /// one-dimensional integral over the argument of latitude, without any time step: a satellite
-/// at latitude δ is over the cap of half-angle ψ around a point at latitude φ for the share
+/// at latitude δ is over the cap of half-angle ψ around a point at latitude φ for a fraction
 /// H/π of all longitudes, with cos H = (cos ψ - sin φ sin δ) / (cos φ cos δ).
 fn visible_by_quadrature(design: &Design, latitude_rad: f64, mask_rad: f64) -> f64 {
     let radius = RADIUS_KM + design.altitude_km();
@@ -41,7 +41,7 @@ fn visible_by_quadrature(design: &Design, latitude_rad: f64, mask_rad: f64) -> f
     design.satellite_count() as f64 * share / f64::from(steps)
 }
 
-/// A day does not cover all longitudes evenly, which leaves up to 0.02 of 8 satellites.
+/// A day does not cover all longitudes evenly, which causes up to 0.02 of 8 satellites.
 #[test]
 fn validate_visible_count_by_quadrature() {
     for (text, pattern) in [

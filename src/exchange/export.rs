@@ -1,4 +1,4 @@
-//! An export: the files of the products that are asked for, and the manifest that names them.
+//! An export: the files of the requested products, and the manifest that lists them.
 
 mod products;
 mod scenario_products;
@@ -27,17 +27,17 @@ use std::io::{self, BufWriter, Write};
 
 pub use table::{Product, ProductRow};
 
-/// Where the files of an export go: gives a writer for a path relative to the manifest, with `/`.
+/// The destination of an export: gives a writer for a path relative to the manifest, with `/`.
 ///
 /// Files are written by several threads at once.
 pub trait Sink: Sync {
-    /// What takes the bytes of a file.
+    /// The writer of a file.
     type File: Write;
 
-    /// Begins a file.
+    /// Starts a file.
     ///
     /// # Errors
-    /// When the file cannot be begun.
+    /// If the file cannot be created.
     fn create(&self, path: &str) -> io::Result<Self::File>;
 }
 
@@ -60,13 +60,13 @@ pub struct ExportSubject {
     pub grid: TimeGrid,
     /// The scenario.
     pub study: ExportedStudy,
-    /// Who makes the files.
+    /// The originator of the files.
     pub originator: String,
-    /// When the files say that they were made.
+    /// The creation date in the files.
     pub creation: Epoch,
 }
 
-/// What the products leave open.
+/// Options of the products.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Choices {
     /// Frame of the OEM, the OPM and the STK ephemerides.
@@ -79,9 +79,9 @@ pub struct Choices {
     pub omm: omm::OmmSyntax,
     /// Notation of the OEM.
     pub oem: oem::OemSyntax,
-    /// Whether the OEM of all satellites make one file, which XML allows.
+    /// Whether the OEMs of all satellites are combined in one file, which XML allows.
     pub oem_combined: bool,
-    /// How element sets are made from the design.
+    /// How element sets are derived from the design.
     pub elements: ElementChoice,
     /// Version of SP3.
     pub sp3_version: sp3::Sp3Version,
@@ -108,24 +108,24 @@ impl Default for Choices {
     }
 }
 
-/// What is asked of an export.
+/// The request for an export.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
     /// The study.
     pub subject: &'a ExportSubject,
-    /// The scenario around the design, for the products that show it.
+    /// The scenario of the design, for the products that show it.
     pub scene: Option<&'a Scene<'a>>,
     /// The products, in the order in which they are written.
     pub products: &'a [Product],
-    /// What they leave open.
+    /// Their options.
     pub choices: Choices,
 }
 
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// When a satellite cannot be propagated or named, an element or the scenario does not fit its
-/// format, a file cannot be written, or a product needs the scenario.
+/// If a satellite cannot be propagated or named, an element or the scenario cannot be expressed in
+/// a format, a file cannot be written, or a product needs the scenario.
 pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, WriteError> {
     let source = ExportSource::new(request.subject, request.choices)?;
     let files = Files { sink };
@@ -151,12 +151,12 @@ impl<S: Sink> Open for S {
     }
 }
 
-/// Where the products of an export write to.
+/// The destination that the products write to.
 struct Files<'a> {
     sink: &'a dyn Open,
 }
 
-/// What a product writes to: every byte is hashed on its way.
+/// The destination of a product, which hashes every byte.
 type Out<'a> = BufWriter<HashingWriter<Box<dyn Write + 'a>>>;
 
 /// A product in the version of its format.
@@ -166,7 +166,7 @@ struct ProductVersion<'a> {
     version: &'a str,
 }
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone, Copy)]
 struct Contents<'a> {
     objects: usize,
@@ -174,7 +174,7 @@ struct Contents<'a> {
 }
 
 impl Files<'_> {
-    /// Writes one file; its entry has the loss that `write` finds.
+    /// Writes one file; its entry has the loss returned by `write`.
     fn add(
         &self,
         path: &str,

@@ -1,11 +1,11 @@
 //! Satellites read from a file of any format, propagated by the theory that the file implies.
 //!
 //! Element sets (TLE, OMM) propagate by SGP4; tables of mean elements, and parameter messages that hold
-//! them, by the model of the study; sampled states stand as they are, at their samples.
+//! them, by the model of the study; sampled states are used as they are, at their samples.
 //!
-//! Three rules hold for every format, each in one place: which descriptions are of one object
-//! ([`crate::constellation::identity`]), which states can be those of an Earth orbit
-//! ([`crate::orbit::earth_orbit`]), and that what is not read is counted and named
+//! Three rules hold for every format, each in one place: which descriptions are of the same object
+//! ([`crate::constellation::identity`]), which states can belong to an Earth orbit
+//! ([`crate::orbit::earth_orbit`]), and that everything left out is counted and named
 //! ([`crate::formats::text::finding::LeftOut`]). `docs/formats.md` describes them for users.
 
 mod objects;
@@ -36,11 +36,11 @@ use crate::time::Epoch;
 use std::io::{self, BufRead};
 use thiserror::Error;
 
-/// What is usual for SP3, which names none: eleven positions (M. Schenewerk, *A brief review of basic GPS orbit
+/// The usual interpolation for SP3, which names none: eleven positions (M. Schenewerk, *A brief review of basic GPS orbit
 /// interpolation strategies*, GPS Solutions 6 (2003) 265).
 const SP3_INTERPOLATION: Interpolation = Interpolation::Lagrange(10);
 
-/// Satellites as files give them.
+/// Satellites as read from files.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Fleet {
     /// Element sets for SGP4.
@@ -69,23 +69,23 @@ pub struct Imported {
 /// Why a file gives no satellites.
 #[derive(Debug, Error)]
 pub enum ReadFleetError {
-    /// It breaks a rule of its format.
+    /// It violates its format.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// It is of no format that is read.
+    /// Its format is not supported.
     #[error(transparent)]
     Unread(#[from] Unread),
-    /// Its states cannot be brought to a frame of ours.
+    /// Its states cannot be transformed to a known frame.
     #[error(transparent)]
     Trajectory(#[from] TrajectoryError),
-    /// A parameter message of another program: one state, and no theory to propagate it by.
-    #[error("{name}: the message has a state at one instant and no mean elements to propagate")]
+    /// A parameter message of another program: one state, and no theory to propagate it.
+    #[error("{name}: the message has a state at one instant but no mean elements to propagate")]
     NoTheory {
         /// The satellite.
         name: String,
     },
     /// A satellite whose file has a single sample without a velocity, or two at one instant.
-    #[error("{name}: it has no velocities, and too few positions to derive them from")]
+    #[error("{name}: there are no velocities, and too few positions to derive them")]
     NoVelocity {
         /// The satellite.
         name: String,
@@ -93,10 +93,10 @@ pub enum ReadFleetError {
 }
 
 impl Fleet {
-    /// Reads a file in `format`, or in the one that its beginning and its name show.
+    /// Reads a file in `format`, or in the format detected from its beginning and its name.
     ///
     /// # Errors
-    /// When the file breaks its format, or its states mean nothing here.
+    /// If the file violates its format, or its states are in an unknown frame or time system.
     pub fn read(
         input: impl BufRead,
         format: Option<Format>,
@@ -235,7 +235,7 @@ impl Fleet {
         Ok(Self::Sampled(trajectories))
     }
 
-    /// Names sampled satellites by their place, from 1: for files whose ids start again in each, as in
+    /// Names sampled satellites by their position, from 1: for files that each restart their ids, such as
     /// the parts of a large constellation in SP3.
     pub fn name_by_place(&mut self) {
         if let Self::Sampled(trajectories) = self {
@@ -245,7 +245,7 @@ impl Fleet {
         }
     }
 
-    /// The file names no satellite: it is called as its file is.
+    /// The file does not name its satellite, which gets the name of the file.
     fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
         let name = stem(file_name.unwrap_or("satellite"));
         Self::Sampled(vec![Trajectory {
@@ -255,7 +255,7 @@ impl Fleet {
         }])
     }
 
-    /// Names satellites that their file leaves without any identifier after the file.
+    /// Names satellites that have no identifier in their file after the file.
     fn name_after_file(&mut self, file_name: Option<&str>) {
         let Some(file_name) = file_name else { return };
         match self {
@@ -274,8 +274,8 @@ impl Fleet {
         }
     }
 
-    /// Adds the satellites of another file. Sampled states of a satellite that is known and whose spans do not
-    /// overlap continue its states.
+    /// Adds the satellites of another file. Sampled states of a known satellite continue its states if their
+    /// spans do not overlap.
     pub fn append(&mut self, other: Self) {
         match (&mut *self, other) {
             (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),
@@ -300,7 +300,7 @@ impl Fleet {
         }
     }
 
-    /// What it holds, in words.
+    /// Its content, in words.
     #[must_use]
     pub fn content(&self) -> String {
         match self {
@@ -327,14 +327,14 @@ impl Fleet {
         }
     }
 
-    /// Whether no satellites.
+    /// Whether there are no satellites.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// What a parser gives, or the first rule that the file breaks.
+/// The result of a parser, or the first violation in the file.
 fn whole<T>(
     findings: &mut FindingList,
     parse: impl FnOnce(&mut FindingList) -> io::Result<T>,
@@ -346,7 +346,7 @@ fn whole<T>(
     }
 }
 
-/// Everything that a parser takes, or the first rule that the file breaks.
+/// Everything that a parser reads, or the first violation in the file.
 fn all<T>(
     findings: &mut FindingList,
     parse: impl FnOnce(&mut FindingList, &mut dyn FnMut(T)) -> io::Result<()>,

@@ -1,5 +1,5 @@
-//! Checks a file against its format: what a reader refuses, and what it lets pass although the
-//! standard forbids it.
+//! Checks a file against its format: what a reader rejects, and what it accepts although the standard
+//! forbids it.
 
 use crate::exchange::recognise::{recognise, unpacked};
 use crate::formats::ccsds::omm::OmmSyntax;
@@ -49,7 +49,7 @@ keywords! {
 }
 
 impl Format {
-    /// The format that a file of this name has by its extension, compressed or not.
+    /// The format of a file by the extension of its name, compressed or not.
     pub(crate) fn of_name(file_name: &str) -> Option<Self> {
         let file_name = file_name.strip_suffix(".gz").unwrap_or(file_name);
         let (_, extension) = file_name.rsplit_once('.')?;
@@ -71,17 +71,17 @@ impl Format {
     }
 }
 
-/// What a check of a file says.
+/// The result of checking a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LintReport {
-    /// The format that it was checked against; none for one that is not read.
+    /// The format that it was checked against; none if the format is not supported.
     pub format: Option<Format>,
-    /// What it breaks, in the order of the file as far as it goes.
+    /// The violations, mostly in the order of the file.
     pub findings: Vec<Finding>,
 }
 
-/// Checks a file against `format`, or against the one that its beginning and its name show; looks
-/// for up to `limit` findings.
+/// Checks a file against `format`, or against the format detected from its beginning and its name, for
+/// up to `limit` findings.
 ///
 /// # Errors
 /// A failure of the input.
@@ -143,7 +143,7 @@ pub(super) fn xml_kinds(asked: Option<Format>) -> &'static [&'static str] {
     }
 }
 
-/// Element sets, none of which may stand twice.
+/// Element sets, none of which may appear twice.
 fn lint_tle(input: impl BufRead, findings: &mut FindingList) -> io::Result<()> {
     let mut known = HashSet::new();
     let mut repeated = Vec::new();
@@ -153,7 +153,7 @@ fn lint_tle(input: impl BufRead, findings: &mut FindingList) -> io::Result<()> {
         }
     })?;
     for (line, number) in repeated {
-        let message = format!("satellite {number} has this epoch in a set before");
+        let message = format!("satellite {number} has an earlier set with the same epoch");
         findings.warning((line, 3), "tle-repeated", message);
     }
     Ok(())
@@ -251,7 +251,7 @@ mod tests {
         );
     }
 
-    /// A line without end costs no memory and no time to speak of: 64 MiB here.
+    /// An endless line costs hardly any memory or time: 64 MiB here.
     #[test]
     fn endless_lines_are_passed_over() {
         for format in Format::ALL {

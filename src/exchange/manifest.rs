@@ -1,4 +1,4 @@
-//! `manifest.json`: which files an export wrote, under which conventions, and what each costs.
+//! `manifest.json`: the files of an export, their conventions, and the loss of each.
 
 use crate::earth::{FLATTENING, J2, MU_KM3_S2, RADIUS_KM};
 use crate::formats::WriteError;
@@ -12,10 +12,10 @@ use std::io::{self, Write};
 /// Name of the manifest among the files of an export.
 pub const FILE_NAME: &str = "manifest.json";
 
-/// Where the files of GNSS beside the design are.
+/// Directory of the additional GNSS files.
 pub(crate) const GNSS_DIRECTORY: &str = "gnss/";
 
-/// What an export consists of.
+/// The content of an export.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
     /// The program that wrote the files.
@@ -32,7 +32,7 @@ pub struct Manifest {
     pub step_s: f64,
     /// Number of samples.
     pub samples: usize,
-    /// What every number depends on.
+    /// The conventions behind every number.
     pub conventions: Conventions,
     /// The files, in the order in which they were written.
     pub files: Vec<FileEntry>,
@@ -58,7 +58,7 @@ pub struct Conventions {
     pub j2: f64,
     /// Flattening of the ellipsoid.
     pub flattening: f64,
-    /// What the rotations between the frames are.
+    /// The rotations between the frames.
     pub frames: Vec<String>,
     /// UT1 and polar motion.
     pub earth_rotation: String,
@@ -97,9 +97,9 @@ impl Conventions {
 /// A file of an export.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileEntry {
-    /// Where it lies, relative to the manifest, with `/`.
+    /// Path relative to the manifest, with `/`.
     pub path: String,
-    /// The name that the format has on the command line.
+    /// Name of the format on the command line.
     pub format: String,
     /// Version of the format's standard.
     pub version: String,
@@ -107,38 +107,38 @@ pub struct FileEntry {
     pub objects: usize,
     /// Frame of its numbers.
     pub frame: String,
-    /// Time system of its stamps.
+    /// Time system of its time tags.
     pub time_system: String,
-    /// What its numbers were computed with.
+    /// The theory behind its numbers.
     pub theory: String,
-    /// What the format costs against the model.
+    /// The loss of the format relative to the model.
     pub loss: Loss,
-    /// What the program that reads it must be told to get the same numbers.
+    /// Settings the reading program needs to get the same numbers.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub assumptions: Vec<String>,
     /// SHA-256 of its bytes, in lower-case hexadecimal digits.
     pub sha256: String,
 }
 
-/// What a format costs against the model of the study; what is not measured is null.
+/// The loss of a format relative to the model of the study; null if not measured.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Loss {
     /// By rounding to the digits of the file, largest distance, km.
     pub quantisation_max_km: Option<f64>,
     /// The same, root mean square of the worst satellite, km.
     pub quantisation_rms_km: Option<f64>,
-    /// SGP4 of the element sets against the model that is propagated, largest distance, km.
+    /// SGP4 from the element sets relative to the propagated model, largest distance, km.
     pub theory_max_km: Option<f64>,
     /// The same, root mean square of the worst satellite, km.
     pub theory_rms_km: Option<f64>,
     /// By interpolation halfway between samples, largest distance, km.
     pub interpolation_max_km: Option<f64>,
-    /// What else a reader should know, in a sentence.
+    /// A further remark, in a sentence.
     pub note: Option<String>,
 }
 
 impl FileEntry {
-    /// Whether the file is of the design, and not of a GNSS beside it.
+    /// Whether the file is of the design, not of a GNSS.
     #[must_use]
     pub fn is_of_design(&self) -> bool {
         !self.path.starts_with(GNSS_DIRECTORY)
@@ -169,7 +169,7 @@ impl FileEntry {
         }
     }
 
-    /// The same entry with what a reader must be told.
+    /// The same entry with the settings that a reader needs.
     #[must_use]
     pub fn assuming(self, assumptions: Vec<String>) -> Self {
         Self {
@@ -180,7 +180,7 @@ impl FileEntry {
 }
 
 impl Manifest {
-    /// Writes the manifest as JSON, with a line end behind it.
+    /// Writes the manifest as JSON with a final line end.
     ///
     /// # Errors
     /// If writing fails.
@@ -193,13 +193,13 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// When the text is not a manifest; the error names line and column.
+    /// If the text is not a manifest; the error names line and column.
     pub fn read(input: impl io::Read) -> Result<Self, serde_json::Error> {
         serde_json::from_reader(input)
     }
 }
 
-/// Passes bytes on and keeps their SHA-256.
+/// Passes bytes on and computes their SHA-256.
 pub struct HashingWriter<W> {
     inner: W,
     hash: Sha256,
@@ -214,10 +214,10 @@ impl<W: Write> HashingWriter<W> {
         }
     }
 
-    /// Flushes, and gives the hash of all bytes in lower-case hexadecimal digits.
+    /// Flushes, and returns the hash of all bytes in lower-case hexadecimal digits.
     ///
     /// # Errors
-    /// When the destination cannot be flushed.
+    /// If the destination cannot be flushed.
     pub fn finish(mut self) -> io::Result<String> {
         self.inner.flush()?;
         let digest = self.hash.finalize();

@@ -1,12 +1,11 @@
-//! Products of an export, read back and evaluated again: what the scenario makes of each file.
+//! Products of an export, read back and evaluated again under the scenario.
 //!
-//! A file is held against what its theory makes of the design: states and mean elements against
-//! the propagated design, element sets against SGP4 of the unrounded sets. So the digits of a format
-//! alone explain a difference, and gates follow from them; what SGP4 and the model of the study
-//! are apart is told beside. A satellite that is d km from its place moves the circle that sees it
-//! by as much; at 400 km the circle's radius is 1600 km and its area changes by less than d/500 km
-//! of itself, which bounds the mean number in view, and the geometry changes by d over the
-//! distance, 400 km or more.
+//! A file is compared with the design under the theory of the file: states and mean elements with the
+//! propagated design, element sets with SGP4 from the unrounded sets. Only the digits of a format can
+//! therefore cause a difference, and the gates follow from them; the distance between SGP4 and the model
+//! of the study is reported separately. A satellite displaced by d km moves its footprint by as much; at
+//! 400 km the footprint's radius is 1600 km and its relative area changes by less than d/500 km, which
+//! bounds mean visible, and the geometry changes by d over the range, 400 km or more.
 
 pub(crate) mod gates;
 
@@ -25,19 +24,19 @@ use thiserror::Error;
 
 pub use gates::{Grouping, ReadBack, ReadBackTheory};
 
-/// SGP4 against a theory of J2 alone, km: the frozen eccentricity of J3 (8.1 km up and down, 16.2
-/// along the track at most), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
+/// SGP4 relative to a theory with J2 only, km: the frozen eccentricity of J3 (at most 8.1 km radial,
+/// 16.2 km in-track), and the short-period terms and shift of the radius (1.75 J2 Re²/a,
 /// 10.6 km at most); [M-40](crate::models#m-40) to [M-42](crate::models#m-42).
 const SGP4_KM: f64 = 30.0;
 
-/// Second-order secular terms along the track, km/day: 14 J2² (Re/a)⁴ n a at most
+/// Second-order secular in-track terms, km/day: 14 J2² (Re/a)⁴ n a at most
 /// ([M-43](crate::models#m-43)).
 const SGP4_KM_PER_DAY: f64 = 8.0;
 
-/// Kilometres off that change the mean in view, or a PDOP, by less than the whole of itself.
+/// Position error, km, below which mean visible or PDOP changes by less than 100 %.
 const SCALE_KM: f64 = 500.0;
 
-/// Satellites that may cross the mask at a sample by rounding alone.
+/// Satellites that may cross the mask at a sample by rounding only.
 const FLIPS: f64 = 5.0;
 
 /// Why a product cannot be checked.
@@ -49,10 +48,10 @@ pub enum RecheckError {
     /// A satellite has no state.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
-    /// There is no name for a satellite.
+    /// A satellite cannot be named.
     #[error(transparent)]
     Identity(#[from] IdentityError),
-    /// Other satellites than the design has.
+    /// The satellites are not those of the design.
     #[error("{found} satellites were read back; the design has {expected}")]
     Satellites {
         /// In the file.
@@ -62,39 +61,39 @@ pub enum RecheckError {
     },
 }
 
-/// A difference and the bound on its size; without a bound it is only reported.
+/// A difference and the bound on its magnitude; without a bound it is only reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
-    /// File less design.
+    /// File minus design.
     pub value: f64,
-    /// Bound on its size.
+    /// Bound on its magnitude.
     pub gate: Option<f64>,
 }
 
 impl Difference {
-    /// Whether the bound is kept.
+    /// Whether it is within the bound.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.gate.is_none_or(|gate| self.value.abs() <= gate)
     }
 }
 
-/// What a product says of the design.
+/// The comparison of a product with the design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recheck {
-    /// Largest distance of a satellite from where the theory of the file has it, km.
+    /// Largest distance of a satellite from its position under the theory of the file, km.
     pub position_km: Difference,
     /// Largest distance between the theory of the file and the propagated design, km; none where they
     /// are the same.
     pub theory_km: Option<f64>,
-    /// Mean number of visible satellites.
+    /// Mean visible.
     pub mean_visible: Difference,
     /// Mean PDOP; none where one side has no solved sample.
     pub mean_pdop: Option<Difference>,
 }
 
 impl Recheck {
-    /// Whether every bound is kept, and both sides have a PDOP or none has.
+    /// Whether every difference is within its bound, and both sides or neither have a PDOP.
     #[must_use]
     pub fn passed(&self) -> bool {
         self.position_km.passed()
@@ -110,7 +109,7 @@ pub struct Original<'a> {
     propagated: Rescored,
 }
 
-/// Satellites and what the scenario makes of them.
+/// Satellites and their metrics under the scenario.
 struct Rescored {
     ephemeris: Ephemeris,
     metrics: Metrics,
@@ -120,7 +119,7 @@ impl<'a> Original<'a> {
     /// Evaluates the design.
     ///
     /// # Errors
-    /// When a satellite cannot be propagated.
+    /// If a satellite cannot be propagated.
     pub fn new(evaluator: &'a Evaluator, design: &Design) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
         Ok(Self {
@@ -164,12 +163,12 @@ impl<'a> Original<'a> {
         Ok(Rescored { ephemeris, metrics })
     }
 
-    /// Propagates what was read back and compares it; satellites stand in the order of the design.
-    /// `product` says which digits and theory the files have, `sets` how their element sets are
-    /// made, if they have any.
+    /// Propagates what was read back and compares it; satellites are in the order of the design.
+    /// `product` gives the digits and theory of the files, `sets` how their element sets, if any, are
+    /// derived.
     ///
     /// # Errors
-    /// When the satellites do not propagate the study, or are not those of the design.
+    /// If the satellites do not propagate the study, or are not those of the design.
     pub fn check(
         &self,
         product: &ReadBack,
@@ -209,7 +208,7 @@ impl<'a> Original<'a> {
                 value: metrics.mean_visible - visible,
                 gate: of(visible),
             },
-            // A satellite more or less at a sample changes its PDOP by less than the whole.
+            // One satellite more or less at a sample changes its PDOP by less than 100 %.
             mean_pdop: pdop.map(|(expected, found)| Difference {
                 value: found - expected,
                 gate: of(expected),
@@ -217,7 +216,7 @@ impl<'a> Original<'a> {
         })
     }
 
-    /// How far the satellites of a product may be from where its theory has them, km; none for
+    /// How far the satellites of a product may be from their positions under its theory, km; none for
     /// sets fitted to a theory that SGP4 does not approximate.
     fn position_gate_km(&self, product: &ReadBack, sets: ElementChoice) -> Option<f64> {
         let extent = Extent::new(&self.design, self.evaluator.setup().grid);
@@ -231,7 +230,7 @@ impl<'a> Original<'a> {
         }
     }
 
-    /// How far SGP4 may take element sets from the trajectory that they are held against, km.
+    /// How far SGP4 may take element sets from the trajectory they are compared with, km.
     fn theory_gate_km(&self, sets: ElementChoice, days: f64) -> Option<f64> {
         match (sets, self.evaluator.setup().model) {
             (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
@@ -245,7 +244,7 @@ impl<'a> Original<'a> {
     }
 }
 
-/// Largest distance of satellites that stand in the same order, at the samples of the second.
+/// Largest distance of satellites in the same order, at the samples of the second.
 fn apart_km(one: &Ephemeris, other: &Ephemeris) -> Result<f64, EphemerisError> {
     let mut worst_km = 0.0_f64;
     for (first, second) in one.satellites().iter().zip(other.satellites()) {

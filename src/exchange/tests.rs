@@ -1,4 +1,4 @@
-//! What holds for every reader: damaged files, and files as other programs write them.
+//! Tests of every reader: damaged files, and files as other programs write them.
 
 mod foreign;
 mod hostile;

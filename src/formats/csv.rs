@@ -24,7 +24,7 @@ use std::io::{self, Write};
 /// Writes records whose fields are the columns, one a row: points or instants of a series.
 ///
 /// # Errors
-/// When the table cannot be written.
+/// If the table cannot be written.
 pub fn write_records(out: &mut impl Write, rows: &[impl Serialize]) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
     for row in rows {
@@ -113,7 +113,7 @@ pub fn write_elements<'a>(
 /// Writes the states of an ephemeris, satellite by satellite.
 ///
 /// # Errors
-/// When a satellite has no state, or the output fails.
+/// If a satellite has no state, or the output fails.
 pub fn write_states(out: &mut impl Write, ephemeris: &Ephemeris) -> Result<(), WriteError> {
     let mut table = ::csv::Writer::from_writer(out);
     table.write_record(STATES).map_err(io_error)?;

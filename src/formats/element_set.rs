@@ -7,7 +7,7 @@ use crate::time::Epoch;
 use crate::units::wrap_360;
 
 /// The unrounded element set of mean elements at `epoch`: what an OMM writes in full and a TLE
-/// rounds. Without drag; `slot` says which mean motion stands in it.
+/// rounds. Without drag; `slot` selects its mean motion.
 #[must_use]
 pub fn element_set(
     elements: &MeanElements,

@@ -1,4 +1,4 @@
-//! What every exported file says of itself: who and what it describes, and under which
+//! The metadata in every exported file: its originator and content, and under which
 //! conventions.
 
 use crate::earth::{GMST_RATE_RAD_S, J2, MU_KM3_S2, RADIUS_KM};
@@ -31,10 +31,7 @@ pub enum IdentityError {
     )]
     Alpha5(String),
     /// More satellites than synthetic designators.
-    #[error(
-        "no designator is left for satellite {index}; there are {}",
-        Object::MOST
-    )]
+    #[error("satellite {index} has no designator: only {} exist", Object::MOST)]
     Designator {
         /// Place of the satellite in its constellation, from 0.
         index: usize,
@@ -61,7 +58,7 @@ impl CatalogNumber {
     /// The number, if a TLE can hold it.
     ///
     /// # Errors
-    /// When it is past [`Self::LAST`].
+    /// If it is past [`Self::LAST`].
     pub fn new(number: u32) -> Result<Self, IdentityError> {
         if number <= Self::LAST {
             Ok(Self(number))
@@ -136,7 +133,7 @@ impl Object {
     /// without I and O. The same place has the same identity in every export.
     ///
     /// # Errors
-    /// When the formats cannot tell so many satellites apart.
+    /// If the formats cannot tell so many satellites apart.
     pub fn numbered(name: &str, index: usize, epoch: Epoch) -> Result<Self, IdentityError> {
         if index >= Self::MOST {
             return Err(IdentityError::Designator { index });
@@ -154,7 +151,7 @@ impl Object {
     /// The identities of satellites in their order.
     ///
     /// # Errors
-    /// When the formats cannot tell so many satellites apart.
+    /// If the formats cannot tell so many satellites apart.
     pub fn all(
         satellites: &[EphemerisSatellite],
         epoch: Epoch,
@@ -226,10 +223,10 @@ impl fmt::Display for Theory {
     }
 }
 
-/// Most that the pole of the Earth was from that of an ITRF since 1972, rad: 0.6 arc seconds (IERS EOP C04).
+/// Maximum distance of the Earth's pole from that of an ITRF since 1972, rad: 0.6 arcseconds (IERS EOP C04).
 const MOST_POLAR_MOTION_RAD: f64 = 2.91e-6;
 
-/// What a file says of its content.
+/// The description of a file's content.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Metadata {
     /// Who made the file.
@@ -283,7 +280,7 @@ pub fn frame_comment(frame: Frame) -> &'static str {
              frame bias"
         }
         Frame::EarthFixed => {
-            "Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC at the epoch, no polar motion"
+            "Frame: pseudo-Earth-fixed, TEME rotated by GMST (IAU 1982), UT1 = UTC at the epoch, no polar motion"
         }
     }
 }

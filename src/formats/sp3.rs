@@ -66,10 +66,10 @@ pub enum Sp3Error {
     #[error("SP3 holds at most 9999999 epochs, not {0}")]
     Epochs(usize),
     /// An instant outside the weeks that a file can count.
-    #[error("SP3 counts weeks from 1980-01-06, 9999 at most; {0} in GPS time is outside them")]
+    #[error("SP3 covers 9999 weeks from 1980-01-06; {0} in GPS time is outside them")]
     Instant(NaiveDateTime),
-    /// A letter that is none.
-    #[error("'{0}' is not a capital letter, with which SP3 identifiers begin")]
+    /// An invalid letter.
+    #[error("'{0}' is not a capital letter, as SP3 identifiers need")]
     Letter(char),
     /// A coordinate or a velocity that is too large.
     #[error("{letter}{number:02}: {value} km or dm/s exceeds the 14 columns of an SP3 number")]
@@ -81,8 +81,8 @@ pub enum Sp3Error {
         /// The value.
         value: f64,
     },
-    /// The letter of a GNSS for the satellites of a design beside it.
-    #[error("'{letter}' is the letter of {preset} in SP3; choose another one for the design")]
+    /// The letter of an exported GNSS, chosen for the satellites of the design.
+    #[error("'{letter}' is the SP3 letter of {preset}; choose another for the design")]
     LetterOfGnss {
         /// The letter.
         letter: char,
@@ -119,7 +119,7 @@ const ID_LINES: usize = 5;
 /// `satellites` are named `letter` 01, 02 … in their order.
 ///
 /// # Errors
-/// When they do not fit a file, a satellite has no state, or the output fails.
+/// If a file cannot hold them, a satellite has no state, or writing fails.
 pub fn write(
     out: &mut impl Write,
     version: Sp3Version,
@@ -191,7 +191,7 @@ fn write_first_lines(
     )
 }
 
-/// Whether four digits tell the week of an instant.
+/// Whether four digits are enough for the week of an instant.
 fn has_a_week(at: NaiveDateTime) -> bool {
     (0..=9999).contains(&(at - gps_zero()).num_days().div_euclid(7))
 }

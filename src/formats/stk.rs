@@ -122,7 +122,7 @@ impl StkEphemeris {
 /// Writes the states of one satellite on the grid of its ephemeris, line by line.
 ///
 /// # Errors
-/// When the satellite has no state, or the output fails.
+/// If the satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     name: &str,

@@ -28,7 +28,7 @@ const EPOCH_STEP_NS: i64 = 864_000;
 /// Nanoseconds in a day without a leap second.
 const DAY_NS: i64 = 86_400_000_000_000;
 
-/// An element that does not fit its columns.
+/// An element that exceeds its columns.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TleFieldError {
     /// A number out of the range of its columns.
@@ -41,7 +41,7 @@ pub enum TleFieldError {
         /// What would fit.
         bound: &'static str,
     },
-    /// A text that does not fit its columns.
+    /// A text that exceeds its columns.
     #[error("a TLE cannot hold {field} '{value}'; {bound}")]
     Text {
         /// The element.
@@ -60,7 +60,7 @@ pub enum TleFieldError {
     #[error(transparent)]
     Identity(#[from] IdentityError),
     /// Lines that another reader refuses.
-    #[error("the lines are not read back: {0}")]
+    #[error("the lines cannot be read back: {0}")]
     Unreadable(sgp4::TleError),
 }
 
@@ -84,7 +84,7 @@ fn since_midnight_ns(stamp: NaiveDateTime) -> i64 {
 /// Writes one element set: its name, if it has one, and its two lines.
 ///
 /// # Errors
-/// When an element does not fit its columns, or the output fails.
+/// If an element exceeds its columns, or the output fails.
 pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteError> {
     if let Some(name) = &set.object_name {
         writeln!(out, "{}", name_field(name)?)?;
@@ -98,7 +98,7 @@ pub fn write(out: &mut impl Write, set: &sgp4::Elements) -> Result<(), WriteErro
 /// The two lines of an element set, with their checksums.
 ///
 /// # Errors
-/// When an element does not fit its columns.
+/// If an element exceeds its columns.
 pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
     let number = u32::try_from(set.norad_id).unwrap_or(u32::MAX);
     let number = CatalogNumber::new(number)?;
@@ -136,7 +136,7 @@ pub fn lines(set: &sgp4::Elements) -> Result<[String; 2], TleFieldError> {
 /// The element set that a reader finds in the two lines.
 ///
 /// # Errors
-/// When an element does not fit its columns.
+/// If an element exceeds its columns.
 pub fn as_written(set: &sgp4::Elements) -> Result<sgp4::Elements, TleFieldError> {
     let [first, second] = lines(set)?;
     let name = set.object_name.clone();
@@ -219,7 +219,7 @@ fn rate_field(value: f64) -> Result<String, TleFieldError> {
         None => Err(TleFieldError::Number {
             field: "mean motion derivative",
             value,
-            bound: "its columns hold less than 1 rev/day²",
+            bound: "its columns allow less than 1 rev/day²",
         }),
     }
 }
@@ -237,7 +237,7 @@ fn exponent_field(field: &'static str, value: f64) -> Result<String, TleFieldErr
     let wrong = TleFieldError::Number {
         field,
         value,
-        bound: "its columns hold less than 1e9",
+        bound: "its columns allow less than 1e9",
     };
     // One digit before the point in Rust's notation, none in a TLE's.
     let scientific = format!("{:.4e}", value.abs());
@@ -270,7 +270,7 @@ fn angle_error(field: &'static str, value: f64) -> TleFieldError {
     TleFieldError::Number {
         field,
         value,
-        bound: "angles run from 0 to 360°",
+        bound: "angles must be within 0 to 360°",
     }
 }
 
@@ -281,7 +281,7 @@ fn eccentricity_field(value: f64) -> Result<String, TleFieldError> {
         .ok_or(TleFieldError::Number {
             field: "eccentricity",
             value,
-            bound: "its columns hold 0 to 0.9999999",
+            bound: "its columns allow 0 to 0.9999999",
         })
 }
 
@@ -293,7 +293,7 @@ fn mean_motion_field(rev_day: f64) -> Result<String, TleFieldError> {
         Err(TleFieldError::Number {
             field: "mean motion",
             value: rev_day,
-            bound: "its columns hold 0 to 99.99999999 rev/day",
+            bound: "its columns allow 0 to 99.99999999 rev/day",
         })
     }
 }

@@ -94,7 +94,7 @@ const EARTH_FIXED: [&str; 10] = [
 /// are true or mean of date (`TOD`, `MOD`, `TDR`) are not read.
 ///
 /// # Errors
-/// When the library has no such frame.
+/// If the library has no such frame.
 pub fn frame_of_name(name: &str) -> Result<Frame, UnknownKeyword> {
     match name.to_ascii_uppercase().as_str() {
         "J2000" => Ok(Frame::Eme2000),
@@ -120,7 +120,7 @@ pub fn frame_of_sp3_name(name: &str) -> Result<Frame, UnknownKeyword> {
 /// The time system that a name in a file means; case does not matter (CCSDS 502.0-B-3, 7.5.3).
 ///
 /// # Errors
-/// When the library cannot turn it into UTC.
+/// If the library cannot turn it into UTC.
 pub fn time_system_of_name(name: &str) -> Result<TimeSystem, UnknownKeyword> {
     TimeSystem::from_keyword(&name.to_ascii_uppercase())
 }

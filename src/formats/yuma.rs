@@ -122,7 +122,7 @@ impl Almanac {
     /// The almanac of a nominal satellite of a study that starts at `epoch`.
     ///
     /// # Errors
-    /// When an almanac has no elements for its motion.
+    /// If an almanac has no elements for its motion.
     pub fn of(
         satellite: &GnssSatellite,
         prn: u32,

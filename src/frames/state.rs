@@ -30,12 +30,12 @@ use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::ops::{Add, Sub};
 
-/// What stands for a frame in the type of a position or a state.
+/// A frame in the type of a position or a state.
 ///
 /// Four types name one frame each. [`Frame`] itself stands for a frame that is known only at run
 /// time, because a file or a user names it.
 pub trait ReferenceFrame: Copy + PartialEq + Debug + Send + Sync + 'static {
-    /// The frame it stands for.
+    /// The frame it represents.
     fn name(self) -> Frame;
 }
 
@@ -43,7 +43,7 @@ pub trait ReferenceFrame: Copy + PartialEq + Debug + Send + Sync + 'static {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Teme;
 
-/// Pseudo-Earth-fixed: TEME turned by mean sidereal time.
+/// Pseudo-Earth-fixed: TEME rotated by mean sidereal time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EarthFixed;
 

@@ -3,13 +3,13 @@
 use super::problem::Individual;
 use super::sorting::constraint_dominates;
 
-/// Offers a candidate to an archive, which then holds every feasible candidate
+/// Offers a candidate to an archive, which then contains every feasible candidate
 /// that no other one dominates, each genome once.
 ///
-/// Points with equal objectives stay side by side: neither dominates the other,
-/// and they are different designs. While nothing feasible is known the archive
-/// holds the first of the least violation instead, which a search can follow
-/// and a user can learn from.
+/// Points with equal objectives are both kept: neither dominates the other, and
+/// they are different designs. While nothing feasible is known the archive
+/// contains the first point with the smallest violation instead, which a search
+/// can follow and a user can learn from.
 pub(super) fn offer(archive: &mut Vec<Individual>, candidate: &Individual) {
     let unneeded = |held: &Individual| {
         constraint_dominates(held, candidate)

@@ -1,8 +1,8 @@
 //! Picking one design of a front: fuzzy membership, TOPSIS and the knee.
 //!
-//! Each method scores every point of a set, the greater the better, from nothing
-//! but the set's objectives; [`best`] turns scores into a pick. All of them judge
-//! a point against the others shown: adding or removing points can change the
+//! Each method scores every point of a set from the set's objectives only, larger
+//! being better; [`best`] turns scores into a pick. All of them judge a point
+//! relative to the others in the set, so adding or removing points can change the
 //! pick.
 
 use thiserror::Error;
@@ -14,7 +14,7 @@ pub enum DecisionError {
     /// There is nothing to choose from.
     #[error("no point to choose from")]
     NoPoint,
-    /// Points have to agree in the number of objectives, at least one.
+    /// Points must have the same number of objectives, at least one.
     #[error("point {index} has {found} objectives instead of {expected}")]
     ObjectiveCount {
         /// The point's index, from 0.
@@ -35,7 +35,7 @@ pub enum DecisionError {
         /// Its greatest value.
         greatest: f64,
     },
-    /// TOPSIS takes one weight per objective.
+    /// TOPSIS needs one weight per objective.
     #[error("there are {found} weights for {expected} objectives")]
     WeightCount {
         /// Weights given.
@@ -57,8 +57,8 @@ pub struct Memberships {
     /// μ_m of each point and objective: 1 at the set's least value, 0 at its
     /// greatest, linear in between.
     pub by_objective: Vec<Vec<f64>>,
-    /// min over m of μ_m: the membership in the decision, which asks for every
-    /// goal at once.
+    /// min over m of μ_m: the membership in the decision, which requires every goal
+    /// at once.
     pub minimum: Vec<f64>,
     /// Σ_m μ_m divided by its total over the set, so that the set's shares sum
     /// to 1.
@@ -68,7 +68,7 @@ pub struct Memberships {
 /// Scores points by fuzzy membership, μ_m = (max - J_m)/(max - min).
 ///
 /// An objective that is the same for every point has μ = 1: all of them attain its
-/// best value, and 1 is what leaves a minimum of memberships to the others, while
+/// best value. With 1 the minimum of the memberships is decided by the others, while
 /// 0 would make every point equally unacceptable.
 ///
 /// Source: the decision as the intersection (minimum) of fuzzy goals, R. E.
@@ -102,13 +102,13 @@ pub fn fuzzy<P: AsRef<[f64]>>(points: &[P]) -> Result<Memberships, DecisionError
     })
 }
 
-/// Scores points by TOPSIS: the distance from the worst point imaginable over the
-/// distances from the worst and the best, 1 where every objective is best.
+/// Scores points by TOPSIS: the distance from the anti-ideal point over the sum of
+/// the distances from the anti-ideal and the ideal point, 1 if every objective is best.
 ///
 /// Each objective is divided by the root of its sum of squares and multiplied by
 /// its weight; only the ratios of the weights matter. Unlike the other methods
-/// this one is not indifferent to a constant added to an objective. Where all
-/// points are the same, all score 1.
+/// this one changes if a constant is added to an objective. If all points are equal,
+/// all score 1.
 ///
 /// Source: C.-L. Hwang, K. Yoon, "Multiple Attribute Decision Making", Springer
 /// 1981.
@@ -144,7 +144,7 @@ pub fn topsis<P: AsRef<[f64]>>(points: &[P], weights: &[f64]) -> Result<Vec<f64>
     Ok(points.iter().map(closeness).collect())
 }
 
-/// Scores points by how far they bulge out of the line between the ends of the
+/// Scores points by how far they bulge from the line between the ends of the
 /// front: (1 - Σ_m f_m)/√M, with each of M objectives scaled to f = 0 at its least
 /// and 1 at its greatest value, 0 for one that is the same everywhere.
 ///

@@ -3,11 +3,11 @@
 
 use thiserror::Error;
 
-/// Why a search cannot start, go on or resume.
+/// Why a search cannot start, continue or resume.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OptimizeError {
-    /// A space needs something to vary.
+    /// A space needs at least one variable.
     #[error("the search space has no variable")]
     NoVariable,
     /// A bound is NaN or infinite, or the bounds are too far apart for an `f64` width.
@@ -38,7 +38,7 @@ pub enum OptimizeError {
         /// The offending bound.
         value: i64,
     },
-    /// Two variables of one name could not be told apart.
+    /// Two variables with the same name cannot be distinguished.
     #[error("the search space has two variables named {name}")]
     DuplicateVariable {
         /// The repeated name.
@@ -47,14 +47,14 @@ pub enum OptimizeError {
     /// A problem needs at least one objective.
     #[error("the problem has no objective")]
     NoObjective,
-    /// A setting lies outside its range.
+    /// A setting is outside its range.
     #[error("{setting} must be {expected}, found {value}")]
     Setting {
         /// The setting's name.
         setting: &'static str,
         /// The value found.
         value: f64,
-        /// The range that it must lie in.
+        /// The accepted range.
         expected: &'static str,
     },
     /// The hypervolume's reference point has the wrong number of coordinates.
@@ -65,7 +65,7 @@ pub enum OptimizeError {
         /// Objectives of the problem.
         expected: usize,
     },
-    /// An exhaustive search takes one grid step per variable.
+    /// An exhaustive search needs one grid step per variable.
     #[error("there are {found} grid steps for {expected} variables")]
     StepCount {
         /// Steps given.

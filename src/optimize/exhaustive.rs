@@ -1,5 +1,5 @@
 //! Exhaustive search: every point of a grid over the space, in a fixed order. Its
-//! front is exact for that grid, which makes it the yardstick of the others.
+//! front is exact for that grid, which makes it the yardstick for the others.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,15 +13,15 @@ use super::strategy::{
     check_setting,
 };
 
-/// How far a range may fall short of a whole number of steps and still include
-/// its upper end, as a share of a step: the rounding of a decimal step.
+/// How far a range may fall short of an integer number of steps and still include
+/// its upper end, as a fraction of a step: the rounding of a decimal step.
 const SLACK: f64 = 1e-9;
 
 /// The settings of exhaustive search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExhaustiveConfig {
     /// The step of each variable, in the space's order and the variable's unit,
-    /// from the lower bound upwards: finite and positive, whole for an integer.
+    /// from the lower bound upwards: finite and positive, an integer for an integer variable.
     pub steps: Vec<f64>,
     /// Designs in a step of the search, at least 1.
     pub batch: usize,
@@ -54,7 +54,7 @@ struct Axis {
     lo: f64,
     hi: f64,
     step: f64,
-    /// A whole number.
+    /// An integer.
     count: f64,
 }
 
@@ -94,7 +94,7 @@ impl GridPoints {
         )
     }
 
-    /// The number of points, exact as long as it can be counted.
+    /// The number of points, exact as long as an `f64` can count it.
     fn points(&self) -> Result<u64, OptimizeError> {
         let points: f64 = self.0.iter().map(|axis| axis.count).product();
         if points > (1_u64 << 53) as f64 {
@@ -162,14 +162,14 @@ impl Exhaustive {
         self.archive.iter().try_for_each(|a| a.check(problem))
     }
 
-    /// Grid points behind the search after so many steps.
+    /// Grid points that the search has passed after a number of steps.
     fn passed(&self, step: u64) -> u64 {
         self.points
             .min(step.saturating_mul(self.config.batch as u64))
     }
 
-    /// The points of the next step. One that a repair turns into another point of
-    /// the grid is left out: that one has its own turn.
+    /// The points of the next step. A point that repair turns into another point of
+    /// the grid is left out, since that one has its own turn.
     fn batch(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
         let grid = GridPoints::new(problem, &self.config.steps);
         let mut batch = Vec::new();

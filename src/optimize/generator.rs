@@ -1,10 +1,10 @@
 //! The random numbers of every strategy: `ChaCha8` with the run's seed as its key
 //! and the step's number as its stream.
 //!
-//! Each step draws from a stream of its own, so a checkpoint holds no generator
+//! Each step draws from its own stream, so a checkpoint needs no generator
 //! state. The few distributions needed are written here because those of a
-//! general library may change their values between releases, and a seed has to
-//! mean the same run in every release that does not say otherwise.
+//! general library may change their values between releases, while a seed must
+//! mean the same run in every release unless stated otherwise.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -33,7 +33,7 @@ impl Generator {
         lo + (hi - lo) * self.unit()
     }
 
-    /// True with the given probability: never at 0, always at 1.
+    /// True with the given probability: never for 0, always for 1.
     pub(super) fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }

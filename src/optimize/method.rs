@@ -1,4 +1,4 @@
-//! Every strategy under one type: what a caller chooses, runs and stores.
+//! All strategies in one type that a caller chooses, runs and stores.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ pub enum Method {
 
 impl Method {
     /// A search before its first step; nothing is evaluated yet. An exhaustive
-    /// search has no use for the seed.
+    /// search ignores the seed.
     ///
     /// # Errors
     ///
@@ -41,7 +41,7 @@ impl Method {
     }
 }
 
-/// A search under way by any strategy, its own checkpoint.
+/// A search in progress with any strategy; it is its own checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Search {
@@ -56,9 +56,9 @@ pub enum Search {
 }
 
 impl Search {
-    /// Gives the search the number of steps that `method` has, to go on beyond the number that it was
-    /// started with. A search does not depend on how long it will go on, so the result is that of
-    /// one started with the greater number.
+    /// Gives the search the number of steps of `method`, to continue beyond the number that it was
+    /// started with. A search does not depend on when it will stop, so the result equals that of one
+    /// started with the larger number.
     pub fn set_budget(&mut self, method: &Method) {
         match (self, method) {
             (Self::Nsga2(search), Method::Nsga2(config)) => {
@@ -70,7 +70,7 @@ impl Search {
             (Self::Random(search), Method::Random(config)) => {
                 search.set_evaluations(config.evaluations);
             }
-            // A grid is as long as it is; and no other strategy's budget is a search's own.
+            // The length of a grid is fixed, and another strategy's budget does not apply.
             _ => {}
         }
     }

@@ -6,13 +6,13 @@
 //! Evolutionary Computation 8(3), 2004) in the form of A. J. Nebro, J. J. Durillo,
 //! J. García-Nieto, C. A. Coello Coello, F. Luna, E. Alba, "SMPSO: a new PSO-based
 //! metaheuristic for multi-objective optimization", IEEE Symposium on Computational
-//! Intelligence in Multicriteria Decision-Making 2009: the archive is kept to its
-//! size and leaders are drawn by crowding distance rather than by an adaptive grid,
-//! speeds are constricted and limited, and every sixth particle is mutated. The
-//! form of 2004 is too weak a rival on more than a few variables: with its inertia
-//! of 0.4 a swarm of 100 reached less than half of ZDT1's hypervolume in 250 iterations.
+//! Intelligence in Multicriteria Decision-Making 2009: the archive is limited and
+//! leaders are drawn by crowding distance instead of an adaptive grid, speeds are
+//! constricted and limited, and every sixth particle is mutated. The form of 2004
+//! is too weak beyond a few variables: with its inertia of 0.4 a swarm of 100
+//! reached less than half of ZDT1's hypervolume in 250 iterations.
 //!
-//! An integer variable moves as a real one, whose nearest value is evaluated.
+//! An integer variable moves like a real one, and its nearest integer is evaluated.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,11 +28,11 @@ use super::strategy::{
 };
 use super::variation::mutate;
 
-/// The share of its velocity that a particle keeps.
+/// The fraction of its velocity that a particle retains.
 const INERTIA: f64 = 0.1;
-/// The bounds between which both attractions are drawn for each particle.
+/// The range from which both attractions are drawn for each particle.
 const ATTRACTION: (f64, f64) = (1.5, 2.5);
-/// The velocity that is left after a bound was hit, with its direction.
+/// The factor on the velocity after hitting a bound, including the reversal.
 const REBOUND: f64 = -1.0;
 /// Every particle whose number is a multiple of this one is mutated.
 const MUTATED: usize = 6;
@@ -97,8 +97,8 @@ impl Particle {
         self.best.check(problem)
     }
 
-    /// The new position and velocity, drawn to the particle's own best and to a
-    /// leader, stopped and turned round at a bound.
+    /// The new position and velocity, attracted to the particle's own best and to a
+    /// leader; at a bound it stops and reverses.
     fn propagate(
         &self,
         space: &Space,
@@ -174,7 +174,7 @@ impl Mopso {
         })
     }
 
-    /// Lets the search end after so many iterations in all.
+    /// Sets the total number of iterations.
     pub(super) fn set_iterations(&mut self, iterations: usize) {
         self.config.iterations = iterations;
     }
@@ -382,7 +382,7 @@ mod tests {
         let mut generator = Generator::new(1, 1);
         let (position, velocity) =
             particle.propagate(problem.space(), &at([12.0, 1.0, 0.5, 0.0]), &mut generator);
-        // No pull: a tenth of the velocity is left, less where it is constricted.
+        // Without attraction a tenth of the velocity remains, less if constricted.
         assert_eq!(position, [12.0, 1.0, 0.5, 0.0]);
         assert!((-6.0..-0.6).contains(&velocity[0]), "{velocity:?}");
         assert_eq!(velocity[1..3], [0.0, 0.0]);

@@ -6,15 +6,15 @@
 //!
 //! What differs from that paper, and why:
 //!
-//! - A last front that does not fit is pruned one member at a time
+//! - A last front with too many members is pruned one member at a time
 //!   ([`prune_one_by_one`]), since removing several at once leaves holes.
 //! - No two individuals have the same genome: a child that repeats one is drawn
 //!   again, because in a space with few values copies would fill the population.
 //!   In a space with fewer points than the population all of them end up in it.
 //! - Tournaments pick both contestants independently, which lets any number of
 //!   children be drawn again, and compare crowding among the survivors.
-//! - Children beyond a bound are moved to it, and integers are crossed as reals and
-//!   mutated in whole steps, as `variation` explains.
+//! - Children outside a bound are moved onto it, and integers are crossed as reals
+//!   and mutated in integer steps, as `variation` explains.
 
 use std::collections::HashSet;
 
@@ -31,8 +31,8 @@ use super::strategy::{
 };
 use super::variation::{cross, mutate};
 
-/// Draws allowed per individual of the population before a batch is sent short:
-/// in a space with few points left, new ones cannot always be had.
+/// Draws allowed per individual of the population before a batch is sent short: in
+/// a space with few points left, new ones cannot always be found.
 const DRAWS_PER_INDIVIDUAL: usize = 100;
 
 /// The settings of NSGA-II; by default 30 individuals, 30 generations, and
@@ -40,7 +40,7 @@ const DRAWS_PER_INDIVIDUAL: usize = 100;
 ///
 /// The distribution indices are 5 and 10 by default, below the customary 15 to 20:
 /// thirty generations are too few for small steps, and with the customary ones a
-/// run now and then ends several percent short of the hypervolume within reach.
+/// run occasionally ends several percent short of the achievable hypervolume.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Nsga2Config {
     /// Individuals kept from one generation to the next, at least 1. An odd
@@ -125,24 +125,24 @@ impl Nsga2 {
         })
     }
 
-    /// Lets the search end after so many generations in all.
+    /// Sets the total number of generations.
     pub(super) fn set_generations(&mut self, generations: usize) {
         self.config.generations = generations;
     }
 
-    /// The settings that the run was started with.
+    /// The settings with which the run was started.
     #[must_use]
     pub fn config(&self) -> &Nsga2Config {
         &self.config
     }
 
-    /// The seed that the run was started with.
+    /// The seed with which the run was started.
     #[must_use]
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
-    /// The individuals of the present generation, feasible or not.
+    /// The individuals of the current generation, feasible or not.
     #[must_use]
     pub fn population(&self) -> &[Individual] {
         &self.population
@@ -254,8 +254,8 @@ impl Strategy for Nsga2 {
     }
 }
 
-/// Keeps the `size` best of the merged parents and children, in their order:
-/// whole fronts while they fit, then the least crowded of the next.
+/// Selects the `size` best of the merged parents and children, in their order:
+/// complete fronts while there is room, then the least crowded of the next.
 ///
 /// The merged set is what Deb et al. 2002 sort; a description of the algorithm
 /// that sorts the children alone would lose the elite.

@@ -6,13 +6,13 @@ use thiserror::Error;
 /// A method that picks, or the member itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pick {
-    /// The fuzzy decision: the best worst-case membership.
+    /// The fuzzy pick: the best worst-case membership.
     Fuzzy,
     /// The largest normalised sum of memberships.
     Sum,
     /// TOPSIS with equal weights.
     Topsis,
-    /// The member that bulges furthest towards the ideal point.
+    /// The member that bulges farthest towards the ideal point.
     Knee,
     /// A member by its index, from 1.
     Index(usize),
@@ -21,13 +21,13 @@ pub enum Pick {
 /// A member that was picked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Picked {
-    /// Its place in the front, from 0.
+    /// Its position in the front, from 0.
     pub place: usize,
-    /// Why it is that one, in words.
+    /// Why, in words.
     pub reason: String,
 }
 
-/// A word that names no pick.
+/// A text that is not a pick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("expected fuzzy, sum, topsis, knee, or the index of a front member from 1")]
 pub struct UnknownPick;
@@ -50,10 +50,10 @@ impl std::str::FromStr for Pick {
 }
 
 impl Pick {
-    /// The methods, for tables of what each picks.
+    /// The methods, for tables of their picks.
     pub const METHODS: [Self; 4] = [Self::Fuzzy, Self::Sum, Self::Topsis, Self::Knee];
 
-    /// The word that reads back to the pick.
+    /// The keyword of the pick.
     #[must_use]
     pub fn keyword(self) -> String {
         match self {
@@ -65,21 +65,21 @@ impl Pick {
         }
     }
 
-    /// What the score of a pick means.
+    /// The meaning of a pick's score.
     fn reason(self) -> &'static str {
         match self {
-            Self::Fuzzy => "the fuzzy decision: the best worst-case membership over the objectives",
-            Self::Sum => "the largest share of the memberships, summed over the objectives",
+            Self::Fuzzy => "the fuzzy pick: the best worst-case membership over the objectives",
+            Self::Sum => "the largest normalised sum of memberships over the objectives",
             Self::Topsis => {
-                "TOPSIS, equal weights: far from the worst and near the best of every objective"
+                "TOPSIS, equal weights: nearest to the best and farthest from the worst of every objective"
             }
-            Self::Knee => "the knee: furthest from the line between the ends of the front",
-            Self::Index(_) => "the member that was asked for",
+            Self::Knee => "the knee: farthest from the line between the ends of the front",
+            Self::Index(_) => "the design with this index",
         }
     }
 
-    /// Picks among members whose objectives are all minimised; `None` when there is no such member
-    /// or the members cannot be scored.
+    /// Picks among members whose objectives are all minimised; `None` if there is no such member or
+    /// the members cannot be scored.
     #[must_use]
     pub fn apply(self, members: &[Vec<f64>]) -> Option<Picked> {
         let scores = match self {

@@ -1,4 +1,4 @@
-//! What a strategy knows of a problem: variables with bounds, and a batch
+//! What a strategy knows about a problem: variables with bounds, and a batch
 //! evaluation that returns objectives to minimise and a constraint violation.
 
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ const LARGEST_INTEGER: i64 = 1 << 53;
 /// The values that a variable can take, both bounds included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum VariableKind {
-    /// Whole numbers, stored in a genome as whole `f64`s.
+    /// Integers, stored in a genome as `f64`.
     Integer {
         /// The least value.
         lo: i64,
@@ -149,7 +149,7 @@ impl Space {
         Ok(())
     }
 
-    /// As [`check`](Self::check), for values that need not be whole.
+    /// Like [`check`](Self::check), for integer variables with real values too.
     pub(super) fn check_confined(&self, values: &[f64]) -> Result<(), OptimizeError> {
         self.check_length(values)?;
         for (&value, variable) in values.iter().zip(&self.variables) {
@@ -162,7 +162,7 @@ impl Space {
         Ok(())
     }
 
-    /// Moves every value between the bounds of its variable, whole or not.
+    /// Moves every value between the bounds of its variable, without rounding.
     pub(super) fn confine(&self, values: &mut [f64]) {
         for (value, variable) in values.iter_mut().zip(&self.variables) {
             let (lo, hi) = variable.kind.bounds();
@@ -202,8 +202,8 @@ pub trait Problem {
     fn objective_names(&self) -> &[String];
 
     /// Makes dependent variables consistent, such as a phasing below the number
-    /// of planes. Called with every value inside its variable, which it has to
-    /// leave so; calling it twice must change nothing more.
+    /// of planes. Called with every value valid for its variable, which must
+    /// remain so; a second call must change nothing.
     fn repair(&self, _genome: &mut [f64]) {}
 
     /// Evaluates genomes, one answer each in their order. All are inside the
@@ -250,8 +250,8 @@ pub(super) fn admit(
     Ok(genome)
 }
 
-/// Evaluates admitted genomes and refuses answers that could not be compared.
-/// An empty batch does not reach the problem.
+/// Evaluates admitted genomes and rejects answers that cannot be compared. An
+/// empty batch is not sent to the problem.
 pub(super) fn evaluate(
     problem: &dyn Problem,
     genomes: Vec<Vec<f64>>,

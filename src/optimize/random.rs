@@ -1,5 +1,5 @@
-//! Random search: uniform draws, of which the non-dominated ones are kept. What
-//! any other strategy has to beat at the same number of evaluations.
+//! Random search: the non-dominated ones of uniform draws. Any other strategy has
+//! to beat it at the same number of evaluations.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,8 +16,8 @@ use super::strategy::{Progress, Record, Strategy, check_at_most, check_count, ch
 pub struct RandomConfig {
     /// Designs to evaluate, at least 1.
     pub evaluations: usize,
-    /// Designs in a step, at least 1. The result does depend on it: every step
-    /// draws from a stream of its own.
+    /// Designs in a step, at least 1. The result depends on it, because every step
+    /// draws from its own stream.
     pub batch: usize,
     /// Where the history measures hypervolume: one coordinate per objective.
     pub hypervolume_reference: Option<Vec<f64>>,
@@ -41,7 +41,7 @@ impl RandomConfig {
         check_objectives(problem, self.hypervolume_reference.as_deref())
     }
 
-    /// Designs evaluated after so many steps.
+    /// Designs evaluated after a number of steps.
     fn evaluated(&self, step: u64) -> u64 {
         (self.evaluations as u64).min(step.saturating_mul(self.batch as u64))
     }
@@ -79,7 +79,7 @@ impl RandomSearch {
         })
     }
 
-    /// Lets the search end after so many evaluations in all.
+    /// Sets the total number of evaluations.
     pub(super) fn set_evaluations(&mut self, evaluations: usize) {
         self.config.evaluations = evaluations;
     }
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn every_step_draws_anew() {
-        // Nothing dominates where all objectives are equal: every draw is kept.
+        // If all objectives are equal nothing dominates, so every draw is in the front.
         let flat = TestProblem::new(&[UNIT], 1, |_| (vec![0.0], 0.0));
         let search = run(&flat, &RandomConfig::default(), 1);
         assert_eq!(search.front().len(), 900);

@@ -3,7 +3,7 @@
 //! Source: K. Deb, A. Pratap, S. Agarwal, T. Meyarivan, "A fast and elitist
 //! multiobjective genetic algorithm: NSGA-II", IEEE Transactions on Evolutionary
 //! Computation 6(2), 2002: the sort in section III-A, the crowding distance in
-//! III-B, constraint domination where it comes to constraint handling.
+//! III-B, constraint domination in the section on constraint handling.
 
 use super::problem::Individual;
 
@@ -92,9 +92,9 @@ pub fn feasible_front(individuals: &[Individual]) -> Vec<Individual> {
 /// over the objectives, the sum of the gap between the two neighbours divided by
 /// the range of the front, infinite at both ends of any objective.
 ///
-/// An objective that is the same for all of the front, or that has no finite
-/// range because some member has no value for it, tells nothing about crowding
-/// and adds nothing.
+/// An objective that is the same for the entire front, or that has no finite range
+/// because some member has no value for it, says nothing about crowding and adds
+/// nothing.
 #[must_use]
 pub fn crowding_distance(individuals: &[Individual], front: &[usize]) -> Vec<f64> {
     let mut crowd = Crowd::new(individuals, front);
@@ -129,7 +129,7 @@ pub fn prune_one_by_one(individuals: &[Individual], front: &[usize], keep: usize
     kept.into_iter().map(|member| front[member]).collect()
 }
 
-/// A front sorted once by each objective that can tell its members apart.
+/// A front sorted by each objective in which its members differ.
 struct Crowd {
     distances: Vec<f64>,
     /// Per objective: its range, and (member, value) pairs by ascending value.

@@ -1,5 +1,5 @@
-//! What every strategy has in common: one batch a step, a budget, a front and a
-//! history, so that one loop runs any of them.
+//! What all strategies have in common: one batch per step, a budget, a front and a
+//! history, so one loop runs any of them.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,10 +19,10 @@ pub trait Strategy {
     /// # Errors
     ///
     /// An answer that cannot be compared, a repair that leaves the space, or a
-    /// state that does not fit the problem. The search is then unchanged.
+    /// state that does not match the problem. The search is then unchanged.
     fn step(&mut self, problem: &dyn Problem) -> Result<(), OptimizeError>;
 
-    /// How far the search has come.
+    /// The progress of the search.
     fn progress(&self) -> Progress;
 
     /// The best designs known: feasible, none dominated by another, sorted by
@@ -43,39 +43,39 @@ pub trait Strategy {
     }
 }
 
-/// How far a search has come.
+/// The progress of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
     /// Steps taken.
     pub step: u64,
-    /// Steps in all.
+    /// Total steps.
     pub steps: u64,
     /// Designs evaluated.
     pub evaluations: u64,
 }
 
-/// What one step left behind.
+/// The record of one step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// The step, from 1: a generation, an iteration or a batch.
     pub generation: u64,
     /// Designs evaluated so far.
     pub evaluations: u64,
-    /// Hypervolume of the feasible front, at the reference that was given or, without one, at the
-    /// chosen one, once there is one.
+    /// Hypervolume of the feasible front at the given reference or, without one, at the chosen
+    /// reference once there is one.
     pub hypervolume: Option<f64>,
-    /// Hypervolume at the chosen reference, while no member dominates the one that was given.
+    /// Hypervolume at the chosen reference, as long as no member dominates the given one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hypervolume_at_chosen: Option<f64>,
-    /// The least feasible value of each objective, where anything is feasible.
+    /// The smallest feasible value of each objective, if anything is feasible.
     pub ideal: Option<Vec<f64>>,
     /// Members of the feasible front.
     pub front_size: usize,
     /// Feasible individuals among those that the strategy holds.
     pub feasible: usize,
-    /// Objectives of the feasible front, for the picture of how it came about: at most
-    /// [`Record::MAX_POINTS`] of them, evenly over the front, and of late steps only some (all
-    /// of the first hundred, every tenth up to a thousand, and so on); else empty.
+    /// Objectives of the feasible front, to show its development: at most [`Record::MAX_POINTS`] of
+    /// them, evenly over the front, and only for some steps (all of the first hundred, every tenth
+    /// up to a thousand, and so on); otherwise empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub front: Vec<Vec<f64>>,
 }
@@ -97,10 +97,10 @@ fn thinned(points: &[&[f64]]) -> Vec<Vec<f64>> {
 }
 
 impl Record {
-    /// Most points of a front that a record keeps.
+    /// Maximum number of front points in a record.
     pub const MAX_POINTS: usize = 64;
 
-    /// Describes what a strategy holds after a step: its feasible front, and how
+    /// Describes the state of a strategy after a step: its feasible front, and how
     /// many feasible individuals.
     pub(super) fn new(
         progress: Progress,
@@ -128,8 +128,8 @@ impl Record {
         }
     }
 
-    /// The hypervolumes of a history, all at one reference: the one that was given if the last
-    /// front has a member that dominates it, else the chosen one.
+    /// The hypervolumes of a history, all at one reference: the given one if a member of the last
+    /// front dominates it, otherwise the chosen one.
     #[must_use]
     pub fn volumes(history: &[Self]) -> Vec<Option<f64>> {
         let last = history.last();
@@ -151,12 +151,12 @@ pub(super) fn check_probability(setting: &'static str, value: f64) -> Result<(),
     check_setting((0.0..=1.0).contains(&value), setting, value, expected)
 }
 
-/// Checks a setting that counts something.
+/// Checks a setting that is a count.
 pub(super) fn check_count(setting: &'static str, value: usize) -> Result<(), OptimizeError> {
     check_setting(value > 0, setting, value as f64, "at least 1")
 }
 
-/// Reports a setting that is not as expected.
+/// Reports a setting with an unexpected value.
 pub(super) fn check_setting(
     valid: bool,
     setting: &'static str,
@@ -195,7 +195,7 @@ pub(super) fn check_objectives(
     reference.iter().try_for_each(check)
 }
 
-/// Checks that a count read from a checkpoint does not exceed what fits.
+/// Checks that a count read from a checkpoint is within its limit.
 pub(super) fn check_at_most(
     quantity: &'static str,
     found: u64,
@@ -211,7 +211,7 @@ pub(super) fn check_at_most(
     })
 }
 
-/// Checks that a count read from a checkpoint is what the rest of it implies.
+/// Checks that a count read from a checkpoint agrees with the rest of it.
 pub(super) fn check_equal(
     quantity: &'static str,
     found: u64,

@@ -4,7 +4,7 @@ use super::problem::{Evaluation, Problem, Space, Variable, VariableKind};
 
 type Function = fn(&[f64]) -> (Vec<f64>, f64);
 
-/// A problem made of a function from a genome to objectives and violation.
+/// A problem defined by a function from a genome to objectives and violation.
 pub(super) struct TestProblem {
     space: Space,
     names: Vec<String>,
@@ -120,8 +120,8 @@ pub(super) fn constr() -> TestProblem {
     })
 }
 
-/// Two integers and two reals: n and 12 - n, each plus a loss that is 0 where
-/// the other variables sit at (4, 1, 0.3): an integer and a real at their upper
+/// Two integers and two reals: n and 12 - n, each plus a loss that is 0 if the
+/// other variables are at (4, 1, 0.3): an integer and a real at their upper
 /// bounds and a real inside. The front is every n in 0..=12 without loss.
 pub(super) fn mixed() -> TestProblem {
     let kinds = [

@@ -6,19 +6,19 @@
 //! engineering design", Computer Science and Informatics 26(4), 1996), with these
 //! choices:
 //!
-//! - The distributions are not truncated at the bounds; whatever falls outside is
-//!   moved to the bound. The best designs often sit on a bound, which a truncated
+//! - The distributions are not truncated at the bounds; a value outside is moved
+//!   onto the bound. The best designs are often at a bound, which a truncated
 //!   distribution approaches but never hits.
-//! - Integers are crossed as reals and rounded, which mostly hands on the values of
-//!   the parents; what moves them is mutation, whose step is therefore rounded
-//!   away from zero. Rounded to the nearest, nine of ten steps in a range of five
-//!   values would change nothing.
+//! - Integers are crossed as reals and rounded, which mostly passes on the parents'
+//!   values. They are changed by mutation, whose step is therefore rounded away
+//!   from zero: rounded to the nearest, nine of ten steps in a range of five values
+//!   would change nothing.
 
 use super::generator::Generator;
 use super::problem::{Space, VariableKind};
 
-/// The chance that a variable takes part in a crossover, and that its values then
-/// change places.
+/// The chance that a variable takes part in a crossover, and that its values are
+/// then swapped.
 const EVEN: f64 = 0.5;
 
 /// Two children of two genomes by simulated binary crossover, inside the space.
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     const DRAWS: u32 = 40_000;
-    /// Five standard deviations of a share of all draws, at most 1/2/sqrt(draws).
+    /// Five standard deviations of a fraction of all draws, at most 1/2/sqrt(draws) each.
     const SHARE_ERROR: f64 = 0.0125;
 
     fn space(kinds: &[VariableKind]) -> Space {
@@ -168,7 +168,7 @@ mod tests {
             changed += u32::from(a[0] != 3.0);
             swapped += u32::from(a[0] > b[0]);
         }
-        // Half of the variables take part, half of those change places.
+        // Half of the variables take part, and half of those are swapped.
         assert_share(f64::from(changed) / f64::from(DRAWS), 0.5);
         assert_share(f64::from(swapped) / f64::from(DRAWS), 0.25);
     }

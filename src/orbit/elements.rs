@@ -27,7 +27,7 @@ pub enum ElementsError {
     },
 }
 
-/// Mean elements at an epoch, in TEME: what the secular theories carry forward.
+/// Mean elements at an epoch, in TEME: the input of the secular theories.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeanElements {
     /// Semi-major axis, km.

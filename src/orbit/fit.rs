@@ -1,7 +1,7 @@
 //! An SGP4 element set fitted to a design's trajectory by least squares.
 //!
-//! Mean elements of J2 are not those of SGP4: its short periods and J3 leave kilometres. A fit
-//! over the span spreads what is left. It works in e cos ω, e sin ω and ω + M, which stay regular
+//! Mean elements of J2 are not those of SGP4: its short-period terms and J3 make a difference of
+//! kilometres, which a fit over the span minimises. It works in e cos ω, e sin ω and ω + M, which stay regular
 //! for circular orbits, by Gauss-Newton steps with Levenberg-Marquardt damping.
 
 use crate::frames::{Position, Teme};
@@ -11,20 +11,20 @@ use crate::time::Epoch;
 use crate::units::wrap_360;
 use nalgebra::{Matrix6, Vector3, Vector6};
 
-/// Most steps.
+/// Maximum number of steps.
 const STEPS: usize = 30;
 
-/// A step that changes the root mean square by less than this share ends the fit.
+/// A relative change of the RMS below this ends the fit.
 const CONVERGED: f64 = 1e-9;
 
 /// Steps of the numerical derivatives: rev/day, eccentricity, and degrees. SGP4 takes an
-/// eccentricity below 1e-6 for 1e-6, so that a smaller step would see nothing at e = 0.
+/// eccentricity below 1e-6 for 1e-6, so a smaller step would have no effect at e = 0.
 const STEP: [f64; 6] = [1e-6, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4];
 
-/// Largest eccentricity that the fit looks at.
+/// Largest eccentricity in the fit.
 const MAX_ECCENTRICITY: f64 = 0.9;
 
-/// A fitted set, and what it leaves.
+/// A fitted set and its residuals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// The element set, with all digits.
@@ -41,7 +41,7 @@ type Unknowns = Vector6<f64>;
 /// Fits a set to TEME positions (seconds after `origin`, km), starting from `start`.
 ///
 /// # Errors
-/// When SGP4 refuses the set that the fit starts from.
+/// If SGP4 rejects the initial set.
 pub fn fit(
     start: &sgp4::Elements,
     positions: &[(f64, Position<Teme>)],
@@ -118,7 +118,7 @@ impl FitProblem<'_> {
         }
     }
 
-    /// Trajectory less SGP4 at every instant.
+    /// Trajectory minus SGP4 at every instant.
     fn residuals(&self, unknowns: &Unknowns) -> Result<Vec<Vector3<f64>>, PropagationError> {
         let orbit = Sgp4Orbit::from_element_set(&self.set(unknowns), self.origin)?;
         let apart = |(elapsed_s, position_km): &(f64, Position<Teme>)| {
@@ -127,7 +127,7 @@ impl FitProblem<'_> {
         self.positions.iter().map(apart).collect()
     }
 
-    /// A damped step from `unknowns`, and the residuals after it; none where SGP4 gives up.
+    /// A damped step from `unknowns`, and the residuals after it; none if SGP4 fails.
     fn step(
         &self,
         unknowns: &Unknowns,
@@ -180,7 +180,7 @@ mod tests {
         (start, positions, epoch)
     }
 
-    /// SGP4 states are met again by the set that they come from, even from a start that is off.
+    /// SGP4 states are reproduced by the set they come from, even from an inaccurate start.
     #[test]
     fn validate_the_fit_finds_the_set_of_an_sgp4_trajectory() {
         let (set, positions, epoch) = case("delta:55:6/3/1@925,e=0.002,w=40", Model::Sgp4);
@@ -197,8 +197,7 @@ mod tests {
     }
 
     /// Against mean J2 the fit cancels J3's frozen eccentricity, which is nearly all of the
-    /// difference at 55°; away from 54.7° the shifted radius stays (DESIGN of the budget: 8.7 km
-    /// along the track at 55° without a fit).
+    /// difference at 55°; away from 54.7° the shifted radius remains (8.7 km in-track at 55° without a fit).
     #[test]
     fn the_fit_leaves_less_than_the_analytic_set() {
         for (design, most_km) in [

@@ -1,7 +1,7 @@
 //! Secular J2: mean elements whose angles advance at constant rates.
 //!
 //! This is the class of model that STK names *J2Perturbation*: semi-major axis, eccentricity
-//! and inclination stay, and the state follows from the mean elements as in the two-body
+//! and inclination are constant, and the state follows from the mean elements as in the two-body
 //! problem, without short-period terms.
 
 use super::kepler::eccentric_anomaly;
@@ -120,8 +120,8 @@ impl Propagator for SecularOrbit {
 
 /// Position of the elements on their ellipse, and its time derivative under the secular rates
 /// ([M-9](crate::models#m-9), [M-10](crate::models#m-10)). The rates of the node and the perigee
-/// turn the ellipse, so that the velocity is the derivative of the position and not Kepler's, which
-/// is up to 10 m/s off.
+/// rotate the ellipse, so the velocity is the derivative of the position and not Kepler's, which is
+/// off by up to 10 m/s.
 fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State<Teme> {
     let e = elements.eccentricity;
     let eta = (1.0 - e * e).sqrt();
@@ -132,7 +132,7 @@ fn two_body_state(elements: &MeanElements, rates: &SecularRates) -> State<Teme> 
     let (x, y) = (a * (cos_e - e), a * eta * sin_e);
     let anomaly_rate = rates.mean_anomaly_rad_s / (1.0 - e * cos_e);
     let (vx, vy) = (-a * sin_e * anomaly_rate, a * eta * cos_e * anomaly_rate);
-    // Turned by the argument of perigee into node axes
+    // Rotated by the argument of perigee to node axes
     let perifocal = PerifocalAxes::new(elements.arg_perigee_rad);
     let (node_x, node_y) = perifocal.to_node_axes(x, y);
     let (turned_vx, turned_vy) = perifocal.to_node_axes(vx, vy);
@@ -165,18 +165,18 @@ mod tests {
         }
     }
 
-    /// A Sun-synchronous orbit turns its node by 360° in a tropical year, 0.985 647 4°/day;
-    /// at 800 km that takes 98.603° (Vallado, 4th ed., figure 11-14: 98.6°).
+    /// The node of a Sun-synchronous orbit moves 360° in a tropical year, 0.985 647 4°/day;
+    /// at 800 km that requires 98.603° (Vallado, 4th ed., figure 11-14: 98.6°).
     #[test]
     fn validate_sun_synchronous_node_rate() {
         let rates = SecularRates::j2(&elements(800.0, 0.0, 98.603));
         let deg_per_day = (rates.raan_rad_s * 86_400.0).to_degrees();
-        // 0.001° of inclination is worth 1.1e-4 °/day here.
+        // 0.001° of inclination corresponds to 1.1e-4 °/day here.
         assert!((deg_per_day - 0.985_647).abs() < 2e-4, "{deg_per_day}");
     }
 
-    /// The perigee stands still at sin² i = 4/5 and the mean anomaly advances at Kepler's rate
-    /// at sin² i = 2/3; a polar node stands still.
+    /// The perigee is stationary at sin² i = 4/5, the mean anomaly advances at Kepler's rate at
+    /// sin² i = 2/3, and a polar node is stationary.
     #[test]
     fn validate_critical_inclinations() {
         let at = |sin2: f64| elements(925.0, 0.02, sin2.sqrt().asin().to_degrees());

@@ -6,7 +6,7 @@ use crate::units::wrap_pi;
 ///
 /// Newton's iteration from the start E = M + 0.85 e sign(sin M) of Danby and Burkardt,
 /// *Celestial Mechanics* 31 (1983) 95, on M wrapped to [-π, π); it stops when a step no
-/// longer changes E, or begins to swing between two neighbouring doubles.
+/// longer changes E, or E alternates between two neighbouring doubles.
 #[must_use]
 pub fn eccentric_anomaly(mean_anomaly_rad: f64, eccentricity: f64) -> f64 {
     let mean = wrap_pi(mean_anomaly_rad);
@@ -15,7 +15,7 @@ pub fn eccentric_anomaly(mean_anomaly_rad: f64, eccentricity: f64) -> f64 {
     }
     let mut anomaly = mean + 0.85 * eccentricity * mean.signum();
     let mut last_step = f64::INFINITY;
-    // Newton converges in fewer than ten steps for e < 0.9; the bound only guards against swings.
+    // Newton converges in fewer than ten steps for e < 0.9; the bound only guards against oscillation.
     for _ in 0..32 {
         let (sin, cos) = anomaly.sin_cos();
         let step = (anomaly - eccentricity * sin - mean) / (1.0 - eccentricity * cos);
@@ -34,8 +34,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// The equation itself is the truth: the residual is a few ulp of M, magnified by
-        /// nothing, for every e below 0.9.
+        /// The equation itself is the reference: the residual is a few ulp of M, without
+        /// magnification, for every e below 0.9.
         #[test]
         fn validate_the_equation_is_satisfied(e in 0.0..0.9_f64, m in -3.1..3.1_f64) {
             let anomaly = eccentric_anomaly(m, e);

@@ -11,11 +11,11 @@
 //! ε = J2 R² / (2 p²),  s = sin i,  c = cos i,  κ = e cos f = p/r - 1,  σ = e sin f
 //! ```
 //!
-//! and contain neither 1/e nor 1/sin i, so that circular and equatorial orbits are no special
+//! and contain neither 1/e nor 1/sin i, so circular and equatorial orbits are not special
 //! cases (the aim of Lyddane, *Astron. J.* 68 (1963) 555). For e = 0 they are the short-period
 //! terms of SGP4. There are no long-period terms: those of J2 are of order e J2 and singular at
-//! the critical inclination. What is left out is of second order: some metres in position at
-//! once and, through the mean motion, some 100 m a day along the track.
+//! the critical inclination. The neglected terms are of second order: some metres in position
+//! immediately and, through the mean motion, some 100 m a day in-track.
 
 use super::j2::{SecularOrbit, SecularRates};
 use super::kepler::eccentric_anomaly;
@@ -60,7 +60,7 @@ impl Propagator for OsculatingOrbit {
     }
 }
 
-/// Part of the osculating radius that does not depend on where the satellite is, less that of
+/// Part of the osculating radius that does not depend on the argument of latitude, minus that of
 /// the mean ellipse, km ([M-15](crate::models#m-15)): ¾ J2 (R²/a)(1 - 3 cos² i) for e = 0.
 ///
 /// For e > 0 the mean over time of the terms without θ in [M-12](crate::models#m-12), from the
@@ -76,7 +76,7 @@ pub fn radius_shift_km(elements: &MeanElements) -> f64 {
     0.5 * J2 * RADIUS_KM * RADIUS_KM / parameter_km * zonal * (eta + (2.0 + e2) / eta)
 }
 
-/// Eccentricity that J3 holds at ω = 90°, to first order: |J3 / (2 J2)| (R/a) sin i
+/// Eccentricity maintained by J3 at ω = 90°, to first order: |J3 / (2 J2)| (R/a) sin i
 /// ([M-16](crate::models#m-16)).
 ///
 /// Source: Cook, *Planet. Space Sci.* 14 (1966) 433, without the harmonics above J3. Not valid
@@ -87,7 +87,7 @@ pub fn frozen_eccentricity(elements: &MeanElements) -> f64 {
     scale * elements.inclination_rad.sin()
 }
 
-/// Where the satellite is on its mean ellipse, with rates per second.
+/// The satellite's position on its mean ellipse, with rates per second.
 struct EllipsePosition {
     /// e cos f.
     kappa: f64,
@@ -149,7 +149,7 @@ impl Polar {
         let along = plane.vector(-sin, cos);
         let normal = plane.node.cross(&plane.ahead);
         let position_km = radial * self.radius_km.value;
-        // The node turns the plane about the pole, the inclination about the node.
+        // The node rotates the plane about the pole, the inclination about the node.
         let turning = along * self.argument_rad.rate
             + Vector3::z().cross(&radial) * self.node_rad.rate
             + normal * (sin * self.inclination_rad.rate);
@@ -158,7 +158,7 @@ impl Polar {
     }
 }
 
-/// What the short-period terms of one orbit share.
+/// Quantities shared by the short-period terms of one orbit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ShortPeriod {
     /// p = a (1 - e²), km.
@@ -269,7 +269,7 @@ impl ShortPeriod {
         }
     }
 
-    /// i from G + ΔG, ΔG = -∂W/∂θ, and G cos i, which stays ([M-14](crate::models#m-14)).
+    /// i from G + ΔG, ΔG = -∂W/∂θ, and G cos i, which is constant ([M-14](crate::models#m-14)).
     fn inclination(&self, place: &EllipsePosition, double: &DoubleArgument) -> Moving {
         let s2 = self.sin_i * self.sin_i;
         // ΔG/G = s² y, y = ε {(3/2 + 2κ) cos 2θ + σ sin 2θ}
@@ -290,7 +290,7 @@ impl ShortPeriod {
     }
 }
 
-/// Functions of the place that all terms use, with rates per second.
+/// Functions of the position that all terms use, with rates per second.
 struct DoubleArgument {
     /// sin 2θ.
     sin: f64,

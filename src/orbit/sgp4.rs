@@ -10,13 +10,13 @@ use crate::units::{MINUTES_PER_DAY, wrap_two_pi};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// What stands in the mean motion slot of an SGP4 element set.
+/// The content of the mean motion field of an SGP4 element set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeanMotionSlot {
     /// dM/dt of secular J2, which is Kozai's mean motion to first order: the right one
     /// ([M-11](crate::models#m-11)).
     Kozai,
-    /// sqrt(μ/a³), the common mistake; up to 400 km/day along the track.
+    /// sqrt(μ/a³), a common mistake; up to 400 km/day in-track.
     Kepler,
 }
 
@@ -51,7 +51,7 @@ impl ZonalHarmonics {
 /// The two ways in which SGP4 is run (Vallado et al., AIAA 2006-6753, section II).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sgp4Mode {
-    /// As the United States Space Force runs it; what element sets are made for.
+    /// As run by the United States Space Force; the mode that element sets are made for.
     Afspc,
     /// With the corrections of AIAA 2006-6753: another sidereal time, and a continuous Lyddane choice.
     Improved,
@@ -73,7 +73,7 @@ impl Sgp4Mode {
     }
 }
 
-/// What SGP4 is run with.
+/// Settings of SGP4.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sgp4Theory {
     /// The constants.
@@ -89,8 +89,8 @@ impl Sgp4Theory {
         mode: Sgp4Mode::Afspc,
     };
 
-    /// SGP4 with this library's μ, R and J2 in place of those of WGS-72: no SGP4 that element sets
-    /// are made for, but what the difference of the constants alone amounts to.
+    /// SGP4 with this library's μ, R and J2 instead of those of WGS-72: not an SGP4 for element sets, but
+    /// it isolates the effect of the constants.
     #[must_use]
     pub fn with_design_constants() -> Self {
         Self {
@@ -107,7 +107,7 @@ impl Sgp4Theory {
 }
 
 impl MeanMotionSlot {
-    /// The mean motion that an element set of `elements` carries, rad/s.
+    /// The mean motion in an element set of `elements`, rad/s.
     #[must_use]
     pub fn mean_motion_rad_s(self, elements: &MeanElements) -> f64 {
         match self {
@@ -140,7 +140,7 @@ impl Sgp4Orbit {
     /// SGP4 without drag from unrounded mean elements at `epoch`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 rejects the elements.
     pub fn from_mean_elements(
         elements: &MeanElements,
         epoch: Epoch,
@@ -154,10 +154,10 @@ impl Sgp4Orbit {
         Self::from_mean_elements_with(elements, epoch, slot, theory)
     }
 
-    /// The same by any variant of SGP4.
+    /// The same with any variant of SGP4.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 rejects the elements.
     pub fn from_mean_elements_with(
         elements: &MeanElements,
         epoch: Epoch,
@@ -180,7 +180,7 @@ impl Sgp4Orbit {
     /// SGP4 from an element set as read from a file; time runs from `origin`.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 rejects the elements.
     pub fn from_element_set(
         set: &::sgp4::Elements,
         origin: Epoch,
@@ -188,10 +188,10 @@ impl Sgp4Orbit {
         Self::from_element_set_with(set, origin, Sgp4Theory::STANDARD)
     }
 
-    /// The same by any variant of SGP4.
+    /// The same with any variant of SGP4.
     ///
     /// # Errors
-    /// When SGP4 refuses the elements.
+    /// If SGP4 rejects the elements.
     pub fn from_element_set_with(
         set: &::sgp4::Elements,
         origin: Epoch,
@@ -270,7 +270,7 @@ impl Propagator for Sgp4Orbit {
         })?;
         let position_km = Vector3::from(prediction.position);
         let radius_km = position_km.norm();
-        // Error 6 of the authors' code, which the crate leaves to its caller.
+        // Error 6 of the authors' code, which the crate leaves to the caller.
         if radius_km < self.least_km {
             return Err(PropagationError::Decayed {
                 at: at(),
@@ -384,7 +384,7 @@ mod tests {
         assert!(matches!(result, Err(PropagationError::Sgp4Elements { .. })));
     }
 
-    /// The naive slot equals the right one where 3 sin² i = 2, and nowhere else.
+    /// The naive mean motion equals the right one only where 3 sin² i = 2.
     #[test]
     fn slots_agree_only_near_54_7_degrees() {
         let at = |deg: f64| MeanElements {

@@ -1,4 +1,4 @@
-//! How far two propagators of one satellite lie apart.
+//! Distance between two propagations of one satellite.
 
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::TimeGrid;
@@ -16,7 +16,7 @@ impl PropagatorDistance {
     /// The distances between two propagators over the samples of `grid`.
     ///
     /// # Errors
-    /// When one of them has no state.
+    /// If one of them has no state.
     pub fn between(
         one: &dyn Propagator,
         other: &dyn Propagator,
@@ -33,7 +33,7 @@ impl PropagatorDistance {
         Ok(Self { max_km, rms_km })
     }
 
-    /// The larger of each distance: that of the satellite which loses most.
+    /// The larger of each distance: that of the satellite with the largest loss.
     pub fn widen(&mut self, other: &Self) {
         self.max_km = self.max_km.max(other.max_km);
         self.rms_km = self.rms_km.max(other.rms_km);

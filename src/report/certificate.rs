@@ -1,23 +1,23 @@
-//! A front against that of a grid sweep: how good it is, and what it missed.
+//! A front compared with the front of a grid sweep: how good it is, and what it missed.
 //!
-//! The sweep is exact for its grid alone; a search may find better designs between the points.
+//! The sweep is exact only on its grid; a search may find better designs between its points.
 
 use super::shown;
 use crate::optimize::{dominates, hypervolume};
 use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
 use crate::search::Quantity;
 
-/// A swept design counts as found when a front member is no worse than it by more than this share
-/// of the range of the grid's front in every objective: the spacing of thirty members along a front.
+/// A design of the sweep counts as found if a front member is worse by at most this fraction of the
+/// range of the sweep's front in every objective: the spacing of thirty members along a front.
 const FOUND_WITHIN: f64 = 1.0 / 30.0;
 
 impl Certificate {
-    /// Holds a front against the result of a sweep of the same problem.
+    /// Compares a front with the result of a sweep of the same problem.
     ///
     /// Both hypervolumes are at the reference point of the certified front. The distance of a member
-    /// is IGD+'s (Ishibuchi et al., EMO 2015): over the members of the grid's front, the least root of
-    /// the sum of squares of what it is worse by, each objective in units of the range of the grid's
-    /// front. It is 0 for a member that is no worse than one of them.
+    /// is that of IGD+ (Ishibuchi et al., EMO 2015): the minimum over the members of the sweep's front
+    /// of the root sum of squares by which it is worse, with each objective in units of that front's
+    /// range. It is 0 for a member that is no worse than one of them.
     #[must_use]
     pub fn new(found: &OptimizeResult, sweep: &OptimizeResult, objectives: &[Quantity]) -> Self {
         let grid: Vec<Vec<f64>> = sweep
@@ -75,9 +75,9 @@ impl Certificate {
         let worst = self.distances.iter().copied().fold(0.0, f64::max);
         let mean = self.distances.iter().sum::<f64>() / self.distances.len().max(1) as f64;
         let mut text = format!(
-            "certificate: the grid sweep of {} designs has a front of {} members, hypervolume {}; the \
-             search's front {}\n\
-             distance to the grid's front, as a share of its range: mean {:.2} %, worst {:.2} %\n",
+            "certificate: a grid sweep of {} designs gives a front of {}, hypervolume {}; the hypervolume \
+             of this search is {}\n\
+             distance to the sweep's front, relative to its range: mean {:.2} %, maximum {:.2} %\n",
             self.evaluations,
             self.grid_members,
             volume(self.grid_hypervolume),
@@ -87,15 +87,15 @@ impl Certificate {
         );
         if self.grid_members_dominated > 0 {
             text += &format!(
-                "the search dominates {} of the {} members of the grid's front, with designs between \
+                "the search dominates {} of the {} designs of the sweep's front, with designs between \
                  the points of the grid\n",
                 self.grid_members_dominated, self.grid_members
             );
         }
         text += &match &self.missed {
-            None => "no part of the grid's front was missed\n".to_owned(),
+            None => "no part of the sweep's front was missed\n".to_owned(),
             Some(missed) => format!(
-                "missed: {} members of the grid's front with planes {} to {}, satellites per plane {} to {}, \
+                "missed: {} designs of the sweep's front with planes {} to {}, satellites per plane {} to {}, \
                  inclination {} to {} deg, altitude {} to {} km\n",
                 missed.members,
                 missed.planes[0],
@@ -139,7 +139,7 @@ fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {
         .collect()
 }
 
-/// Width of the grid's front in each objective; 1 where it has none.
+/// Range of the sweep's front in each objective; 1 if it is zero.
 fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
     let range = |n: usize| {
         let values = || points.iter().map(|point| point[n]);
@@ -154,7 +154,7 @@ fn ranges(points: &[Vec<f64>], objectives: usize) -> Vec<f64> {
     (0..objectives).map(range).collect()
 }
 
-/// What `point` is worse by than `target` in each objective, in units of the ranges.
+/// How much worse `point` is than `target` in each objective, in units of the ranges.
 fn worse_by(point: &[f64], target: &[f64], ranges: &[f64]) -> Vec<f64> {
     let differences = point.iter().zip(target).zip(ranges);
     differences
@@ -205,11 +205,11 @@ mod tests {
         assert_eq!(certificate.distances, [0.0]);
         let text = certificate.to_text();
         assert!(
-            text.contains("the grid sweep of 900 designs has a front of 2 members"),
+            text.contains("a grid sweep of 900 designs gives a front of 2, hypervolume 5"),
             "{text}"
         );
         assert!(
-            text.contains("dominates 1 of the 2 members of the grid's front"),
+            text.contains("dominates 1 of the 2 designs of the sweep's front"),
             "{text}"
         );
         assert!(!text.contains("exact"), "{text}");

@@ -6,7 +6,7 @@ const WORLD: &str = include_str!("../../data/coastline/world-110m.txt");
 /// 1:50 million, for regions.
 const DETAILED: &str = include_str!("../../data/coastline/world-50m.txt");
 
-/// A part of the map: longitudes may leave [-180°, 180°].
+/// A part of the map; longitudes may be outside [-180°, 180°].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// South and north, degrees.
@@ -16,7 +16,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The least bounds around points (latitude, longitude), widened by `margin_deg`; `None`
+    /// The smallest bounds around points (latitude, longitude), widened by `margin_deg`; `None`
     /// without points.
     #[must_use]
     pub fn around(points: impl Iterator<Item = (f64, f64)>, margin_deg: f64) -> Option<Self> {
@@ -64,7 +64,7 @@ pub fn world() -> Vec<Vec<[f64; 2]>> {
 pub fn within(bounds: &Bounds) -> Vec<Vec<[f64; 2]>> {
     let mut found = Vec::new();
     for line in lines(DETAILED) {
-        // A line that crosses the antimeridian goes on beyond it.
+        // A line that crosses the antimeridian continues beyond it.
         for turn in [-720.0, -360.0, 0.0, 360.0, 720.0] {
             let turned = line.iter().map(|[x, y]| [x + turn, *y]);
             clip(turned, bounds, &mut found);
@@ -108,7 +108,7 @@ mod tests {
             );
         }
         // Cape Agulhas, the southern end of Africa, is at 34.83° S, 20.00° E; the data are
-        // good to a few hundredths of a degree here, and simplified by 0.05°.
+        // accurate to a few hundredths of a degree here, and simplified by 0.05°.
         let cape = Bounds {
             latitude_deg: [-35.5, -34.0],
             longitude_deg: [18.5, 21.5],

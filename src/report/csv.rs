@@ -11,7 +11,7 @@ use ::csv::Writer;
 use serde::Serialize;
 use std::io;
 
-/// A design and its metrics in one row, with the quantities under constraints that are neither.
+/// A design and its metrics in one row, with the constrained quantities that are in neither.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -56,7 +56,7 @@ pub fn constellation_csv(result: &ConstellationResult) -> io::Result<String> {
     text(writer)
 }
 
-/// Records whose fields are the columns, one a row: instants or points of a series.
+/// Records whose fields are the columns, one per row: instants or points of a series.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -66,7 +66,7 @@ pub fn records_csv(rows: &[impl Serialize]) -> io::Result<String> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// The dilutions of precision of a design, one a row: name, mean, quantiles, maximum and tail.
+/// The dilutions of precision of a design, one per row: name, mean, quantiles, maximum and tail.
 ///
 /// # Errors
 /// Never for a table in memory.

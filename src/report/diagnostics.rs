@@ -1,4 +1,4 @@
-//! What a search's result shows that its numbers alone do not say.
+//! Diagnostics of a search: what its result implies beyond the numbers.
 
 mod bounds;
 mod conflict;
@@ -13,8 +13,8 @@ use crate::optimize::{Individual, Search, Strategy};
 use crate::run::{Diagnostic, FrontMember};
 use crate::search::DesignProblem;
 
-/// Everything that a search shows of itself. The front and the individuals behind it are in the
-/// same order. Evaluates some variations of the chosen design.
+/// All diagnostics of a search. The front and its individuals are in the same order. Evaluates
+/// some variations of the chosen design.
 #[must_use]
 pub fn diagnose(
     problem: &DesignProblem<'_>,
@@ -31,7 +31,7 @@ pub fn diagnose(
     if let Some(chosen) = chosen.and_then(|n| individuals.get(n)) {
         found.extend(dependence::independent(problem, chosen));
     }
-    // A sweep makes its way through a grid; how fast its front grows says nothing.
+    // A sweep works through a grid, so how fast its front grows says nothing.
     if !matches!(search, Search::Exhaustive(_)) {
         found.extend(progress::of_history(
             search.history(),
@@ -41,11 +41,11 @@ pub fn diagnose(
     found
 }
 
-/// The names in a sentence: `a`, `a and b`, `a, b and c`.
+/// The names in a sentence, in backquotes: a, a and b, a, b and c.
 fn listed(names: &[&str]) -> String {
     match names {
         [] => String::new(),
-        [one] => (*one).to_owned(),
-        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+        [one] => format!("`{one}`"),
+        [first @ .., last] => format!("`{}` and `{last}`", first.join("`, `")),
     }
 }

@@ -1,7 +1,7 @@
-//! The figures of a run: what each shows, as data, and the table behind it.
+//! The figures of a run as data, and the table behind each.
 //!
-//! A [`Plate`] holds a [`Chart`], which [`draw`] turns into SVG or PNG, and its CSV. The bytes
-//! depend on the plate alone: the typeface is part of the library and nothing is stamped.
+//! A [`Plate`] has a [`Chart`], which [`draw`] turns into SVG or PNG, and its CSV. The bytes depend
+//! only on the plate: the typeface is part of the library and there are no timestamps.
 
 mod bars;
 mod curves;
@@ -43,17 +43,17 @@ keywords! {
 }
 
 keywords! {
-    /// What a map, a distribution or a series shows.
+    /// The quantity shown by a map, a distribution or a series.
     Measure {
         /// Visible LEO satellites: of a point over time, or of an instant over the points.
         MeanVisible = "mean-visible",
-        /// Mean PDOP: likewise.
+        /// Mean PDOP, in the same way.
         MeanPdop = "mean-pdop",
         /// 95 % quantile of PDOP of a point.
         P95Pdop = "p95-pdop",
         /// Maximum PDOP of a point, or of an instant.
         MaxPdop = "max-pdop",
-        /// Share of the time that a point is available.
+        /// Fraction of the time that a point is available.
         Availability = "availability",
         /// PDOP of every point and instant, with its tail.
         Pdop = "pdop",
@@ -65,11 +65,11 @@ impl Measure {
     #[must_use]
     pub fn label(self) -> &'static str {
         match self {
-            Self::MeanVisible => "mean number of visible LEO satellites",
+            Self::MeanVisible => "mean visible LEO satellites",
             Self::MeanPdop => "mean PDOP",
             Self::P95Pdop => "95 % quantile of PDOP",
             Self::MaxPdop => "maximum PDOP",
-            Self::Availability => "availability (share of the time)",
+            Self::Availability => "availability (fraction of the time)",
             Self::Pdop => "PDOP",
         }
     }
@@ -82,8 +82,8 @@ pub fn quantity_label(name: &str) -> String {
         return name.to_owned();
     };
     let label = match quantity {
-        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR",
-        Quantity::JCost => "J_cost = satellites per visible satellite",
+        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR of PDOP",
+        Quantity::JCost => "J_cost = satellites / mean visible",
         Quantity::MeanPdop => "mean PDOP",
         Quantity::CvarPdop => "CVaR of PDOP",
         Quantity::P95Pdop => "95 % quantile of PDOP",
@@ -91,17 +91,17 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::MaxPdop => "maximum PDOP",
         Quantity::Satellites => "satellites",
         Quantity::Planes => "planes",
-        Quantity::MeanVisible => "mean number of visible LEO satellites",
+        Quantity::MeanVisible => "mean visible LEO satellites",
         Quantity::Availability => "availability",
         Quantity::LaunchCost => "launch cost (satellites)",
     };
     label.to_owned()
 }
 
-/// Why there is no such figure.
+/// Why a figure cannot be made.
 #[derive(Debug, Error)]
 pub enum FigureError {
-    /// The run does not hold what the figure shows.
+    /// The run lacks the data of the figure.
     #[error("there is no {figure} figure: {reason}")]
     Nothing {
         /// The figure.
@@ -110,16 +110,16 @@ pub enum FigureError {
         reason: &'static str,
     },
     /// The figure does not show that measure.
-    #[error("figure {figure} does not show {measure}; it shows {choices}")]
+    #[error("figure {figure} cannot show {measure}; it shows {choices}")]
     Measure {
         /// The figure.
         figure: Figure,
-        /// What was asked for.
+        /// The requested measure.
         measure: Measure,
-        /// What can be.
+        /// The possible measures.
         choices: String,
     },
-    /// The table cannot be written; one in memory always can.
+    /// The table cannot be written, which does not happen in memory.
     #[error("the figure's data: {0}")]
     Table(#[from] ::csv::Error),
 }
@@ -135,7 +135,7 @@ impl FigureError {
     }
 }
 
-/// A figure: what is drawn, and the numbers behind it.
+/// A figure and the numbers behind it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plate {
     /// What is drawn.
@@ -168,14 +168,14 @@ pub struct PlaneChart {
     pub layers: Vec<Layer>,
 }
 
-/// Points that are drawn alike.
+/// Points drawn in the same style.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layer {
     /// Name in the legend; empty for none.
     pub name: String,
     /// The points (x, y).
     pub points: Vec<(f64, f64)>,
-    /// How.
+    /// The style.
     pub style: Style,
 }
 
@@ -203,7 +203,7 @@ pub struct MapChart {
     pub label: String,
     /// Longitude, latitude and value of each point, degrees; `None` where there is no value.
     pub cells: Vec<(f64, f64, Option<f64>)>,
-    /// Width and height of a cell, degrees; `None` for points that are no grid.
+    /// Width and height of a cell, degrees; `None` for points that do not form a grid.
     pub cell_deg: Option<[f64; 2]>,
     /// What is shown.
     pub bounds: super::coastline::Bounds,
@@ -218,6 +218,6 @@ pub struct BarChart {
     pub y: String,
     /// Names of the bars of each group.
     pub bars: Vec<String>,
-    /// Name and sizes of each group.
+    /// Name and bar heights of each group.
     pub groups: Vec<(String, Vec<f64>)>,
 }

@@ -1,9 +1,9 @@
-//! The page of a run: one HTML file that needs nothing else.
+//! The page of a run: one self-contained HTML file.
 //!
-//! The words and tables stand in the page itself; the figures are drawn by the script of the
-//! plotly crate, from numbers that the page carries. A click on a design changes everything
-//! below it, so that the cuts of all members are in the page, packed; of a front that is too
-//! large for that, some members have them and the page says so.
+//! Texts and tables are in the page itself; the figures are drawn by the script of the plotly crate
+//! from numbers embedded in the page. A click on a design updates everything below it, so the page
+//! contains the packed cuts of all members. If the front is too large for that, only some members
+//! have them and the page says so.
 
 mod pack;
 mod payload;
@@ -32,16 +32,16 @@ pub enum PageError {
     Write(#[from] std::io::Error),
 }
 
-/// What a page is about.
+/// The content of a page.
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
     /// The run.
     pub run: &'a Run,
     /// Its scenario as written.
     pub scenario_toml: Option<&'a str>,
-    /// Computes maps and series; without it there are none.
+    /// Computes maps and series; without it the page has none.
     pub evaluator: Option<&'a Evaluator>,
-    /// Designs beside the front, with their objectives.
+    /// Designs compared with the front, with their objectives.
     pub baselines: &'a [Baseline],
     /// The same designs by name.
     pub beside: &'a [(String, Design)],
@@ -49,14 +49,14 @@ pub struct Page<'a> {
     pub fronts: &'a [NamedFront],
 }
 
-/// Bytes of a page that the cuts of the members may take: with the script for the figures (4.7 MB)
-/// it stays under 6 MB.
+/// Maximum bytes for the cuts of the members: with the script for the figures (4.7 MB) the page
+/// stays below 6 MB.
 const CUTS_BYTES: usize = 900_000;
 
-/// Most members whose cuts are computed: more take minutes.
+/// Maximum number of members whose cuts are computed: more would take minutes.
 const MOST_CUTS: usize = 100;
 
-/// Most members in the table.
+/// Maximum number of members in the table.
 const MOST_ROWS: usize = 200;
 
 #[derive(Template)]
@@ -83,7 +83,7 @@ struct Html<'a> {
 /// Writes the page of a run. The same run gives the same bytes.
 ///
 /// # Errors
-/// When it cannot be written; a run with gaps gives a page that names them.
+/// If it cannot be written. A run with gaps gives a page that lists them.
 pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let places = members_with_cuts(page);
     let members = &page.run.front;
@@ -125,7 +125,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     Ok(html.write_into(&mut to)?)
 }
 
-/// The members whose cuts the page carries, by place: evenly over the front, and the chosen one.
+/// The members whose cuts are in the page, by position: evenly over the front, plus the chosen one.
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
     let Some(evaluator) = page.evaluator else {
@@ -153,18 +153,18 @@ fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     places
 }
 
-/// The content of the first script in a piece of HTML: of what plotly embeds that is plotly
-/// itself, and the second is MathJax, which the page does without.
+/// The content of the first script in a piece of HTML: in plotly's output that is plotly itself; the
+/// second is MathJax, which the page does not need.
 fn first_script(html: &str) -> &str {
     let after_tag = html.find('>').map_or(0, |end| end + 1);
     let script = &html[after_tag..];
     &script[..script.find("</script>").unwrap_or(script.len())]
 }
 
-/// JSON that may stand in a script element, whatever texts are in it.
+/// JSON that is safe in a script element, whatever texts it contains.
 fn safe_json(payload: &Payload) -> Result<String, PageError> {
     let json = serde_json::to_string(payload)?;
-    // Outside of texts JSON has no such character.
+    // This character occurs in JSON only within strings.
     Ok(json
         .replace('<', "\\u003c")
         .replace('>', "\\u003e")

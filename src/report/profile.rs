@@ -1,5 +1,5 @@
-//! What the figures below the front show of one design: its cuts through space and time, and
-//! the distribution of PDOP.
+//! The data of one design for the figures below the front: its cuts through space and time, and the
+//! distribution of PDOP.
 
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -16,22 +16,22 @@ pub struct Profile {
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, over the instants.
     pub points: Vec<PointMetrics>,
-    /// Quantiles of PDOP over all solved samples; empty when there is none.
+    /// Quantiles of PDOP over all solved samples; empty if there are none.
     pub pdop: Vec<Quantile>,
-    /// The tail of PDOP; `None` when no sample is solved.
+    /// The tail of PDOP; `None` if no sample is solved.
     pub tail: Option<Tail>,
 }
 
 /// One step of an empirical distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Quantile {
-    /// Share of the samples at or below the value.
+    /// Fraction of the samples at or below the value.
     pub level: f64,
     /// The value.
     pub value: f64,
 }
 
-/// The worst share of PDOP.
+/// The tail of PDOP.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tail {
     /// α.
@@ -46,7 +46,7 @@ impl Profile {
     /// Evaluates one design.
     ///
     /// # Errors
-    /// When a satellite of it cannot be propagated.
+    /// If one of its satellites cannot be propagated.
     pub fn new(evaluator: &Evaluator, design: &Design) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
         let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
@@ -78,8 +78,8 @@ impl Profile {
     }
 }
 
-/// The levels of a distribution that is drawn: every half percent, and ten per power of ten of
-/// the worst share down to 1e-5.
+/// The levels of a drawn distribution: every half percent, and ten per decade of the tail down to
+/// 1e-5.
 #[must_use]
 pub fn drawn_levels() -> Vec<f64> {
     let even = (0..=190).map(|n| f64::from(n) / 200.0);
@@ -87,8 +87,8 @@ pub fn drawn_levels() -> Vec<f64> {
     even.chain(tail).chain([1.0]).collect()
 }
 
-/// The quantiles of a rising sample at the drawn levels: the first value whose share, its own
-/// weight included, reaches the level.
+/// The quantiles of a sorted sample at the drawn levels: the first value whose cumulative weight,
+/// including its own, reaches the level.
 #[must_use]
 pub fn quantiles(rising: &[Weighted]) -> Vec<Quantile> {
     let total: f64 = rising.iter().map(|x| x.weight).sum();
@@ -98,7 +98,7 @@ pub fn quantiles(rising: &[Weighted]) -> Vec<Quantile> {
     };
     let mut below = current.weight;
     let mut quantile = |level: f64| {
-        // A share that is whole up to rounding counts as reached.
+        // A fraction within rounding of the level counts as reached.
         while below < level * total * (1.0 - 1e-12) {
             let Some(next) = samples.next() else { break };
             current = next;
@@ -112,7 +112,7 @@ pub fn quantiles(rising: &[Weighted]) -> Vec<Quantile> {
     drawn_levels().into_iter().map(&mut quantile).collect()
 }
 
-/// The quantiles of values that count the same.
+/// The quantiles of equally weighted values.
 #[must_use]
 pub fn quantiles_of(values: impl Iterator<Item = f64>) -> Vec<Quantile> {
     let mut rising: Vec<_> = values

@@ -1,4 +1,4 @@
-//! The paper's study repeated, as text, Markdown and CSV.
+//! The reproduction of the paper as text, Markdown and CSV.
 
 mod files;
 
@@ -12,7 +12,7 @@ use crate::study::paper::{Expected, Reproduction, Statement, Verdict};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// What `reproduce` prints.
+/// The output of `reproduce`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReproduceResult {
     /// The study.
@@ -21,7 +21,7 @@ pub struct ReproduceResult {
     pub version: &'static str,
     /// Seed of the searches.
     pub seed: u64,
-    /// What came out.
+    /// The reproduced study.
     #[serde(flatten)]
     pub study: Reproduction,
 }
@@ -38,7 +38,7 @@ impl ReproduceResult {
         }
     }
 
-    /// Lines with each verdict, in the order of [`Verdict::ALL`].
+    /// Number of statements with each verdict, in the order of [`Verdict::ALL`].
     #[must_use]
     pub fn counts(&self) -> Vec<(Verdict, usize)> {
         let count = |verdict: &Verdict| {
@@ -69,15 +69,15 @@ fn rows_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("row", LEFT),
         ("design as printed", LEFT),
-        ("N paper", RIGHT),
+        ("mean visible,\npaper", RIGHT),
         ("ours", RIGHT),
         ("%", RIGHT),
-        ("PDOP paper", RIGHT),
+        ("mean PDOP,\npaper", RIGHT),
         ("ours", RIGHT),
         ("%", RIGHT),
-        ("i that fits N (deg)", RIGHT),
-        ("N there", RIGHT),
-        ("PDOP there", RIGHT),
+        ("fitting i\n(deg)", RIGHT),
+        ("mean visible\nat that i", RIGHT),
+        ("mean PDOP\nat that i", RIGHT),
         ("%", RIGHT),
     ]);
     for row in &study.rows {
@@ -101,26 +101,29 @@ fn rows_table(study: &Reproduction) -> Table {
 }
 
 fn mask_table(study: &Reproduction) -> Table {
-    let mut table = Table::new(&[("row", LEFT), ("mask that its N asks for (deg)", RIGHT)]);
+    let mut table = Table::new(&[
+        ("row", LEFT),
+        ("mask implied by its mean visible (deg)", RIGHT),
+    ]);
     for row in &study.mask_fit.rows {
         table.row([row.row.clone(), number(row.mask_deg, 2)]);
     }
     table
 }
 
-/// Rows of Table II that the sensitivity is shown for; the files hold all of them.
+/// Rows of Table II for which the sensitivity is shown; the files have all of them.
 const SHOWN_ROWS: [&str; 2] = ["proposed-2", "polar-2"];
 
 fn sensitivity_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("assumption", LEFT),
-        ("N proposed-2", RIGHT),
+        ("mean visible,\nproposed-2", RIGHT),
         ("change", RIGHT),
-        ("PDOP", RIGHT),
+        ("mean PDOP", RIGHT),
         ("change", RIGHT),
-        ("N polar-2", RIGHT),
+        ("mean visible,\npolar-2", RIGHT),
         ("change", RIGHT),
-        ("PDOP", RIGHT),
+        ("mean PDOP", RIGHT),
         ("change", RIGHT),
     ]);
     let indices = SHOWN_ROWS.map(|name| study.rows.iter().position(|row| row.name == name));
@@ -149,12 +152,12 @@ fn sensitivity_table(study: &Reproduction) -> Table {
 fn searches_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("search", LEFT),
-        ("of what", LEFT),
+        ("space, objectives and algorithm", LEFT),
         ("designs", RIGHT),
         ("pick", LEFT),
-        ("N", RIGHT),
+        ("mean visible", RIGHT),
         ("mean PDOP", RIGHT),
-        ("max PDOP", RIGHT),
+        ("maximum\nPDOP", RIGHT),
         ("J_pos", RIGHT),
         ("J_cost", RIGHT),
     ]);
@@ -201,13 +204,13 @@ fn round(value: f64) -> String {
 fn lines_table(study: &Reproduction) -> Table {
     let mut table = Table::new(&[
         ("verdict", LEFT),
-        ("where", LEFT),
+        ("place in the paper", LEFT),
         ("statement", LEFT),
         ("paper", RIGHT),
         ("ours", RIGHT),
         ("unit", LEFT),
-        ("assumption under which it holds", LEFT),
-        ("ours there", RIGHT),
+        ("assumption under which it is met", LEFT),
+        ("ours under it", RIGHT),
     ]);
     for line in &study.lines {
         table.row([
@@ -224,7 +227,7 @@ fn lines_table(study: &Reproduction) -> Table {
     table
 }
 
-/// What the tables show, in sentences that are computed from them.
+/// Conclusions, computed from the tables.
 fn notes(result: &ReproduceResult) -> Vec<String> {
     let study = &result.study;
     let fit = &study.mask_fit;
@@ -232,7 +235,7 @@ fn notes(result: &ReproduceResult) -> Vec<String> {
     if let Some(median) = fit.median_deg {
         notes.push(format!(
             "The paper states no elevation mask. Fitted row by row, its visibility implies {median:.2}° (median); \
-             {} of {} rows agree with that within 0.1°, and the scenario has {}°.",
+             {} of {} rows agree with this to 0.1°. The scenario uses {}°.",
             fit.agreeing,
             fit.rows.len(),
             study.mask_deg
@@ -241,22 +244,22 @@ fn notes(result: &ReproduceResult) -> Vec<String> {
     let size = &study.cost_of_size;
     if let [Some(small), Some(large)] = size.j_cost {
         notes.push(format!(
-            "J_cost = T/N is one over the visible share: from {} to {} satellites it goes from {small:.4} to \
-             {large:.4} ({:+.3} %). Under the paper's two objectives satellites are free, so the front lies \
-             where there are most of them; minimise satellites, planes or launch-cost to make them count.",
+            "J_cost = satellites / mean visible is one over the fraction of satellites in view: from {} to {} satellites \
+             it goes from {small:.4} to {large:.4} ({:+.3} %). Under the paper's two objectives satellites are free, \
+             so the front is where there are most of them; minimise satellites, planes or launch-cost to make them count.",
             size.satellites[0],
             size.satellites[1],
             100.0 * (large / small - 1.0)
         ));
     }
     notes.push(
-        "Step (3) of the paper's algorithm sorts the offspring; the merged population is sorted here, as in \
-         its equation (19) and in Deb et al. (2002)."
+        "Step (3) of the paper's algorithm sorts the offspring; here the merged population is sorted, as in \
+         the paper's equation (19) and in Deb et al. (2002)."
             .to_owned(),
     );
     notes.push(
-        "Table II gives only the product P x S, no phasing and no pattern: rows are read as 13 x 15, 13 x 14, \
-         14 x 15 and 13 x 13, F = 1, the polar and Iridium-like ones as star patterns."
+        "Table II gives only the product P x S, without phasing or pattern. Rows are read as 13 x 15, 13 x 14, \
+         14 x 15 and 13 x 13 with F = 1, the polar and Iridium-like ones as star patterns."
             .to_owned(),
     );
     notes
@@ -279,18 +282,18 @@ type ReportSection = (&'static str, &'static str, fn(&Reproduction) -> Table);
 
 const SECTIONS: [ReportSection; 5] = [
     (
-        "Statements, judged",
-        "met: within the tolerance under the scenario; met-under-assumption: with the one change that is named, of those below; fitted: it holds, but the assumption was found from it or from what it follows from; input: copied from the paper; not-met: under no assumption that was tried; unconfirmed: not computed. Only the first two are evidence.",
+        "Statements and verdicts",
+        "met: within the tolerance under the scenario; met-under-assumption: within the tolerance with the one change named, taken from the list under Sensitivity or the fitting inclination; fitted: within the tolerance, but the assumption was derived from the statement itself or from what it follows from; input: copied from the paper; not-met: under none of the assumptions tried; unconfirmed: not computed. Only the first two are evidence.",
         lines_table,
     ),
     (
         "Table II",
-        "As printed, and at the inclination nearest to the printed one that gives the paper's N. Differences are ours less the paper's.",
+        "As printed, and at the fitting i: the inclination nearest to the printed one that gives the paper's mean visible. Differences are ours minus the paper's.",
         rows_table,
     ),
     (
         "The mask",
-        "One-dimensional fit to each row at its printed inclination; a row whose inclination is misprinted stands out.",
+        "The mask is fitted to each row at its printed inclination; rows with a misprinted inclination stand out.",
         mask_table,
     ),
     (
@@ -300,7 +303,7 @@ const SECTIONS: [ReportSection; 5] = [
     ),
     (
         "Searches",
-        "With the paper's budget; the pick is the fuzzy decision over each set.",
+        "With the paper's budget; the pick is the fuzzy pick of each set.",
         searches_table,
     ),
 ];
@@ -309,7 +312,7 @@ const SECTIONS: [ReportSection; 5] = [
 #[must_use]
 pub fn reproduction_text(result: &ReproduceResult) -> String {
     let mut text = format!(
-        "The paper's study under scenario {}, seed {}, navwalker {}\n{}\n",
+        "Reproduction of the paper: scenario {}, seed {}, navwalker {}\n{}\n",
         result.scenario.name,
         result.seed,
         result.version,

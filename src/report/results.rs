@@ -13,14 +13,14 @@ use crate::search::{Constraint, DesignProblem, Goals, Quantity};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// What `evaluate` prints.
+/// The output of `evaluate`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EvaluateResult {
     /// The design.
     pub design: DesignSummary,
     /// Its metrics.
     pub metrics: Metrics,
-    /// All dilutions of precision, when they were asked for.
+    /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
     /// The constraints of the scenario, and whether the design keeps them.
@@ -85,27 +85,27 @@ impl EvaluateResult {
     }
 }
 
-/// A constellation that comes from files.
+/// A constellation read from files.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ConstellationSummary {
-    /// Name of its file or directory, without the way to it.
+    /// Name of its file or directory, without the path.
     pub name: String,
     /// The format of its files.
     pub format: String,
-    /// What they hold.
+    /// Their content.
     pub content: String,
     /// Number of satellites.
     pub satellites: usize,
 }
 
-/// What `evaluate --constellation` prints.
+/// The output of `evaluate --constellation`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConstellationResult {
     /// The constellation.
     pub constellation: ConstellationSummary,
     /// Its metrics.
     pub metrics: Metrics,
-    /// All dilutions of precision, when they were asked for.
+    /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
     /// The study.
@@ -115,7 +115,7 @@ pub struct ConstellationResult {
 }
 
 impl OptimizeResult {
-    /// The result of a search as it stands, the members of its front evaluated once more.
+    /// The current result of a search, with the members of its front evaluated again.
     #[must_use]
     pub fn new(
         problem: &DesignProblem<'_>,
@@ -164,7 +164,7 @@ impl OptimizeResult {
         }
     }
 
-    /// Holds the front against a sweep of the same problem.
+    /// Compares the front with a sweep of the same problem.
     pub fn certify(&mut self, sweep: &Self, objectives: &[Quantity]) {
         let points = |result: &Self| -> Vec<Vec<f64>> {
             let point = |member: &FrontMember| {
@@ -224,7 +224,7 @@ fn front_members(
     individuals: &[Individual],
     points: &[&[f64]],
 ) -> Vec<FrontMember> {
-    // An empty front has no memberships; every other one does.
+    // Every front but an empty one has memberships.
     let Ok(memberships) = fuzzy(points) else {
         return Vec::new();
     };

@@ -18,7 +18,7 @@ use std::io;
 pub struct SeedRun {
     /// Its seed.
     pub seed: u64,
-    /// Volume that its front dominates, at the reference point that all seeds share.
+    /// Hypervolume of its front, at the reference point common to all seeds.
     pub hypervolume: Option<f64>,
     /// The best value of a single objective; `None` with several.
     pub best: Option<f64>,
@@ -26,7 +26,7 @@ pub struct SeedRun {
     pub evaluations: u64,
     /// Members of its front.
     pub front_size: usize,
-    /// Pick of the fuzzy decision.
+    /// The fuzzy pick.
     pub pick: Option<String>,
 }
 
@@ -68,11 +68,11 @@ pub struct JointMember {
 pub struct Spread {
     /// Arithmetic mean.
     pub mean: f64,
-    /// Least.
+    /// Minimum.
     pub min: f64,
-    /// Greatest.
+    /// Maximum.
     pub max: f64,
-    /// Standard deviation of the sample, by n - 1; 0 for one seed.
+    /// Sample standard deviation (n - 1); 0 for one seed.
     pub std_dev: f64,
 }
 
@@ -90,8 +90,8 @@ impl Spread {
     }
 }
 
-/// What `optimize --seeds` prints: the result of the first seed, which nobody picked for being the
-/// best, and what all of them reached.
+/// The output of `optimize --seeds`: the result of the first seed, which is not selected for being
+/// the best, and the summary of all.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeedsResult {
     /// The result of the first seed.
@@ -108,12 +108,11 @@ pub struct SeedsResult {
 }
 
 impl SeedsResult {
-    /// The result of searches that differ in their seed alone; `None` without any. A sweep certifies
+    /// The result of searches that differ only in their seed; `None` without any. A sweep certifies
     /// the first of them.
     ///
-    /// All hypervolumes are at one reference point: that of the scenario if the front of every seed
-    /// has a member that dominates it, else, per objective, the worst of the points that the seeds
-    /// chose.
+    /// All hypervolumes are at one reference point: that of the scenario if a member of every seed's
+    /// front dominates it, otherwise the worst, in each objective, of the points chosen by the seeds.
     #[must_use]
     pub fn new(
         mut results: Vec<OptimizeResult>,
@@ -221,13 +220,13 @@ impl SeedsResult {
         } = spread;
         let [mean, min, max, std_dev] = [mean, min, max, std_dev].map(shown::significant);
         format!(
-            "{what} over {} seeds: mean {mean}, least {min}, greatest {max}, standard deviation \
+            "{what} over {} seeds: mean {mean}, minimum {min}, maximum {max}, standard deviation \
              {std_dev}\n",
             self.seeds.len()
         )
     }
 
-    /// The joint front, one member a row: the seed, then the columns of a front.
+    /// The joint front, one member per row: the seed, then the columns of a front.
     ///
     /// # Errors
     /// Never for a table in memory.
@@ -242,7 +241,7 @@ impl SeedsResult {
             .collect())
     }
 
-    /// The seeds, one a row.
+    /// The seeds, one per row.
     ///
     /// # Errors
     /// Never for a table in memory.
@@ -479,7 +478,7 @@ mod tests {
         assert_eq!(seeds.best_spread.unwrap().mean, 2.25);
         let told = &seeds.first.search.diagnostics.last().unwrap().message;
         assert!(
-            told.contains("the best value of max-pdop spreads by 15.71 %"),
+            told.contains("the standard deviation of the best value of max-pdop is 15.71 %"),
             "{told}"
         );
         assert!(

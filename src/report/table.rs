@@ -1,8 +1,8 @@
-//! One table, several dialects.
+//! One table in several notations.
 
 use std::fmt::Write;
 
-/// On which side the cells of a column stand.
+/// The side to which the cells of a column are aligned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// Words.
@@ -11,7 +11,8 @@ pub enum Align {
     Right,
 }
 
-/// A table of text cells, with a heading (and its unit) for each column.
+/// A table of text cells, with a heading (and its unit) for each column; a heading may have several
+/// lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     columns: Vec<(String, Align)>,
@@ -19,7 +20,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// An empty table; headings carry their units.
+    /// An empty table; headings include their units.
     #[must_use]
     pub fn new(columns: &[(&str, Align)]) -> Self {
         let columns = columns
@@ -48,10 +49,8 @@ impl Table {
             .iter()
             .enumerate()
             .map(|(c, (name, _))| {
-                self.rows
-                    .iter()
-                    .map(|row| length(&row[c]))
-                    .fold(length(name), usize::max)
+                let cells = self.rows.iter().map(|row| row[c].as_str());
+                cells.chain(name.lines()).map(length).max().unwrap_or(0)
             })
             .collect();
         let mut text = String::new();
@@ -72,13 +71,16 @@ impl Table {
             text.push_str(out.trim_end());
             text.push('\n');
         };
-        line(
-            &self
-                .columns
-                .iter()
-                .map(|(name, _)| name.as_str())
-                .collect::<Vec<_>>(),
-        );
+        let names = || self.columns.iter().map(|(name, _)| name);
+        let height = names().map(|name| name.lines().count()).max().unwrap_or(0);
+        for above in (0..height.max(1)).rev() {
+            // Headings end on the same line.
+            line(
+                &names()
+                    .map(|name| name.lines().rev().nth(above).unwrap_or(""))
+                    .collect::<Vec<_>>(),
+            );
+        }
         for row in &self.rows {
             line(&row.iter().map(String::as_str).collect::<Vec<_>>());
         }
@@ -90,7 +92,8 @@ impl Table {
     pub fn to_markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let escape = |cell: &String| cell.replace('|', "\\|");
-        let mut text = line(self.columns.iter().map(|(name, _)| escape(name)).collect());
+        let heading = |(name, _): &(String, Align)| escape(&name.replace('\n', " "));
+        let mut text = line(self.columns.iter().map(heading).collect());
         let rule = |(_, align): &(String, Align)| match align {
             Align::Left => "---".to_owned(),
             Align::Right => "---:".to_owned(),
@@ -119,6 +122,21 @@ mod tests {
     fn text_is_aligned() {
         let expected = "name          h (km)\nshort            925\na|longer one  1000.5\nN̄\n";
         assert_eq!(table().to_text(), expected);
+    }
+
+    #[test]
+    fn a_heading_may_have_several_lines() {
+        let mut table = Table::new(&[("design", Align::Left), ("mean\nvisible", Align::Right)]);
+        table.row(["a".to_owned(), "7.84".to_owned()]);
+        assert_eq!(
+            table.to_text(),
+            "           mean\ndesign  visible\na          7.84\n"
+        );
+        assert!(
+            table
+                .to_markdown()
+                .starts_with("| design | mean visible |\n")
+        );
     }
 
     #[test]

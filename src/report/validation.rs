@@ -13,8 +13,8 @@ use quick_xml::escape::escape;
 use serde::Serialize;
 use std::fmt::Write;
 
-/// Digits that tell a number of any size apart: four significant ones, plainly written; `none` for
-/// what is no number.
+/// Four significant digits, in scientific notation only for very large and very small values; `none`
+/// if the value is not finite.
 pub(super) fn digits(value: f64) -> String {
     if !value.is_finite() {
         return "none".to_owned();
@@ -35,10 +35,10 @@ fn budget_table(budget: &[BudgetLine]) -> Table {
     let right = Align::Right;
     let mut table = Table::new(&[
         ("case", Align::Left),
-        ("rms R", right),
+        ("RMS R", right),
         ("I", right),
         ("C (km)", right),
-        ("max R", right),
+        ("maximum R", right),
         ("I", right),
         ("C (km)", right),
         ("growth R", right),
@@ -80,7 +80,7 @@ fn check_table(checks: &[Check]) -> Table {
     table
 }
 
-/// What every number rests on, in one line.
+/// The conventions behind every number, in one line.
 fn conventions(basis: &Basis) -> String {
     let judges: Vec<String> = basis
         .judges
@@ -113,7 +113,7 @@ fn distribution_table(distributions: &[&Distribution]) -> Table {
         ("median", right),
         ("95 %", right),
         ("99 %", right),
-        ("max", right),
+        ("maximum", right),
         ("unit", Align::Left),
         ("worst", Align::Left),
     ]);
@@ -132,7 +132,7 @@ fn distribution_table(distributions: &[&Distribution]) -> Table {
     table
 }
 
-/// Most satellites of a comparison that a table lists; JSON has them all.
+/// Maximum number of satellites of a comparison in a table; JSON has all of them.
 const LISTED: usize = 12;
 
 /// The satellites that differ most.
@@ -148,7 +148,7 @@ fn satellite_table(comparison: &FileComparison) -> Table {
         ("drift R", right),
         ("I", right),
         ("C (km/day)", right),
-        ("max (km)", right),
+        ("maximum (km)", right),
     ]);
     let mut satellites: Vec<_> = comparison.satellites.iter().collect();
     satellites.sort_by(|a, b| b.max_km.total_cmp(&a.max_km));
@@ -168,14 +168,14 @@ fn satellite_table(comparison: &FileComparison) -> Table {
     table
 }
 
-/// How a comparison went, in sentences.
+/// The outcome of a comparison, in sentences.
 fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
     let mut lines = vec![format!(
         "{} satellites matched by {}{}",
         comparison.satellites.len(),
         comparison.matched_by,
         if comparison.satellites.len() > LISTED {
-            format!("; the {LISTED} that differ most are listed, JSON has all")
+            format!("; the {LISTED} with the largest differences are listed, JSON has all")
         } else {
             String::new()
         }
@@ -198,22 +198,22 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
         Some(found) => {
             let left = match found.before_km {
                 Some(before_km) => format!(
-                    "it leaves {} of {} km rms",
+                    "with it {} of {} km rms remain",
                     digits(found.after_km),
                     digits(before_km)
                 ),
                 None => format!(
-                    "with it every object has a slot, {} km rms away",
+                    "with it every object matches a slot, {} km rms away",
                     digits(found.after_km)
                 ),
             };
             format!("explained by {}: {}; {left}", found.convention, found.meaning)
         }
         None if comparison.agrees => {
-            "the states are those of the design, to a decimetre".to_owned()
+            "the states agree with the design to a decimetre".to_owned()
         }
         None if comparison.matched_agree() => {
-            "the objects that matched are the design's own, to a decimetre; the rest is missing or another design"
+            "the matched objects agree with the design to a decimetre; the others are missing or belong to another design"
                 .to_owned()
         }
         None => {
@@ -249,9 +249,9 @@ fn sweep_table(sweep: &[SweepCell]) -> Table {
         ("C", right),
         (SWEPT[1].1, right),
         ("I", right),
-        ("C (km rms)", right),
+        ("C (km RMS)", right),
         ("Keplerian mean motion (km/day)", right),
-        ("of gate", right),
+        ("fraction of gate", right),
     ]);
     for cell in sweep {
         let case = |name: &str| cell.budget.iter().find(|line| line.case == name);
@@ -290,8 +290,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         let _ = writeln!(text, "note: {note}");
     }
     if !result.findings.budget.is_empty() {
-        text +=
-            "\nError budget: second minus first, radial, in-track and cross-track of the first\n";
+        text += "\nError budget: second minus first, in radial, in-track and cross-track axes of the first\n";
         text += &budget_table(&result.findings.budget).to_text();
         for line in &result.findings.budget {
             let worst = &line.worst;
@@ -303,7 +302,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
         }
     }
     if !result.findings.sweep.is_empty() {
-        text += "\nOver inclination and altitude, circular patterns; the cases are those of the budget\n";
+        text += "\nOver inclination and altitude, circular patterns; cases as in the budget\n";
         text += &sweep_table(&result.findings.sweep).to_text();
     }
     text += "\nChecks\n";
@@ -327,7 +326,7 @@ pub fn validation_text(result: &ValidateResult) -> String {
     text
 }
 
-/// Why the gates are where they are, each reason once, with the checks that it is for.
+/// The reason for each gate, once, with the checks it applies to.
 fn reasons(checks: &[Check]) -> Vec<String> {
     let mut seen: Vec<(&str, Vec<&str>)> = Vec::new();
     for check in checks {
@@ -379,18 +378,18 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         }
     }
     if !result.findings.sweep.is_empty() {
-        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; the cases are those of the budget, and the last column is the largest share of a gate.\n\n";
+        text += "\n## Over inclination and altitude\n\nCircular patterns of 12 satellites; cases as in the budget. The last column is the largest fraction of a gate.\n\n";
         text += &sweep_table(&result.findings.sweep).to_markdown();
     }
     text += "\n## Checks\n\nA check without a gate is reported for information (info) and counts neither as passed nor as failed.\n\n";
     text += &check_table(&result.findings.checks).to_markdown();
-    text += "\nReasons of the gates:\n\n";
+    text += "\nReasons for the gates:\n\n";
     for reason in reasons(&result.findings.checks) {
         let _ = writeln!(text, "- {reason}");
     }
     let residuals = distributions(result);
     if !residuals.is_empty() {
-        text += "\n## Residuals\n\nSizes of the residuals and the inputs of the largest.\n\n";
+        text += "\n## Residuals\n\nMagnitudes, and the input that gives the largest.\n\n";
         text += &distribution_table(&residuals).to_markdown();
     }
     for comparison in &result.findings.files {
@@ -404,7 +403,7 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
     text
 }
 
-/// A check as a row of CSV; JSON has the same fields, without the verdict in a word.
+/// A check as a row of CSV; JSON has the same fields except the verdict.
 #[derive(Serialize)]
 struct CheckRecord<'a> {
     name: &'a str,
@@ -434,7 +433,7 @@ impl<'a> CheckRecord<'a> {
     }
 }
 
-/// The checks of a validation, one a row.
+/// The checks of a validation, one per row.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -443,8 +442,8 @@ pub fn checks_csv(checks: &[Check]) -> std::io::Result<String> {
     super::records_csv(&records)
 }
 
-/// The checks as `JUnit` XML: a test case each, with the value as its output. A check without a gate
-/// is a skipped test, which no reader counts as passed.
+/// The checks as `JUnit` XML: one test case each, with the value as its output. A check without a
+/// gate is a skipped test, which no reader counts as passed.
 #[must_use]
 pub fn checks_junit(checks: &[Check]) -> String {
     let tally = Tally::of(checks);

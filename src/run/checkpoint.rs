@@ -1,4 +1,4 @@
-//! The checkpoint of a run: two lines, what it is a checkpoint of and the state of the search.
+//! The checkpoint of a run in two lines: the identity of the run and the state of the search.
 
 use super::VERSION;
 use crate::optimize::Search;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-/// What a run is a run of: only the same continues or replaces it.
+/// The identity of a run; only a run with the same identity continues or replaces it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Hash of the scenario.
@@ -19,7 +19,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// The identity of a run of `scenario`, which has this hash.
+    /// The identity of a run of `scenario` with this hash.
     #[must_use]
     pub fn of(scenario: &Scenario, hash: String) -> Self {
         Self {
@@ -29,7 +29,7 @@ impl Identity {
         }
     }
 
-    /// The identity that a checkpoint states; its second line may be damaged.
+    /// The identity in a checkpoint, whose second line may be damaged.
     #[must_use]
     pub fn read(checkpoint: &str) -> Option<Self> {
         let header: CheckpointHeader = serde_json::from_str(checkpoint.lines().next()?).ok()?;
@@ -58,7 +58,7 @@ pub enum CheckpointError {
     /// The first line.
     #[error("unreadable header")]
     Header(#[source] serde_json::Error),
-    /// The second line is not the one that was written.
+    /// The checksum of the second line does not match.
     #[error("checksum mismatch")]
     Checksum,
     /// The second line.
@@ -82,7 +82,7 @@ pub fn write(identity: &Identity, search: &Search) -> serde_json::Result<String>
 /// Reads a checkpoint.
 ///
 /// # Errors
-/// When it is not whole.
+/// If it is not intact.
 pub fn read(bytes: &[u8]) -> Result<(Identity, Search), CheckpointError> {
     let text = str::from_utf8(bytes).map_err(CheckpointError::Text)?;
     let (header, state) = text.split_once('\n').ok_or(CheckpointError::Short)?;

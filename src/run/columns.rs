@@ -8,12 +8,12 @@ use serde_json::Value;
 /// The names of a struct's fields as they are serialised, in order.
 pub(crate) fn fields<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     let mut names: &'static [&'static str] = &[];
-    // A deserialiser that only listens for the names never yields a value.
+    // A deserialiser that only collects the names never yields a value.
     let _ = T::deserialize(Listener { names: &mut names });
     names
 }
 
-/// Hears which fields a struct asks for.
+/// Collects the fields that a struct requests.
 struct Listener<'a> {
     names: &'a mut &'static [&'static str],
 }
@@ -44,13 +44,13 @@ impl<'de> Deserializer<'de> for Listener<'_> {
 /// The values of the fields `names` of a struct, in that order, as the cells of a row.
 ///
 /// # Errors
-/// When the struct cannot be serialised.
+/// If the struct cannot be serialised.
 pub(crate) fn cells(row: &impl Serialize, names: &[&str]) -> serde_json::Result<Vec<String>> {
     let value = serde_json::to_value(row)?;
     Ok(names.iter().map(|name| cell(&value[*name])).collect())
 }
 
-/// The shortest digits that read back; empty for what has no value.
+/// The shortest digits that round-trip; empty for a missing value.
 fn cell(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
@@ -60,7 +60,7 @@ fn cell(value: &Value) -> String {
     }
 }
 
-/// The shortest digits that read back; empty for a metric without a value.
+/// The shortest digits that round-trip; empty for a metric without a value.
 pub(crate) fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(cells(&row, names).unwrap(), expected);
     }
 
-    /// What JSON has of a design, a table has too.
+    /// A table has the same fields of a design as JSON.
     #[test]
     fn every_field_of_json_is_a_column() {
         let design: crate::constellation::Design = "delta:55:182/13/1@925".parse().unwrap();

@@ -1,4 +1,4 @@
-//! The results that the files of a run hold, and that `--format json` prints.
+//! The results in the files of a run, as printed by `--format json`.
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
@@ -7,10 +7,10 @@ use crate::optimize::Record;
 use crate::search::Quantity;
 use serde::{Deserialize, Serialize};
 
-/// A design, spelled out.
+/// A design, field by field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignSummary {
-    /// Walker notation that reads back to the design.
+    /// Walker notation of the design.
     pub notation: String,
     /// `delta`, `star` or `lattice`.
     pub pattern: String,
@@ -50,19 +50,19 @@ impl From<&Design> for DesignSummary {
 }
 
 impl DesignSummary {
-    /// The design of the notation; `None` when the notation is not one.
+    /// The design of the notation; `None` if the notation is invalid.
     #[must_use]
     pub fn design(&self) -> Option<Design> {
         self.notation.parse().ok()
     }
 }
 
-/// Which study a result belongs to.
+/// The study of a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ScenarioStamp {
     /// Its name.
     pub name: String,
-    /// What [`Scenario::hash`](crate::scenario::Scenario::hash) gives.
+    /// Its [`Scenario::hash`](crate::scenario::Scenario::hash).
     pub hash: String,
 }
 
@@ -75,18 +75,18 @@ pub struct FrontMember {
     pub design: DesignSummary,
     /// Its metrics.
     pub metrics: Metrics,
-    /// Value of each objective by name, in its own direction.
+    /// Value of each objective by name, in its original sense.
     #[serde(with = "by_name")]
     pub objectives: Vec<(String, f64)>,
-    /// Value of each quantity under a constraint that is no objective, by name; `None` where it
-    /// has none.
+    /// Value of each constrained quantity that is not an objective, by name; `None` if it has no
+    /// value.
     #[serde(default, with = "by_name", skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<(String, Option<f64>)>,
-    /// Fuzzy membership: the least over the objectives.
+    /// Fuzzy membership: the worst case over the objectives.
     pub membership: f64,
     /// Fuzzy membership: the normalised sum over the objectives.
     pub membership_sum: f64,
-    /// Whether this is the pick of the fuzzy decision.
+    /// Whether this is the fuzzy pick.
     pub chosen: bool,
 }
 
@@ -178,7 +178,7 @@ impl Hypervolume {
     }
 }
 
-/// How a search went: what a front comes with.
+/// The record of a search that accompanies its front.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchSummary {
     /// Designs evaluated.
@@ -189,12 +189,12 @@ pub struct SearchSummary {
     pub seed: u64,
     /// Name of the algorithm.
     pub algorithm: String,
-    /// Generations done, and asked for.
+    /// Generations done, and in total.
     pub generations: [u64; 2],
-    /// What the program notices.
+    /// Diagnostics.
     #[serde(default)]
     pub diagnostics: Vec<Diagnostic>,
-    /// What a sweep of the same problem says of the front, when it was asked for.
+    /// Comparison with a sweep of the same problem, if requested.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub certificate: Option<Certificate>,
     /// The study.
@@ -203,12 +203,12 @@ pub struct SearchSummary {
     pub version: String,
 }
 
-/// What `optimize` prints, and what `front.json` holds.
+/// The output of `optimize` and the content of `front.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OptimizeResult {
     /// The front, by the first objective.
     pub front: Vec<FrontMember>,
-    /// How the search went.
+    /// The record of the search.
     #[serde(flatten)]
     pub search: SearchSummary,
     /// One record per generation; goes to the history files.
@@ -221,34 +221,34 @@ pub struct OptimizeResult {
 }
 
 impl OptimizeResult {
-    /// The pick of the fuzzy decision.
+    /// The fuzzy pick.
     #[must_use]
     pub fn chosen(&self) -> Option<&FrontMember> {
         self.front.iter().find(|member| member.chosen)
     }
 }
 
-/// What a sweep says of a front.
+/// Comparison of a front with that of a sweep.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Certificate {
     /// Designs that the sweep evaluated.
     pub evaluations: u64,
-    /// Members of the front of the grid.
+    /// Members of the sweep's front, which is exact on its grid.
     pub grid_members: usize,
-    /// Hypervolume of the front of the grid, at the reference point of the certified front.
+    /// Hypervolume of the sweep's front, at the reference point of the certified front.
     pub grid_hypervolume: Option<f64>,
     /// Hypervolume of the certified front.
     pub found_hypervolume: Option<f64>,
-    /// Members of the grid's front that the certified front dominates: it holds designs between
-    /// the points of the grid.
+    /// Members of the sweep's front that the certified front dominates, with designs between the
+    /// points of the grid.
     pub grid_members_dominated: usize,
-    /// Distance of each front member to the front of the grid, in the order of the front.
+    /// Distance of each front member to the sweep's front, in the order of the front.
     pub distances: Vec<f64>,
-    /// The members of the grid's front that no front member comes near to, if any.
+    /// The members of the sweep's front with no front member close to them, if any.
     pub missed: Option<Missed>,
 }
 
-/// A part of the grid's front that a search did not find, by the ranges of its designs.
+/// A part of the sweep's front that a search did not find, given by the ranges of its designs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Missed {
     /// Members that were not found.
@@ -263,7 +263,7 @@ pub struct Missed {
     pub altitude_km: [f64; 2],
 }
 
-/// Something worth knowing about a result, in plain words.
+/// A diagnostic message about a result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// Stable name, for programs.

@@ -7,8 +7,8 @@ use crate::optimize::Record;
 use csv::Writer;
 use std::io;
 
-/// The front of a search, one member a row: its fields, those of its design and metrics among
-/// them, and the objectives and quantities under constraints that are neither.
+/// The front of a search, one member per row, including the fields of its design and metrics and the
+/// objectives and constrained quantities that are in neither.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -50,7 +50,7 @@ fn column(name: &str) -> String {
     name.replace('-', "_")
 }
 
-/// Objectives and quantities under constraints that are no columns of the design or the metrics.
+/// Objectives and constrained quantities that are not columns of the design or the metrics.
 fn further_quantities(front: &[FrontMember]) -> Vec<String> {
     let columns = [fields::<DesignSummary>(), fields::<Metrics>()].concat();
     let first = front.first().into_iter();
@@ -64,7 +64,7 @@ fn further_quantities(front: &[FrontMember]) -> Vec<String> {
         .collect()
 }
 
-/// The generations of a search, one a row; `best_<objective>` as the optimiser minimises it.
+/// The generations of a search, one per row; `best_<objective>` as the optimiser minimises it.
 ///
 /// # Errors
 /// Never for a table in memory.

@@ -4,7 +4,7 @@ use super::{DesignSummary, Diagnostic, FrontMember, Hypervolume, ScenarioStamp, 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
 
-/// A member with this index and design that sees little.
+/// A member with this index and design and few visible satellites.
 pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
     let design: Design = notation.parse().unwrap();
     FrontMember {

@@ -58,8 +58,8 @@ fn what_can_be_read_is_kept_and_the_rest_is_named() {
         .collect();
     assert_eq!(notations, ["delta:45:225/15/1@1000", "no design"]);
     assert!(run.front[0].design.design().is_some() && run.front[1].design.design().is_none());
-    assert!(has_gap(&run, "1 of 4 front members cannot be read"));
-    assert!(has_gap(&run, "1 front members lack an objective"));
+    assert!(has_gap(&run, "1 of 4 designs of the front cannot be read"));
+    assert!(has_gap(&run, "1 designs of the front lack an objective"));
     assert!(has_gap(&run, "made by version 0.0.0"));
     assert_eq!(run.search, Some(testing::summary()));
     assert_eq!(run.chosen(), Some(0));
@@ -74,10 +74,10 @@ fn members_are_kept_when_the_rest_is_damaged() {
         ..files()
     });
     assert!(run.front.len() == 2 && run.search.is_none());
-    assert!(has_gap(&run, "front.json does not say how the search went"));
+    assert!(has_gap(&run, "front.json has no record of the search"));
 }
 
-/// What is written is read again, to the byte.
+/// Results round-trip to the byte.
 #[test]
 fn results_are_read_back_as_they_were_written() {
     let result = OptimizeResult {

@@ -1,4 +1,4 @@
-//! The result of a validation, which a run directory may hold beside the run.
+//! The result of a validation, which a run directory may contain as well.
 
 use super::{DesignSummary, ScenarioStamp, VERSION};
 use crate::constellation::Design;
@@ -7,7 +7,7 @@ use crate::orbit::Model;
 use crate::validate::{Findings, JUDGES, Judge};
 use serde::{Deserialize, Serialize};
 
-/// What `validate` prints.
+/// The output of `validate`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ValidateResult {
     /// The design.
@@ -17,19 +17,19 @@ pub struct ValidateResult {
     /// The checks, and the budget of sgp4.
     #[serde(flatten)]
     pub findings: Findings,
-    /// Whether every gate is met.
+    /// Whether every gate passed.
     pub passed: bool,
     /// The study.
     pub scenario: ScenarioStamp,
-    /// The targets, in the order in which they were asked for.
+    /// The targets, in the order given.
     pub against: Vec<String>,
-    /// What every number rests on.
+    /// The conventions behind every number.
     pub basis: Basis,
     /// Version of the program.
     pub version: String,
 }
 
-/// Constants and crates behind a validation. There is no random number in it, and no seed.
+/// Constants and crates behind a validation. It uses no random numbers and no seed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Basis {
     /// Gravitational parameter, km³/s².
@@ -40,7 +40,7 @@ pub struct Basis {
     pub j2: f64,
     /// Flattening of the ellipsoid.
     pub flattening: f64,
-    /// The crates whose word counts.
+    /// The crates that act as references.
     pub judges: Vec<Judge>,
 }
 

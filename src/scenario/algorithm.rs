@@ -1,4 +1,4 @@
-//! The strategies of the search, as a scenario names them.
+//! The strategies of the search, as named in a scenario.
 
 use crate::keyword::keywords;
 
@@ -11,7 +11,7 @@ keywords! {
         Mopso = "mopso",
         /// Uniform random sampling.
         Random = "random",
-        /// Every design of the lattice that the steps span.
+        /// Every design on the grid of steps.
         Exhaustive = "exhaustive",
     }
 }

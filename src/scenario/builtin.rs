@@ -1,4 +1,4 @@
-//! The scenarios that are built in.
+//! The built-in scenarios.
 
 use crate::keyword::UnknownKeyword;
 
@@ -20,7 +20,7 @@ pub fn builtin_names() -> Vec<&'static str> {
 /// The text of a built-in scenario.
 ///
 /// # Errors
-/// [`UnknownKeyword`] with the names that there are and the nearest of them.
+/// [`UnknownKeyword`] with the existing names and the nearest of them.
 pub fn builtin(name: &str) -> Result<&'static str, UnknownKeyword> {
     let known = BUILTINS.iter().find(|(known, _)| *known == name);
     known

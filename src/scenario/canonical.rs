@@ -10,8 +10,7 @@ use super::rule::Rule;
 use super::values::{Export, GnssSetup, Optimizer, PointsFile, Region, Scenario};
 
 impl Scenario {
-    /// The scenario as TOML with every key that it has, defaults included, in a fixed order and
-    /// spelling. It parses back to the same scenario.
+    /// The scenario as TOML with every key, including defaults, in a fixed order and spelling. It parses back to the same scenario.
     #[must_use]
     pub fn to_toml(&self) -> String {
         self.canonical(|_| true)
@@ -20,8 +19,8 @@ impl Scenario {
     /// Identifies what is computed: SHA-256, in hex, of [`Scenario::to_toml`] and of the SHA-256 of
     /// each file that the scenario names, whose `contents` are in the order of [`Scenario::files`].
     ///
-    /// Left out are what only names and labels (`name`, `[export]` and the paths of files) and
-    /// `optimizer.generations`, for a search that goes on is the same search.
+    /// Not included are names and labels (`name`, `[export]` and the paths of files), and
+    /// `optimizer.generations`, because a search that continues is the same search.
     #[must_use]
     pub fn hash(&self, contents: &[&[u8]]) -> String {
         let mut hash = Sha256::new_with_prefix(self.canonical(is_computed));

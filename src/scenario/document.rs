@@ -1,4 +1,4 @@
-//! The first stage: the document, that is keys and values as written, in a file and then in `--set`
+//! The first stage: the document, that is, keys and values as written in a file and then in `--set`
 //! arguments.
 
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ use super::source::Source;
 use super::values::{Grid, Objectives, PointsFile};
 use crate::keyword::nearest;
 
-/// The known keys that were given, the last one where several were.
+/// The known keys that were given; the last of several.
 pub(super) struct Document<'a> {
     file: Rc<Source<'a>>,
     entries: BTreeMap<KeyPath, Entry<'a>>,
@@ -29,15 +29,15 @@ struct Entry<'a> {
     value: Node<'a>,
 }
 
-/// Where a key is written, while it is being looked up.
+/// The position of a key, while it is being looked up.
 struct KeySite<'s, 'a> {
     source: &'s Rc<Source<'a>>,
     span: Range<usize>,
 }
 
 impl<'a> Document<'a> {
-    /// Reads a file. `None` where it is not TOML; unknown keys are left out, so that the rest can
-    /// still be checked.
+    /// Reads a file. `None` if it is not TOML; unknown keys are skipped, so that the rest can still be
+    /// checked.
     pub(super) fn read(label: &'a str, text: &'a str, report: &mut ProblemList) -> Option<Self> {
         let file = Rc::new(Source::file(label, text));
         let (table, errors) = DeTable::parse_recoverable(text);
@@ -110,7 +110,7 @@ impl<'a> Document<'a> {
         self.entries.insert(key, entry);
     }
 
-    /// Enters the `index`-th `--set` argument over what is there.
+    /// Applies the `index`-th `--set` argument.
     pub(super) fn override_with(
         &mut self,
         index: usize,
@@ -138,7 +138,7 @@ impl<'a> Document<'a> {
         self.enter(section, name, value, &site, report);
     }
 
-    /// Checks everything that was written, and adds what is wrong to `report`.
+    /// Checks everything that was written and adds problems to `report`.
     ///
     /// `None` only if something is wrong.
     pub(super) fn read_scenario(&self, report: &mut ProblemList) -> Option<Scenario> {
@@ -173,8 +173,8 @@ impl KeySite<'_, '_> {
     }
 }
 
-/// The keys of a file that a `--set` of another key replaces: the one or the other describes the
-/// points, and a reference point belongs to its list of objectives.
+/// The keys of a file that a `--set` of another key replaces: grid and points file exclude each other,
+/// and a reference point belongs to its list of objectives.
 fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
     let (grid, points) = (paths::<Grid>(), key!(PointsFile.points));
     if path == points {
@@ -188,7 +188,7 @@ fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
     }
 }
 
-/// A TOML value, or the text itself where it does not look like anything else.
+/// A TOML value, or the text itself if it does not look like one.
 fn value(text: &str) -> Result<Node<'_>, Fault> {
     match DeValue::parse(text) {
         Ok(value) => Ok(value),
@@ -205,7 +205,7 @@ fn find(section: &str, name: &str) -> Option<KeyPath> {
     paths.find(|path| path.section == section && path.name == name)
 }
 
-/// The fault of a key that is not there, with the key that was most likely meant: the same name in
+/// The problem of an unknown key, with the key that was most likely meant: the same name in
 /// another section, a similar name in this one, a similar name anywhere, or a similar section.
 fn unknown(section: &str, name: &str) -> Fault {
     let mut known = names(section);

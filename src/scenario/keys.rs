@@ -1,4 +1,4 @@
-//! What a key of a scenario file is, and the walk over all of them.
+//! The keys of a scenario file, and the walk over all of them.
 //!
 //! A key is declared once, as a field of a [`section!`](declare). Reading, suggestions for unknown
 //! keys, the template, the JSON schema, the documentation and the canonical form are walks over
@@ -50,9 +50,9 @@ pub(super) struct Key<R: Rule> {
     pub(super) unit: &'static str,
     /// What it accepts.
     pub(super) rule: R,
-    /// What holds when it is not given; an example where that follows other keys.
+    /// The default; an example if the default depends on other keys.
     pub(super) default: R::Value,
-    /// What the default follows, in words, where the `finish` of a section fills it in.
+    /// What the default depends on, in words, if the `finish` of a section fills it in.
     pub(super) follows: Option<&'static str>,
 }
 
@@ -93,7 +93,7 @@ impl<R: Rule> Key<R> {
 
 /// Fields of which each is a key, or a section of its own.
 pub(super) trait Section: Sized {
-    /// The section of a file in which its keys stand, empty at the top.
+    /// The section of its keys, empty at the top.
     const SECTION: &'static str;
 
     /// Visits every key in the order of the file, with its value in `values`, and gathers what the
@@ -101,7 +101,7 @@ pub(super) trait Section: Sized {
     fn walk(walk: &mut impl Walk, values: Option<&Self>) -> Self;
 }
 
-/// Something that is done with every key.
+/// An operation on every key.
 pub(super) trait Walk {
     /// Visits a key with its value, where there is one, and gives the value that it shall have.
     fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value;
@@ -113,7 +113,7 @@ pub(super) trait Walk {
     }
 }
 
-/// A key as those see it who need not know the type of its value.
+/// A key without the type of its value.
 pub(super) struct Listed {
     pub(super) path: KeyPath,
     pub(super) description: KeyDescription,
@@ -143,7 +143,7 @@ pub(super) fn paths<S: Section>() -> Vec<KeyPath> {
     list::<S>().iter().map(|key| key.path).collect()
 }
 
-/// Every key of a scenario in the order in which they are written.
+/// Every key of a scenario in the order of the file.
 pub(super) fn all() -> &'static [Listed] {
     static ALL: LazyLock<Vec<Listed>> = LazyLock::new(list::<Scenario>);
     &ALL
@@ -168,7 +168,7 @@ pub struct KeyDescription {
     pub follows: Option<&'static str>,
 }
 
-/// The sections in the order in which they are written.
+/// The sections in the order of the file.
 pub(super) fn sections() -> Vec<&'static str> {
     let mut sections: Vec<&'static str> = all().iter().map(|key| key.path.section).collect();
     sections.dedup();
@@ -182,7 +182,7 @@ pub(super) fn names(section: &str) -> Vec<&'static str> {
     keys.map(|key| key.path.name).collect()
 }
 
-/// Every key in the order in which they are written, described for a reader.
+/// Every key in the order of the file, described for a reader.
 #[must_use]
 pub fn describe_keys() -> Vec<KeyDescription> {
     all().iter().map(|key| key.description.clone()).collect()

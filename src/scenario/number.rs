@@ -1,7 +1,7 @@
-//! Numbers as they are written into a scenario file.
+//! Numbers as written to a scenario file.
 
-/// Whole numbers up to here are written without point or exponent; every one
-/// of them is exact in an `f64` and an integer of TOML.
+/// Integers up to this value are written without point or exponent; each is exact in an
+/// `f64` and in a TOML integer.
 const PLAIN_WHOLE: f64 = 1e15;
 
 /// The shortest TOML number that reads back as the same finite `f64`.
@@ -13,7 +13,7 @@ pub(super) fn toml_number(number: f64) -> String {
     }
 }
 
-/// A basic TOML string. The rules of text values let no control character in.
+/// A basic TOML string. The rules of text values exclude control characters.
 pub(super) fn toml_text(text: &str) -> String {
     let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
     format!("\"{escaped}\"")

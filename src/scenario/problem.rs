@@ -1,4 +1,4 @@
-//! What is wrong with a scenario, all of it at once.
+//! The problems of a scenario, all at once.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,22 +10,22 @@ use crate::search::ConstraintError;
 /// Characters of an unknown key repeated in a message.
 const LONGEST_KEY: usize = 60;
 
-/// Everything that is wrong with a scenario, in the order of the file and then of the `--set` arguments.
+/// All problems of a scenario, in the order of the file and then of the `--set` arguments.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problems(Vec<ScenarioProblem>);
 
-/// One thing that is wrong with a scenario.
+/// One problem of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ScenarioProblem {
     /// Where.
     pub place: Place,
-    /// The key as `section.key`; empty where the text is not even TOML.
+    /// The key as `section.key`; empty if the text is not TOML.
     pub key: String,
     /// What.
     pub fault: Fault,
 }
 
-/// What is wrong with a key or its value.
+/// A problem of a key or its value.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
@@ -35,13 +35,13 @@ pub enum Fault {
     /// The text is not TOML.
     #[error("not TOML: {message}")]
     Syntax {
-        /// What the TOML parser says.
+        /// The message of the TOML parser.
         message: String,
     },
     /// A `--set` argument without `=`.
     #[error("expected key.path=value")]
     NotAnAssignment,
-    /// There is no such key.
+    /// The key does not exist.
     #[error("unknown key{} (choices: {})", did_you_mean(.nearest.as_deref()), .known.join(", "))]
     UnknownKey {
         /// The path of the key that was most likely meant.
@@ -98,10 +98,10 @@ pub enum Fault {
         /// The other key.
         other: String,
     },
-    /// More of something than a run can hold.
+    /// More of something than a run allows.
     #[error("{count:.0} {what}, expected at most {most}")]
     TooMany {
-        /// What there is too much of.
+        /// What exceeds its limit.
         what: &'static str,
         /// How many there would be.
         count: f64,
@@ -116,7 +116,7 @@ pub enum Fault {
         /// Objectives.
         expected: usize,
     },
-    /// Two bounds of one quantity that leave nothing between them.
+    /// Two bounds of one quantity that exclude everything.
     #[error("{lower} and {upper} exclude every design")]
     Contradiction {
         /// The bound below, as written.
@@ -124,7 +124,7 @@ pub enum Fault {
         /// The bound above, as written.
         upper: String,
     },
-    /// Ellipses of which none stays above ground.
+    /// Ellipses that all go below the ground.
     #[error(
         "at {eccentricity} and {altitude_km} km the perigee height is {perigee_km:.1} km, and no other design of the search space is higher"
     )]
@@ -144,13 +144,13 @@ pub enum Fault {
         /// The highest number of planes.
         planes: u32,
     },
-    /// Values that are in range but of which nothing can be set up.
+    /// Values that are in range but cannot be set up.
     #[error("{reason}")]
     SetUp {
-        /// Why not.
+        /// The reason.
         reason: String,
     },
-    /// A grid of poles alone, of which each weighs nothing.
+    /// A grid of poles only, which all have zero weight.
     #[error("every point is a pole and has zero weight with \"cos-latitude\"")]
     Weightless,
 }
@@ -159,10 +159,10 @@ fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
 }
 
-/// Problems beyond this many are left out: no one reads them, and a file of nonsense has millions.
+/// Maximum number of problems: nobody reads more, and a file of nonsense has millions.
 const MAX_PROBLEMS: usize = 1000;
 
-/// The problems met so far.
+/// The problems found so far.
 #[derive(Debug, Default)]
 pub(super) struct ProblemList(Vec<ScenarioProblem>);
 
@@ -214,7 +214,7 @@ impl fmt::Display for ScenarioProblem {
 }
 
 impl fmt::Display for Problems {
-    /// One line for each problem, below it the source line with the part that is meant underlined.
+    /// One line for each problem, followed by the source line with the relevant part underlined.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines = self.0.iter().map(|problem| match problem.place {
             Place::File { line, .. } => line,

@@ -1,4 +1,4 @@
-//! The second stage: what was written becomes values, or a list of problems.
+//! The second stage: from the document to values, or a list of problems.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,12 +14,12 @@ pub(super) struct Given<'r> {
     pub(super) node: &'r Node<'r>,
 }
 
-/// The walk that reads: each key gets what was given, checked, or else its default.
+/// The walk that reads: each key gets the given value, checked, or its default.
 pub(super) struct Reader<'r> {
     given: BTreeMap<KeyPath, Given<'r>>,
-    /// Where a problem is reported that no given key is behind.
+    /// Where a problem without a given key is reported.
     file: &'r Source<'r>,
-    /// The keys whose values were refused; they hold their defaults.
+    /// The keys whose values were rejected; they have their defaults.
     wrong: BTreeSet<KeyPath>,
     is_sound: bool,
     report: &'r mut ProblemList,
@@ -40,29 +40,29 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// The values, unless something is wrong with them; all of that is in the report.
+    /// The values, unless there are problems, which are then in the report.
     pub(super) fn read<S: Section>(mut self) -> Option<S> {
         let values = S::walk(&mut self, None);
         self.is_sound.then_some(values)
     }
 
-    /// Whether a key was given, rightly or wrongly.
+    /// Whether a key was given, valid or not.
     pub(super) fn is_given(&self, key: KeyPath) -> bool {
         self.given.contains_key(&key)
     }
 
-    /// Whether a key holds its default because its value was refused.
+    /// Whether a key has its default because its value was rejected.
     pub(super) fn is_wrong(&self, key: KeyPath) -> bool {
         self.wrong.contains(&key)
     }
 
-    /// Whether nothing has been wrong so far.
+    /// Whether there are no problems so far.
     pub(super) fn is_sound(&self) -> bool {
         self.is_sound
     }
 
-    /// Reports a problem between several keys: at the first that a `--set` argument gives, else at
-    /// the first that the file gives. Where one of them is wrong by itself, that is enough.
+    /// Reports a problem between several keys: at the first one given by a `--set` argument, else at the
+    /// first one given in the file. Not if one of them has a problem of its own.
     pub(super) fn refuse(&mut self, keys: &[KeyPath], fault: Fault) {
         if keys.iter().any(|key| self.is_wrong(*key)) {
             return;
@@ -85,7 +85,7 @@ impl<'r> Reader<'r> {
         }
     }
 
-    /// Refuses more than `most` of something.
+    /// Rejects more than `most` of something.
     pub(super) fn at_most(&mut self, most: u64, count: f64, what: &'static str, keys: &[KeyPath]) {
         // A count that overflowed to infinity is too many as well.
         if count > most as f64 {

@@ -1,4 +1,4 @@
-//! Rules: what values a key accepts, how they are read, written and described.
+//! Rules: which values a key accepts, and how they are read, written and described.
 
 mod list;
 mod number;
@@ -20,7 +20,7 @@ use super::source::Source;
 /// A value with its span in its source.
 pub(super) type Node<'a> = Spanned<DeValue<'a>>;
 
-/// What values a key accepts.
+/// The values that a key accepts.
 pub(super) trait Rule {
     /// The validated value.
     type Value;
@@ -43,7 +43,7 @@ pub(super) trait Rule {
     fn write(&self, value: &Self::Value) -> String;
 }
 
-/// A value that there may not be.
+/// An optional value.
 pub(super) struct Optional<R>(pub(super) R);
 
 impl<R: Rule> Rule for Optional<R> {
@@ -72,7 +72,7 @@ impl<R: Rule> Rule for Optional<R> {
     }
 }
 
-/// One value being read, and the problems met in it.
+/// One value being read, and its problems.
 pub(super) struct Reading<'r> {
     pub(super) source: &'r Source<'r>,
     pub(super) key: String,
@@ -94,7 +94,7 @@ impl Reading<'_> {
         self.report(node.span(), fault);
     }
 
-    /// The value as written; a table has no text of its own where its keys are dotted.
+    /// The value as written; a table has no text of its own if its keys are dotted.
     pub(super) fn written(&self, node: &Node<'_>) -> String {
         if node.get_ref().is_table() {
             "a table".to_owned()

@@ -1,4 +1,4 @@
-//! From a validated scenario to what the evaluator, the search and the optimisers take.
+//! From a validated scenario to the input of the evaluator, the search and the optimisers.
 
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
@@ -18,14 +18,14 @@ use crate::visibility::{Mask, MaskError, MaskTable, MaskTableError};
 use std::io;
 use thiserror::Error;
 
-/// Designs between two checkpoints of a sweep: a fraction of a second of work.
+/// Designs between two checkpoints of a sweep, a fraction of a second of work.
 const SWEEP_BATCH: usize = 256;
 
 /// Why a scenario cannot be set up although each of its values is in range.
 /// [`Scenario::setup_problem`] adds the place in the scenario.
 #[derive(Debug, Error)]
 pub enum SetupError {
-    /// A GNSS file gives no system.
+    /// A GNSS file does not give a system.
     #[error("gnss.files: {file}: {source}")]
     GnssFile {
         /// The path as written.
@@ -38,7 +38,7 @@ pub enum SetupError {
     PointsFile {
         /// The path as written.
         file: String,
-        /// What the system says.
+        /// The message of the operating system.
         source: io::Error,
     },
     /// The points file is not a list of points.
@@ -58,7 +58,7 @@ pub enum SetupError {
     /// A mask out of range.
     #[error("visibility: {0}")]
     Mask(#[from] MaskError),
-    /// A skyline with gaps.
+    /// A mask table with gaps.
     #[error("visibility.mask-table: {0}")]
     MaskTable(#[from] MaskTableError),
     /// A tail level out of range.
@@ -122,10 +122,10 @@ pub enum GnssFileError {
     /// It is not a file of element sets.
     #[error("the file holds {content}; element sets, almanacs or states are needed")]
     NoSets {
-        /// What it holds.
+        /// Its content.
         content: String,
     },
-    /// Its sets make no system.
+    /// Its sets do not form a system.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
     /// Its satellites do not cover the study.
@@ -137,7 +137,7 @@ impl Scenario {
     /// The samples in time.
     ///
     /// # Errors
-    /// When the span has no sample or too many.
+    /// If the span has no sample or too many.
     pub fn time_grid(&self) -> Result<TimeGrid, TimeError> {
         let epoch = Epoch::from_utc(self.time.epoch);
         TimeGrid::new(
@@ -147,19 +147,19 @@ impl Scenario {
         )
     }
 
-    /// The design that is validated when none is named.
+    /// The design to validate if none is given.
     ///
     /// # Errors
-    /// When its notation describes no design.
+    /// If its notation is not a design.
     pub fn reference_design(&self) -> Result<Design, SetupError> {
         Ok(self.reference_design.parse()?)
     }
 
-    /// Everything that an evaluation depends on. `read` gives the bytes of a file that the
-    /// scenario names, by the path as written.
+    /// The setup of an evaluation. `read` returns the bytes of a file that the scenario names, by the path
+    /// as written.
     ///
     /// # Errors
-    /// When a file cannot be read, or the values together leave no point or sample.
+    /// If a file cannot be read, or the values together leave no point or sample.
     pub fn setup(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Setup, SetupError> {
         Ok(self.setup_with_notes(read)?.0)
     }
@@ -276,7 +276,7 @@ impl Scenario {
         }
     }
 
-    /// What is searched for.
+    /// The goals of the search.
     #[must_use]
     pub fn goals(&self) -> Goals {
         Goals {
@@ -286,7 +286,7 @@ impl Scenario {
         }
     }
 
-    /// The hypervolume reference as the optimisers see it, every objective minimised.
+    /// The hypervolume reference for the optimisers, with every objective minimised.
     #[must_use]
     pub fn minimised_reference(&self) -> Option<Vec<f64>> {
         let reference = self.objectives.hypervolume_reference.as_ref()?;

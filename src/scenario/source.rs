@@ -1,11 +1,11 @@
-//! The texts that a scenario is made of, and places in them.
+//! The source texts of a scenario, and positions in them.
 
 use std::fmt;
 use std::ops::Range;
 
 /// Characters of a source line shown around a problem; longer lines are cut.
 const EXCERPT_WIDTH: usize = 96;
-/// Characters shown before the problem where a line is cut.
+/// Characters shown before the problem if a line is cut.
 const EXCERPT_LEAD: usize = 32;
 /// Characters of an offending value repeated in a message.
 const FOUND_WIDTH: usize = 60;
@@ -52,12 +52,12 @@ pub enum Place {
     },
 }
 
-/// A source line, cut to a readable width, and the part of it that is meant.
+/// A source line, cut to a readable width, and the relevant part of it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Excerpt {
     /// The text of the line without control characters.
     pub text: String,
-    /// Characters before the part that is meant.
+    /// Characters before the relevant part.
     pub offset: usize,
     /// Length of that part in characters, at least 1.
     pub length: usize,
@@ -108,7 +108,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The text at `span` on one line, cut where it is long.
+    /// The text at `span` on one line, shortened if long.
     pub(super) fn written(&self, span: Range<usize>) -> String {
         let text = self.text.get(span).unwrap_or_default().trim();
         let mut shown: String = printable(text).take(FOUND_WIDTH).collect();

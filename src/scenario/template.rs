@@ -1,4 +1,4 @@
-//! The key table for readers: a commented file to start from, and a JSON schema for editors.
+//! The keys for readers: a commented file to start from, and a JSON schema for editors.
 
 use serde_json::{Map, Value as Json, json};
 

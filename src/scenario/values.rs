@@ -23,64 +23,64 @@ use super::reader::Reader;
 use super::rule::{Text, UtcInstant};
 use crate::search::DesignSpace;
 
-/// Lets a duration that is a whole number of steps up to rounding end before
-/// its closing sample, and a grid that is a whole number of steps keep its
-/// closing row. The same slack for both, in steps.
+/// Lets a duration that is an integer number of steps, up to rounding, end before
+/// its last instant, and a grid that is an integer number of steps include its last
+/// row. The same tolerance for both, in steps.
 const STEP_SLACK: f64 = 1e-9;
 
-/// Points times samples: beyond, one evaluation takes gigabytes.
+/// Maximum of points times instants: beyond this, one evaluation takes gigabytes.
 const MAX_POINT_SAMPLES: u64 = 1_000_000_000;
-/// Designs of an exhaustive search: weeks of a machine.
+/// Maximum designs of an exhaustive search: weeks of computing.
 const MAX_DESIGNS: u64 = 1_000_000_000;
 
 /// Midnight at the beginning of 2025, UTC.
 const JANUARY_2025: DateTime<Utc> = DateTime::from_timestamp_nanos(1_735_689_600_000_000_000);
 
 section! {
-    /// A study: where, when, with which models, to which ends.
+    /// A study: region, time, models and goals.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Scenario in "", finish finish_scenario {
         /// Name of the study, also part of the default output directory.
         pub name: String = Text::Name, default "scenario".to_owned();
-        /// Design that is validated when none is named, in Walker notation
+        /// Design to validate if none is given, in Walker notation
         /// pattern:inclination:T/P/F@altitude.
         pub reference_design: String = Text::Any, default "delta:55:182/13/1@925".to_owned();
-        /// The sampled span of time.
+        /// The sampled time span.
         pub time: TimeSpan;
         /// The surface of the Earth.
         pub earth: Earth;
-        /// The motion of the LEO design.
+        /// The propagation of the LEO design.
         pub propagation: Propagation;
         /// The points where the receivers are.
         pub region: Region;
-        /// What a receiver sees.
+        /// Visibility.
         pub visibility: Visibility;
-        /// The GNSS that is augmented.
+        /// The GNSS to augment.
         pub gnss: GnssSetup;
-        /// What is minimized, and under which constraints.
+        /// The objectives and constraints.
         pub objectives: Objectives;
-        /// The designs among which is searched.
+        /// The search space.
         pub search: SearchSpace;
-        /// How it is searched.
+        /// The algorithm of the search and its settings.
         pub optimizer: Optimizer;
-        /// What exported files say about their origin.
+        /// The origin stated in exported files.
         pub export: Export;
     }
 }
 
 section! {
-    /// What exported files say about their origin.
+    /// The origin stated in exported files.
     #[derive(Debug, Clone, PartialEq, Eq)]
     pub struct Export in "export" {
-        /// Who made an exported file (CCSDS ORIGINATOR).
+        /// Originator of exported files (CCSDS ORIGINATOR).
         pub originator: String = Text::Ascii, default "NAVWALKER".to_owned();
-        /// When an exported file was made (CCSDS CREATION_DATE); never the wall clock, so that the
+        /// Creation date of exported files (CCSDS CREATION_DATE); never the wall clock, so that the
         /// same run gives the same bytes.
         pub creation_date: DateTime<Utc> = UtcInstant, follows "time.epoch", example JANUARY_2025;
     }
 }
 
-/// What follows from, or is bounded by, several sections together.
+/// Defaults and limits that involve several sections.
 fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
     if !reader.is_given(key!(Export.creation_date)) {
         scenario.export.creation_date = scenario.time.epoch;

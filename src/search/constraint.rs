@@ -1,4 +1,4 @@
-//! Bounds that a feasible design keeps, written like `max-pdop <= 2.5`.
+//! Bounds that a feasible design must meet, written like `max-pdop <= 2.5`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use super::Quantity;
 use crate::keyword::{Keyword, UnknownKeyword, keywords};
 
 keywords! {
-    /// The side of its bound on which a constrained quantity must stay.
+    /// The side of its bound on which a constrained quantity must be.
     Relation {
         /// The quantity is at most the bound.
         AtMost = "<=",
@@ -16,12 +16,12 @@ keywords! {
     }
 }
 
-/// A bound that a feasible design keeps.
+/// A bound that a feasible design must meet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Constraint {
     /// What is bounded.
     pub quantity: Quantity,
-    /// On which side.
+    /// The side.
     pub relation: Relation,
     /// The bound, in the unit of the quantity.
     pub bound: f64,
@@ -30,7 +30,7 @@ pub struct Constraint {
 /// Why a text is not a constraint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConstraintError {
-    /// There is neither `<=` nor `>=` in it.
+    /// It has neither `<=` nor `>=`.
     #[error(
         "found {found:?}, expected a quantity, <= or >=, and a number, as in \"max-pdop <= 2.5\""
     )]
@@ -50,9 +50,9 @@ pub enum ConstraintError {
 }
 
 impl Constraint {
-    /// How far a design is from keeping the bound ([M-33](crate::models#m-33)): the excess of the
-    /// value, relative to the bound (absolute for bounds below 1), and for a statistic of PDOP that
-    /// unsolved samples would make infinite their share. 1 for another value that does not exist.
+    /// How far a design is from meeting the bound ([M-33](crate::models#m-33)): the excess of the
+    /// value, relative to the bound (absolute for bounds below 1), plus the share of unsolved samples
+    /// for a statistic of PDOP that they would make infinite. 1 for any other missing value.
     #[must_use]
     pub fn violation(&self, value: Option<f64>, solved_fraction: f64) -> f64 {
         let unsolved = self.quantity.unsolved_share(solved_fraction);
@@ -84,7 +84,7 @@ impl FromStr for Constraint {
         Ok(Self {
             quantity: quantity.trim().parse()?,
             relation,
-            // Adding zero turns -0 into 0, so that equal bounds are written alike.
+            // Adding zero turns -0 into 0, so that equal bounds are written identically.
             bound: number.ok_or_else(|| ConstraintError::Bound {
                 found: bound.to_owned(),
             })? + 0.0,

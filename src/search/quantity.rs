@@ -5,15 +5,15 @@ use crate::evaluate::Metrics;
 use crate::keyword::keywords;
 
 keywords! {
-    /// A number that a design has.
+    /// A quantity of a design.
     Quantity {
         /// Mean PDOP + λ CVaR; without unit, minimised (equation 8 of the paper).
         JPos = "j-pos",
-        /// Satellites per visible satellite; without unit, minimised (equation 9).
+        /// Satellites / mean visible; without unit, minimised (equation 9).
         JCost = "j-cost",
         /// Mean PDOP; without unit, minimised.
         MeanPdop = "mean-pdop",
-        /// Mean of the worst share of PDOP; without unit, minimised.
+        /// CVaR of PDOP; without unit, minimised.
         CvarPdop = "cvar-pdop",
         /// 95 % quantile of PDOP; without unit, minimised.
         P95Pdop = "p95-pdop",
@@ -25,11 +25,11 @@ keywords! {
         Satellites = "satellites",
         /// Planes P; minimised.
         Planes = "planes",
-        /// Mean number of visible LEO satellites; maximised.
+        /// Mean visible LEO satellites; maximised.
         MeanVisible = "mean-visible",
-        /// Share of samples whose PDOP is at most the availability threshold; maximised.
+        /// Fraction of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
-        /// Cost of bringing the satellites up, in the unit of its parameters; minimised.
+        /// Cost of launching the satellites, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
 }
@@ -38,22 +38,22 @@ keywords! {
 /// any one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
-    /// c_T, cost of one satellite brought up to zero altitude.
+    /// c_T, cost of launching one satellite to zero altitude.
     pub per_satellite: f64,
     /// c_P, cost of opening one plane.
     pub per_plane: f64,
-    /// c_h, share that a satellite costs more for each 1000 km of altitude.
+    /// c_h, fraction by which a satellite costs more for each 1000 km of altitude.
     pub per_1000_km: f64,
 }
 
 impl Quantity {
-    /// Whether more of it is better.
+    /// Whether larger is better.
     #[must_use]
     pub fn is_maximised(self) -> bool {
         matches!(self, Self::MeanVisible | Self::Availability)
     }
 
-    /// The coordinate of the hypervolume's reference point when none is given.
+    /// The default coordinate of the hypervolume's reference point.
     #[must_use]
     pub fn default_reference(self) -> Option<f64> {
         match self {
@@ -63,8 +63,8 @@ impl Quantity {
         }
     }
 
-    /// The share of unsolved samples where, each of them counted as infinite, they make the quantity
-    /// infinite; otherwise 0. A statistic of the solved samples alone would be flattered by them.
+    /// The share of unsolved samples if, counted as infinite, they make the quantity infinite;
+    /// otherwise 0. They would make a statistic of the solved samples alone look better.
     #[must_use]
     pub fn unsolved_share(self, solved_fraction: f64) -> f64 {
         /// Rounding of a share that is made of weights.
@@ -91,13 +91,13 @@ impl Quantity {
         }
     }
 
-    /// The value as an optimiser minimises it; the same map leads back.
+    /// The value as an optimiser minimises it; applying it twice gives the value back.
     #[must_use]
     pub fn minimised(self, value: f64) -> f64 {
         if self.is_maximised() { -value } else { value }
     }
 
-    /// The value of a design; `None` when there is none, as for PDOP without a solution.
+    /// The value of a design; `None` if there is none, as for PDOP without solved samples.
     #[must_use]
     pub fn value(self, design: &Design, metrics: &Metrics, cost: &LaunchCost) -> Option<f64> {
         let satellites = design.satellite_count() as f64;

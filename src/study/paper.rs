@@ -1,8 +1,8 @@
-//! The study of the paper: its tables, figures and percentages, ours beside its own.
+//! The paper's study: its tables, figures and percentages next to ours.
 //!
 //! C. Zhang, J. Zhao, Z. Liu et al., "LEO-NA Walker Constellation Design with Bi-objective
 //! Optimisation Approaches". What the paper does not state (mask, surface, clocks, slots, epoch) is
-//! taken from the setup, and every line is also judged with one assumption changed at a time.
+//! taken from the setup, and every statement is also tested with one assumption changed at a time.
 
 mod assumptions;
 mod figures;
@@ -34,22 +34,22 @@ use measured::Measurements;
 use serde::Serialize;
 use thiserror::Error;
 
-/// Why the study cannot be repeated.
+/// Why the study cannot be reproduced.
 #[derive(Debug, Error)]
 pub enum PaperError {
-    /// The data that are built in cannot be read.
+    /// The built-in data cannot be read.
     #[error("the paper's Table II: {0}")]
     Table(#[from] csv::Error),
     /// A scheme of Table II has no name.
     #[error("the paper's Table II: {0}")]
     Scheme(#[from] UnknownKeyword),
-    /// A design of Table II is none.
+    /// A design of Table II is invalid.
     #[error("the paper's Table II: {0}")]
     Notation(#[from] NotationError),
-    /// A row that a statement names is not there.
+    /// A statement names a row that does not exist.
     #[error("the paper's Table II has no row {0}")]
     NoRow(String),
-    /// A fitted design cannot exist.
+    /// A fitted design is invalid.
     #[error(transparent)]
     Design(#[from] DesignError),
     /// A satellite cannot be propagated.
@@ -58,24 +58,24 @@ pub enum PaperError {
     /// A search cannot run.
     #[error(transparent)]
     Optimize(#[from] OptimizeError),
-    /// A set of designs cannot be judged.
+    /// No design of a set can be picked.
     #[error(transparent)]
     Decision(#[from] DecisionError),
-    /// A mask out of range.
+    /// A mask is out of range.
     #[error(transparent)]
     Mask(#[from] MaskError),
-    /// A point off the Earth.
+    /// A point has coordinates out of range.
     #[error(transparent)]
     Ground(#[from] GroundError),
-    /// A span without samples.
+    /// A span has no samples.
     #[error(transparent)]
     Time(#[from] TimeError),
 }
 
-/// What the study is repeated with.
+/// Inputs of the reproduction.
 #[derive(Debug, Clone)]
 pub struct PaperStudy {
-    /// Everything that an evaluation depends on.
+    /// The setup of all evaluations.
     pub setup: Setup,
     /// The designs among which the paper searches.
     pub designs: DesignSpace,
@@ -85,7 +85,7 @@ pub struct PaperStudy {
     pub seed: u64,
 }
 
-/// A row of Table II, the paper's and ours.
+/// A row of Table II with the paper's values and ours.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RowResult {
     /// Its name.
@@ -100,14 +100,14 @@ pub struct RowResult {
     pub paper_mean_pdop: f64,
     /// Ours as printed.
     pub as_printed: RowValue,
-    /// Where the printed inclination does not give the paper's N̄: the nearest that does, degrees, if
-    /// there is one.
+    /// The inclination nearest to the printed one that gives the paper's N̄, degrees; only if the
+    /// printed one does not and there is one.
     pub fitting_inclination_deg: Option<f64>,
-    /// Ours at that inclination, or as printed where there is none.
+    /// Ours at that inclination, or at the printed one if there is none.
     pub at_fitting: RowValue,
 }
 
-/// What the paper's second objective does with the number of satellites.
+/// How the paper's second objective depends on the number of satellites.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct CostOfSize {
     /// Satellites of the smallest and largest design of the search space.
@@ -116,7 +116,7 @@ pub struct CostOfSize {
     pub j_cost: [Option<f64>; 2],
 }
 
-/// The study repeated.
+/// The reproduced study.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reproduction {
     /// Mask of the scenario, degrees.
@@ -125,23 +125,23 @@ pub struct Reproduction {
     pub mask_fit: MaskFit,
     /// Table II.
     pub rows: Vec<RowResult>,
-    /// Table II as printed under the scenario and then with one assumption changed each.
+    /// Table II as printed, under the scenario and then with one assumption changed at a time.
     pub sensitivity: Vec<Measured>,
     /// The searches of the paper and of its baselines.
     pub searches: Vec<FoundSet>,
-    /// The data of Figures 2 to 4; goes to files of its own.
+    /// The data of Figures 2 to 4, written to separate files.
     #[serde(skip)]
     pub figures: Figures,
     /// Cost against size.
     pub cost_of_size: CostOfSize,
-    /// Every statement of the paper that has a number or a direction, judged.
+    /// Every statement of the paper that has a number or a direction, with its verdict.
     pub lines: Vec<Statement>,
 }
 
-/// Repeats the study.
+/// Reproduces the study.
 ///
 /// # Errors
-/// When a design cannot be propagated or a search cannot run under the given setup.
+/// If a design cannot be propagated or a search cannot run under the given setup.
 pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     let setup = &study.setup;
     let evaluator = Evaluator::new(setup.clone())?;
@@ -171,10 +171,10 @@ pub fn reproduce(study: &PaperStudy) -> Result<Reproduction, PaperError> {
     })
 }
 
-/// Table II alone, judged under `setup`: the same verdicts that the whole study gives its rows.
+/// Table II alone, judged under `setup`, with the same verdicts that the whole study gives its rows.
 ///
 /// # Errors
-/// When a design cannot be propagated under the given setup.
+/// If a design cannot be propagated under the given setup.
 pub fn judged_table2(setup: &Setup) -> Result<Vec<JudgedRow>, PaperError> {
     let evaluator = Evaluator::new(setup.clone())?;
     Ok(lines::judged_rows(&Measurements::new(&evaluator)?))

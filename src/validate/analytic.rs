@@ -4,8 +4,8 @@
 //!
 //! - The rates of J2, by averaging the potential over the orbit instead of by their formulas.
 //! - The mean number of visible satellites, by quadrature over the orbit instead of over time.
-//! - PDOP of the study by inverting whole matrices.
-//! - The symmetries of the pattern, order of satellites, and the mask.
+//! - PDOP of the study by inverting full matrices.
+//! - Symmetries of the pattern, the order of satellites, and a raised mask.
 
 mod averaging;
 mod geometry;
@@ -15,10 +15,10 @@ mod symmetry;
 use super::{Findings, Subject, ValidateError};
 use crate::orbit::Model;
 
-/// Everything that closed forms and symmetries say about a design.
+/// All checks of a design by closed forms and symmetries.
 ///
 /// # Errors
-/// When the design cannot be propagated.
+/// If the design cannot be propagated.
 pub fn against_closed_forms(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = Findings::default();
     findings.checks.extend(averaging::checks(subject));

@@ -1,4 +1,4 @@
-//! What a difference of two trajectories does to visibility decisions, passes and metrics.
+//! The effect of a trajectory difference on visibility decisions, passes and metrics.
 
 use super::distribution::{Distribution, Residual};
 use super::{Check, CheckedQuantity, Findings};
@@ -9,14 +9,14 @@ use crate::ground::Site;
 use crate::units::wrap_pi;
 use rayon::prelude::*;
 
-/// Sites at which passes are timed; more would tell the same.
+/// Sites at which passes are timed; more would not change the picture.
 const PASS_SITES: usize = 6;
 
-/// Most satellites whose passes are timed.
+/// Maximum number of satellites whose passes are timed.
 const PASS_SATELLITES: usize = 60;
 
-/// Why there is no bound.
-const UNBOUNDED: &str = "reported only: what the difference of the states does to the result";
+/// The reason given where there is no bound.
+const UNBOUNDED: &str = "reported only: effect of the state difference on the result";
 
 /// Two propagations of the same satellites, seen from the points of a study.
 pub(super) struct TrajectoryPair<'a> {
@@ -25,7 +25,7 @@ pub(super) struct TrajectoryPair<'a> {
     pub(super) second: &'a Ephemeris,
 }
 
-/// Counts of decisions.
+/// Number of decisions, and of those that flip.
 #[derive(Debug, Clone, Copy, Default)]
 struct FlipCounts {
     decisions: u64,
@@ -34,8 +34,8 @@ struct FlipCounts {
 
 impl TrajectoryPair<'_> {
     /// Compares decisions, passes and metrics. `name` is the beginning of the names of the checks, and
-    /// `flip_gate` bounds the share of decisions that flip. Metrics have no gate: a bound from the flips
-    /// is tens of times what they change by, as flips of both signs cancel.
+    /// `flip_gate` bounds the fraction of decisions that flip. Metrics have no gate: a bound derived from
+    /// the flips is tens of times their actual change, as flips of opposite sign cancel.
     pub(super) fn compare(
         &self,
         name: &str,
@@ -53,7 +53,7 @@ impl TrajectoryPair<'_> {
             },
             flips,
             flip_gate,
-            flip_gate.map_or(UNBOUNDED, |_| "strip by which the edge of a footprint moves, times its length; threefold where satellites crowd near their highest latitude"),
+            flip_gate.map_or(UNBOUNDED, |_| "area swept by the displaced footprint edge, times three because satellites crowd near their highest latitude"),
         ));
         let metrics = [
             self.evaluator.evaluate_ephemeris(self.first)?,
@@ -116,9 +116,9 @@ impl TrajectoryPair<'_> {
             .collect::<Result<_, _>>()?;
         let shifts: Vec<Shift> = shifts.into_iter().flatten().collect();
         let kinds: [(&str, &str, ShiftMeasure); 3] = [
-            ("rise", "shift of the rise", |shift| shift.rise_s),
-            ("set", "shift of the set", |shift| shift.set_s),
-            ("duration", "change of the duration of a pass", |shift| {
+            ("rise", "shift of the rise time", |shift| shift.rise_s),
+            ("set", "shift of the set time", |shift| shift.set_s),
+            ("duration", "change in pass duration", |shift| {
                 shift.set_s - shift.rise_s
             }),
         ];
@@ -154,7 +154,7 @@ impl TrajectoryPair<'_> {
         for site in sites {
             let [first, second] = [propagations[0].passes(site)?, propagations[1].passes(site)?];
             for pass in &first {
-                // The same pass is the one in the middle of which the other is under way.
+                // Two passes are the same pass if one is under way at the middle of the other.
                 let middle = 0.5 * (pass.0 + pass.1);
                 let Some(other) = second.iter().find(|p| p.0 <= middle && middle <= p.1) else {
                     continue;
@@ -173,7 +173,7 @@ impl TrajectoryPair<'_> {
     }
 }
 
-/// At most `most` of `all`, evenly chosen, the ends among them.
+/// At most `most` of `all`, evenly spaced and including both ends.
 fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     if all.len() <= most {
         return all.to_vec();
@@ -182,7 +182,7 @@ fn thinned<T: Clone>(all: &[T], most: usize) -> Vec<T> {
     (0..most).map(|k| all[place(k)].clone()).collect()
 }
 
-/// What is measured of a shift.
+/// The quantity taken from a shift.
 type ShiftMeasure = fn(&Shift) -> f64;
 
 /// How a pass moved.
@@ -199,7 +199,7 @@ impl std::fmt::Display for Shift {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             formatter,
-            "{} from {}, {} deg at {:.0} s",
+            "{} seen from {}, {} deg at {:.0} s",
             self.satellite, self.latitude_deg, self.longitude_deg, self.at_s
         )
     }
@@ -241,14 +241,14 @@ impl<'a> SampledSatellite<'a> {
             .to_earth_fixed(state.position_km))
     }
 
-    /// Sine of the elevation less that of the mask.
+    /// Sine of the elevation minus that of the mask.
     fn height(&self, site: &Site, target_km: Position<EarthFixed>) -> f64 {
         let line = target_km - site.local.origin_km;
         let mask_rad = self.seen.evaluator.setup().mask.degrees().to_radians();
         site.local.up.dot(&line) / line.norm() - mask_rad.sin()
     }
 
-    /// Rise and set of the whole passes over a site, s.
+    /// Rise and set of the complete passes over a site, s.
     fn passes(&self, site: &Site) -> Result<Vec<(f64, f64)>, EphemerisError> {
         let grid = self.seen.evaluator.setup().grid;
         let heights: Vec<f64> = self
@@ -302,7 +302,7 @@ fn metric_checks(name: &str, [first, second]: &[Metrics; 2]) -> Vec<Check> {
     ];
     let change = |(quantity, before, after): (&str, Option<f64>, Option<f64>)| {
         let measure = CheckedQuantity {
-            quantity: &format!("change of {quantity}"),
+            quantity: &format!("change in {quantity}"),
             unit: "1",
             statistic: "difference",
         };
@@ -318,7 +318,7 @@ fn metric_checks(name: &str, [first, second]: &[Metrics; 2]) -> Vec<Check> {
     metrics.into_iter().filter_map(change).collect()
 }
 
-/// Share of decisions that flip when satellites are `radial_km` and `along_km` (RMS) away.
+/// Fraction of decisions that flip when satellites are displaced by `radial_km` and `along_km` (RMS).
 ///
 /// The footprint has the half-angle ψ = acos(R cos ε/a) - ε; its edge moves by dψ/da per km of
 /// radius and 1/a per km across it; a strip of width w covers w sin ψ/2 of the sphere.

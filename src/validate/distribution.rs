@@ -1,9 +1,9 @@
-//! How residuals are distributed: three quantiles, the largest, and where it was found.
+//! Distribution of residuals: three quantiles, the largest, and where it occurs.
 
 use crate::stats::quantile_rank;
 use serde::{Deserialize, Serialize};
 
-/// Sizes of residuals.
+/// Distribution of the magnitudes of residuals.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Distribution {
     /// What was compared, as in the names of checks.
@@ -22,21 +22,21 @@ pub struct Distribution {
     pub q99: f64,
     /// The largest.
     pub max: f64,
-    /// The inputs that give the largest.
+    /// The input that gives the largest.
     pub worst: String,
 }
 
-/// A residual with the inputs that it came from.
+/// A residual and its input.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual<I> {
     /// The residual.
     pub value: f64,
-    /// Its inputs.
+    /// Its input.
     pub input: I,
 }
 
 impl Distribution {
-    /// The distribution of the sizes of `residuals`; `None` when there are none.
+    /// The distribution of the magnitudes of `residuals`; `None` if there are none.
     #[must_use]
     pub fn of<I>(
         name: &str,

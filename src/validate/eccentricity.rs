@@ -1,4 +1,4 @@
-//! The eccentricity vector that a radial difference shows.
+//! The eccentricity vector that corresponds to a radial difference.
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,10 +1,9 @@
 //! The design against an ephemeris that another program made.
 //!
-//! Objects of the files are matched to the slots of the design, by name or else by place; their
-//! states are compared with ours at their own instants, so that nothing is interpolated; and where
-//! they differ, the conventions that other tools are known to use are tried one after the other, to
-//! see whether one of them explains it. What did not match is a check that fails, never left out
-//! silently.
+//! Objects of the files are matched to the slots of the design, by name or else by position. Their
+//! states are compared with ours at their own instants, so nothing is interpolated. Where they
+//! differ, conventions that other tools are known to use are tried one by one to see whether one
+//! explains the difference. Objects that do not match fail a check; they are never dropped silently.
 
 mod conventions;
 mod matching;
@@ -28,11 +27,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use tracks::{Track, tracks};
 
-/// Distance within which a file is the design's own, km: a decimetre, above what the digits of any
-/// format of states lose.
+/// Distance within which a file agrees with the design, km: a decimetre, more than the digits of
+/// any state format lose.
 const SAME_KM: f64 = 1e-4;
 
-/// How a satellite of the file differs from its slot.
+/// Difference of a satellite of the file from its slot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SatelliteDifference {
     /// The slot.
@@ -62,16 +61,16 @@ pub struct FileComparison {
     pub unmatched_slots: Vec<String>,
     /// Objects without a slot.
     pub unmatched_objects: Vec<String>,
-    /// Whether every slot and object matched and all states are the design's own to a decimetre.
+    /// Whether every slot and object matched and all states agree with the design to a decimetre.
     pub agrees: bool,
     /// The satellites, in the order of the slots.
     pub satellites: Vec<SatelliteDifference>,
-    /// The convention that explains the difference, if one does, and what it leaves.
+    /// The convention that explains the difference, if any, and what remains.
     pub explanation: Option<Explanation>,
 }
 
 impl FileComparison {
-    /// Whether the objects that matched are the design's own to a decimetre, whatever is missing.
+    /// Whether the matched objects agree with the design to a decimetre, whatever is missing.
     #[must_use]
     pub fn matched_agree(&self) -> bool {
         !self.satellites.is_empty() && self.satellites.iter().all(|one| one.max_km <= SAME_KM)
@@ -81,8 +80,8 @@ impl FileComparison {
 /// Compares a design with what was read from files; `source` names them.
 ///
 /// # Errors
-/// When nothing of the files can be compared at all: no object has a state, or none lies in the
-/// span of the study.
+/// If nothing in the files can be compared: no object has a state, or none within the time span of
+/// the study.
 pub fn against_file(
     subject: &Subject<'_>,
     source: &str,
@@ -210,24 +209,24 @@ fn coverage_checks(
             "unmatched-slots",
             "slots of the design without an object",
             slots - matched,
-            "every satellite of the design is in the file",
+            "every satellite of the design must be in the file",
         ),
         count(
             "unmatched-objects",
             "objects of the file without a slot",
             tracks.len() as f64 - matched,
-            "every object of the file is a satellite of the design",
+            "every object of the file must be a satellite of the design",
         ),
         Check::new(
             &format!("file/{source}/uncovered-span"),
             CheckedQuantity {
-                quantity: "share of the span of the study that an object leaves out at most",
+                quantity: "largest fraction of the study's time span that an object does not cover",
                 unit: "1",
                 statistic: "max",
             },
             1.0 - shortest,
             Some(1e-9),
-            "states reach from the first to the last sample of the study without a gap of more than a tenth of a revolution; metrics are compared only then",
+            "states must cover the study from first to last sample with no gap longer than a tenth of a revolution; otherwise metrics are not compared",
         ),
     ]
 }
@@ -236,13 +235,13 @@ fn misplaced_check(source: &str, misplaced: usize) -> Check {
     Check::new(
         &format!("file/{source}/misplaced-objects"),
         CheckedQuantity {
-            quantity: "objects far from the slot of their name",
+            quantity: "objects far from the slot they are named after",
             unit: "1",
             statistic: "count",
         },
         misplaced as f64,
         Some(0.0),
-        "at its first sample an object is nearer to its own slot than to the next: else it is another pattern, frame or time",
+        "at its first sample an object must be nearer to its own slot than to the next; otherwise pattern, frame or time differ",
     )
 }
 
@@ -263,7 +262,7 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
         .map(|one| one.drift_km_per_day.in_track)
         .sum::<f64>()
         / n;
-    let reason = "what the file's model and conventions differ by; the explanation names the convention if one does";
+    let reason = "reported only: the file may use another model or convention; the explanation names the one that accounts for the difference";
     let rows: [(&str, &str, &str, f64); 4] = [
         ("radial-rms", "km", "rms", square(|ric| ric.radial)),
         ("in-track-rms", "km", "rms", square(|ric| ric.in_track)),
@@ -280,7 +279,7 @@ fn size_checks(source: &str, satellites: &[SatelliteDifference]) -> Vec<Check> {
             Check::new(
                 &format!("file/{source}/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("{name} of the file from the design"),
+                    quantity: &format!("{name}, file minus design"),
                     unit,
                     statistic,
                 },

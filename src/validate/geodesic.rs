@@ -1,10 +1,10 @@
 //! Elevation, azimuth and footprints against geodesics on the ellipsoid, by GeographicLib.
 //!
-//! The judge is a local frame built from geodesics: the direct problem is solved a short way north,
-//! south, east and west of a station, and the points in Earth-fixed coordinates span the horizon.
-//! No vertical enters it. The teacher is the curvature method of textbooks: azimuth and distance by
-//! the inverse problem, and a circle of Euler's radius of curvature in between; it holds for low
-//! orbits to some hundredths of a degree and shows its limits above.
+//! The judge is a local frame built from geodesics: the direct problem is solved a short distance
+//! north, south, east and west of a station, and the resulting Earth-fixed points span the horizon,
+//! without any definition of the vertical. The teacher is the textbook curvature method: azimuth and
+//! distance from the inverse problem, and a circle with Euler's radius of curvature in between. It
+//! is accurate to a few hundredths of a degree for low orbits and degrades above.
 
 mod footprint;
 mod surfaces;
@@ -16,14 +16,14 @@ use crate::frames::{EarthFixed, Position};
 use geographiclib_rs::{DirectGeodesic, Geodesic, InverseGeodesic};
 use nalgebra::Vector3;
 
-/// Way from the station to the points that span its horizon, m: far enough that 15 nm are 1e-11 rad,
-/// near enough that the geodesic's change of curvature is 1e-11 rad.
+/// Distance from the station to the points that span its horizon, m: far enough that 15 nm are
+/// 1e-11 rad, near enough that the geodesic's change of curvature is 1e-11 rad.
 const ARM_M: f64 = 1_000.0;
 
-/// Elevations and azimuths agree to this, degrees.
+/// Gate on elevation and azimuth, degrees.
 const ANGLE_GATE_DEG: f64 = 1e-8;
 
-/// The curvature method keeps this in low orbit, degrees.
+/// Gate on the curvature method in low orbit, degrees.
 const TEACHER_GATE_DEG: f64 = 0.04;
 
 /// Heights of the satellites, km: low orbit, the design's neighbours, navigation, geosynchronous.
@@ -38,13 +38,13 @@ const LATITUDES_DEG: [f64; 11] = [
 ];
 const LONGITUDES_DEG: [f64; 6] = [-179.999_999, -70.7, 0.0, 73.0, 116.4, 180.0];
 
-/// Ways from the station to the point below the satellite, degrees of arc: from straight above on.
+/// Distances from the station to the sub-satellite point, degrees of arc, starting at the zenith.
 const WAYS_DEG: [f64; 7] = [1e-6, 0.1, 3.0, 10.0, 20.0, 45.0, 70.0];
 
-/// Directions of that way, degrees.
+/// Azimuths of the sub-satellite point, degrees.
 const BEARINGS_DEG: [f64; 6] = [0.0, 45.0, 90.0, 171.3, 260.0, 359.0];
 
-/// A station and the point below a satellite, degrees, and its height.
+/// A station and a sub-satellite point, degrees, and the height of the satellite.
 #[derive(Debug, Clone, Copy)]
 struct Case {
     station_deg: [f64; 2],
@@ -90,7 +90,7 @@ fn stations() -> impl Iterator<Item = [f64; 2]> {
     })
 }
 
-/// The satellites that are looked at from a station.
+/// The satellites observed from a station.
 fn cases_of(earth: &Geodesic, station_deg: [f64; 2]) -> Vec<Case> {
     let [latitude, longitude] = station_deg;
     let mut cases = Vec::new();
@@ -163,10 +163,10 @@ fn taught_elevation_deg(earth: &Geodesic, case: &Case) -> f64 {
         .to_degrees()
 }
 
-/// Everything that geodesics say about the stations and the footprint of a design.
+/// All checks by geodesics: the stations and the footprint of a design.
 ///
 /// # Errors
-/// When the design cannot be propagated.
+/// If the design cannot be propagated.
 pub fn against_geodesics(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = look_angles(subject);
     findings.checks.extend(footprint::checks(subject));
@@ -174,7 +174,7 @@ pub fn against_geodesics(subject: &Subject<'_>) -> Result<Findings, ValidateErro
     Ok(findings)
 }
 
-/// Elevation and azimuth of our local frame against the judge, and of the teacher.
+/// Elevation and azimuth of our local frame, and of the teacher, compared with the judge.
 fn look_angles(subject: &Subject<'_>) -> Findings {
     let earth = Geodesic::wgs84();
     let (mut elevations, mut azimuths) = (Vec::new(), Vec::new());
@@ -203,11 +203,9 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
         }
     }
     let mut findings = Findings::default();
-    let judge =
-        "two constructions of one plane: GeographicLib's 15 nm over the arm of 1 km, and rounding";
-    let teacher = "a circle of the curvature along the azimuth in place of the ellipsoid: good over the way to a low satellite";
-    let limits =
-        "the way to a high satellite is long, and the curvature method does not hold there";
+    let judge = "two constructions of the same plane: GeographicLib's 15 nm over an arm of 1 km, plus rounding";
+    let teacher = "the ellipsoid approximated by a circle with its curvature along the azimuth: accurate out to a low satellite";
+    let limits = "reported only: the curvature method is not valid out to a high satellite";
     for (name, quantity, residuals, gate, reason) in [
         (
             "elevation",
@@ -250,7 +248,7 @@ fn look_angles(subject: &Subject<'_>) -> Findings {
 }
 
 impl Findings {
-    /// The largest of residuals as a check, and their distribution.
+    /// The largest residual as a check, and the distribution.
     pub(super) fn add<I: std::fmt::Display>(
         &mut self,
         name: &str,

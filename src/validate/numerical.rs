@@ -2,9 +2,10 @@
 //! mass for two bodies, point mass and J2 for the J2 theories, and J2 to J4 of WGS-72 for SGP4.
 //!
 //! The integration starts from the osculating state of the mean elements. First-order theory gives
-//! that state to O(J2²), some metres of semi-major axis, which alone drifts by kilometres a day. That
-//! is not an error of the secular rates; so the drift is fitted and reported as what it is, a mean a per
-//! satellite, and the gates are on what is left over 1, 7 and 30 days.
+//! that state to O(J2²), a few metres of semi-major axis, which by itself drifts by kilometres a
+//! day. This is not an error in the secular rates, so the drift is fitted and reported as a
+//! correction to the mean semi-major axis of each satellite, and the gates apply to the remainder
+//! over 1, 7 and 30 days.
 
 pub mod integrator;
 
@@ -26,33 +27,33 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Spans over which the theory is held against the integration, days.
+/// Spans over which the theory is compared with the integration, days.
 const SPANS_DAYS: [f64; 3] = [1.0, 7.0, 30.0];
 
-/// Satellites that are integrated, evenly over the constellation.
+/// Satellites that are integrated, evenly spaced over the constellation.
 const SATELLITES: usize = 8;
 
-/// Samples in a revolution, over which periodic terms average out.
+/// Samples per revolution, over which periodic terms average out.
 const PER_REVOLUTION: usize = 24;
 
-/// Relative change of a conserved quantity that the integration may make in 30 days: 60 000 steps with
-/// a relative tolerance of 1e-13 add up to 6e-9 if all err to one side, and at random to 2e-11; an
-/// eccentric orbit takes longer steps at apogee.
+/// Largest relative change of a conserved quantity over 30 days of integration: 60 000 steps with a
+/// relative tolerance of 1e-13 add up to 6e-9 if all errors have the same sign, and to 2e-11 if they
+/// are random; an eccentric orbit takes longer steps at apogee.
 const CONSERVED: f64 = 1e-10;
 
-/// Share of its size by which the frozen eccentricity vector may move in a week.
+/// Fraction of its size by which the frozen eccentricity vector may move in a week.
 const FROZEN_SHARE: f64 = 0.04;
 
-/// Days after which the frozen eccentricity is looked at again.
+/// Days after which the frozen eccentricity is measured again.
 const FROZEN_DAYS: f64 = 7.0;
 
-/// The revolutions of one satellite, each as its means.
+/// Means over each revolution of one satellite.
 struct RevolutionMeans {
     /// Middle of each revolution, days.
     days: Vec<f64>,
-    /// In-track difference of the integration from the model, km.
+    /// In-track difference, integration minus model, km.
     in_track_km: Vec<f64>,
-    /// Node of the integration minus that of the model, degrees.
+    /// Node, integration minus model, degrees.
     node_deg: Vec<f64>,
     /// Difference of the integration from the model at every sample, km, in RIC axes.
     residual_km: Vec<Vector3<f64>>,
@@ -129,17 +130,17 @@ fn conserved(field: ZonalField, states: &[State<Teme>]) -> [f64; 2] {
         let changes = states.iter().map(|s| (value(s) - value(first)).abs());
         changes.fold(0.0, f64::max) / scale
     };
-    // Relative to the whole angular momentum, as a polar orbit has none about the pole.
+    // Relative to the total angular momentum, since a polar orbit has none about the pole.
     [
         change(&energy, energy(first).abs()),
         change(&momentum, whole(first)),
     ]
 }
 
-/// Everything that the integration says about a design.
+/// All checks of a design by integration.
 ///
 /// # Errors
-/// When a satellite cannot be propagated or the integration fails.
+/// If a satellite cannot be propagated or the integration fails.
 pub fn against_integration(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let satellites = subject.satellites();
     let stride = satellites.len().div_ceil(SATELLITES);
@@ -180,7 +181,7 @@ fn conservation_checks(tracks: &[RevolutionMeans]) -> Vec<Check> {
             Check::new(
                 &format!("numerical/conserved/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("relative change of the {name} over 30 days"),
+                    quantity: &format!("relative change in {name} over 30 days"),
                     unit: "1",
                     statistic: "max",
                 },
@@ -213,7 +214,7 @@ fn span_checks(bounds: &IntegrationBounds, tracks: &[RevolutionMeans], days: f64
         Check::new(
             &name("in-track-drift"),
             CheckedQuantity {
-                quantity: "in-track drift of the integration from the model",
+                quantity: "in-track drift of the integrated orbit relative to the model",
                 unit: "km/day",
                 statistic: "mean slope",
             },
@@ -224,18 +225,18 @@ fn span_checks(bounds: &IntegrationBounds, tracks: &[RevolutionMeans], days: f64
         Check::new(
             &name("fitted-mean-a"),
             CheckedQuantity {
-                quantity: "mean semi-major axis of the integration minus that of the elements",
+                quantity: "mean semi-major axis, integrated orbit minus elements",
                 unit: "m",
                 statistic: "mean",
             },
             -drift / bounds.drift_per_a_per_day * 1e3,
             None,
-            "the drift read as the starting element that it comes from",
+            "reported only: the drift expressed as the error of the starting semi-major axis that causes it",
         ),
         Check::new(
             &name("node-rate"),
             CheckedQuantity {
-                quantity: "node rate of the integration minus that of the model, and of its terms in J2^2",
+                quantity: "node rate of the integrated orbit minus that of the model and its terms in J2^2",
                 unit: "deg/day",
                 statistic: "mean slope",
             },
@@ -268,7 +269,7 @@ fn span_checks(bounds: &IntegrationBounds, tracks: &[RevolutionMeans], days: f64
     ]
 }
 
-/// RMS of the residuals over a span, the line through each satellite's in-track residual taken out.
+/// RMS of the residuals over a span, after removing a straight line from each in-track residual.
 fn rms_after_fit(tracks: &[RevolutionMeans], days: f64) -> [f64; 3] {
     let mut squares = Vector3::zeros();
     let mut samples = 0.0;
@@ -292,7 +293,7 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
     let orbit = subject.orbit();
     let sin2 = orbit.inclination_rad.sin().powi(2);
     let frozen = frozen_eccentricity(&orbit);
-    // Near the critical inclination and the equator there is no such equilibrium to speak of.
+    // Near the critical inclination and the equator this equilibrium does not exist.
     if orbit.eccentricity > 0.0 || (sin2 - 0.8).abs() < 0.05 || frozen < 1e-4 {
         return Ok(None);
     }
@@ -330,13 +331,13 @@ fn frozen_check(subject: &Subject<'_>) -> Result<Option<Check>, ValidateError> {
         Check::new(
             "numerical/j3/frozen-eccentricity",
             CheckedQuantity {
-                quantity: "change of the frozen eccentricity vector in a week, over its size",
+                quantity: "change of the frozen eccentricity vector in a week, relative to its size",
                 unit: "1",
                 statistic: "difference",
             },
             (first[0] - last[0]).hypot(first[1] - last[1]) / frozen,
             Some(FROZEN_SHARE),
-            "under J2 and J3 the vector circles the frozen one; started there to first order it stays within some percent of its size from 20 deg on, and a tenth of that at 55 deg",
+            "under J2 and J3 the vector circles the frozen one; started there to first order, it stays within a few percent of its size at inclinations from 20 deg, and within a tenth of that at 55 deg",
         )
     }))
 }

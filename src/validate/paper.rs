@@ -4,13 +4,13 @@ use super::{Check, CheckedQuantity, Findings};
 use crate::evaluate::Setup;
 use crate::study::paper::{self, JudgedRow, PaperError, Scheme, Statement};
 
-/// Table II against the paper, each row as it is printed.
+/// Table II compared with the paper, each row as printed.
 ///
-/// Gates are on what is known to come out so: N̄ of the rows whose inclination is not misprinted, and
-/// mean PDOP of the paper's own designs. The rest is reported with the verdict of the study.
+/// Gates apply to what is known to be reproduced: N̄ of the rows whose inclination is not misprinted,
+/// and mean PDOP of the paper's own designs. The rest is reported with the verdict of the study.
 ///
 /// # Errors
-/// When a design cannot be propagated under the given setup.
+/// If a design cannot be propagated under the given setup.
 pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
     let rows = paper::judged_table2(setup)?;
     let checks = rows.iter().flat_map(|judged| {
@@ -27,7 +27,7 @@ fn visible_check(judged: &JudgedRow) -> Check {
     let row = &judged.row;
     let as_printed = row.fitting_inclination_deg.is_none();
     let reason = if as_printed {
-        "half a digit of Table II, and the epoch and the step of fits that it does not state; one mask, fitted to this column, gives six rows of it".to_owned()
+        "half a digit of Table II, plus the effect of the epoch and time step, which the paper does not state; one mask, fitted to this column, reproduces six of its rows".to_owned()
     } else {
         reported(&judged.mean_visible)
     };
@@ -49,7 +49,7 @@ fn pdop_check(judged: &JudgedRow) -> Option<Check> {
     let mean_pdop = judged.mean_pdop.ours?;
     let own = row.scheme == Scheme::Proposed;
     let reason = if own {
-        "what the slots and the epoch that the paper does not state move it by".to_owned()
+        "effect of the GNSS slots and the epoch, which the paper does not state".to_owned()
     } else {
         reported(&judged.mean_pdop)
     };

@@ -1,7 +1,8 @@
-//! Each gate proves that it can fail: errors are put in the place of parts of the library, and the
-//! gates that are made for them, and only related ones, notice.
+//! Proof that each gate can fail: parts of the library are replaced by faulty ones, and the gates
+//! meant for the error, and only related ones, must fail.
 //!
-//! The tables in `theories` and `views` are the one of `validation/README.md`, which a test holds against it.
+//! The tables in `theories` and `views` make up the table in `validation/README.md`; a test compares
+//! them.
 
 mod theories;
 mod views;
@@ -33,7 +34,7 @@ fn planted() -> Vec<&'static PlantedError> {
     theories::ERRORS.iter().chain(views::ERRORS).collect()
 }
 
-/// All targets but the paper, which is about other designs.
+/// All targets except the paper, which concerns other designs.
 const TARGETS: [Target; 4] = [
     Target::Sgp4,
     Target::GeographicLib,
@@ -41,7 +42,8 @@ const TARGETS: [Target; 4] = [
     Target::Analytic,
 ];
 
-/// What targets say of a design at 40°, where no error hides, at an epoch that a TLE cannot write.
+/// The findings of some targets on a design at 40°, where no error cancels out, at an epoch that a
+/// TLE cannot represent.
 fn findings(model: Model, parts: Parts, targets: &[Target]) -> Findings {
     let epoch = Epoch::from_utc("2025-03-20T11:22:33.4444444Z".parse().unwrap());
     let grid = TimeGrid::new(epoch, 86_400.0, 600.0).unwrap();
@@ -63,8 +65,8 @@ fn failures(model: Model, parts: Parts, targets: &[Target]) -> BTreeSet<String> 
     found.failures().map(|check| check.name.clone()).collect()
 }
 
-/// Every error fails the gates that the table lists and no unrelated one, and every gate of the default
-/// model is failed by some error.
+/// Every error fails the gates that the table lists and no unrelated one, and every gate of the
+/// default model fails under some error.
 #[test]
 fn each_error_fails_its_gates_and_each_gate_can_fail() {
     let mut missed: BTreeSet<String> = BTreeSet::new();
@@ -76,16 +78,17 @@ fn each_error_fails_its_gates_and_each_gate_can_fail() {
     let mut complaints = Vec::new();
     for (planted, failed) in errors.into_iter().zip(failed) {
         let quiet = planted.fails.iter().filter(|gate| !failed.contains(**gate));
-        complaints.extend(quiet.map(|gate| format!("{}: {gate} kept quiet", planted.error)));
+        complaints.extend(quiet.map(|gate| format!("{}: {gate} did not fail", planted.error)));
         let related = |name: &&String| planted.related.iter().any(|kind| name.contains(kind));
         let unrelated = failed.iter().filter(|name| !related(name));
-        complaints.extend(unrelated.map(|gate| format!("{}: {gate} cried", planted.error)));
+        complaints
+            .extend(unrelated.map(|gate| format!("{}: unrelated {gate} failed", planted.error)));
         missed.extend(failed);
     }
     let gates = findings(Model::J2, Parts::default(), &TARGETS).checks;
     let gates = gates.into_iter().filter(|check| check.gate.is_some());
     let never = gates.filter(|check| !missed.contains(&check.name));
-    complaints.extend(never.map(|check| format!("{} is failed by no error", check.name)));
+    complaints.extend(never.map(|check| format!("{} fails under no error", check.name)));
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 

@@ -36,7 +36,7 @@ impl Ric {
     }
 }
 
-/// Where the largest difference was found.
+/// Where the largest difference occurs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// Name of the satellite.
@@ -52,7 +52,7 @@ pub struct Worst {
 pub struct BudgetLine {
     /// What is compared: `first/second`.
     pub case: String,
-    /// What the difference consists of.
+    /// What causes the difference.
     pub cause: String,
     /// Root mean square, km.
     pub rms_km: Ric,
@@ -62,13 +62,13 @@ pub struct BudgetLine {
     pub mean_km: Ric,
     /// Slope of the straight line through the mean of the constellation, km/day.
     pub growth_km_per_day: Ric,
-    /// Where the largest difference was found.
+    /// Where the largest difference occurs.
     pub worst: Worst,
     /// How the distances are distributed.
     pub distance: Option<Distribution>,
 }
 
-/// Most distances that are kept for their distribution; beyond, instants are thinned out.
+/// Maximum number of distances in a distribution; beyond this, instants are thinned out.
 const KEPT: usize = 1_000_000;
 
 /// The sums of one instant, over the satellites.
@@ -119,7 +119,7 @@ fn instant(
 /// the order of both, over the grid of `first`.
 ///
 /// # Errors
-/// When a satellite of either cannot be propagated.
+/// If a satellite of either cannot be propagated.
 pub fn compare(
     case: &str,
     cause: &str,
@@ -127,7 +127,7 @@ pub fn compare(
     second: &Ephemeris,
 ) -> Result<BudgetLine, EphemerisError> {
     let times: Vec<f64> = first.grid().iter().collect();
-    // Collected in the order of time: the sums below do not depend on the threads.
+    // Collected in time order, so the sums below do not depend on the number of threads.
     let instants = times
         .par_iter()
         .map(|&elapsed_s| instant(first, second, elapsed_s))
@@ -236,7 +236,7 @@ mod tests {
         // RMS of a ramp of 144 samples: sqrt(Σ k²/n) with Σ_{k<n} k² = (n-1) n (2n-1) / 6
         let rms = drift_km_per_day / 144.0 * (143.0_f64 * 287.0 / 6.0).sqrt();
         assert!((line.rms_km.in_track - rms).abs() < 1e-6);
-        // r × v leans from the plane by Ω' sin i / n = 6e-4 rad, as the plane itself turns.
+        // r × v is tilted from the plane normal by Ω' sin i / n = 6e-4 rad because the plane itself rotates.
         assert!(line.max_km.cross_track < 2.0 * 1e-3);
         assert_eq!(line.worst.elapsed_s, 85_800.0);
     }

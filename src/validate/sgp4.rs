@@ -1,11 +1,14 @@
 //! The model of a study against SGP4: an error budget by cause.
 //!
-//! The model that the study propagates is the first of the first cases, and only these have gates: what
-//! a J2 theory leaves out of SGP4, which two bodies miss. SGP4 itself has no gate here, as it is its own
-//! judge. Beside it stand the cases of mean J2, as one number would not explain itself: mean J2 and SGP4 differ by (a) the constant shift of the
-//! radius that the first-order short-period theory has, (b) its periodic terms, (c) the frozen
-//! eccentricity that J3 forces, and (d) second-order secular terms. Each has a closed form at e = 0,
-//! from which the gates are made, so that they follow the inclination and altitude of the design.
+//! The first cases compare the model of the study with SGP4, and only these have gates: what a J2
+//! theory leaves out of SGP4. Two-body propagation fails them; SGP4 itself has no gate here, as it
+//! would be its own judge.
+//!
+//! The cases of mean J2 are always included, as a single number would explain nothing. Mean J2 and
+//! SGP4 differ by (a) the constant radius shift of the first-order short-period theory, (b) its
+//! periodic terms, (c) the frozen eccentricity forced by J3, and (d) second-order secular terms. Each
+//! has a closed form at e = 0 from which the gates are derived, so they follow the inclination and
+//! altitude of the design.
 
 pub(super) mod causes;
 mod element_sets;
@@ -82,20 +85,20 @@ impl Propagations {
         })
     }
 
-    /// What stands for the study: its model.
+    /// The propagation by the model of the study.
     fn of_study(&self) -> &Ephemeris {
         self.model
             .as_ref()
             .map_or(&self.mean_j2, |(_, propagated)| propagated)
     }
 
-    /// The cases of the model of the study, unless it is mean J2, whose cases are always there.
+    /// The cases of the model of the study, unless it is mean J2, whose cases are always included.
     fn model_cases(&self) -> Result<Vec<BudgetLine>, EphemerisError> {
         let Some((label, propagated)) = &self.model else {
             return Ok(Vec::new());
         };
-        let all = "the model of the study: all that it leaves out of SGP4";
-        let without = "the model of the study: what it leaves out of J2";
+        let all = "the model of the study: everything it leaves out of SGP4";
+        let without = "the model of the study: everything it leaves out of J2";
         [
             ("sgp4", all, &self.sgp4),
             ("sgp4-no-j3j4", without, &self.no_j3j4),
@@ -112,7 +115,7 @@ impl Propagations {
         compare_each([
             (
                 "mean-j2/sgp4",
-                "all that mean J2 leaves out; at e = 0 mostly J3's frozen eccentricity",
+                "everything mean J2 neglects; at e = 0 mostly J3's frozen eccentricity",
                 &self.mean_j2,
                 &self.sgp4,
             ),
@@ -130,13 +133,13 @@ impl Propagations {
             ),
             (
                 "osculating-j2/sgp4",
-                "J3's frozen eccentricity, J4 and the second order",
+                "J3's frozen eccentricity, J4 and second-order terms",
                 &self.osculating_j2,
                 &self.sgp4,
             ),
             (
                 "kepler-slot",
-                "sqrt(mu/a^3) in the Kozai slot: the effect of a common mistake",
+                "sqrt(mu/a^3) in the Kozai mean motion field, a common mistake",
                 &self.mean_j2,
                 &self.kepler_slot,
             ),
@@ -149,13 +152,13 @@ impl Propagations {
             ("sgp4-no-j3j4/sgp4-no-j3", "J4", &self.no_j3j4, &self.no_j3),
             (
                 "sgp4/sgp4-egm96",
-                "gravity constants: mu, R and J2 of EGM96 in place of WGS-72",
+                "gravity constants: mu, R and J2 of EGM96 instead of WGS-72",
                 &self.sgp4,
                 &self.design_constants,
             ),
             (
                 "sgp4/sgp4-improved",
-                "improved mode and its sidereal time in place of AFSPC mode",
+                "improved mode with its sidereal time instead of AFSPC mode",
                 &self.sgp4,
                 &self.improved,
             ),
@@ -195,14 +198,14 @@ impl Subject<'_> {
     }
 }
 
-/// Everything that SGP4 says about a design: the budget by cause with its gates, the rates of node
-/// and argument of latitude, the frozen eccentricity, the exported element sets, and what the
-/// differences do to visibility decisions, passes and metrics.
+/// All checks of a design by SGP4: the budget by cause with its gates, the rates of node and
+/// argument of latitude, the frozen eccentricity, the exported element sets, and the effect of the
+/// differences on visibility decisions, passes and metrics.
 ///
 /// Elements are unrounded, without drag, in WGS-72 unless a case says otherwise.
 ///
 /// # Errors
-/// When SGP4 refuses a satellite, as for an orbit that decays.
+/// If SGP4 rejects a satellite, for example because its orbit decays.
 pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut findings = against_the_verification_set(subject.parts.sgp4);
     let propagations = Propagations::new(subject, subject.grid())?;
@@ -232,24 +235,24 @@ pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     Ok(findings)
 }
 
-/// Two propagations that are the same differ by less than this, km or km/day.
+/// Two identical propagations differ by less than this, km or km/day.
 const SAME_KM: f64 = 1e-9;
 
 /// What SGP4 cannot say about the model of a study.
 fn note(subject: &Subject<'_>) -> Option<String> {
     let text = match subject.model() {
         Model::Sgp4 => {
-            "sgp4: the model of the study is the judge itself: sgp4/sgp4 shows only that both get the same elements; what judges SGP4 is its verification set, and --against numerical"
+            "sgp4: the model of the study is SGP4 itself, so sgp4/sgp4 shows only that both get the same elements; SGP4 is judged by its verification set and by --against numerical"
         }
         Model::TwoBody => {
-            "sgp4: two-body is held to what a J2 theory leaves out of SGP4; it has no secular drift, and misses these gates by what J2 does in the span"
+            "sgp4: the gates for two-body are what a J2 theory leaves out of SGP4; it has no secular drift, and fails them by the effect of J2 over the span"
         }
         Model::J2 | Model::J2Osculating => return None,
     };
     Some(text.to_owned())
 }
 
-/// The closed forms for the orbit and the span at hand, and the model that is held to them.
+/// The closed forms for this orbit and span, and the model that must meet them.
 struct GateScale {
     model: Model,
     label: &'static str,
@@ -273,12 +276,12 @@ impl GateScale {
         }
     }
 
-    /// A bound, but for deep space.
+    /// A bound, except in deep space.
     fn gate(&self, bound: f64) -> Option<f64> {
         (!self.deep_space).then_some(bound)
     }
 
-    /// Why a bound is there, or is not.
+    /// The reason for a bound, or for its absence.
     fn reason<'a>(&self, reason: &'a str) -> &'a str {
         if self.deep_space {
             "reported only: SGP4 adds Sun, Moon and resonances at this period"
@@ -391,7 +394,7 @@ impl GateScale {
                 },
                 value,
                 bounds.and_then(|bounds| self.gate(bounds[n])),
-                reason("closed forms of radius shift, short period, frozen eccentricity and second order, with 15 %"),
+                reason("closed forms of radius shift, short-period terms, frozen eccentricity and second order, plus 15 %"),
             ));
         }
         checks.push(Check::new(
@@ -403,7 +406,7 @@ impl GateScale {
             },
             line.growth_km_per_day.in_track - known_km_per_day,
             bounds.and_then(|_| self.gate(growth_gate)),
-            reason("a theory of first order in J2 misses the secular terms of J2^2 and J4, whose closed forms are known; third order, e, the constants, and the slope of periodic terms are left"),
+            reason("a theory of first order in J2 lacks the secular terms of J2^2 and J4, whose closed forms are subtracted; the remainder is third order, e, the constants and the slope of periodic terms"),
         ));
         checks
     }
@@ -417,13 +420,13 @@ impl GateScale {
         Check::new(
             "sgp4/radius-shift/closed-form",
             CheckedQuantity {
-                quantity: "mean radial difference less 3/4 J2 R^2/a (1 - 3 cos^2 i)",
+                quantity: "mean radial difference minus 3/4 J2 R^2/a (1 - 3 cos^2 i)",
                 unit: "km",
                 statistic: "mean",
             },
             without_j3j4.mean_km.radial - causes.radius_shift_km,
             self.gate(bound),
-            self.reason("the short-period theory of J2 moves the mean radius by a constant, known to first order"),
+            self.reason("the short-period theory of J2 shifts the mean radius by a constant that is known to first order"),
         )
     }
 
@@ -439,7 +442,7 @@ impl GateScale {
                 },
                 growth,
                 None,
-                "what sqrt(mu/a^3) in the mean motion slot of an element set costs",
+                "reported only: drift caused by sqrt(mu/a^3) in the mean motion field of an element set",
             ),
             Check::new(
                 "sgp4/kepler-slot/closed-form",

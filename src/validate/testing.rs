@@ -1,4 +1,4 @@
-//! Small studies for the tests of this module.
+//! Small studies for tests.
 
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};

@@ -1,4 +1,4 @@
-// Opens reports as a reader does: clicks designs and the globe, and measures.
+// Opens reports as a reader would: clicks designs and the globe, and measures.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { test } from "node:test";
@@ -15,7 +15,7 @@ const browser = await chromium.launch({
     "--disable-component-update", "--no-first-run"],
 });
 
-/** Opens the report of a run; what must not happen is collected in `trouble`. */
+/** Opens the report of a run; anything that must not happen is collected in `trouble`. */
 async function open(run, options = {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 900 }, ...options });
   const page = await context.newPage();
@@ -34,7 +34,7 @@ async function open(run, options = {}) {
   return { page, context, trouble, start };
 }
 
-/** Scrolls through the whole page, so that every figure is drawn. */
+/** Scrolls through the page so that every figure is drawn. */
 async function scrollThrough(page) {
   const height = await page.evaluate(() => document.documentElement.scrollHeight);
   for (let y = 0; y < height + 1000; y += 500) {
@@ -56,8 +56,8 @@ const place = (page) => page.evaluate(() => window.navwalker.state.place);
 
 test("the paper's report is light, loads fast and follows a click", async () => {
   const bytes = statSync(`${work}/paper/report.html`).size;
-  // Times are told and not judged: they depend on the machine. Other work on it only adds, so that
-  // the least of some is told.
+  // Times are reported, not judged: they depend on the machine. Other load can only add, so the
+  // smallest is reported.
   let loaded = Infinity;
   for (let n = 0; n < 3; n++) {
     const { page, context, start } = await open("paper");
@@ -80,13 +80,13 @@ test("the paper's report is light, loads fast and follows a click", async () => 
   const picture = await page.locator("#map-mean-pdop").screenshot();
   const curve = await page.evaluate(() => JSON.stringify(document.getElementById("series-max-pdop").data.at(-1).y));
 
-  // The first member of the front is its left end, which is not the choice.
+  // The first design of the front is its left end, which is not the fuzzy pick.
   const trace = await page.evaluate(() => document.getElementById("pareto").data.findIndex((t) => t.name === "front"));
   await page.locator("#pareto").scrollIntoViewIfNeeded();
   const point = page.locator("#pareto .scatterlayer .trace").nth(trace).locator("path.point").first();
   const box = await point.boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 4 });
-  // The point under the pointer shows its name first, as for a reader.
+  // The point under the pointer shows its name first, as it does for a reader.
   await page.waitForSelector("#pareto .hoverlayer .hovertext");
   await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
   await page.waitForFunction((old) => window.navwalker.state.place !== old, before);
@@ -96,7 +96,7 @@ test("the paper's report is light, loads fast and follows a click", async () => 
   await page.locator("#map-mean-pdop").scrollIntoViewIfNeeded();
   await page.waitForTimeout(300);
   for (const [n, id] of maps.entries()) assert.notEqual(await mapValues(page, id), values[n], `${id} did not follow`);
-  assert.ok(!picture.equals(await page.locator("#map-mean-pdop").screenshot()), "the picture of the map is the same");
+  assert.ok(!picture.equals(await page.locator("#map-mean-pdop").screenshot()), "the picture of the map did not change");
   assert.notEqual(await page.evaluate(() => JSON.stringify(document.getElementById("series-max-pdop").data.at(-1).y)), curve);
 
   await page.locator("#next").click();
@@ -105,13 +105,16 @@ test("the paper's report is light, loads fast and follows a click", async () => 
   assert.equal(await page.locator("#badge").isVisible(), true);
   assert.deepEqual(trouble, []);
   await wholePage(page, "desktop");
+  // The picture in the README: trade-off, selected design and the first maps.
+  const top = await page.evaluate(() => document.getElementById("tradeoff").offsetTop);
+  await page.screenshot({ path: `${shots}/readme.png`, fullPage: true, clip: { x: 0, y: top, width: 1280, height: 1230 } });
   await context.close();
 });
 
-test("the page suits a phone, the dark and paper", async () => {
+test("the page suits a phone, dark mode and print", async () => {
   const phone = await open("paper", { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
   await wholePage(phone.page, "phone");
-  // A page that is too wide makes the phone zoom out.
+  // A page that is too wide makes a phone zoom out.
   const width = await phone.page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(width <= 390, `the page is ${width} px wide`);
   assert.deepEqual(phone.trouble, []);
@@ -131,7 +134,7 @@ test("the page suits a phone, the dark and paper", async () => {
   await print.context.close();
 });
 
-test("the globe keeps its pace with 300 satellites and tells the sky of a place", async () => {
+test("the globe keeps up with 300 satellites and shows the sky of a point", async () => {
   const { page, context, trouble } = await open("many");
   await page.locator("#globe").scrollIntoViewIfNeeded();
   await page.waitForFunction(() => window.navwalker.frames().length >= 100, null, { timeout: 30000 });
@@ -157,7 +160,7 @@ test("the globe keeps its pace with 300 satellites and tells the sky of a place"
   await context.close();
 });
 
-test("three objectives over points can be turned", async () => {
+test("the axes of three objectives can be changed", async () => {
   const { page, context, trouble } = await open("points");
   const title = () => page.evaluate(() => document.getElementById("pareto").layout.yaxis.title.text);
   await page.waitForSelector("#pareto .scatterlayer .trace", { state: "attached" });
@@ -193,18 +196,18 @@ test("the sky shows the skyline that the numbers were computed with", async () =
 
 test("an empty front says so", async () => {
   const { page, context, trouble } = await open("empty");
-  assert.match(await page.locator("aside.gaps").textContent(), /no member/);
+  assert.match(await page.locator("aside.gaps").textContent(), /no design/);
   assert.equal(await page.locator("#pareto").count(), 0);
   await wholePage(page, "empty");
   assert.deepEqual(trouble, []);
   await context.close();
 });
 
-test("damage is named and hostile texts stay texts", async () => {
+test("damage is reported and hostile texts stay texts", async () => {
   const { page, context, trouble } = await open("hostile");
   const gaps = await page.locator("aside.gaps").textContent();
   assert.match(gaps, /history\.json is damaged/);
-  assert.match(gaps, /1 of 3 front members cannot be read/);
+  assert.match(gaps, /1 of 3 designs of the front cannot be read/);
   await page.locator("#next").click();
   await scrollThrough(page);
   await page.locator("#pareto").scrollIntoViewIfNeeded();

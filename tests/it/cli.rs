@@ -400,7 +400,7 @@ fn a_scenario_beside_a_run_is_refused() {
         ];
         let refused = ran(directory.path(), &export);
         assert_eq!(refused.status, 2);
-        let message = format!("a run has its own scenario; leave out '{scenario}' or --run");
+        let message = format!("a run has its own scenario; omit '{scenario}' or --run");
         assert!(refused.stderr.contains(&message), "{}", refused.stderr);
     }
 }
@@ -426,7 +426,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     assert_eq!(resumed.status, 0, "{}", resumed.stderr);
     assert!(
         resumed.stderr.contains("is damaged")
-            && resumed.stderr.contains("the one before it is used")
+            && resumed.stderr.contains("resuming from the one before it")
     );
     // The last generation was repeated: nothing is lost.
     assert!(fs::read(&checkpoint).unwrap() == good);
@@ -448,7 +448,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     );
     assert_eq!(hopeless.status, 2);
     assert!(
-        hopeless.stderr.contains("no earlier one is intact"),
+        hopeless.stderr.contains("no earlier checkpoint is intact"),
         "{}",
         hopeless.stderr
     );

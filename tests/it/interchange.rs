@@ -143,7 +143,7 @@ fn a_scenario_of_a_gigabyte_is_refused() {
     let output = limited(directory.path(), "ulimit -v 300000", &arguments);
     assert_eq!(output.status.code(), Some(2));
     let stderr = String::from_utf8(output.stderr).unwrap();
-    assert!(stderr.contains("longer than 64 MiB"), "{stderr}");
+    assert!(stderr.contains("larger than 64 MiB"), "{stderr}");
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn gnss_stand_in_files_of_their_own() {
         "--sp3-letter",
         "G",
     ];
-    assert!(refused(&taken).contains("'G' is the letter of gps"));
+    assert!(refused(&taken).contains("'G' is the SP3 letter of gps"));
     let alone = ["export", "--as", "oem", "--out", "x", "--gnss", "gps"];
     assert!(refused(&alone).contains("add sp3 to --as"));
 }
@@ -236,7 +236,7 @@ fn the_parts_of_a_large_constellation_are_read_together() {
         } else {
             // SP3-c has no room for names.
             assert!(
-                evaluated.stderr.contains("given twice"),
+                evaluated.stderr.contains("appears twice"),
                 "{}",
                 evaluated.stderr
             );

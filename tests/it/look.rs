@@ -184,10 +184,13 @@ fn figures_that_are_not_there_say_why() {
         ),
         (
             &["--figure", "series", "--measure", "availability"],
-            "figure series does not show availability",
+            "figure series cannot show availability",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
-        (&["--figure", "map", "--pick", "99"], "no such member"),
+        (
+            &["--figure", "map", "--pick", "99"],
+            "cannot pick 99: the front has",
+        ),
         (&["--figure", "map", "--out", "map.gif"], "use --as"),
         (
             &["--figure", "map", "--out", "nowhere/map.svg"],

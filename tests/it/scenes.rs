@@ -80,7 +80,7 @@ fn scenarios_are_exported_and_read_back() {
         entry["assumptions"].to_string()
     };
     assert!(told("scene.czml").contains("masks: 7°"));
-    assert!(told("stk-scenario/connect.txt").contains("not tried in STK"));
+    assert!(told("stk-scenario/connect.txt").contains("not tested in STK"));
     assert!(told("gmat/navwalker.script").contains("osculating"));
 
     let mean_pdop = |how: &[&str]| {

@@ -145,11 +145,11 @@ fn a_pick_is_explained() {
     assert_eq!(searched.status, 0, "{}", searched.stderr);
     let front = directory.path().join("run/front.json");
     for (pick, reason) in [
-        ("fuzzy", "the fuzzy decision"),
-        ("sum", "summed over the objectives"),
+        ("fuzzy", "the fuzzy pick"),
+        ("sum", "sum of memberships"),
         ("topsis", "TOPSIS, equal weights"),
         ("knee", "the knee"),
-        ("1", "the member that was asked for"),
+        ("1", "the design with this index"),
     ] {
         let arguments = [
             "validate",
@@ -248,7 +248,7 @@ fn what_does_not_matter_is_said() {
             .as_str()
             .unwrap()
     };
-    assert!(message("independent:availability").contains("planes and satellites-per-plane"));
+    assert!(message("independent:availability").contains("`planes` and `satellites-per-plane`"));
     for variable in ["inclination-deg", "altitude-km"] {
         assert!(message(&format!("idle:{variable}")).contains(variable));
     }

@@ -1,4 +1,4 @@
-//! What `navwalker export --help` says of the products.
+//! The products in `navwalker export --help`.
 
 use crate::exchange::export::Product;
 use crate::keyword::Keyword;
@@ -6,7 +6,7 @@ use crate::keyword::Keyword;
 /// Columns of a keyword and the space after it.
 const KEYWORD_WIDTH: usize = 12;
 
-/// What `--as` takes, and examples.
+/// The values of `--as`, and examples.
 pub(super) fn help() -> String {
     let mut help = "Products:\n".to_owned();
     for product in Product::ALL {
@@ -20,6 +20,6 @@ pub(super) fn help() -> String {
 Settings the other program needs are listed in manifest.json under assumptions.
 
 Examples:
-  navwalker export --design delta:55:182/13/1@925 --as czml,geojson,kml --out shown
-  navwalker export regional --design star:86.4:66/6/2@780 --as stk,gmat --out rebuilt"
+  navwalker export --design delta:55:182/13/1@925 --as czml,geojson,kml --out maps
+  navwalker export regional --design star:86.4:66/6/2@780 --as stk,gmat --out scenario"
 }

@@ -108,7 +108,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     print(args, &text, dops, &result, || constellation_csv(&result))
 }
 
-/// All dilutions and the series, as far as they were asked for.
+/// All dilutions of precision and the series, as requested.
 fn further(
     args: &EvaluateArgs,
     evaluator: &Evaluator,
@@ -162,7 +162,7 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     let weight = scenario.objectives.cvar_weight;
     let tail = 100.0 * (1.0 - metrics.cvar_level);
     let threshold = scenario.objectives.availability_pdop;
-    let seen = "LEO satellites in view, mean over points and times";
+    let seen = "LEO satellites in view, mean over points and instants";
     row(
         "mean visible",
         Some(metrics.mean_visible),
@@ -171,7 +171,7 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     );
     row("mean PDOP", metrics.mean_pdop, 4, String::new());
     row(
-        "CVaR PDOP",
+        "CVaR of PDOP",
         metrics.cvar_pdop,
         4,
         format!(
@@ -180,27 +180,32 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
         ),
     );
     row("median PDOP", metrics.p50_pdop, 4, String::new());
-    row("95 % PDOP", metrics.p95_pdop, 4, String::new());
-    row("99 % PDOP", metrics.p99_pdop, 4, String::new());
+    row("95 % quantile of PDOP", metrics.p95_pdop, 4, String::new());
+    row("99 % quantile of PDOP", metrics.p99_pdop, 4, String::new());
     row("maximum PDOP", metrics.max_pdop, 4, String::new());
     row(
-        "solved",
-        Some(100.0 * metrics.solved_fraction),
-        3,
-        "% of points and times".to_owned(),
+        "solved fraction",
+        Some(metrics.solved_fraction),
+        5,
+        "of points and instants".to_owned(),
     );
     row(
-        "available",
-        Some(100.0 * metrics.availability),
-        3,
-        format!("% with PDOP <= {threshold}"),
+        "availability",
+        Some(metrics.availability),
+        5,
+        format!("fraction with PDOP <= {threshold}"),
     );
-    row("J_pos", metrics.j_pos, 4, format!("mean + {weight} CVaR"));
+    row(
+        "J_pos",
+        metrics.j_pos,
+        4,
+        format!("mean PDOP + {weight} CVaR of PDOP"),
+    );
     row(
         "J_cost",
         metrics.j_cost,
         4,
-        "satellites per visible satellite".to_owned(),
+        "satellites / mean visible".to_owned(),
     );
     let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
     format!(

@@ -94,20 +94,20 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// Says what the products cost that were asked for.
+/// Warns about the losses of the requested products.
 fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(
-            "the mean motion slot holds sqrt(mu/a^3): SGP4 carries the design away from its J2 \
+            "the mean motion field is sqrt(mu/a^3): with SGP4 the design drifts from its J2 \
              trajectory by up to 400 km a day; navwalker validate --against sgp4 prints how much",
         );
     }
     if args.frame == Some(Frame::Teme) {
-        output::warning("TEME is not a frame of CCSDS ephemerides; not every reader takes it");
+        output::warning("CCSDS ephemerides do not define TEME; some readers reject it");
     }
 }
 
-/// Reads the products back and prints what the scenario makes of each.
+/// Reads the products back and prints the metrics from each.
 fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest) -> Result<Status> {
     let evaluator = study.evaluator()?;
     let original = Original::new(&evaluator, design)?;
@@ -156,14 +156,14 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
     Ok(if passed { Status::Done } else { Status::Failed })
 }
 
-/// Files that make the constellation once.
+/// Files that together contain the constellation once.
 struct FileGroup {
     name: String,
     paths: Vec<PathBuf>,
     read_back: ReadBack,
 }
 
-/// The files of the design that are read back, as their products group them.
+/// The files of the design to read back, grouped as their products require.
 fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<FileGroup> {
     let mut groups: Vec<FileGroup> = Vec::new();
     for file in &manifest.files {
@@ -187,7 +187,7 @@ fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<FileGroup> {
     groups
 }
 
-/// Refuses choices that no product of the export can keep.
+/// Rejects options that none of the products can honour.
 fn check_choices(args: &ExportArgs) -> Result<()> {
     let asked = |product| args.products.contains(&product);
     if args.oem_combined && args.oem_syntax != oem::OemSyntax::Xml {
@@ -207,7 +207,7 @@ fn check_choices(args: &ExportArgs) -> Result<()> {
     Ok(())
 }
 
-/// Each product once, in the order in which it was asked for.
+/// Each product once, in the order given.
 fn products(args: &ExportArgs) -> Vec<Product> {
     let mut products = Vec::new();
     for product in &args.products {

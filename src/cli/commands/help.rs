@@ -29,7 +29,7 @@ pub(crate) fn man(command: Option<&str>, out: Option<&Path>) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// The program with its commands under their full names.
+/// The program, with the full names of its commands.
 fn built() -> clap::Command {
     let mut program = Cli::command().disable_help_subcommand(true);
     program.build();
@@ -42,7 +42,7 @@ fn page(command: Option<&str>) -> Result<String> {
         None => &program,
         Some(name) => match program.find_subcommand(name) {
             Some(found) => found,
-            None => bail!("there is no command '{name}'; navwalker --help lists them"),
+            None => bail!("unknown command '{name}'; navwalker --help lists the commands"),
         },
     };
     render(named)

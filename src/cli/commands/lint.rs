@@ -10,10 +10,10 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-/// Findings that are told of one file.
+/// The findings reported for one file.
 const MOST_FINDINGS: usize = 100;
 
-/// One finding, as JSON and CSV tell it.
+/// One finding, as written to JSON and CSV.
 #[derive(Serialize)]
 struct FindingRow {
     file: String,

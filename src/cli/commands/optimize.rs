@@ -1,4 +1,4 @@
-//! `navwalker optimize`: the main job.
+//! `navwalker optimize`.
 
 mod seeds;
 
@@ -105,17 +105,17 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     Ok(status(result))
 }
 
-/// What became of the sweep that certifies.
+/// Outcome of the sweep for `--certify`.
 pub(super) enum Sweep {
-    /// None was asked for.
+    /// Not requested.
     NotWanted,
     /// Its result.
     Done(Box<OptimizeResult>),
-    /// Ctrl-C came first.
+    /// Stopped by Ctrl-C.
     Interrupted,
 }
 
-/// The sweep that certifies, if one is asked for.
+/// The sweep for `--certify`, if requested.
 pub(super) fn sweep(
     args: &OptimizeArgs,
     study: &Study,
@@ -151,7 +151,7 @@ pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<Run
 /// How a search ended.
 pub(super) struct Ended {
     pub(super) result: OptimizeResult,
-    /// Whether it had its whole budget, rather than being interrupted.
+    /// Whether it used its full budget instead of being interrupted.
     pub(super) is_done: bool,
 }
 
@@ -185,7 +185,7 @@ pub(super) fn search(
     })
 }
 
-/// The exit status of a search that had its whole budget.
+/// The exit status of a search that used its full budget.
 pub(super) fn status(result: &OptimizeResult) -> Status {
     if result.front.is_empty() {
         Status::Failed
@@ -202,7 +202,7 @@ pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
     ));
 }
 
-/// The search where its checkpoint left it, or a new one.
+/// The search resumed from its checkpoint, or a new one.
 fn start(
     args: &OptimizeArgs,
     directory: &RunDirectory,
@@ -273,7 +273,8 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     }
     if let Some(chosen) = result.chosen() {
         text += &format!(
-            "* chosen by fuzzy decision: {}, the best worst-case membership ({}) over the objectives\n",
+            "* fuzzy pick: {} {}, the best worst-case membership over the objectives ({})\n",
+            chosen.index,
             chosen.design.notation,
             shown::membership(chosen.membership)
         );
@@ -288,7 +289,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     text
 }
 
-/// What the other methods of decision pick, and why.
+/// The picks of the other methods, and why.
 fn other_picks(result: &OptimizeResult) -> String {
     let points: Vec<Vec<f64>> = result.front.iter().map(FrontMember::minimised).collect();
     let mut text = String::new();

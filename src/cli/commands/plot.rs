@@ -19,7 +19,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let bytes = render(&plate, form)?;
     let Some(out) = &args.out else {
         if form == Form::Png && io::stdout().is_terminal() {
-            bail!("a PNG cannot be shown in a terminal; name a file with --out");
+            bail!("a PNG cannot be written to a terminal; give a file with --out");
         }
         io::stdout().lock().write_all(&bytes)?;
         return Ok(Status::Done);
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// The form asked for, or that of the file's extension.
+/// The requested form, or that of the file's extension.
 fn form(args: &PlotArgs) -> Result<Form> {
     if let Some(form) = args.form {
         return Ok(form);
@@ -87,12 +87,12 @@ fn cell_deg(view: &RunView) -> Option<[f64; 2]> {
     }
 }
 
-/// The picked design, and those beside it, evaluated.
+/// The picked design and those compared with it, evaluated.
 fn profiles(args: &PlotArgs, view: &RunView, with_others: bool) -> Result<Vec<(String, Profile)>> {
     let evaluator = view
         .evaluator
         .as_ref()
-        .context("the scenario of the run cannot be set up, which this figure needs")?;
+        .context("this figure needs the scenario of the run, which cannot be set up")?;
     let member = view.pick(args.pick)?;
     let design: Design = member.design.notation.parse()?;
     let mut wanted = vec![(design.to_string(), design)];

@@ -15,7 +15,7 @@ pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// Writes the page of a run into its directory, with the validation of `validation` or what lies
+/// Writes the page of a run to its directory, with the validation given by `validation` or the one
 /// in the run.
 pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<PathBuf> {
     let args = RunArgs {

@@ -1,4 +1,4 @@
-//! `navwalker reproduce`: the paper's tables and figures, ours beside its own.
+//! `navwalker reproduce`: the paper's tables and figures next to ours.
 
 use crate::cli::args::{ReproduceArgs, StudyFormat};
 use crate::cli::study::Study;
@@ -13,7 +13,7 @@ use serde::Deserialize;
 use std::fs;
 use std::path::Path;
 
-/// The report by which a directory is known again.
+/// The report that identifies the study in a directory.
 const REPORT: &str = "report.json";
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
         );
     }
     let staged = files::StagedDirectory::new(&args.out)?;
-    output::hint("reproducing the paper's study; this takes seconds to minutes");
+    output::hint("reproducing the paper; this takes seconds to minutes");
     let repeated = reproduce(&PaperStudy {
         setup: study.setup()?,
         designs: scenario.search.designs,
@@ -62,14 +62,14 @@ fn render(result: &ReproduceResult, format: StudyFormat) -> Result<String> {
     })
 }
 
-/// What of a report tells which study it is of.
+/// The part of a report that identifies its study.
 #[derive(Deserialize)]
 struct Stored {
     scenario: ScenarioStamp,
     version: String,
 }
 
-/// Whether a directory is vacant or holds this study by this version.
+/// Whether a directory is empty or contains this study by this version.
 fn may_replace(directory: &Path, hash: &str) -> Result<bool> {
     if files::is_vacant(directory)? {
         return Ok(true);

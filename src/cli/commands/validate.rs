@@ -22,7 +22,7 @@ enum Against {
     Files(PathBuf),
 }
 
-/// The targets that were typed; one with a dot or a slash in it is a file or a directory.
+/// The targets on the command line; one with a dot or a slash is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {
     let one = |name: &String| {
         if name.contains(['.', '/', '\\']) {
@@ -83,8 +83,8 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     })
 }
 
-/// What a target stands for; of all standards the tables of the paper only for its own study, as no
-/// other has its mask.
+/// The standards a target covers; `all` includes the paper's tables only for the paper's own study,
+/// since no other has its mask.
 fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     let ours = &study.scenario;
     let paper = Scenario::parse("paper", builtin("paper")?.as_bytes(), &[] as &[&str])?;
@@ -97,7 +97,7 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     Ok(target.each().filter(applies).collect())
 }
 
-/// What a path holds, by comparison: a file; the formats of an export; or all files of a directory.
+/// The comparisons for a path: a file, the formats of an export, or all files in a directory.
 fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<Comparand>)>> {
     let read_all = |path: &Path| -> Result<Vec<Comparand>> {
         let mut all = Vec::new();
@@ -105,7 +105,7 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
             all.extend(comparands(&file.to_string_lossy(), imported.fleet)?);
         }
         if all.is_empty() {
-            bail!("{} has no object", path.display());
+            bail!("{} has no objects", path.display());
         }
         Ok(all)
     };
@@ -131,7 +131,7 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
     }
     if by_format.is_empty() {
         bail!(
-            "{} has no file in a format that can be compared: {}",
+            "{} has no files in a format that can be compared: {}",
             path.display(),
             COMPARED.join(", ")
         );
@@ -139,7 +139,7 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
     Ok(by_format.into_iter().collect())
 }
 
-/// Formats of an export that are read back.
+/// Formats of an export that can be read back.
 const COMPARED: [&str; 8] = [
     "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
 ];

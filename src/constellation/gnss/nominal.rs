@@ -1,10 +1,9 @@
 //! The nominal constellations, from the documents that define them.
 //!
 //! All are referred to the epoch of the study: the angles of a table, or Ω = M = 0 of the first
-//! satellite, are mean elements in TEME at that instant, and the satellites propagate on under secular
-//! J2. So a study sees the nominal geometry whatever its date; where the ground tracks lie
-//! follows from the sidereal time of its epoch. For satellites where they really are, take
-//! element sets.
+//! satellite, are mean elements in TEME at that instant, and the satellites are propagated under
+//! secular J2. A study therefore has the nominal geometry whatever its date; the ground tracks follow
+//! from the sidereal time of its epoch. For actual satellite positions, use element sets.
 
 use super::{GeosynchronousOrbit, GnssOrbit, GnssSatellite};
 use crate::constellation::{Design, DesignParameters, Pattern};
@@ -49,7 +48,7 @@ pub(super) fn beidou3(epoch: Epoch) -> Vec<GnssSatellite> {
 /// each, unevenly spaced so that one may fail; 55°, 26 559.7 km, e = 0.
 ///
 /// Source: *GPS Standard Positioning Service Performance Standard* (2001), tables 3-1 and A-2-1.
-/// Its epoch is 1993-07-01T00:00:00Z; see the module for what becomes of it here.
+/// Its epoch is 1993-07-01T00:00:00Z; see the module documentation for how it is used here.
 pub(super) fn gps() -> Vec<GnssSatellite> {
     let mut satellites = Vec::with_capacity(24);
     for (plane, raan_deg, arguments_deg) in GPS_PLANES {
@@ -110,7 +109,7 @@ fn walker_24_3_1(prefix: &str, inclination_deg: f64, altitude_km: f64) -> Vec<Gn
         inclination_deg,
         altitude_km,
     });
-    // The presets are constants of this module, which its tests build.
+    // The presets are constants of this module, covered by its tests.
     let satellites = design.map(|design| design.satellites()).unwrap_or_default();
     (1..)
         .zip(satellites)

@@ -9,7 +9,7 @@ use crate::units::SECONDS_PER_DAY;
 use std::fmt;
 use thiserror::Error;
 
-/// Why element sets make no system.
+/// Why element sets do not form a system.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ElementSetError {
     /// No set.
@@ -26,14 +26,14 @@ pub enum ElementSetError {
         /// The satellite.
         satellite: String,
     },
-    /// A set that SGP4 refuses.
+    /// A set that SGP4 rejects.
     #[error("{system}: satellite {satellite}: {source}")]
     Refused {
         /// The system.
         system: String,
         /// The satellite.
         satellite: String,
-        /// What SGP4 says.
+        /// The message of SGP4.
         source: PropagationError,
     },
 }
@@ -56,7 +56,7 @@ pub struct ElementSets {
 /// Element sets that are old, or not yet valid, for a study: a warning, not an error.
 ///
 /// The error of SGP4 for a navigation satellite grows to kilometres in days and to tens of
-/// kilometres along the track in weeks (Vallado et al., AIAA 2006-6753).
+/// kilometres in-track in weeks (Vallado et al., AIAA 2006-6753).
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaleElements {
     /// The system.
@@ -83,7 +83,7 @@ impl ElementSets {
     /// A satellite is named as in its set, or by its catalogue number or designator.
     ///
     /// # Errors
-    /// When there is no set, a satellite has two, or SGP4 refuses one.
+    /// If there is no set, a satellite has two, or SGP4 rejects one.
     pub fn new(name: &str, sets: &[::sgp4::Elements]) -> Result<Self, ElementSetError> {
         let system = || name.to_owned();
         if sets.is_empty() {
@@ -140,7 +140,7 @@ impl ElementSets {
         self.members.iter().map(propagate).collect()
     }
 
-    /// The set that is farthest from an instant of `grid`, when that is more than
+    /// The set that is farthest from an instant of `grid`, if that is more than
     /// [`StaleElements::MAX_AGE_DAYS`].
     #[must_use]
     pub fn stale(&self, grid: TimeGrid) -> Option<StaleElements> {
@@ -154,7 +154,7 @@ impl StaleElements {
     /// Age beyond which sets are stale, days.
     pub const MAX_AGE_DAYS: f64 = 14.0;
 
-    /// The set of `system` that is farthest from an instant of `grid`, when that is more than
+    /// The set of `system` that is farthest from an instant of `grid`, if that is more than
     /// [`Self::MAX_AGE_DAYS`]; sets by their satellite and epoch.
     pub fn among(
         system: &str,

@@ -3,9 +3,9 @@
 use super::propagation::{BLOCK, PositionBlock, Positions};
 use super::tiles::{Cap, Horizon};
 
-/// Satellites in f32, which are tested together, one for each bit of a word.
+/// Satellites in f32 that are tested together, one for each bit of a word.
 ///
-/// A place without a satellite holds NaN, which passes no test.
+/// A slot without a satellite is NaN, which passes no test.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(super) struct Block {
@@ -37,7 +37,7 @@ impl Block {
         self.index[n] as usize
     }
 
-    /// A bit for each satellite that the cap may see something of.
+    /// A bit for each satellite that some part of the cap may see.
     #[inline(always)]
     pub(super) fn inside(&self, cap: &Cap, slack_km: f32) -> u64 {
         let bound = cap.bound - slack_km;
@@ -46,7 +46,7 @@ impl Block {
             let reach = self.x[n] * x + self.y[n] * y + self.z[n] * z + self.q[n] * cap.sine;
             if reach >= bound { 1_u32 << place } else { 0 }
         };
-        // Lanes of words whose bits do not overlap: vector comparisons give no word by themselves.
+        // Lanes of words with disjoint bits, because vector comparisons do not give a word directly.
         let (mut low, mut high) = ([0; QUARTER], [0; QUARTER]);
         for l in 0..QUARTER {
             low[l] = bit(l, l) | bit(QUARTER + l, QUARTER + l);
@@ -69,7 +69,7 @@ impl Block {
     }
 }
 
-/// Satellites of a block that one vector register holds, at most.
+/// Maximum number of satellites of a block in one vector register.
 const QUARTER: usize = BLOCK / 4;
 
 /// The numbers of the bits that are set, in increasing order.
@@ -92,7 +92,7 @@ pub(super) struct Candidates {
 }
 
 impl Candidates {
-    /// An empty list with room for `count`.
+    /// An empty list with capacity for `count`.
     pub(super) fn with_capacity(count: usize) -> Self {
         Self {
             blocks: vec![Block::EMPTY; count.div_ceil(BLOCK)],
@@ -114,7 +114,7 @@ impl Candidates {
         self.count = positions.count;
     }
 
-    /// Those of `others` that the cap may see something of.
+    /// Those of `others` that some part of the cap may see.
     #[inline(always)]
     pub(super) fn select(&mut self, others: &Self, cap: &Cap, slack_km: f32) {
         self.count = 0;

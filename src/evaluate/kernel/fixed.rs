@@ -1,4 +1,4 @@
-//! The GNSS part of the geometry, which no design changes.
+//! The GNSS part of the geometry, which is the same for all designs.
 
 use super::super::Setup;
 use super::super::fixed::systems;
@@ -19,7 +19,7 @@ pub(super) struct Fixed {
     clocks: Clocks,
     mask: MaskTerms<f64>,
     instructions: InstructionSet,
-    /// Empty when there is no GNSS or it does not fit.
+    /// Empty if there is no GNSS, or too much to store.
     kept: FixedTiles,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct FixedTiles {
     normals: Vec<Normal>,
     remainders: Vec<Normal>,
     surpluses: Vec<[u16; LANES]>,
-    /// Empty when all systems have clocks of their own.
+    /// Empty if all systems have their own clocks.
     shared: Vec<SharedClock>,
 }
 
@@ -69,7 +69,7 @@ impl FixedTiles {
     }
 }
 
-/// One sample in time.
+/// One instant.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SampleInstant {
     /// Index into the grid.
@@ -93,7 +93,7 @@ impl<'a> FixedSample<'a> {
 }
 
 impl Fixed {
-    /// Keeps the samples if they fit into `kept_bytes`.
+    /// Stores the samples if they take at most `kept_bytes`.
     pub(super) fn new(
         setup: &Setup,
         tiles: &Tiles,
@@ -120,7 +120,7 @@ impl Fixed {
         Ok(fixed)
     }
 
-    /// The tiles of a sample: kept ones, or made in `scratch`.
+    /// The tiles of a sample: stored ones, or computed in `scratch`.
     pub(super) fn at<'a>(
         &'a self,
         tiles: &Tiles,
@@ -209,7 +209,7 @@ impl FixedSystem {
         }
     }
 
-    /// Adds the satellites that the points of a tile see.
+    /// Adds the satellites visible from the points of a tile.
     #[inline(always)]
     fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
         for block in self.candidates.blocks() {
@@ -220,7 +220,7 @@ impl FixedSystem {
     }
 }
 
-/// The GNSS part of one sample, to be made from the positions of each system.
+/// The GNSS part of one sample, to be computed from the positions of each system.
 struct Make<'a> {
     fixed: &'a Fixed,
     tiles: &'a [Tile],

@@ -1,19 +1,19 @@
-//! One binary for all processors: the hot code is compiled once for each instruction set, and
-//! the widest one that the processor has is chosen at run time.
+//! One binary for all processors: the hot code is compiled for each instruction set, and the widest
+//! one that the processor supports is selected at run time.
 
 use multiversion::multiversion;
 use std::fmt;
 
-/// The vector instructions that the kernel runs on.
+/// The vector instructions that the kernel uses.
 ///
-/// All give the same bits; [`InstructionSet::detect`] finds the fastest one that there is.
+/// All give the same bits; [`InstructionSet::detect`] finds the fastest available one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InstructionSet {
     /// AVX-512 of Ice Lake and later: sixteen points at once.
     Avx512,
     /// AVX2: eight points at once.
     Avx2,
-    /// What every processor of the target has; SSE2 on x86-64: four points at once.
+    /// The baseline of the target, SSE2 on x86-64: four points at once.
     Baseline,
 }
 
@@ -40,7 +40,7 @@ impl InstructionSet {
         }
     }
 
-    /// The widest one that the processor has.
+    /// The widest one that the processor supports.
     #[must_use]
     pub fn detect() -> Self {
         Self::ALL
@@ -49,7 +49,7 @@ impl InstructionSet {
             .unwrap_or(Self::Baseline)
     }
 
-    /// Does a piece of work with these instructions, or the baseline where they are missing.
+    /// Does a piece of work with these instructions, or with the baseline if they are missing.
     pub(super) fn run<W: Work>(self, work: W) -> W::Output {
         match self {
             Self::Avx512 => avx512(work),
@@ -69,8 +69,8 @@ impl fmt::Display for InstructionSet {
     }
 }
 
-/// Work whose `run` is inlined into code for one instruction set after the other; all that it
-/// calls must be `#[inline(always)]` to be compiled for that set too.
+/// Work whose `run` is inlined into the code for each instruction set; everything it calls must be
+/// `#[inline(always)]` to be compiled for that set too.
 pub(super) trait Work {
     type Output;
 

@@ -2,14 +2,14 @@
 //!
 //! Each function is one loop over the lanes without a branch, which the compiler turns into
 //! vector instructions of whatever width the caller is compiled for. There is no fused
-//! multiply-add and no approximate reciprocal: every operation is one that IEEE 754 rounds in
-//! one way, so that all instruction sets give the same bits.
+//! multiply-add and no approximate reciprocal: IEEE 754 defines the rounding of every operation, so
+//! all instruction sets give the same bits.
 
 use crate::dop::{Factor, Symmetric3, pivot_floor};
 use crate::visibility::Mask;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-/// Ground points that are worked on side by side.
+/// Ground points that are processed side by side.
 pub(super) const LANES: usize = 16;
 
 /// One number for each of the points.
@@ -29,14 +29,14 @@ pub(super) trait Real:
 {
     const ZERO: Self;
     const ONE: Self;
-    /// Whether Σ v_z² is summed; otherwise it is the count less the other two, which costs
-    /// nothing, but holds only as far as v is a unit vector.
+    /// Whether Σ v_z² is summed; otherwise it is the count minus the other two, which costs nothing
+    /// but holds only as far as v is a unit vector.
     const SUMS_ZZ: bool;
 
     fn of(value: f64) -> Self;
     /// A number of satellites.
     fn count(count: u32) -> Self;
-    /// A number from its f32 nearest and what that leaves over.
+    /// A number from the nearest f32 and the remainder.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
     /// One over the root of a squared range.
@@ -77,7 +77,7 @@ impl Real for f32 {
         1.0 / self.sqrt()
     }
 
-    /// What may be but need not be above the mask is looked at again.
+    /// Satellites within rounding of the mask are checked again.
     #[inline(always)]
     fn above(mask: &MaskTerms<Self>, _height: Self, _range2: Self, sine: Self) -> (bool, bool) {
         (
@@ -112,9 +112,9 @@ impl Real for f64 {
         self.sqrt()
     }
 
-    /// That of f32 and one step of Newton, which squares its error of 1e-7: 2e-14, at a third of
-    /// the time of a root and a division in f64. That stretches a line of sight and does not turn
-    /// it, so that the pivots of a singular geometry stay at zero.
+    /// That of f32 with one Newton step, which squares its error of 1e-7: 2e-14, in a third of the
+    /// time of a root and a division in f64. The error stretches a line of sight but does not rotate
+    /// it, so the pivots of a singular geometry stay at zero.
     #[inline(always)]
     fn inverse_root(self) -> Self {
         let seed = f64::from((self as f32).inverse_root());
@@ -129,12 +129,12 @@ impl Real for f64 {
     }
 }
 
-/// An elevation mask as the lanes compare with it.
+/// An elevation mask in the form that the lanes compare with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct MaskTerms<R> {
     sine: R,
     sine2: R,
-    /// By how much a sine may be wrong; 0 in f64, which is exact as the plain path is.
+    /// Error bound of a sine; 0 in f64, which is exactly the plain path.
     slack: R,
 }
 
@@ -155,14 +155,14 @@ impl<R: Real> MaskTerms<R> {
 
 /// Positions and verticals of the points of a tile, Earth-fixed, km.
 ///
-/// A lane without a point holds NaN, which no comparison passes: it never sees anything.
+/// A lane without a point is NaN, which fails every comparison, so it never sees anything.
 #[derive(Debug, Clone)]
 pub(super) struct SiteLanes<R> {
     pub(super) origin: [Lanes<R>; 3],
     pub(super) up: [Lanes<R>; 3],
 }
 
-/// What the visible satellites of one clock group leave at each point.
+/// Sums over the visible satellites of one clock group at each point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sums<R> {
     /// Σ v vᵀ.
@@ -231,7 +231,7 @@ impl<R: Real> Sums<R> {
         }
     }
 
-    /// Adds a satellite where it is visible. This loop is where the time goes.
+    /// Adds a satellite where it is visible. Most of the time is spent in this loop.
     #[inline(always)]
     pub(super) fn add(&mut self, sites: &SiteLanes<R>, satellite: [R; 3], mask: &MaskTerms<R>) {
         let [origin_x, origin_y, origin_z] = &sites.origin;
@@ -268,20 +268,20 @@ impl<R: Real> Sums<R> {
 /// (x, z), (y, z).
 pub(super) type Normal = [Lanes<f32>; 6];
 
-/// The GNSS part at the points of a tile, one sample. Each number is an f32 and a remainder,
-/// which together hold 48 bits; f32 lanes read the first alone.
+/// The GNSS part at the points of a tile, one sample. Each number is an f32 and a remainder, together
+/// 48 bits; f32 lanes read only the first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FixedTile<'a> {
     pub(super) normal: &'a Normal,
     pub(super) remainder: &'a Normal,
-    /// Satellites minus clocks of the systems with clocks of their own.
+    /// Satellites minus clocks of the systems with their own clocks.
     pub(super) surplus: &'a [u16; LANES],
     /// The GNSS satellites that share their clock with the design, if any do.
     pub(super) shared: Option<&'a SharedClock>,
 }
 
-/// GNSS satellites that share their clock with the design; what they contribute on their own is
-/// part of the normal matrix already.
+/// GNSS satellites that share their clock with the design; their own contribution is already part of
+/// the normal matrix.
 #[derive(Debug, Clone)]
 pub(super) struct SharedClock {
     /// Σ v / n, and its remainder.
@@ -323,7 +323,7 @@ pub(super) fn nearest(values: &Lanes<f64>) -> Lanes<f32> {
     Lanes(std::array::from_fn(|l| values.0[l] as f32))
 }
 
-/// What the nearest f32 leaves over.
+/// The remainder after the nearest f32.
 #[inline(always)]
 pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
     Lanes(std::array::from_fn(|l| {
@@ -375,10 +375,10 @@ impl<R: Real> NormalLanes<R> {
         system
     }
 
-    /// Makes one clock of the design's and the GNSS's: two groups of n and m satellites that
-    /// become one gain n m / (n + m) δ δᵀ, δ the difference of their mean unit vectors (Chan,
-    /// Golub and LeVeque, *Amer. Statist.* 37 (1983) 242). Nothing is cancelled by this, as it
-    /// would be by the sums of both groups together.
+    /// Merges the clock of the design with that of the GNSS: two groups of n and m satellites that
+    /// become one gain n m / (n + m) δ δᵀ, where δ is the difference of their mean unit vectors (Chan,
+    /// Golub and LeVeque, *Amer. Statist.* 37 (1983) 242). This avoids the cancellation in the sums of
+    /// both groups together.
     #[inline(always)]
     fn join_clocks(&mut self, sums: &Sums<R>, shared: &SharedClock) {
         for l in 0..LANES {
@@ -400,16 +400,16 @@ impl<R: Real> NormalLanes<R> {
     }
 }
 
-/// The determinant of a geometry that f32 may take, over the cube of its trace, at least. The
-/// smallest eigenvalue is then 2⁻¹⁶ of the trace or more, and rounding 2⁻²² of it.
+/// Minimum ratio of the determinant to the cube of the trace for which f32 is accurate enough. The
+/// smallest eigenvalue is then at least 2⁻¹⁶ of the trace, and rounding 2⁻²² of it.
 const LEAST_DETERMINANT: f32 = 1.0 / 65_536.0;
 
-/// The least trace. PDOP² is 9 over it or more, so no PDOP that f32 is trusted with is lost; below,
-/// rounding may be all that there is.
+/// Minimum trace. PDOP² is at least 9 divided by it, so no PDOP for which f32 is trusted is lost;
+/// below it, rounding may be all there is.
 const LEAST_TRACE: f32 = 1.0;
 
 impl NormalLanes<f32> {
-    /// PDOP by the minors; infinite where the matrix is too close to a singular one for f32.
+    /// PDOP by the minors; infinite if the matrix is too close to singular for f32.
     #[inline(always)]
     pub(super) fn pdop(&self) -> Lanes<f32> {
         let mut lanes = Lanes([f32::INFINITY; LANES]);

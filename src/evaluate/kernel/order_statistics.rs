@@ -1,19 +1,19 @@
-//! Statistics of a stream of PDOP values in two passes, without keeping or sorting the values.
+//! Statistics of a stream of PDOP values in two passes, without storing or sorting the values.
 //!
-//! The first pass counts values by their leading bits and sums them. The counts say with which
-//! leading bits each order statistic begins; the second pass counts the trailing bits of the
-//! values that begin so, and sums the values beyond the value-at-risk's. That gives every order
-//! statistic and the tail exactly, in memory that does not depend on how many values there are.
+//! The first pass counts values by their leading bits and sums them. The counts determine the leading
+//! bits of each order statistic; the second pass counts the trailing bits of the values that begin
+//! with them, and sums the values beyond the value-at-risk. This gives every order statistic and the
+//! tail exactly, in memory that does not depend on the number of values.
 //!
-//! Counts are integers and do not depend on the order of the values; sums are made in pieces
-//! that do not depend on who makes them.
+//! Counts are integers and do not depend on the order of the values; sums are computed in pieces that
+//! do not depend on the thread.
 
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::sample::UNSOLVED;
 use crate::stats::{Level, Summary, quantile_rank};
 
-/// Bits of an f32 that the first pass does not look at: it sees 11 of the 23 of the fraction.
+/// Bits of an f32 that the first pass ignores: it uses 11 of the 23 bits of the fraction.
 const TRAILING_BITS: u32 = 12;
 
 /// Places begin at 2^-7: n satellites give a PDOP of 3/√n or more, which is above that up to
@@ -23,12 +23,12 @@ const FIRST: u32 = (127 - 7) << (23 - TRAILING_BITS);
 /// The places of the first pass, by leading bits.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
-    /// The place behind that of the maximum PDOP: what is unsolved.
+    /// The place after that of the maximum PDOP, for unsolved samples.
     unsolved: u32,
 }
 
 impl Places {
-    /// Places for PDOP up to `cap`: the fewer, the less memory is gone through for each design.
+    /// Places for PDOP up to `cap`; fewer places mean less memory to go through for each design.
     pub(super) fn new(cap: f64) -> Self {
         let largest = (cap as f32).min(f32::MAX);
         Self {
@@ -60,12 +60,12 @@ fn value(place: u32, trailing: usize) -> f64 {
     ))
 }
 
-/// What passes over different pieces leave, put together.
+/// Merges the results of passes over different pieces.
 pub(super) trait Merge {
     fn merged(self, other: &Self) -> Self;
 }
 
-/// First pass: how many values there are in each place.
+/// First pass: number of values in each place.
 pub(super) struct Counts {
     places: Places,
     counts: Vec<u64>,
@@ -86,7 +86,7 @@ impl Counts {
         self.values - self.counts[self.places.unsolved as usize]
     }
 
-    /// Where the order statistic of a rank (from 1) lies.
+    /// The place of the order statistic of a rank (from 1).
     fn locate(&self, rank: u64) -> Wanted {
         let mut before = rank - 1;
         let mut counted = (0..).zip(&self.counts);
@@ -146,8 +146,7 @@ impl Work for Count<'_> {
     }
 }
 
-/// An order statistic: its place, its rank among all, and how many values of the place come
-/// before it.
+/// An order statistic: its place, its rank among all values, and its rank within the place.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
     place: u32,
@@ -159,7 +158,7 @@ struct Wanted {
 const WANTED: usize = 5;
 const VALUE_AT_RISK: usize = 4;
 
-/// What the second pass looks for.
+/// Targets of the second pass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RankSearch {
     places: Places,
@@ -233,7 +232,7 @@ fn note(tile: &Lanes<f32>, places: Places, wanted: &[u32; WANTED], found: &mut F
 }
 
 impl RankSearch {
-    /// `None` when no value is solved.
+    /// `None` if no value is solved.
     pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
         let solved = counts.solved();
         let ranked = |q: f64| counts.locate(quantile_rank(q, solved as usize) as u64);

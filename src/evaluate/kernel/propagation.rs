@@ -1,10 +1,10 @@
 //! Earth-fixed positions of all satellites at one sample.
 //!
 //! The satellites of a pattern under a secular model share a, e, i, the perigee and all rates. Their
-//! angles are those of the epoch plus one angle of the sample, so that a few sines and cosines a
-//! sample turn the whole pattern by the addition theorems; the node and the Earth turn about one
-//! axis and are one angle. Kepler's equation is solved in lanes, without a sine ([`anomaly`]).
-//! Anything else is asked of its propagators one by one.
+//! angles are those of the epoch plus an angle that is common to the sample, so a few sines and cosines
+//! per sample rotate the entire pattern by the angle addition formulas; node and Earth rotate about the
+//! same axis and are combined into one angle. Kepler's equation is solved in lanes, without a sine
+//! ([`anomaly`]). All other satellites are computed one by one by their propagators.
 
 mod anomaly;
 
@@ -15,10 +15,10 @@ use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use nalgebra::Vector3;
 
-/// Satellites that are worked on together.
+/// Satellites that are processed together.
 pub(super) const BLOCK: usize = 64;
 
-/// Positions of satellites, Earth-fixed, km; NaN in a place without a satellite.
+/// Positions of satellites, Earth-fixed, km; NaN in a slot without a satellite.
 #[derive(Debug, Clone)]
 #[repr(align(64))]
 pub(super) struct PositionBlock {
@@ -59,7 +59,7 @@ impl Positions {
         [block.x[place], block.y[place], block.z[place]]
     }
 
-    /// Positions from the propagators, one after the other.
+    /// Positions from the propagators, one by one.
     pub(super) fn propagate(
         &mut self,
         ephemeris: &Ephemeris,
@@ -93,7 +93,7 @@ pub(super) struct PatternPropagator {
     sin_i: f64,
     cos_i: f64,
     raan_rate_rad_s: f64,
-    /// Of what `PatternBlock` calls the phase.
+    /// Of the phase, as defined by `PatternBlock`.
     phase_rate_rad_s: f64,
     arg_perigee_rad: f64,
     arg_perigee_rate_rad_s: f64,
@@ -157,7 +157,7 @@ impl PatternBlock {
 }
 
 impl PatternPropagator {
-    /// The propagation of a design; `None` when its model is not secular or its ellipse too long for
+    /// The propagation of a design; `None` if its model is not secular or its eccentricity too large for
     /// the lanes.
     pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
         let satellites = design.satellites();
@@ -189,7 +189,7 @@ impl PatternPropagator {
         })
     }
 
-    /// What turns the pattern from the epoch to a sample.
+    /// The rotation of the pattern from the epoch to a sample.
     pub(super) fn turn(&self, elapsed_s: f64, rotation: EarthRotation) -> Turn {
         let (sin_phase, cos_phase) = (self.phase_rate_rad_s * elapsed_s).sin_cos();
         let (sin_raan, cos_raan) = (self.raan_rate_rad_s * elapsed_s).sin_cos();
@@ -236,8 +236,7 @@ impl PatternPropagator {
 
 /// The shape of an orbit in its plane.
 trait Shape {
-    /// The place at a phase of this cosine and sine: along the node, and a quarter of a turn ahead
-    /// of it, km.
+    /// The position at a phase with this cosine and sine: along the node, and 90° ahead of it, km.
     fn place(&self, cos_phase: f64, sin_phase: f64) -> (f64, f64);
 }
 

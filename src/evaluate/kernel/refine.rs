@@ -1,17 +1,17 @@
 //! Order statistics in f64.
 //!
-//! Roundings of f32 cancel in means and tails, but an order statistic is one value. So the values
-//! that lie so close to it that rounding may have changed their order are computed again, and the
+//! Rounding errors of f32 average out in means and tails, but an order statistic is a single value. The
+//! values so close to it that rounding may have changed their order are therefore recomputed, and the
 //! order statistic is taken among them.
 
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 
-/// Relative distance within which the order of two f32 values means nothing: more than twice the
-/// error of one.
+/// Relative distance within which the order of two f32 values is meaningless: more than twice the error
+/// of one.
 const WINDOW: f64 = 2e-6;
 
-/// More values than this in a window are so dense that the order does not matter.
+/// With more values than this in a window, they are so dense that their order does not matter.
 const CROWD: usize = 256;
 
 /// An order statistic by its rank (from 1) and its value in f32.
@@ -21,7 +21,7 @@ pub(super) struct Ranked {
     pub(super) value: f64,
 }
 
-/// The surroundings of an order statistic.
+/// The values around an order statistic.
 #[derive(Debug, Clone)]
 pub(super) struct Window {
     start: f32,
@@ -43,7 +43,7 @@ impl Window {
         }
     }
 
-    /// Notes the places of a tile that are inside, up to a crowd.
+    /// Records the slots of a tile that are inside, up to the limit.
     fn note(&mut self, number: usize, tile: &Lanes<f32>) {
         if self.places.len() <= CROWD {
             let inside = |l: &usize| tile.0[*l] >= self.start && tile.0[*l] <= self.end;
@@ -52,7 +52,7 @@ impl Window {
         }
     }
 
-    /// The order statistic among the values of the places, computed again.
+    /// The order statistic among the recomputed values.
     pub(super) fn pick(&self, mut values: Vec<f32>) -> Option<f64> {
         values.sort_unstable_by(f32::total_cmp);
         let place = usize::try_from(self.rank - 1 - self.below).ok()?;
@@ -60,7 +60,7 @@ impl Window {
     }
 }
 
-/// Finds what surrounds some order statistics; those in a crowd have no places.
+/// Finds the values around some order statistics; none for those where they are too dense.
 pub(super) struct Surround<'a, const N: usize> {
     pub(super) tiles: &'a [Lanes<f32>],
     pub(super) ranked: [Ranked; N],

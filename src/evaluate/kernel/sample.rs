@@ -8,16 +8,16 @@ use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
 use crate::dop::pivot_floor;
 
-/// Stands for an unsolved sample among the values of PDOP.
+/// Marks an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
 
-/// Least surplus of satellites over clock states: one satellite for each component of position.
+/// Minimum of satellites minus clock states: one satellite for each component of position.
 pub(super) const POSITION_STATES: u32 = 3;
 
-/// Where f32 is good enough.
+/// The limits of f32.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
-    /// PDOP above this is computed again in f64.
+    /// PDOP above this is recomputed in f64.
     pub(super) single_below: f32,
     /// PDOP above which a sample is unsolved.
     pub(super) cap: f64,
@@ -62,7 +62,7 @@ impl Limits {
     }
 }
 
-/// What all samples share.
+/// Data shared by all samples.
 pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
@@ -70,14 +70,14 @@ pub(super) struct SampleContext {
     pub(super) limits: Limits,
 }
 
-/// Memory of one evaluation that is used again for each sample.
+/// Memory of one evaluation that is reused for each sample.
 pub(super) struct Workspace {
     pub(super) positions: Positions,
     all: Candidates,
     near: Candidates,
     /// Words of a tile.
     blocks: usize,
-    /// Which satellites the tiles of a group may see, tile by tile.
+    /// The satellites that the tiles of a group may see, tile by tile.
     words: Vec<u64>,
 }
 
@@ -95,7 +95,7 @@ impl Workspace {
     }
 }
 
-/// What the lanes do not decide.
+/// Why the lanes leave a decision open.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Doubt {
     /// A satellite is too close to the mask.
@@ -104,8 +104,8 @@ pub(super) enum Doubt {
     Geometry,
 }
 
-/// A decision that is left to the plain path: the point in a lane of a tile, and the satellites
-/// that it may see.
+/// A decision left to the plain path: the point in a lane of a tile, and the satellites that it may
+/// see.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Undecided {
     pub(super) doubt: Doubt,
@@ -114,18 +114,18 @@ pub(super) struct Undecided {
     pub(super) satellites: Vec<u32>,
 }
 
-/// What one sample gives.
+/// The result of one sample.
 #[derive(Debug, Clone)]
 pub(super) struct Outcome {
-    /// PDOP of each slot, tile by tile; [`UNSOLVED`] where there is none.
+    /// PDOP of each slot, tile by tile; [`UNSOLVED`] if there is none.
     pub(super) pdop: Vec<Lanes<f32>>,
     /// Visible satellites, summed over the points without doubt.
     pub(super) visible: u64,
     /// Points without doubt that are available.
     pub(super) available: u64,
-    /// Points whose PDOP was computed again in f64.
+    /// Points whose PDOP was recomputed in f64.
     pub(super) doubled: u64,
-    /// Points to look at again.
+    /// Points to recompute.
     pub(super) doubts: Vec<Undecided>,
 }
 
@@ -144,9 +144,9 @@ impl Outcome {
 /// One sample to be evaluated.
 pub(super) struct Sample<'a> {
     pub(super) scene: &'a SampleContext,
-    /// Those of the scene, or narrower ones.
+    /// The limits of the scene, or narrower ones.
     pub(super) limits: Limits,
-    /// The pattern to propagate; without one the positions are there already.
+    /// The pattern to propagate; without one the positions are given.
     pub(super) pattern: Option<(&'a PatternPropagator, Turn)>,
     /// The GNSS part.
     pub(super) fixed: FixedSample<'a>,
@@ -254,7 +254,7 @@ impl<'a> TileCandidates<'a> {
             for n in bits(word) {
                 sums.add(sites, block.position(n), mask);
             }
-            // Sums of sums: hundreds of visible satellites one by one would cost f32 a digit.
+            // Sums of sums: adding hundreds of visible satellites one by one would cost f32 a digit.
             all.merge(&sums);
         }
         all
@@ -268,14 +268,14 @@ impl<'a> TileCandidates<'a> {
     }
 }
 
-/// What f32 says about the points of a tile; 0 or 1 where it is yes or no.
+/// The outcome in f32 at the points of a tile; flags are 0 or 1.
 struct LaneVerdict {
     pdop: Lanes<f32>,
     /// Too close to the mask for f32.
     doubtful: Lanes<u32>,
     /// PDOP too large for f32, or too close to a threshold.
     coarse: Lanes<u32>,
-    /// Visible satellites where there is no doubt.
+    /// Visible satellites of points without doubt.
     visible: Lanes<u32>,
     /// Available, and neither doubtful nor coarse.
     available: Lanes<u32>,
@@ -310,7 +310,7 @@ impl LaneVerdict {
     }
 }
 
-/// Leaves points of a tile to the plain path.
+/// Records the doubtful points of a tile for the plain path.
 #[inline(never)]
 fn doubt(
     number: usize,
@@ -331,7 +331,7 @@ fn doubt(
     }
 }
 
-/// Takes the tile again in f64, for the points that f32 is too coarse for. Returns how many of
+/// Recomputes a tile in f64 for the points for which f32 is too coarse. Returns how many of
 /// them are available.
 #[inline(always)]
 fn compute_again(

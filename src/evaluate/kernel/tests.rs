@@ -26,7 +26,7 @@ fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
     }
 }
 
-/// Counts exactly; statistics to 1e-6, of which f32 takes about a third at PDOP 2.
+/// Counts are exact; statistics agree to 1e-6, of which f32 uses about a third at PDOP 2.
 fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
     prop_assert_eq!(fast.mean_visible, plain.mean_visible);
     prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
@@ -50,7 +50,7 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
 fn designs() -> impl Strategy<Value = Design> {
     let pattern = prop::sample::select(<Pattern as crate::keyword::Keyword>::ALL.to_vec());
     let shape = (1..9_usize, 1..12_usize, 0..9_usize);
-    // As a share of what brings the perigee to the ground.
+    // As a fraction of the eccentricity that brings the perigee to the ground.
     let ellipse = prop_oneof![
         2 => Just((0.0, 0.0)),
         1 => (0.0..0.95_f64, 0.0..360.0_f64)
@@ -143,7 +143,7 @@ fn setups() -> impl Strategy<Value = Setup> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(192))]
 
-    /// The kernel is the plain path, and the same to the bit on all instruction sets.
+    /// The kernel equals the plain path, and is identical to the bit on all instruction sets.
     #[test]
     fn kernel_equals_the_plain_path(design in designs(), setup in setups()) {
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
@@ -154,13 +154,12 @@ proptest! {
         compare(&fast[0], &plain)?;
         prop_assert_eq!(fast[0], fast[1]);
         prop_assert_eq!(fast[0], fast[2]);
-        // Without the pattern behind them, satellites are asked one by one.
+        // Without their pattern, satellites are propagated one by one.
         compare(&evaluators[0].evaluate_ephemeris(&ephemeris).unwrap(), &plain)?;
     }
 }
 
-/// The paper's scenario, a dense and a sparse constellation, and designs of which f32 can hold
-/// little.
+/// The paper's scenario, a dense and a sparse constellation, and designs that are hard for f32.
 #[test]
 fn whole_days_equal_the_plain_path() {
     for (text, gnss) in [
@@ -178,14 +177,14 @@ fn whole_days_equal_the_plain_path() {
         let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
         let (fast, rechecks) = evaluator.evaluate_counted(&design).unwrap();
         compare(&fast, &plain).unwrap();
-        // Means do better than single values: roundings cancel.
+        // Means are more accurate than single values because rounding errors average out.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
         assert!(rechecks.near_mask > 0, "{text}");
         assert!(rechecks.large_pdop > 0, "{text}");
     }
 }
 
-/// Stands still over the rotating Earth.
+/// A satellite at rest over the rotating Earth.
 struct Hovering {
     position_km: Position<EarthFixed>,
     epoch: Epoch,
@@ -201,8 +200,8 @@ impl Propagator for Hovering {
     }
 }
 
-/// Satellites at the mask itself, a nanodegree to both sides, which f32 cannot tell apart: a tenth
-/// of a millimetre at 1500 km.
+/// Satellites at the mask itself and a nanodegree to either side, a tenth of a millimetre at 1500 km,
+/// which f32 cannot distinguish.
 #[test]
 fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let base = setup([3.0, 54.0], Surface::Wgs84);
@@ -248,8 +247,8 @@ fn nothing_in_view_is_no_failure() {
     assert_eq!((metrics.solved_fraction, metrics.max_pdop), (0.0, None));
 }
 
-/// What does not fit into memory is computed twice and gives the same; on any number of threads
-/// to the bit.
+/// Values that are not stored are computed twice with the same result, identical to the bit on any
+/// number of threads.
 #[test]
 fn streaming_equals_keeping() {
     for clocks in [Clocks::PerSystem, Clocks::Shared] {
@@ -280,17 +279,17 @@ fn streaming_equals_keeping() {
         let one = on_threads(1);
         assert_eq!(one, on_threads(2));
         assert_eq!(one, on_threads(5));
-        // A stream does not go back to f64 for its order statistics.
+        // A stream does not recompute its order statistics in f64.
         assert!(relative(one.max_pdop, expected.max_pdop) < 1e-6);
         assert!(relative(one.p95_pdop, expected.p95_pdop) < 1e-6);
         assert_eq!(one.mean_visible, expected.mean_visible);
-        // The sums are made in pieces of other sizes: a few ulp.
+        // The sums are computed in pieces of other sizes: a few ulp.
         assert!(relative(one.mean_pdop, expected.mean_pdop) < 1e-14);
         assert!(relative(one.cvar_pdop, expected.cvar_pdop) < 1e-13);
     }
 }
 
-/// How many satellites are looked at for a point, and how many it sees: the paper's scenario.
+/// Number of satellites tested for a point, and number visible, in the paper's scenario.
 #[test]
 fn regress_culling_looks_at_twice_what_is_seen() {
     let setup = setup([3.0, 54.0], Surface::Sphere);
@@ -318,12 +317,12 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let per_sample = looked_at as f64 / setup.grid.len() as f64 / tiles.tiles.len() as f64;
     let evaluator = Evaluator::new(setup).unwrap();
     let seen = evaluator.evaluate(&design).unwrap().mean_visible;
-    // 16.6 for 7.84; a worse cut of the tiles shows here before it shows in the time.
+    // 16.6 for 7.84; a worse partition into tiles shows here before it shows in the run time.
     assert!((2.0..2.2).contains(&(per_sample / seen)), "{per_sample}");
 }
 
-/// A decision of f32 within rounding of a threshold is not trusted: thresholds a billionth to both
-/// sides of values that occur, which f32 cannot tell apart.
+/// A decision of f32 within rounding of a threshold is not trusted: thresholds a billionth on either
+/// side of actual values, which f32 cannot distinguish.
 #[test]
 fn decisions_at_a_threshold_are_those_of_the_plain_path() {
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
@@ -350,8 +349,8 @@ fn decisions_at_a_threshold_are_those_of_the_plain_path() {
     }
 }
 
-/// Satellites so low that rounding leaves nothing to f32, over points that do not fill their tiles:
-/// every decision is in doubt, and none of a lane without a point.
+/// Satellites so low that f32 cannot decide anything, over points that do not fill their tiles: every
+/// decision is in doubt, but none of a lane without a point.
 #[test]
 fn satellites_just_above_the_ground_are_decided_in_f64() {
     for model in [Model::J2, Model::J2Osculating] {
@@ -371,7 +370,7 @@ fn satellites_just_above_the_ground_are_decided_in_f64() {
     }
 }
 
-/// Positions of a pattern against those of its propagators, over a week.
+/// Positions of a pattern compared with those of its propagators, over a week.
 #[test]
 fn patterns_propagate_as_their_propagators_do() {
     for text in [
@@ -394,15 +393,15 @@ fn patterns_propagate_as_their_propagators_do() {
             asked.propagate(&ephemeris, elapsed_s, rotation).unwrap();
             for n in 0..design.satellite_count() {
                 let apart = Vector3::from(propagated.at(n)) - Vector3::from(asked.at(n));
-                // An angle of 700 rad in doubles is good to 1e-13 rad: 1e-9 km.
+                // An angle of 700 rad in doubles is accurate to 1e-13 rad: 1e-9 km.
                 assert!(apart.norm() < 2e-9, "{text} {n} {apart}");
             }
         }
     }
 }
 
-/// Single values in f32 against f64, where both are asked for every sample: 1e-6, for few and for
-/// many satellites in view, one clock or several. Order statistics rest on this.
+/// Single values in f32 compared with f64, both computed for every sample: 1e-6, for few and for many
+/// satellites in view, with one clock or several. Order statistics rely on this.
 #[test]
 fn single_values_hold_six_digits() {
     for (text, clocks) in [
@@ -438,7 +437,7 @@ fn single_values_hold_six_digits() {
         let apart = |(s, d): (&f32, &f32)| (f64::from(*s) / f64::from(*d) - 1.0).abs();
         let solved = single.iter().zip(&double).filter(|(_, d)| d.is_finite());
         let worst = solved.map(apart).fold(0.0, f64::max);
-        // Seen: 7e-7 over a whole day. A worst of 0 would mean that f64 was not asked.
+        // Measured: 7e-7 over a full day. A maximum of 0 would mean that f64 was not used.
         assert!((1e-8..1e-6).contains(&worst), "{text}: {worst:e}");
     }
 }

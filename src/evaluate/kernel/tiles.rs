@@ -2,21 +2,20 @@
 //!
 //! A tile fills the lanes. Points are split in two until a tile is left, so that any set of points,
 //! a grid or not, gives compact tiles, and all tiles but the last of each group are full. Many
-//! points are split across the longest side of their bounding box; few where it leaves the least
-//! to be looked at, because a satellite that sees any point of a tile is looked at for all of them.
+//! points are split across the longest side of their bounding box; few are split where this leaves the
+//! fewest tests, because a satellite that any point of a tile may see is tested for all of them.
 //!
 //! A satellite at r sees the points within the angle ψ(r) = acos(k / r) - m of the point below it,
 //! k = g cos m, for points at distance g from the centre and an elevation m over the horizon of
-//! the sphere through them. It can see something of a cap of angular radius ρ around the unit
-//! vector c only if r·c >= |r| cos(ψ + ρ), which is free of angles when written out:
+//! the sphere through them. It can see part of a cap of angular radius ρ around the unit vector c only
+//! if r·c >= |r| cos(ψ + ρ), which written out contains no angles:
 //!
 //! ```text
 //! r·c + sin(ρ - m) q >= k cos(ρ - m),   q = sqrt(|r|² - k²)
 //! ```
 //!
-//! Taking the smallest g of all points, and the mask less the largest angle between a vertical and
-//! the radius, makes this hold for points of an ellipsoid too; it never leaves out a satellite
-//! that is visible.
+//! With the smallest g of all points, and the mask minus the largest angle between a vertical and the
+//! radius, this is valid for points on an ellipsoid too; it never misses a visible satellite.
 
 use super::lanes::{LANES, Lanes, SiteLanes};
 use super::propagation::Positions;
@@ -36,7 +35,7 @@ pub(super) struct Cap {
     pub(super) bound: f32,
 }
 
-/// Points that are worked on side by side.
+/// Points that are processed side by side.
 #[derive(Debug, Clone)]
 pub(super) struct Tile {
     /// Index of the point in each lane; shorter than the lanes in the last tile.
@@ -44,7 +43,7 @@ pub(super) struct Tile {
     pub(super) single: SiteLanes<f32>,
     pub(super) double: SiteLanes<f64>,
     pub(super) cap: Cap,
-    /// The same for the GNSS, which may have a mask of its own.
+    /// The same for the GNSS, which may have its own mask.
     pub(super) fixed_cap: Cap,
 }
 
@@ -65,17 +64,17 @@ pub(super) struct Tiles {
     pub(super) fixed_horizon: Horizon,
 }
 
-/// What bounds the sight of all points together.
+/// Bounds on visibility from all points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Horizon {
     /// Largest distance of a point from the centre of the Earth, km.
     farthest_km: f64,
-    /// Least elevation over the horizon of the sphere of what is at the mask, radians; and sine
-    /// and cosine of the largest.
+    /// Smallest elevation above the spherical horizon of a satellite at the mask, radians; and sine and
+    /// cosine of the largest.
     least_mask_rad: f64,
     sin_most: f64,
     cos_most: f64,
-    /// k², km²: what is nearer to the centre than k is nowhere visible.
+    /// k², km²: a satellite closer to the centre than k is visible nowhere.
     pub(super) reach2: f64,
 }
 
@@ -107,34 +106,33 @@ impl Horizon {
         (beyond.max(0.0).sqrt() - self.farthest_km * self.sin_most).max(0.0)
     }
 
-    /// By how much the sine of an elevation at the mask may be wrong in f32: two positions that
-    /// were rounded, over the shortest range; and eight roundings of the sine itself.
+    /// Error bound of the sine of an elevation at the mask in f32: two rounded positions over the shortest
+    /// range, plus eight roundings of the sine itself.
     #[inline(always)]
     pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
         let range_km = self.range_at_mask_km(positions.nearest_km);
         let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
-        // Satellites on the ground leave nothing to f32.
+        // For satellites on the ground f32 cannot decide anything.
         slack.min(2.0) as f32
     }
 
-    /// PDOP up to which f32 holds six digits. A line of sight is turned by the rounding of the
-    /// positions over the range, most in the zenith, and PDOP magnifies that by its square at
-    /// most; the constant was found by trial, with twice as much left (seven digits at 925 km).
+    /// PDOP up to which f32 gives six digits. A line of sight is rotated by the rounding of the positions
+    /// divided by the range, most at the zenith, and PDOP magnifies this at most by its square; the
+    /// constant was found by trial, with a margin of two (seven digits at 925 km).
     #[inline(always)]
     pub(super) fn single_below(&self, positions: &Positions) -> f32 {
         let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
         (5e-6 * range_km / rounding_km(positions)).sqrt() as f32
     }
 
-    /// By how much a test of a cap may be wrong in f32, km: eight roundings of the largest
-    /// number in it, and as much again.
+    /// Error bound of a cap test in f32, km: eight roundings of the largest number in it, times two.
     #[inline(always)]
     pub(super) fn cap_slack_km(positions: &Positions) -> f32 {
         positions.farthest_km as f32 * (16.0 * f32::EPSILON)
     }
 
     fn cap(&self, circle: Option<EnclosingCircle>) -> Cap {
-        // Caps near a hemisphere and beyond are not worth a test.
+        // Caps close to a hemisphere or larger are not worth a test.
         let Some(circle) = circle.filter(|circle| circle.radius_rad < 1.2) else {
             return Cap::EVERYTHING;
         };
@@ -187,8 +185,8 @@ impl EnclosingCircle {
         best
     }
 
-    /// What grows with the number of satellites that see something of the circle: the area that
-    /// they can be over, if each sees a circle of 0.4 rad (that of 1000 km and 7°).
+    /// A measure of the number of satellites that see part of the circle: the area in which they can be,
+    /// if each sees a circle of 0.4 rad (as at 1000 km and 7°).
     fn cost(circle: Option<Self>) -> f64 {
         circle.map_or(2.0, |circle| 1.0 - (circle.radius_rad + 0.4).min(PI).cos())
     }
@@ -215,7 +213,7 @@ impl Tiles {
         tiles
     }
 
-    /// Points of all tiles, lanes without a point included.
+    /// Points of all tiles, including lanes without a point.
     pub(super) fn slots(&self) -> usize {
         self.tiles.len() * LANES
     }
@@ -260,7 +258,7 @@ fn middle(points: usize) -> usize {
     points.div_ceil(LANES).div_ceil(2) * LANES
 }
 
-/// What points can be ordered by: x, y, z and the longitude, counted from the middle one.
+/// Keys for ordering points: x, y, z and the longitude relative to the central one.
 fn keys(sites: &[Site], members: &[u32]) -> [Vec<(u32, f64)>; 4] {
     let origin = |m: u32| sites[m as usize].local.origin_km.km();
     let sum: Vector3<f64> = members.iter().map(|&m| origin(m)).sum();
@@ -285,7 +283,7 @@ fn longest_side(sites: &[Site], members: &[u32]) -> usize {
     low.zip(high).map_or(0, |(low, high)| (high - low).imax())
 }
 
-/// Orders points by a key; ties by the order of the points, so that it does not depend on the sort.
+/// Orders points by a key; ties by the order of the points, so the result does not depend on the sort.
 fn sort_along(key: &[(u32, f64)], members: &mut [u32]) {
     let mut ordered = key.to_vec();
     ordered.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));

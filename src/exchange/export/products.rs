@@ -51,7 +51,7 @@ impl ExportSource<'_> {
         format!("{version} {}", notation.to_uppercase())
     }
 
-    /// One file for each satellite, by several threads at once.
+    /// One file for each satellite, by several threads concurrently.
     fn each(
         &self,
         write: impl Fn(&EphemerisSatellite, &Object) -> Result<FileEntry, WriteError> + Sync,
@@ -162,7 +162,7 @@ impl ExportSource<'_> {
         Ok(vec![entry])
     }
 
-    /// The satellites of a design propagate alike, so that the first tells of all.
+    /// The satellites of a design are propagated in the same way, so the first represents all.
     fn hermite(&self, sampled: &Sampled<'_, Frame>) -> Result<Option<Hermite>, WriteError> {
         Ok(match self.ephemeris.satellites() {
             [first, ..] => Hermite::measured(sampled, first)?,
@@ -363,8 +363,8 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    /// A nominal constellation under the letter of its system, in a file of its own, as readers
-    /// that take several files join them.
+    /// A nominal constellation under the letter of its system, in a separate file, since readers that
+    /// accept several files merge them.
     fn sp3_of_gnss(&self, files: &Files<'_>, preset: Preset) -> Result<FileEntry, WriteError> {
         let (version, letter) = (self.choices.sp3_version, sp3::letter_of(preset));
         if letter == self.choices.sp3_letter {

@@ -1,4 +1,4 @@
-//! The products from which another program rebuilds the study: STK, GMAT, almanacs.
+//! The products with which another program reproduces the study: STK, GMAT, almanacs.
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
@@ -17,7 +17,7 @@ use crate::keyword::Keyword;
 use crate::orbit::Model;
 use std::io::Write;
 
-/// Where the files are that build the scenario in STK, its GNSS among them.
+/// Directory of the files that build the scenario in STK, including its GNSS.
 pub(super) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
 
 /// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
@@ -74,7 +74,7 @@ impl ExportSource<'_> {
         };
         let commands = files.add(&in_scenario("connect.txt"), format, contents, |out| {
             scenario.write(out)?;
-            Ok(noted("STK Connect commands; not tried in STK"))
+            Ok(noted("STK Connect commands; not tested in STK"))
         })?;
         let one_mask = setup.mask == setup.gnss_mask && setup.skyline.is_none();
         let with_files = satellites
@@ -98,7 +98,7 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    /// A satellite of the design: elements where STK has the theory, or else its ephemeris.
+    /// A satellite of the design: elements if STK has the theory, otherwise its ephemeris.
     fn setting(&self, satellite: &Satellite, name: &str) -> Setting {
         match self.subject.model {
             Model::J2 => Setting::J2(satellite.elements),
@@ -154,10 +154,16 @@ impl ExportSource<'_> {
         let (model, grid) = (self.subject.model, self.subject.grid);
         if model == Model::Sgp4 {
             let what = "propagation.model = \"sgp4\": the script integrates J2".to_owned();
-            return Err(cannot(what, "use --as oem or stk, which hold the states"));
+            return Err(cannot(
+                what,
+                "use --as oem or stk, which contain the states",
+            ));
         }
         let Some(start) = gmat::calendar(grid.epoch()) else {
-            let what = format!("the epoch {}: it has milliseconds alone", grid.epoch());
+            let what = format!(
+                "the epoch {}: GMAT reads milliseconds at most",
+                grid.epoch()
+            );
             return Err(cannot(what, "use an epoch of whole milliseconds"));
         };
         let metadata = self.propagated_metadata(Frame::Eme2000);
@@ -258,8 +264,8 @@ impl ExportSource<'_> {
             .map(|(prn, one)| format!("PRN-{prn:02} = {}", one.name))
             .collect();
         Ok(entry.assuming(vec![
-            "nominal satellites, no almanac of real ones; the LEO design is not in it".to_owned(),
-            "A gives the rate of the argument of latitude under J2: the radius is off by theory_max_km"
+            "nominal satellites, not the real ones; the LEO design is not included".to_owned(),
+            "A is chosen to give the rate of the argument of latitude under J2, so the radius is off by up to theory_max_km"
                 .to_owned(),
             "week modulo 1024, time of applicability in GPS time".to_owned(),
             names.join(", "),
@@ -273,17 +279,18 @@ fn in_scenario(name: &str) -> String {
 
 fn gmat_assumptions(model: Model) -> Vec<String> {
     let start = match model {
-        Model::TwoBody => "states are those of the elements around a point mass",
+        Model::TwoBody => "states follow from the elements around a point mass",
         _ => {
             "states are osculating: the mean elements with first-order short-period terms; GMAT's \
-             trajectory keeps those terms (some kilometres from secular J2) and drifts along the \
-             track by the second order of J2, 1 to 3 km a day"
+             trajectory includes those terms (some kilometres from secular J2) and drifts in-track by \
+             the second order of J2, 1 to 3 km a day"
         }
     };
     vec![
         start.to_owned(),
-        "mu, R and J2 are in navwalker-j2.cof, which must lie beside the script".to_owned(),
-        "GMAT turns the field with its own precession, nutation and Earth-orientation data"
+        "mu, R and J2 are in navwalker-j2.cof, which must be in the same directory as the script"
+            .to_owned(),
+        "GMAT orients the field with its own precession, nutation and Earth-orientation data"
             .to_owned(),
         "the design alone: GMAT has no region, mask or PDOP, and the GNSS is left out".to_owned(),
     ]

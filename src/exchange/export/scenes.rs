@@ -1,4 +1,4 @@
-//! The products that show or rebuild a whole scenario.
+//! The products that show or reproduce a complete scenario.
 
 use super::products::ProductFiles;
 use super::source::ExportSource;
@@ -65,9 +65,7 @@ impl ExportSource<'_> {
             Ok(Loss {
                 interpolation_max_km: Some(error_km),
                 note: Some(
-                    "positions to a decimetre; GNSS satellites are in the file besides those of \
-                     the design"
-                        .to_owned(),
+                    "positions to a decimetre; the file also has the GNSS satellites".to_owned(),
                 ),
                 ..Loss::default()
             })
@@ -95,7 +93,7 @@ impl ExportSource<'_> {
             |out| {
                 geojson::write_region(out, scene)?;
                 Ok(noted(
-                    "metrics over the whole span; PDOP over the solved samples",
+                    "metrics over the full time span; PDOP over the solved samples",
                 ))
             },
         )?;

@@ -1,4 +1,4 @@
-//! What the products of an export are made from.
+//! The data from which the products of an export are made.
 
 use super::{Choices, ExportSubject};
 use crate::constellation::Satellite;
@@ -16,7 +16,7 @@ use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::orbit::{PropagationError, Propagator};
 use crate::time::{Epoch, TimeGrid};
 
-/// What an export is made from.
+/// The data of an export.
 pub(super) struct ExportSource<'a> {
     pub(super) subject: &'a ExportSubject,
     pub(super) choices: Choices,
@@ -53,13 +53,13 @@ impl<'a> ExportSource<'a> {
         }
     }
 
-    /// How far the satellites of the design are from where an ITRF has them.
+    /// The distance of the design's satellites from their positions in an ITRF.
     fn distance_from_itrf(&self) -> String {
         let radius_km = RADIUS_KM + self.subject.design.altitude_km();
         distance_from_itrf(self.subject.grid.epoch(), radius_km)
     }
 
-    /// The unrounded element sets at an epoch, with the satellites that they are of.
+    /// The unrounded element sets at an epoch, with their satellites.
     pub(super) fn element_sets(&self, epoch: Epoch) -> Result<Vec<sgp4::Elements>, WriteError> {
         let since_s = epoch.seconds_since(self.subject.grid.epoch());
         let slot = match self.choices.elements {
@@ -97,13 +97,13 @@ impl<'a> ExportSource<'a> {
         fit(start, &positions, grid.epoch()).map_err(|source| failed(propagated, source))
     }
 
-    /// The sets as a TLE rounds them, and before: at the epoch next to that of the study.
+    /// The sets as rounded in a TLE, and unrounded, at the TLE epoch nearest to that of the study.
     pub(super) fn tle_sets(&self) -> Result<Vec<sgp4::Elements>, WriteError> {
         self.element_sets(tle::rounded_epoch(self.subject.grid.epoch()))
     }
 
-    /// What the sets cost, looked at about once an hour, by the satellite that loses most: their
-    /// digits in a TLE, and SGP4 against the model that is propagated.
+    /// The loss of the sets, sampled about once an hour, for the satellite that loses most: from their
+    /// digits in a TLE, and from SGP4 relative to the propagated model.
     pub(super) fn loss_of_sets(
         &self,
         sets: &[sgp4::Elements],

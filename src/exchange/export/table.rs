@@ -1,4 +1,4 @@
-//! The table of the products: one row says all that the program knows of a product.
+//! The table of the products: one row has everything the program knows about a product.
 
 use super::Files;
 use super::products::ProductFiles;
@@ -10,13 +10,13 @@ use crate::formats::WriteError;
 use crate::formats::maps::scene::Scene;
 use crate::keyword::{Keyword, keywords};
 
-/// What is known of a product besides its keyword.
+/// The properties of a product other than its keyword.
 pub struct ProductRow {
-    /// What the help says of it, by lines.
+    /// Its lines in the help.
     pub help: &'static [&'static str],
-    /// Whether it is written in the frame of the choice.
+    /// Whether its frame can be chosen.
     pub has_frame: bool,
-    /// How it is read back, or why it is not.
+    /// How it is read back, or why it cannot be.
     pub read_back: Result<ReadBack, &'static str>,
     write: ProductWriter,
 }
@@ -35,11 +35,11 @@ impl ProductRow {
     }
 }
 
-/// The function that writes the files of a product, by what it writes them from.
+/// The function that writes the files of a product, by its input.
 enum ProductWriter {
-    /// The design alone.
+    /// The design only.
     Design(fn(&ExportSource<'_>, &Files<'_>) -> ProductFiles),
-    /// The design, and the scenario around it where there is one.
+    /// The design, and its scenario if there is one.
     Either(fn(&ExportSource<'_>, &Files<'_>, Option<&Scene<'_>>) -> ProductFiles),
     /// The design in its scenario.
     Scenario(fn(&ExportSource<'_>, &Files<'_>, &Scene<'_>) -> ProductFiles),
@@ -49,12 +49,12 @@ enum ProductWriter {
 macro_rules! products {
     ($($(#[$doc:meta])* $product:ident = $word:literal { $($row:tt)+ })+) => {
         keywords! {
-            /// What can be asked of an export.
+            /// The products of an export.
             Product { $($(#[$doc])* $product = $word,)+ }
         }
 
         impl Product {
-            /// What is known of the product.
+            /// The properties of the product.
             #[must_use]
             pub fn row(self) -> &'static ProductRow {
                 match self {
@@ -80,7 +80,7 @@ products! {
         }),
         write: ProductWriter::Design(|source, files| source.tle(files)),
     }
-    /// CCSDS Orbit Mean-Elements Messages in the notation of the choice.
+    /// CCSDS Orbit Mean-Elements Messages in the chosen notation.
     Omm = "omm" {
         help: &["CCSDS Orbit Mean-Elements Messages (SGP4): kvn, xml, json or csv"],
         has_frame: false,
@@ -91,7 +91,7 @@ products! {
         }),
         write: ProductWriter::Design(|source, files| source.omm(files)),
     }
-    /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one of all.
+    /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one for all.
     Oem = "oem" {
         help: &["CCSDS Orbit Ephemeris Messages: kvn or xml"],
         has_frame: true,
@@ -126,7 +126,7 @@ products! {
         }),
         write: ProductWriter::Design(|source, files| source.sp3(files)),
     }
-    /// STK ephemerides, one file for each satellite, and with a scenario its Connect commands.
+    /// STK ephemerides, one file for each satellite, and the Connect commands of the scenario if given.
     Stk = "stk" {
         help: &[
             "STK ephemerides (.e), one file for each satellite, and in stk-scenario the Connect",
@@ -142,14 +142,14 @@ products! {
     }
     /// GMAT: a script that propagates the design under J2 alone.
     Gmat = "gmat" {
-        help: &["GMAT script of the design under J2 alone, with the field that it loads"],
+        help: &["GMAT script of the design under J2 alone, with its gravity field file"],
         has_frame: false,
-        read_back: Err("a script holds no states until GMAT has run it"),
+        read_back: Err("a script has no states until GMAT runs it"),
         write: ProductWriter::Design(|source, files| source.gmat(files)),
     }
     /// CZML: satellites, orbits and region for CesiumJS.
     Czml = "czml" {
-        help: &["CesiumJS: satellites, orbits, GNSS, and the region coloured by mean PDOP"],
+        help: &["CZML for CesiumJS: satellites, orbits, GNSS, and the region coloured by mean PDOP"],
         has_frame: false,
         read_back: Ok(ReadBack {
             files: Grouping::Together,
@@ -160,16 +160,16 @@ products! {
     }
     /// GeoJSON: region with metrics, ground tracks, footprints.
     Geojson = "geojson" {
-        help: &["for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
+        help: &["GeoJSON for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
         has_frame: false,
-        read_back: Err("a map of the ground holds no orbits"),
+        read_back: Err("a map of the ground has no orbits"),
         write: ProductWriter::Scenario(|source, files, scene| source.geojson(files, scene)),
     }
     /// KML: the same for Google Earth.
     Kml = "kml" {
-        help: &["for Google Earth: the same in one document"],
+        help: &["KML for Google Earth: the same in one document"],
         has_frame: false,
-        read_back: Err("a map of the ground holds no orbits"),
+        read_back: Err("a map of the ground has no orbits"),
         write: ProductWriter::Scenario(|source, files, scene| source.kml(files, scene)),
     }
     /// YUMA almanacs of the nominal GNSS.
@@ -194,14 +194,14 @@ products! {
     Metrics = "metrics" {
         help: &["tables of the metrics by ground point and by instant"],
         has_frame: false,
-        read_back: Err("the tables hold metrics, no satellites"),
+        read_back: Err("the tables have metrics, not satellites"),
         write: ProductWriter::Scenario(|source, files, scene| source.metrics(files, scene)),
     }
-    /// States that SGP4 gives for the element sets as written, for comparing another SGP4.
+    /// SGP4 states from the element sets as written, to compare another SGP4 with.
     TleStates = "tle-states" {
-        help: &["table of what SGP4 makes of the element sets as written"],
+        help: &["table of SGP4 states from the TLEs as written, to compare another SGP4"],
         has_frame: false,
-        // States of SGP4 have the theory and the digits of the element sets.
+        // SGP4 states have the theory and the digits of the element sets.
         read_back: Ok(ReadBack {
             files: Grouping::Together,
             theory: ReadBackTheory::Sgp4OfTle,
@@ -212,7 +212,7 @@ products! {
 }
 
 impl Product {
-    /// How a file of an export is read back, if it holds satellites of the design that can be.
+    /// How a file of an export is read back, if it has satellites of the design.
     #[must_use]
     pub fn read_back_of(file: &FileEntry) -> Option<ReadBack> {
         let product = Self::from_keyword(&file.format).ok()?;

@@ -21,7 +21,7 @@ pub(crate) const GRID: Grid = Grid {
     weights: PointWeights::Equal,
 };
 
-/// A subject of tests: a design of the study `paper`, propagated by J2.
+/// A subject for tests: a design of the study `paper`, propagated by J2.
 pub(crate) fn subject(design: Design, grid: TimeGrid) -> ExportSubject {
     ExportSubject {
         design,
@@ -46,7 +46,7 @@ pub(crate) fn setup(subject: &ExportSubject) -> Setup {
 
 type Contents = Arc<Mutex<BTreeMap<String, Vec<u8>>>>;
 
-/// A file that is kept in memory.
+/// A file in memory.
 struct Kept(Contents, String);
 
 impl Write for Kept {

@@ -16,17 +16,17 @@ use thiserror::Error;
 /// Why the satellites of a file do not propagate a study.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FleetError {
-    /// No satellite.
+    /// No satellites.
     #[error("no satellites")]
     Empty,
-    /// Element sets that make no constellation.
+    /// Element sets that do not form a constellation.
     #[error(transparent)]
     Sets(#[from] ElementSetError),
-    /// A model that refuses the elements.
+    /// A model that rejects the elements.
     #[error(transparent)]
     Propagation(#[from] EphemerisError),
-    /// A satellite that is given twice, by the rule of [`crate::constellation::identity`].
-    #[error("satellite {0} is given twice, at the same instants or as element sets; keep one")]
+    /// A satellite that appears twice, by the rule of [`crate::constellation::identity`].
+    #[error("satellite {0} appears twice, at the same instants or as element sets; keep one")]
     Repeated(String),
     /// The same by its catalogue number or designator, under two names.
     #[error("{0} and {1} are one object by catalogue number or OBJECT_ID; keep one")]
@@ -96,7 +96,7 @@ impl Fleet {
     /// The satellites on the grid of a study; `model` propagates mean elements.
     ///
     /// # Errors
-    /// When no satellites or one twice, a theory refuses one, or its samples do not cover
+    /// If there are no satellites, one appears twice, a theory rejects one, or samples do not cover
     /// the grid.
     pub fn propagate(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, FleetError> {
         if self.is_empty() {
@@ -199,8 +199,8 @@ fn propagated(name: &str, propagator: impl Propagator + 'static) -> EphemerisSat
     }
 }
 
-/// The states of satellites at the instants of a grid. Instants that lie within the span of none are an error; one
-/// that lies in a gap, or beyond the span of its satellite alone, is without a state.
+/// The states of satellites at the instants of a grid. An instant outside the spans of all satellites is an error; one
+/// in a gap, or outside the span of its own satellite only, has no state.
 fn sampled(
     trajectories: &[Trajectory],
     labels: &[String],

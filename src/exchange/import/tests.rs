@@ -69,7 +69,7 @@ fn every_product_propagates_where_the_design_does() {
                 let propagated = fleet(&exported(&[product], choices))
                     .propagate(grid(), Model::J2)
                     .unwrap();
-                // Nine decimals, and rotations forth and back in doubles.
+                // Nine decimals, and rotations there and back in doubles.
                 assert!(apart_km(&propagated) < 1e-8, "{frame} {product}");
             }
         }
@@ -144,7 +144,7 @@ fn what_makes_no_constellation_is_refused() {
     mixed.append(tle.clone());
     assert_eq!(mixed.len(), 12);
     assert_eq!(mixed.content(), "sampled states, SGP4 element sets");
-    let twice = "satellite NW-P01-S01 is given twice";
+    let twice = "satellite NW-P01-S01 appears twice";
     let error = |fleet: &Fleet| {
         fleet
             .propagate(grid(), Model::J2)
@@ -178,7 +178,7 @@ fn what_makes_no_constellation_is_refused() {
     assert!(error.to_string().contains("no mean elements"), "{error}");
 }
 
-/// The derivative of a polynomial of degree 8 is met by nine nodes; SP3 without velocities.
+/// Nine nodes reproduce the derivative of a polynomial of degree 8; SP3 without velocities.
 #[test]
 fn velocities_follow_from_positions() {
     let epoch = grid().epoch();

@@ -1,4 +1,4 @@
-//! How a product is read back: from which files, against which theory, within which digits.
+//! How a product is read back: its files, its theory and its digits.
 
 use crate::constellation::Design;
 use crate::earth::RADIUS_KM;
@@ -7,20 +7,20 @@ use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
 use std::f64::consts::TAU;
 
-/// Nine decimals of a kilometre, stamps to a nanosecond, and rotations forth and back, km.
+/// Nine decimals of a kilometre, time tags to a nanosecond, and rotations there and back, km.
 const STATES_KM: f64 = 1e-8;
 
 /// Six decimals of a kilometre in three components, and epochs to 1e-8 s, km.
 const SP3_KM: f64 = 1e-6;
 
-/// The metre between samples for which their spacing is chosen on one satellite, twice for the others,
-/// and a decimetre of digits, km.
+/// The metre between samples, for which their spacing is chosen on one satellite, twice that for the
+/// others, plus a decimetre of digits, km.
 const CZML_KM: f64 = 2.0 * crate::formats::maps::czml::TARGET_KM + 2e-4;
 
-/// How the files of a product are read back and what they are held against.
+/// How the files of a product are read back and what they are compared with.
 #[derive(Debug, Clone, Copy)]
 pub struct ReadBack {
-    /// Which of its files make the constellation.
+    /// Which of its files contain the constellation.
     pub files: Grouping,
     /// The theory of its satellites.
     pub theory: ReadBackTheory,
@@ -28,16 +28,16 @@ pub struct ReadBack {
     pub digits_km: fn(Extent) -> f64,
 }
 
-/// Which files of a product make the constellation once.
+/// Which files of a product contain the constellation once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Grouping {
     /// All of them together.
     Together,
-    /// Each for itself.
+    /// Each on its own.
     Each,
 }
 
-/// What the satellites of a product follow.
+/// The theory that the satellites of a product follow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ReadBackTheory {
     /// The model of the study.
@@ -59,7 +59,7 @@ impl ReadBackTheory {
     }
 }
 
-/// What the effect of a digit grows with.
+/// The quantities on which the effect of a digit depends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// Semi-major axis of the design, km.
@@ -103,7 +103,7 @@ pub(crate) fn omm_km(extent: Extent) -> f64 {
     1e-8 * (1.0 + extent.days)
 }
 
-/// Four angles to 1e-4°, e to 1e-7 (twice that along the track), the mean motion to 1e-8 rev/day;
+/// Four angles to 1e-4°, e to 1e-7 (twice that in-track), the mean motion to 1e-8 rev/day;
 /// an inclination off by half a digit turns each of three angles, which J2 moves by 10° a day at
 /// most, by three times as much as itself at most.
 pub(crate) fn tle_km(extent: Extent) -> f64 {

@@ -72,7 +72,7 @@ fn as_it_is(text: String) -> String {
     text
 }
 
-/// What is exported passes, and its gate in metres is what the digits of its format explain.
+/// Exports pass, with a gate in metres that the digits of the format explain.
 #[test]
 fn exports_pass_gates_of_their_digits() {
     let evaluator = evaluator();
@@ -90,7 +90,7 @@ fn exports_pass_gates_of_their_digits() {
             _ => 1e-4,
         };
         assert!(gate_m < most_m, "{product:?}: {gate_m} m");
-        // A gate is no looser than some hundred times what is found.
+        // A gate is at most about a hundred times the value found.
         assert!(
             found.position_km.value > 1e-3 * found.position_km.gate.unwrap(),
             "{product:?}: {found:?}"
@@ -104,7 +104,7 @@ fn exports_pass_gates_of_their_digits() {
     }
 }
 
-/// Two satellites that change places.
+/// Two satellites swapped.
 fn swapped(fleet: &mut Fleet) {
     match fleet {
         Fleet::Sets(sets) => sets.swap(2, 3),
@@ -114,7 +114,7 @@ fn swapped(fleet: &mut Fleet) {
     }
 }
 
-/// Everything a second late: what stands at an instant is the state of a second before.
+/// Everything a second late: each state is that of a second before.
 fn a_second_late(fleet: &mut Fleet) {
     match fleet {
         Fleet::Sets(sets) => sets
@@ -138,7 +138,7 @@ fn a_second_late(fleet: &mut Fleet) {
     }
 }
 
-/// States in TEME that call themselves EME2000.
+/// TEME states labelled EME2000.
 fn in_another_frame(fleet: &mut Fleet) {
     if let Fleet::Sampled(trajectories) = fleet {
         trajectories
@@ -166,7 +166,7 @@ fn planted_mistakes_fail() {
     for product in CHECKED {
         for (name, mistake) in mistakes {
             let mut fleet = read_back(product, teme, &as_it_is).unwrap();
-            // Sets and mean elements are in TEME by their definition.
+            // Sets and mean elements are in TEME by definition.
             if name == "frame" && !matches!(fleet, Fleet::Sampled(_)) {
                 continue;
             }

@@ -8,7 +8,7 @@ use crate::frames::Frame;
 use crate::time::Epoch;
 use nalgebra::Vector3;
 
-/// The satellites of a text in the format that its beginning shows; no error, and these warnings.
+/// The satellites of a text in the detected format; no error, and these warnings.
 fn read(text: &str, format: Format, warnings: &[&str]) -> Fleet {
     let report = lint(text.as_bytes(), None, None, 100).unwrap();
     assert_eq!(report.format, Some(format));
@@ -188,7 +188,7 @@ fn velocities_of_missing_positions_are_passed_over() {
     let satellites = sampled(read(&text, Format::Sp3, &[]));
     assert_eq!(satellites.len(), 2);
     let velocity = satellites[0].samples()[0].2.velocity_km_s;
-    // Decimetres a second.
+    // Decimetres per second.
     assert!(
         (velocity - Vector3::new(2.029_888_036_4, -1.846_204_480_4, 0.138_138_768_5)).norm()
             < 1e-15
@@ -287,7 +287,7 @@ fn validate_an_ephemeris_message_of_orekit() {
     assert_eq!(satellites.len(), 1);
     let states = satellites[0].samples();
     assert_eq!(satellites[0].arcs[0].frame, Frame::EarthFixed);
-    // The instant that both arcs have is that of the first.
+    // The instant in both arcs is taken from the first.
     assert_eq!(states.len(), 3);
     assert_eq!(states[0].0, utc("2026-01-01T00:00:00Z"));
     assert_eq!(states[1].2.position_km.km().x, 7086.0);

@@ -1,4 +1,4 @@
-//! Every reader with every kind of bad input: never a panic, always a place, bounded memory.
+//! Every reader with every kind of bad input: no panic, always a position, bounded memory.
 
 use super::samples;
 use crate::exchange::import::Fleet;
@@ -7,8 +7,8 @@ use crate::formats::text::finding::{Finding, Severity};
 use crate::keyword::Keyword;
 use std::io::{self, BufRead, Read};
 
-/// What the linter finds, all of it in the file or where its next line would be; the reader
-/// refuses what has an error.
+/// The linter's findings, all positioned in the file or on its next line; the reader rejects a file
+/// with an error.
 fn findings(format: Format, bytes: &[u8]) -> Vec<Finding> {
     let report = lint(bytes, Some(format), None, 1000).unwrap();
     let lines = 1 + bytes.iter().filter(|b| matches!(b, b'\n' | b'\r')).count();
@@ -51,7 +51,7 @@ fn what_is_no_text_is_refused_by_all() {
     }
 }
 
-/// A file that ends early is refused or has a warning, unless what is left is a whole file.
+/// A truncated file is rejected or has a warning, unless the rest is a complete file.
 #[test]
 fn files_cut_at_any_byte_are_told() {
     for (format, text) in samples() {
@@ -66,10 +66,10 @@ fn files_cut_at_any_byte_are_told() {
             let rest = &text[at..];
             let ends_a_row = rest.starts_with('\n') || text[..at].ends_with('\n');
             let whole = match format {
-                // Sets and rows stand alone, and the last number of a row may lose digits.
+                // Sets and rows are independent, and the last number of a row may lose digits.
                 Format::Tle => ends_a_row,
                 Format::OmmCsv | Format::ElementsCsv | Format::StatesCsv => !rest.contains("\n\n"),
-                // What comes behind the state and the elements may be left out.
+                // What follows the state and the elements may be omitted.
                 Format::Opm => text[..at].contains("\nZ_DOT = "),
                 Format::Omm => text[..at].contains("MEAN_ANOMALY"),
                 // Numbers at the end may lose digits, and a block of an almanac stands alone.
@@ -93,7 +93,7 @@ fn files_cut_at_any_byte_are_told() {
     }
 }
 
-/// Gives a beginning and then one byte without end, in blocks.
+/// Yields a beginning and then one byte endlessly, in blocks.
 struct Endless {
     beginning: Vec<u8>,
     block: Vec<u8>,
@@ -149,14 +149,14 @@ fn a_line_of_64_mb_is_refused() {
     }
 }
 
-/// The text whose first `from` behind `after` has become `to`.
+/// The text with the first `from` after `after` replaced by `to`.
 fn replaced(text: &str, after: &str, from: &str, to: &str) -> String {
     let at = text.find(after).unwrap() + after.len();
     let at = at + text[at..].find(from).unwrap();
     format!("{}{to}{}", &text[..at], &text[at + from.len()..])
 }
 
-/// Where the first number of a state or set stands: behind what, and its first digits.
+/// The first number of a state or set: the text before it, and its first digits.
 fn first_number(format: Format) -> (&'static str, &'static str) {
     match format {
         Format::Tle => ("\n2 90001 ", "55"),
@@ -241,7 +241,7 @@ fn instants_that_come_twice_are_told() {
     );
 }
 
-/// Line ends of other systems, a mark in front and blank lines behind change nothing.
+/// Line ends of other systems, a leading byte order mark and trailing blank lines change nothing.
 #[test]
 fn harmless_differences_are_taken() {
     for (format, text) in samples() {
@@ -259,7 +259,7 @@ fn harmless_differences_are_taken() {
     }
 }
 
-/// A tab has no place in CCSDS and TLE, where it is told and read as a blank; STK and XML have it.
+/// A tab is not allowed in CCSDS and TLE, where it is reported and read as a blank; STK and XML allow it.
 #[test]
 fn tabs_are_read_as_blanks() {
     for (format, text) in samples() {
@@ -293,7 +293,7 @@ fn tabs_are_read_as_blanks() {
     }
 }
 
-/// Keywords are capitals in CCSDS: what is written otherwise is read, or refused with its place.
+/// CCSDS keywords are capitals: others are accepted, or rejected with their position.
 #[test]
 fn keywords_in_another_case_are_read_or_named() {
     for (format, text) in samples() {

@@ -142,7 +142,7 @@ pub(crate) enum Item<'a> {
 pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
     if line.text.len() > LINE {
         let message = format!(
-            "the line has {} characters; {LINE} are allowed",
+            "the line has {} characters; the limit is {LINE}",
             line.text.len()
         );
         findings.warning((line.number, LINE + 1), "ccsds-line-length", message);
@@ -178,7 +178,7 @@ struct PlacedValue {
     place: (usize, usize),
 }
 
-/// The values of one table of keywords, as they come in.
+/// The values of one table of keywords, in the order read.
 pub(crate) struct KvnBlock {
     table: Vec<&'static KvnKeyword>,
     values: Vec<Option<PlacedValue>>,
@@ -236,17 +236,17 @@ impl KvnBlock {
     /// Takes a keyword of the table.
     pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         let Some(index) = self.index(pair.key) else {
-            let message = format!("keyword {} does not belong here", pair.key);
+            let message = format!("keyword {} is not allowed here", pair.key);
             findings.error(pair.key_place, "ccsds-keyword", message);
             return;
         };
         if std::mem::replace(&mut self.seen[index], true) {
-            let message = format!("{} is given twice", pair.key);
+            let message = format!("{} appears twice", pair.key);
             findings.error(pair.key_place, "ccsds-repeated", message);
             return;
         }
         if let Some(last) = self.last.filter(|last| self.is_message && *last > index) {
-            let message = format!("{} stands after {}", pair.key, self.table[last].name);
+            let message = format!("{} must come before {}", pair.key, self.table[last].name);
             findings.warning(pair.key_place, "ccsds-order", message);
         }
         self.last = self.last.max(Some(index));
@@ -277,7 +277,7 @@ impl KvnBlock {
         });
     }
 
-    /// The number of a keyword whose unit, if it is displayed, must be that of the table (7.7.1.1).
+    /// The number of a keyword; its unit, if displayed, must be that of the table (7.7.1.1).
     fn read_quantity(
         &self,
         pair: &Pair<'_>,
@@ -300,7 +300,7 @@ impl KvnBlock {
         read_number(text, place, findings)
     }
 
-    /// Takes a keyword of the table whose key and value stand at one place, as in XML.
+    /// Takes a keyword of the table whose key and value have the same position, as in XML.
     pub(crate) fn accept_at(
         &mut self,
         (key, value): (&str, &str),
@@ -346,12 +346,12 @@ impl KvnBlock {
         self.placed(key).map(|value| value.text.clone())
     }
 
-    /// A text value, or what the standard asks for where there is none.
+    /// A text value, or the standard's placeholder for a missing one.
     pub(crate) fn text_or_unknown(&self, key: &str) -> String {
         self.text(key).unwrap_or_else(|| "UNKNOWN".to_owned())
     }
 
-    /// A time; a finding if it is none.
+    /// A time; a finding if it is invalid.
     pub(crate) fn stamp(&self, key: &str, findings: &mut FindingList) -> Option<NaiveDateTime> {
         let value = self.placed(key)?;
         read_stamp(&value.text, value.place, findings)
@@ -362,7 +362,7 @@ impl KvnBlock {
         self.placed(key)?.number
     }
 
-    /// A count; a finding if it is none.
+    /// A count; a finding if it is invalid.
     pub(crate) fn count(&self, key: &str, findings: &mut FindingList) -> Option<u64> {
         let value = self.placed(key)?;
         let parsed = value.text.parse().ok();
@@ -374,7 +374,7 @@ impl KvnBlock {
     }
 }
 
-/// Reads a time of 7.5.10; a finding if it is none.
+/// Reads a time of 7.5.10; a finding if it is invalid.
 pub(crate) fn read_stamp(
     text: &str,
     place: (usize, usize),
@@ -388,7 +388,7 @@ pub(crate) fn read_stamp(
     stamp
 }
 
-/// Whether a displayed unit is that of the table; the case of its letters is only warned of.
+/// Checks a displayed unit against the table; a difference only in case is a warning.
 fn check_unit(
     key: &str,
     shown: &str,
@@ -397,14 +397,14 @@ fn check_unit(
     findings: &mut FindingList,
 ) -> Option<()> {
     let Some(unit) = unit else {
-        let message = format!("{key} has no unit; [{shown}] stands with it");
+        let message = format!("{key} has no unit, but is written with [{shown}]");
         findings.error(place, "ccsds-unit", message);
         return None;
     };
     if shown == unit {
         return Some(());
     }
-    let message = format!("{key} is in [{unit}]; [{shown}] stands with it (7.7.1.1)");
+    let message = format!("{key} is in [{unit}], but is written with [{shown}] (7.7.1.1)");
     if shown.eq_ignore_ascii_case(unit) {
         findings.warning(place, "ccsds-unit", message);
         return Some(());
@@ -413,7 +413,7 @@ fn check_unit(
     None
 }
 
-/// Reads a number of 7.5.4 to 7.5.7; a finding if it is none.
+/// Reads a number of 7.5.4 to 7.5.7; a finding if it is invalid.
 pub(crate) fn read_number(
     text: &str,
     place: (usize, usize),
@@ -434,7 +434,7 @@ pub(crate) fn read_number(
     }
     let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();
     if digits > DIGITS {
-        let message = format!("the number has {digits} digits; {DIGITS} are allowed");
+        let message = format!("the number has {digits} digits; the limit is {DIGITS}");
         findings.warning(place, "ccsds-digits", message);
     }
     Some(value)

@@ -28,9 +28,9 @@ use chrono::NaiveDateTime;
 use nalgebra::Vector3;
 use std::io::{self, Write};
 
-/// What is said of a message in TEME, which is only written when it is asked for.
+/// The remark on a message in TEME, which is only written on request.
 pub(crate) const TEME_NOTE: &str =
-    "CCSDS 502.0-B-3 (4.2.4.9) keeps TEME for OMMs made from TLEs: not every reader takes it here";
+    "CCSDS 502.0-B-3 (4.2.4.9) reserves TEME for OMMs made from TLEs; some readers reject it here";
 
 /// What is said of a message in BeiDou time.
 pub(crate) const BDT_NOTE: &str = "BDT is not a time system of CCSDS 502.0-B-3 (SANA registry): agree on it with who reads the message";
@@ -89,7 +89,7 @@ pub struct SegmentMetadata {
 /// A segment: its metadata and its ephemeris lines.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
-    /// What it says of itself.
+    /// Its metadata.
     pub metadata: SegmentMetadata,
     /// Comments before the first ephemeris line.
     pub comments: Vec<String>,
@@ -149,7 +149,7 @@ impl Segment {
     /// need not be where the satellite was (table 5-3).
     ///
     /// # Errors
-    /// When the centre is not the Earth, or the frame or the time system is unknown.
+    /// If the centre is not the Earth, or the frame or the time system is unknown.
     pub fn trajectory(&self) -> Result<Trajectory, TrajectoryError> {
         let metadata = &self.metadata;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
@@ -187,7 +187,7 @@ impl Segment {
     }
 }
 
-/// What the segment of a satellite says of itself.
+/// The metadata of a satellite's segment.
 pub(crate) fn segment_metadata(
     metadata: &Metadata,
     object: &Object,
@@ -205,7 +205,7 @@ pub(crate) fn segment_metadata(
     if metadata.time_system == TimeSystem::Bdt {
         comments.push(BDT_NOTE.to_owned());
     }
-    // 7.8.12 c asks for the accuracy.
+    // 7.8.12 c requires the accuracy.
     if let Some(hermite) = hermite {
         comments.push(format!(
             "Error of this interpolation halfway between lines: at most {:.1e} km",

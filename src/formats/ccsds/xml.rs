@@ -1,6 +1,6 @@
 //! Elements of an XML file, with their places, for the Navigation Data Messages.
 //!
-//! Leaves are told from elements with children; memory is bounded by the length of one tag or
+//! Leaves are distinguished from elements with children; memory is bounded by the length of one tag or
 //! text and by the depth. Document types and entities other than the five of XML are refused.
 
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
@@ -157,7 +157,7 @@ impl<R: BufRead> Nodes<R> {
             let node = match self.reader.read_event_into(&mut buffer) {
                 Ok(Event::Eof) => {
                     if self.depth > 0 || !self.any {
-                        let message = "the file ends inside an element, or has none";
+                        let message = "the file ends inside an element, or has no elements";
                         findings.error(place, "xml-truncated", message);
                     }
                     self.ended = true;
@@ -195,12 +195,20 @@ impl<R: BufRead> Nodes<R> {
                     let resolved = resolved(&reference);
                     match resolved {
                         Some(text) => self.text(&text, place, findings),
-                        None => self.refuse(place, "an entity that XML does not define", findings),
+                        None => self.refuse(
+                            place,
+                            "the entity is not one that XML predefines",
+                            findings,
+                        ),
                     }
                     None
                 }
                 Ok(Event::DocType(_)) => {
-                    self.refuse(place, "a document type does not belong here", findings);
+                    self.refuse(
+                        place,
+                        "a document type declaration is not allowed",
+                        findings,
+                    );
                     None
                 }
                 Ok(Event::Decl(_) | Event::PI(_) | Event::Comment(_)) => None,
@@ -239,9 +247,9 @@ impl<R: BufRead> Nodes<R> {
     fn text(&mut self, text: &str, place: (usize, usize), findings: &mut FindingList) {
         match &mut self.held {
             Some(held) if held.text.len() + text.len() <= MAX_EVENT => held.text.push_str(text),
-            Some(_) => self.refuse(place, "a text is too long", findings),
+            Some(_) => self.refuse(place, "the text of an element is too long", findings),
             None if text.trim().trim_start_matches('\u{feff}').is_empty() => {}
-            None => self.refuse(place, "text outside an element of its own", findings),
+            None => self.refuse(place, "text must be in an element of its own", findings),
         }
     }
 }
@@ -265,7 +273,7 @@ fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
     }
 }
 
-/// Text of an event; bytes that are no UTF-8 become replacement characters, which no field takes.
+/// Text of an event; bytes that are not UTF-8 become replacement characters, which no field takes.
 fn name_of(bytes: impl AsRef<[u8]>) -> String {
     String::from_utf8_lossy(bytes.as_ref()).into_owned()
 }
@@ -277,7 +285,7 @@ fn resolved(reference: &BytesRef<'_>) -> Option<String> {
     resolve_predefined_entity(&name_of(reference.as_ref())).map(str::to_owned)
 }
 
-/// What the outermost element says of its schema (CCSDS 505.0-B-2, section 4).
+/// The schema attributes of the outermost element (CCSDS 505.0-B-2, section 4).
 fn schema(version: CcsdsVersion) -> String {
     let schema = match version {
         CcsdsVersion::V2 => "ndmxml-2.0.0-master-2.0.xsd",

@@ -235,7 +235,7 @@ fn rows<T: Copy, const N: usize>(
     });
     let Some((kind, columns)) = known else {
         let missing = tables[0].1.iter().find(|name| column(name).is_none());
-        let message = format!("there is no column {}", missing.unwrap_or(&""));
+        let message = format!("column {} is missing", missing.unwrap_or(&""));
         findings.error((1, 1), "csv-header", message);
         return Ok(());
     };
@@ -254,7 +254,7 @@ fn rows<T: Copy, const N: usize>(
         }
     }
     if !any && !findings.has_errors() {
-        findings.error((2, 1), "csv-empty", "the table has no row");
+        findings.error((2, 1), "csv-empty", "the table has no rows");
     }
     Ok(())
 }
@@ -336,7 +336,7 @@ mod tests {
             (
                 elements.replace("raan_deg", "node"),
                 true,
-                "line 1, column 1: there is no column raan_deg",
+                "line 1, column 1: column raan_deg is missing",
             ),
             (
                 elements.replacen("0.02", "NaN", 1),
@@ -356,7 +356,7 @@ mod tests {
             (
                 elements.lines().next().unwrap().to_owned(),
                 true,
-                "line 2, column 1: the table has no row",
+                "line 2, column 1: the table has no rows",
             ),
             (
                 format!("{states}{second}\n"),
@@ -371,7 +371,7 @@ mod tests {
             (
                 String::new(),
                 true,
-                "line 1, column 1: there is no column object",
+                "line 1, column 1: column object is missing",
             ),
         ] {
             let found = error(&text, is_elements);

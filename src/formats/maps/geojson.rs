@@ -18,7 +18,7 @@ pub const FORMAT_VERSION: &str = "RFC 7946";
 /// Writes the ground points with their metrics: the cells of a grid, or the points of a list.
 ///
 /// # Errors
-/// When a satellite has no state, or the output fails.
+/// If a satellite has no state, or the output fails.
 pub fn write_region(out: &mut impl Write, scene: &Scene<'_>) -> Result<(), WriteError> {
     let points = scene.points()?;
     let scale = ColourScale::of(points);

@@ -25,7 +25,7 @@ const CELL_OPACITY: u8 = 0x90;
 /// Writes the document.
 ///
 /// # Errors
-/// When a satellite has no state, or the output fails.
+/// If a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     scene: &Scene<'_>,

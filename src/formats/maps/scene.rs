@@ -91,7 +91,7 @@ impl<'a> Scene<'a> {
         Some(cell(grid, [point.longitude_deg, point.latitude_deg]))
     }
 
-    /// What another program must be told to get the same numbers, a sentence each.
+    /// The settings another program needs to get the same numbers, one sentence each.
     #[must_use]
     pub fn assumptions(&self) -> Vec<String> {
         let setup = self.setup();
@@ -99,7 +99,7 @@ impl<'a> Scene<'a> {
         let span_s = grid.step_s() * grid.len() as f64;
         let mut told = vec![
             format!(
-                "time: {} samples from {}, every {} s, {span_s} s in all",
+                "time: {} samples from {}, every {} s, over {span_s} s",
                 grid.len(),
                 grid.epoch(),
                 grid.step_s()
@@ -115,7 +115,7 @@ impl<'a> Scene<'a> {
             setup.mask.degrees(),
             setup.gnss_mask.degrees(),
             if setup.skyline.is_some() {
-                ", and a skyline by azimuth (visibility.mask-table)"
+                ", and a mask by azimuth (visibility.mask-table)"
             } else {
                 ""
             }
@@ -140,7 +140,7 @@ impl<'a> Scene<'a> {
         told.push(match &self.grid {
             Some(grid) => format!(
                 "region: {points} points, latitudes {} to {}° by {}°, longitudes {} to {}° by {}°, \
-                 from the south-west corner; means weigh points {}",
+                 from the south-west corner; point weights {}",
                 grid.latitude_deg[0],
                 grid.latitude_deg[1],
                 grid.step_deg[0],
@@ -149,15 +149,17 @@ impl<'a> Scene<'a> {
                 grid.step_deg[1],
                 grid.weights
             ),
-            None => format!("region: {points} points of a list"),
+            None => format!("region: {points} points from a list"),
         });
         told.push(match self.surface {
             Surface::Wgs84 => {
                 "ground: WGS 84, geodetic latitudes, vertical normal to the ellipsoid".to_owned()
             }
-            Surface::Sphere => "ground: a sphere of the equatorial radius with geocentric latitudes, \
-                 which are written as they are: a program with an ellipsoid shows them up to 21 km off"
-                .to_owned(),
+            Surface::Sphere => {
+                "ground: a sphere of the equatorial radius with geocentric latitudes, \
+                 written unchanged: a program with an ellipsoid places them up to 21 km away"
+                    .to_owned()
+            }
         });
         told
     }

@@ -29,7 +29,7 @@ impl Ground {
     /// Every satellite of an ephemeris, over one revolution of `period_s`.
     ///
     /// # Errors
-    /// When a satellite has no state.
+    /// If a satellite has no state.
     pub fn of(
         scene: &Scene<'_>,
         ephemeris: &Ephemeris,

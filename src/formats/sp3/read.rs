@@ -52,7 +52,7 @@ struct Sp3Parser {
     at: Option<Epoch>,
     /// Satellites whose position at this epoch is marked as missing.
     missing: Vec<usize>,
-    /// Positions at this epoch, the missing ones among them.
+    /// Number of positions at this epoch, including missing ones.
     records: usize,
     ended: bool,
     any: bool,
@@ -109,7 +109,7 @@ impl Sp3Parser {
             [b'P', ..] => self.position(line, findings),
             [b'V', ..] => self.velocity(line, findings),
             _ if text == "EOF" => self.ended = true,
-            _ => findings.error(place, "sp3-line", "a line of no kind that SP3 has"),
+            _ => findings.error(place, "sp3-line", "not a line of SP3"),
         }
     }
 
@@ -225,7 +225,7 @@ impl Sp3Parser {
         let text = &line.text;
         let id = text.get(1..4).unwrap_or_default();
         let Some(index) = self.file.ids.iter().position(|known| known == id) else {
-            let message = format!("'{id}' is not in the header");
+            let message = format!("satellite '{id}' is not in the header");
             findings.error((line.number, 2), "sp3-id", message);
             return None;
         };
@@ -249,7 +249,7 @@ impl Sp3Parser {
             return;
         };
         self.records += 1;
-        // A position of zeros stands for a missing one.
+        // A position of zeros means a missing one.
         if position_km.norm_squared() == 0.0 {
             self.missing.push(index);
             return;
@@ -310,13 +310,16 @@ impl Sp3Parser {
         }
         if self.file.ids.len() != satellites {
             let message = format!(
-                "{satellites} satellites are announced; {} are named",
+                "the header gives {satellites} satellites but names {}",
                 self.file.ids.len()
             );
             findings.error(place, "sp3-count", message);
         }
         if self.epochs != epochs {
-            let message = format!("{epochs} epochs are announced; there are {}", self.epochs);
+            let message = format!(
+                "the header gives {epochs} epochs, but there are {}",
+                self.epochs
+            );
             findings.error(place, "sp3-count", message);
         }
         self.check_velocities(number, findings);

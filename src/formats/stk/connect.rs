@@ -47,39 +47,39 @@ pub struct ConnectScenario<'a> {
 #[must_use]
 pub fn by_hand(one_mask: bool, files: bool) -> Vec<String> {
     let mut told = vec![
-        "not tried in STK, for want of a licence: the commands follow its documentation and \
+        "not tested in STK, for lack of a licence: the commands follow its documentation and \
          published scripts"
             .to_owned(),
         "by hand: load points.pnt as the custom point locations of CoverageDefinition/Region; Connect \
-         lays a grid of its own over the region"
+         can only create its own grid over the region"
             .to_owned(),
         "by hand: in FigureOfMerit/PDOP choose PDOP, Over Determined, and the step of the study; the \
-         command sets the average of a dilution of precision alone"
+         command can only select the average of a dilution of precision"
             .to_owned(),
-        "by hand: STK propagates J2Perturbation about the pole of J2000 unless told otherwise; choose the \
-         true pole of the epoch (Propagator, Special Options), 2 to 6 km in a day"
+        "by hand: STK propagates J2Perturbation about the pole of J2000 by default; select the true pole \
+         of the epoch (Propagator, Special Options); the difference is 2 to 6 km in a day"
             .to_owned(),
-        "STK's constants of the Earth are its own central body file; the design's are under \
+        "STK takes the Earth's constants from its own central body file; the design's are listed under \
          conventions"
             .to_owned(),
-        "STK solves one clock for all systems: compare with gnss.clocks = \"shared\"; and has no \
+        "STK solves one clock for all systems: compare with gnss.clocks = \"shared\". It has no \
          cap on PDOP"
             .to_owned(),
-        "one SetState for each satellite instead of Walker, which takes no lattice, at most 999 \
-         satellites, and names of its own"
+        "one SetState for each satellite instead of Walker, which allows no lattice, at most 999 \
+         satellites, and only its own names"
             .to_owned(),
     ];
     if !one_mask {
         told.push(
             "the mask is that of the design for all satellites: visibility.gnss-mask-deg and \
-             mask-table have no place in a coverage grid; set constraints by asset"
+             mask-table cannot be expressed in a coverage grid; set constraints by asset"
                 .to_owned(),
         );
     }
     if files {
         told.push(
             "SetState FromFile names files relative to the folder of the commands; STK wants full \
-             paths there"
+             paths"
                 .to_owned(),
         );
     }
@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// The elements stand in metres and degrees, perigee before node, as "SetState Classical" has
+    /// The elements are in metres and degrees, perigee before node, as "SetState Classical" has
     /// them; a star pattern has its nodes over half a turn.
     #[test]
     fn commands_hold_the_design() {

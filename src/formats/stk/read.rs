@@ -139,9 +139,7 @@ impl StkParser {
             StkSection::Before if is(key, "BEGIN") && is(value, "Ephemeris") => {
                 self.part = StkSection::Keywords
             }
-            StkSection::Before => {
-                findings.error(place, "stk-begin", "BEGIN Ephemeris belongs here")
-            }
+            StkSection::Before => findings.error(place, "stk-begin", "expected BEGIN Ephemeris"),
             StkSection::Keywords if is(key, "BEGIN") && is(value, "SegmentBoundaryTimes") => {
                 self.part = StkSection::Boundaries
             }
@@ -172,7 +170,7 @@ impl StkParser {
         let value_place = (line.number, line.text.find(value).unwrap_or(0) + 1);
         let known = |known: bool, findings: &mut FindingList| {
             if !known {
-                let message = format!("{key} '{value}' is unknown here");
+                let message = format!("{key} '{value}' is not supported");
                 findings.error(value_place, "stk-value", message);
             }
         };
@@ -225,7 +223,7 @@ impl StkParser {
             }
             _ if PASSED_OVER.iter().any(|passed| is(key, passed)) => {}
             _ => {
-                let message = format!("keyword {key} is not one that is read here");
+                let message = format!("keyword {key} is not supported");
                 findings.error(place, "stk-keyword", message);
             }
         }
@@ -352,13 +350,13 @@ impl StkParser {
         match self.points {
             Some((points, place)) if points != self.states.len() => {
                 let message = format!(
-                    "{points} points are announced; there are {}",
+                    "NumberOfEphemerisPoints is {points}, but there are {}",
                     self.states.len()
                 );
                 findings.error(place, "stk-count", message);
             }
             _ if self.states.is_empty() => {
-                findings.error((number, 1), "stk-empty", "there is no point");
+                findings.error((number, 1), "stk-empty", "the table has no points");
             }
             _ if self.columns != Columns::Pos => self.check_velocities(number, findings),
             _ => self.derive_velocities(number, findings),

@@ -22,9 +22,9 @@ pub struct Finding {
     pub column: usize,
     /// Short name of the rule, stable across versions.
     pub rule: &'static str,
-    /// What is wrong, and what the rule asks for.
+    /// The violation and the requirement.
     pub message: String,
-    /// Whether a reader goes on.
+    /// Whether a reader can continue.
     pub severity: Severity,
 }
 
@@ -208,7 +208,7 @@ impl FindingList {
         self.found
     }
 
-    /// `value` if a reader may go on with it.
+    /// `value` if a reader can continue with it.
     pub(crate) fn unless_error<T>(self, value: T) -> Result<T, crate::formats::ReadError> {
         let mut errors = self
             .found

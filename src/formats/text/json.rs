@@ -3,7 +3,7 @@
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Longest object that is kept of a format of small ones, in bytes.
+/// Maximum size of an object, in bytes, in a format of small ones.
 const MAX_OBJECT: usize = 1 << 20;
 
 /// An object of the array.
@@ -36,7 +36,7 @@ impl JsonObject {
         let text = |(key, value): (String, serde_json::Value)| match value {
             serde_json::Value::String(text) => Some((key, text)),
             serde_json::Value::Number(number) => Some((key, number.to_string())),
-            // Null stands for a value that is not given.
+            // Null is a missing value.
             _ => None,
         };
         Some(members.into_iter().filter_map(text).collect())
@@ -117,7 +117,7 @@ impl<R: BufRead> Objects<R> {
     pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
         while self.state != ScanState::End {
             let Some(byte) = self.byte()? else {
-                let message = "the array is not closed, or there is none";
+                let message = "the array is missing or not closed";
                 findings.error((self.place.0, self.place.1 + 1), "json-truncated", message);
                 self.state = ScanState::End;
                 return Ok(None);

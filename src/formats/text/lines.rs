@@ -116,7 +116,7 @@ impl<R: BufRead> Lines<R> {
             if *byte == b'\t' {
                 *byte = b' ';
                 if !self.takes_tabs {
-                    let message = "a tab stands where a blank belongs";
+                    let message = "expected a space, found a tab";
                     findings.warning((self.number, at + 1), "tab", message);
                 }
             }

@@ -75,7 +75,11 @@ pub fn parse(
     if let Some(lonely) = name {
         missing_lines(&lonely, findings);
     } else if !any {
-        findings.error((lines.number().max(1), 1), "tle-empty", "no element set");
+        findings.error(
+            (lines.number().max(1), 1),
+            "tle-empty",
+            "the file has no element sets",
+        );
     }
     Ok(())
 }
@@ -125,7 +129,7 @@ const FIRST: &[u8; LINE] = b"1 A____U _____LLL ##__#.######## +.######## +#####-
 const SECOND: &[u8; LINE] =
     b"2 A____ __#.#### __#.#### ####### __#.#### __#.#### _#.########____##";
 
-/// Whether a byte may stand in a column, with what may stand there.
+/// Whether a byte is allowed in a column, and what is allowed there.
 fn column_fits(class: u8, byte: u8) -> Result<(), &'static str> {
     let (fits, expected) = match class {
         b'#' => (byte.is_ascii_digit(), "a digit"),
@@ -136,7 +140,7 @@ fn column_fits(class: u8, byte: u8) -> Result<(), &'static str> {
         ),
         b'L' => (
             byte.is_ascii_uppercase() || byte == b' ',
-            "a capital or a blank",
+            "a capital letter or a blank",
         ),
         b'U' => (matches!(byte, b'U' | b'C' | b'S'), "U, C or S"),
         b'+' => (matches!(byte, b' ' | b'+' | b'-'), "a blank, + or -"),
@@ -163,7 +167,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     }
     for (at, (class, byte)) in columns.iter().zip(text).enumerate() {
         if let Err(expected) = column_fits(*class, *byte) {
-            let message = format!("'{}' stands where {expected} belongs", char::from(*byte));
+            let message = format!("expected {expected}, found '{}'", char::from(*byte));
             findings.error((line.number, at + 1), "tle-column", message);
             return false;
         }
@@ -171,7 +175,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     let sum = checksum(&text[..LINE - 1]);
     if u32::from(text[LINE - 1] - b'0') != sum {
         let message = format!(
-            "checksum {} is written; the line sums to {sum}",
+            "the checksum is {}, but the line sums to {sum}",
             char::from(text[LINE - 1])
         );
         findings.error((line.number, LINE), "tle-checksum", message);
@@ -187,7 +191,7 @@ fn record(
     second: &Line,
     findings: &mut FindingList,
 ) -> Option<TleRecord> {
-    // Both lines are looked at before giving up, so that a linter sees what is wrong with each.
+    // Both lines are checked before giving up, so that a linter reports the problems of each.
     let first_fits = line_fits(first, FIRST, findings);
     let second_fits = line_fits(second, SECOND, findings);
     if !(first_fits && second_fits) {
@@ -228,7 +232,7 @@ fn record(
     }
 }
 
-/// The element set of two lines whose columns have been looked at.
+/// The element set of two lines whose columns have been checked.
 pub(super) fn set_of_lines(
     name: Option<String>,
     [one, two]: [&str; 2],
@@ -262,7 +266,7 @@ fn checked_name(line: &Line, findings: &mut FindingList) -> String {
     let name = text.strip_prefix("0 ").unwrap_or(text).trim_start();
     let length = name.chars().count();
     if length > NAME {
-        let message = format!("the name has {length} characters; the format has {NAME}");
+        let message = format!("the name has {length} characters; the limit is {NAME}");
         findings.warning((line.number, NAME + 1), "tle-name", message);
     }
     name.to_owned()
@@ -271,7 +275,7 @@ fn checked_name(line: &Line, findings: &mut FindingList) -> String {
 /// Column of the ephemeris type, from 0.
 const TYPE: usize = 62;
 
-/// Whether a set is for SGP4: type 0 is what catalogues write, type 2 its own number.
+/// Whether a set is for SGP4: catalogues write type 0; type 2 is SGP4's own number.
 fn is_for_sgp4(first: &Line, findings: &mut FindingList) -> bool {
     let kind = first.text.as_bytes()[TYPE];
     let name = match kind {
@@ -280,7 +284,7 @@ fn is_for_sgp4(first: &Line, findings: &mut FindingList) -> bool {
         _ => "",
     };
     let message = format!(
-        "ephemeris type {}{name} is not 0 or 2: SGP4 does not propagate it",
+        "ephemeris type {}{name} is not 0 or 2: SGP4 cannot propagate it",
         char::from(kind)
     );
     findings.error((first.number, TYPE + 1), "tle-type", message);
@@ -294,7 +298,7 @@ fn ranges_fit(first: &Line, second: &Line, findings: &mut FindingList) -> bool {
     let mut check = |line: &Line, (from, to): (usize, usize), name: &str, most: f64| {
         let value = number(line, from, to);
         if !matches!(value, Ok(value) if (0.0..=most).contains(&value)) {
-            let message = format!("{name} '{}' is not from 0 to {most}", &line.text[from..to]);
+            let message = format!("{name} '{}' is outside 0 to {most}", &line.text[from..to]);
             findings.error((line.number, from + 1), "tle-range", message);
             fits = false;
         }

@@ -123,7 +123,7 @@ fn broken_rules_are_named_with_their_place() {
     assert_eq!(findings("just a name\n")[0].rule, "tle-line");
 }
 
-/// Replaces columns and mends the checksum, so that only the value is wrong.
+/// Replaces columns and corrects the checksum, so that only the value is wrong.
 fn with_columns(line: &str, from: usize, text: &str) -> String {
     let mut line = line.to_owned();
     line.replace_range(from..from + text.len(), text);
@@ -329,7 +329,7 @@ fn regress_what_is_read_can_be_written() {
     assert!((drag - 1.2e-12).abs() < 1e-26, "{drag}");
     let turned = with_columns(second, 17, "360.0000");
     assert_eq!(read_back("", first, &turned).right_ascension, 0.0);
-    // A designator that is none is left out, with a warning; the rest cannot be meant.
+    // An invalid designator is dropped with a warning.
     let odd = with_columns(first, 9, "98067A B");
     assert_eq!(read_back("", &odd, second).international_designator, None);
     assert_eq!(

@@ -29,7 +29,7 @@ fn front_volume(search: &Nsga2, reference: &[f64]) -> f64 {
     hypervolume(&points, reference)
 }
 
-/// Hypervolume at (1.1, 1.1) of the ZDT fronts: 1.21 less the area under each.
+/// Hypervolume at (1.1, 1.1) of the ZDT fronts: 1.21 minus the area under each.
 /// ZDT1: integral of 1 - sqrt(x) is 1/3, and a strip of 0.1 by 1.1 beyond x = 1.
 fn assert_most_reach(problem: &dyn Problem, least: f64, limit: f64) {
     let volumes: Vec<f64> = (1..=3)
@@ -74,11 +74,11 @@ fn validate_binh_korn_front() {
     let search = run(&problem, &config, 4);
     let share = front_volume(&search, &[140.0, 50.0]) / BINH_KORN_AREA;
     // Between two neighbours dx dy/2 is lost: with 59 even steps over 136 by 46 at
-    // most 136 * 46/(2 * 59) = 1.0 % of the area. Half as much again for uneven ones.
+    // most 136 * 46/(2 * 59) = 1.0 % of the area. Half as much again for uneven steps.
     assert!((0.985..1.0).contains(&share), "{share}");
     let front = search.front();
     let excess = |a: &Individual| a.objectives[1] - binh_korn_front(a.objectives[0]);
-    // No member lies under the front, but for the rounding of values up to 50.
+    // No member is below the front, except by rounding of values up to 50.
     assert!(front.iter().all(|a| excess(a) > -1e-12));
     // On average a member is within a hundredth of the second objective's range.
     let mean = front.iter().map(excess).sum::<f64>() / front.len() as f64;
@@ -109,7 +109,7 @@ fn validate_constr_front() {
         let x = a.genome[0];
         a.objectives[1] - (1.0 + (6.0 - 9.0 * x).max(0.0)) / x
     };
-    // No member lies under the front, but for the rounding of values up to 9; on
+    // No member is below the front, except by rounding of values up to 9; on
     // average one is within a hundredth of the second objective's range.
     assert!(front.iter().all(|a| excess(a) > -1e-14));
     let mean = front.iter().map(excess).sum::<f64>() / front.len() as f64;

@@ -74,7 +74,7 @@ fn crowding_sums_the_gaps_of_the_neighbours() {
     let distances = crowding_distance(&set, &everyone(&set));
     assert!((distances[1] - 1.45).abs() < 1e-15, "{distances:?}");
     assert!((distances[2] - 1.325).abs() < 1e-15, "{distances:?}");
-    // The order of the front is the order of the answer.
+    // The result is in the order of the front.
     let turned = crowding_distance(&set, &[2, 0, 3, 1]);
     assert_eq!(
         turned,
@@ -99,7 +99,7 @@ fn crowding_ignores_what_cannot_tell_members_apart() {
 #[test]
 fn pruning_thins_a_cluster_instead_of_emptying_it() {
     // The three in the middle are equally crowded. The first two to go by their
-    // distances in the whole front are neighbours; without the first, the second
+    // distances in the full front are neighbours; without the first, the second
     // is no longer crowded.
     let set: Vec<Individual> = [0.0, 2.0, 4.0, 4.5, 5.0, 5.5, 6.0, 8.0, 10.0]
         .iter()
@@ -117,7 +117,7 @@ fn pruning_equal_points_keeps_the_newest() {
     assert_eq!(prune_one_by_one(&set, &[0, 1, 2], 1), [2]);
 }
 
-/// Peels off, again and again, whatever nothing left dominates.
+/// Repeatedly removes everything that nothing left dominates.
 fn naive_sort(individuals: &[Individual]) -> Vec<Vec<usize>> {
     let mut left = everyone(individuals);
     let mut fronts = Vec::new();

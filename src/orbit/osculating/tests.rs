@@ -34,9 +34,9 @@ fn rms_ric(first: &dyn Propagator, second: &dyn Propagator) -> Vector3<f64> {
 }
 
 /// RMS against SGP4 with J2 alone over a day at 925 km, e = 0: radial, in-track and cross-track
-/// gates in km. SGP4 has the secular J2² terms, which this theory lacks: the in-track and
-/// cross-track columns grow with the day and follow them. Its floor of 1e-6 for e is 5 m of the
-/// radial column. Mean J2 is 0.7 to 4.6 km off in radius and 1.6 km across the track.
+/// gates in km. SGP4 has the secular J2² terms, which this theory lacks, so the in-track and
+/// cross-track columns grow during the day. Its minimum of 1e-6 for e is 5 m of the radial column.
+/// Mean J2 is off by 0.7 to 4.6 km in radius and 1.6 km cross-track.
 #[test]
 fn validate_short_period_terms_against_sgp4() {
     for (inclination_deg, gate_km) in [
@@ -121,8 +121,8 @@ fn largest_against_integration(mean: &MeanElements) -> Vector3<f64> {
 }
 
 /// Over one orbit the theory follows the integrated motion to second order. With
-/// k = (J2 (R/p)²)² a = 5 m at 925 km and 1.4 m at 6000 km: the radius is off by a few k, the
-/// track by 3π/2 of that (the mean motion follows the starting energy). The terms themselves are
+/// k = (J2 (R/p)²)² a = 5 m at 925 km and 1.4 m at 6000 km: the radius is off by a few k, and
+/// in-track by 3π/2 of that (the mean motion follows from the starting energy). The terms themselves are
 /// 1 to 8 km.
 #[test]
 fn validate_short_period_terms_by_integration() {
@@ -145,7 +145,7 @@ fn validate_short_period_terms_by_integration() {
     }
 }
 
-/// The mean radius over an orbit less a is the shift in closed form: -3.4 km at 40°, +4.5 km at
+/// The mean radius over an orbit minus a is the shift in closed form: -3.4 km at 40°, +4.5 km at
 /// 90°, zero where 3 cos² i = 1.
 #[test]
 fn validate_radius_shift() {
@@ -181,7 +181,7 @@ fn validate_radius_shift_of_an_ellipse() {
         };
         let orbit = OsculatingOrbit::new(&mean);
         let samples = 20_000;
-        // The perigee is held still: the average is over the anomaly alone.
+        // The perigee is fixed, so the average is over the anomaly only.
         let radii = (0..samples).map(|k| {
             let at = MeanElements {
                 mean_anomaly_rad: TAU * f64::from(k) / f64::from(samples),
@@ -202,7 +202,7 @@ fn validate_radius_shift_of_an_ellipse() {
 }
 
 /// An SGP4 set with e = 0 has the frozen eccentricity, its perigee in the north: against J2
-/// alone its radius swings by -a e sin u.
+/// alone its radius oscillates by -a e sin u.
 #[test]
 fn validate_frozen_eccentricity_against_sgp4() {
     for inclination_deg in [40.0, 55.0, 90.0] {

@@ -1,21 +1,21 @@
-//! Variables whose bounds decide the front.
+//! Variables whose bounds limit the front.
 
 use crate::run::{Diagnostic, FrontMember};
 use crate::search::DesignSpace;
 
-/// A front may rest on a bound with this share of its members before that is worth saying.
+/// Fraction of the front at a bound from which this is reported.
 const RESTING_SHARE: f64 = 0.5;
 
-/// Relative distance from a bound, in parts of the interval, that counts as resting on it.
+/// Distance from a bound, as a fraction of the interval, that counts as being at it.
 const RESTING_DISTANCE: f64 = 1e-3;
 
-/// The variables whose bounds decide the front.
+/// The variables whose bounds limit the front.
 #[must_use]
 pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> {
     if front.is_empty() {
         return vec![Diagnostic {
             code: "no-feasible-design".to_owned(),
-            message: "no design of the last population meets the constraints; widen the search or \
+            message: "no design of the last population meets the constraints; widen the search bounds or \
                       relax the mask, the PDOP cap or the constraints"
                 .to_owned(),
         }];
@@ -60,9 +60,8 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
                 found.push(Diagnostic {
                     code: format!("at-bound:{name}"),
                     message: format!(
-                        "{name} rests on its {side} bound {bound}{unit} in {resting} of {} front \
-                         members: the bound, not the trade-off, sets it",
-                        front.len()
+                        "`{name}` is at its {side} bound ({bound}{unit}) in {}; consider widening it",
+                        designs(resting, front.len())
                     ),
                 });
             }
@@ -71,8 +70,18 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
     found
 }
 
-/// The limits of the phasing; equal where they leave all phasings of every number of planes, which
-/// repeat after P and so have no ends.
+/// `n` of `all` designs of a front, in words.
+fn designs(n: usize, all: usize) -> String {
+    match (n, all) {
+        (_, 1) => "the only design of the front".to_owned(),
+        (2, 2) => "both designs of the front".to_owned(),
+        _ if n == all => format!("all {all} designs of the front"),
+        _ => format!("{n} of the {all} designs of the front"),
+    }
+}
+
+/// The limits of the phasing; equal if they allow every phasing of every number of planes, since
+/// phasings repeat after P and so have no ends.
 fn open_phasing(space: &DesignSpace) -> [f64; 2] {
     let [lo, hi] = space.phasing;
     let hi = hi.min(space.planes[1].saturating_sub(1));
@@ -81,7 +90,7 @@ fn open_phasing(space: &DesignSpace) -> [f64; 2] {
     [f64::from(lo), f64::from(hi)]
 }
 
-/// The limits of the argument of perigee, degrees; equal where they leave the whole circle.
+/// The limits of the argument of perigee, degrees; equal if they allow the full circle.
 fn open_perigee(space: &DesignSpace) -> [f64; 2] {
     let [lo, hi] = space.arg_perigee_deg;
     if hi - lo >= 360.0 { [lo, lo] } else { [lo, hi] }
@@ -148,7 +157,7 @@ mod tests {
                 "at-bound:arg-perigee-deg"
             ]
         );
-        // A whole circle has no ends.
+        // A full circle has no ends.
         let round = DesignSpace {
             planes: [11, 13],
             phasing: [0, 12],

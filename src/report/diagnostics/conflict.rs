@@ -1,14 +1,14 @@
-//! Objectives that can be had together.
+//! Objectives that do not conflict.
 
 use crate::optimize::Individual;
 use crate::run::Diagnostic;
 use crate::search::Quantity;
 
-/// Members of a front below which the order of two objectives over it is chance.
+/// Members of a front below which the absence of a trade-off is chance.
 const FEWEST_MEMBERS: usize = 5;
 
-/// Pairs of objectives that no two members of the front set against each other: what betters one
-/// never worsens the other. A front of one member has every best value at once.
+/// Pairs of objectives that no two members of the front trade against each other: improving one
+/// never worsens the other. A front of one member is best in every objective at once.
 pub(super) fn without_conflict(front: &[Individual], objectives: &[Quantity]) -> Vec<Diagnostic> {
     if front.is_empty() || (front.len() > 1 && front.len() < FEWEST_MEMBERS) {
         return Vec::new();
@@ -25,14 +25,22 @@ pub(super) fn without_conflict(front: &[Individual], objectives: &[Quantity]) ->
             found.push(Diagnostic::new(
                 &format!("no-conflict:{a}:{b}"),
                 format!(
-                    "{a} and {b} do not conflict: of {} front members no two trade one for the \
-                     other, so one of them could be left out or made a constraint",
-                    front.len()
+                    "`{a}` and `{b}` do not conflict: {}; consider dropping one of them or making it a \
+                     constraint",
+                    evidence(front.len())
                 ),
             ));
         }
     }
     found
+}
+
+/// What shows that two objectives do not conflict.
+fn evidence(members: usize) -> String {
+    match members {
+        1 => "one design is the best in both".to_owned(),
+        n => format!("none of the {n} designs of the front trades one for the other"),
+    }
 }
 
 /// Whether `x` is better in the first objective and worse in the second.

@@ -1,4 +1,4 @@
-//! What the objectives do not depend on, by varying one variable at a time.
+//! Variables that objectives do not depend on, found by varying one variable at a time.
 
 use super::listed;
 use crate::optimize::{Individual, Problem};
@@ -6,19 +6,19 @@ use crate::run::Diagnostic;
 use crate::search::{DesignProblem, Quantity};
 use rayon::prelude::*;
 
-/// Relative change of an objective, over the whole interval of a variable, below which it does
-/// not depend on it in practice.
+/// Relative change of an objective over the full range of a variable below which it does not
+/// depend on it in practice.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// One variable moved to both ends of its interval, all others as chosen.
+/// One variable set to both ends of its range, with all others as in the chosen design.
 struct Variation {
     variable: String,
     /// Relative change of each watched quantity.
     changes: Vec<f64>,
 }
 
-/// Objectives that some variables leave as they are, variables that no objective depends on but a
-/// constraint does, and variables that nothing depends on.
+/// Objectives that do not depend on some variables, variables that only constraints depend on, and
+/// variables that nothing depends on.
 pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> Vec<Diagnostic> {
     let goals = problem.goals();
     let constrained = goals.constrained();
@@ -29,7 +29,7 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         .filter_map(|variation| without_objective(variation, goals.objectives.len(), &constrained))
         .collect();
     for (m, objective) in goals.objectives.iter().enumerate() {
-        // What is counted or computed from few variables by definition is not a discovery.
+        // Counts, and quantities that use few variables by definition, are not worth reporting.
         if matches!(
             objective,
             Quantity::Satellites | Quantity::Planes | Quantity::LaunchCost
@@ -47,8 +47,8 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         found.push(Diagnostic::new(
             &format!("independent:{objective}"),
             format!(
-                "{objective} does not depend on {}: over the whole interval of each, the rest as \
-                 chosen, it changes by less than {} %{}",
+                "`{objective}` does not depend on {}: over the full range of each, with the other \
+                 variables as in the chosen design, it changes by less than {} %{}",
                 listed(&names),
                 100.0 * NEGLIGIBLE,
                 free_satellites(*objective, &names)
@@ -63,8 +63,8 @@ fn moved(changes: &[f64]) -> bool {
     changes.iter().any(|change| *change >= NEGLIGIBLE)
 }
 
-/// What to say of a variable that no objective depends on; of the changes the objectives come first,
-/// then the quantities under constraints.
+/// The diagnostic of a variable that no objective depends on; the changes are those of the objectives,
+/// then those of the constrained quantities.
 fn without_objective(
     variation: &Variation,
     objectives: usize,
@@ -91,8 +91,8 @@ fn without_objective(
         return Some(Diagnostic::new(
             &format!("idle:{name}"),
             format!(
-                "{none} on {name}: over its whole interval, the rest as chosen, none changes by \
-                 {percent} %"
+                "{none} on `{name}`: over its full range, with the other variables as in the chosen \
+                 design, none changes by {percent} %"
             ),
         ));
     }
@@ -100,9 +100,10 @@ fn without_objective(
     Some(Diagnostic::new(
         &format!("only-constrained:{name}"),
         format!(
-            "{name} matters to the constraints alone: over its whole interval, the rest as chosen, \
-             {} moves and no objective changes by {percent} %, so that designs which differ in it \
-             tie; add an objective that depends on it to choose among them",
+            "of the objectives and constraints, `{name}` affects only {}: over its full range, with the \
+             other variables as in the chosen design, no objective changes by {percent} %, so \
+             designs that differ only in it tie; add an objective that depends on it to choose \
+             among them",
             listed(&bound)
         ),
     ))
@@ -112,7 +113,7 @@ fn without_objective(
 fn free_satellites(objective: Quantity, names: &[&str]) -> &'static str {
     let sizes = ["planes", "satellites-per-plane"];
     if objective == Quantity::JCost && sizes.iter().any(|size| names.contains(size)) {
-        "; it is one over the share of satellites in view, so more satellites cost nothing: \
+        "; it is one over the fraction of satellites in view, so additional satellites cost nothing; \
          minimise satellites, planes or launch-cost if they should"
     } else {
         ""
@@ -211,7 +212,7 @@ mod tests {
         let found = told([0.0, 0.0, 0.1], &bound).unwrap();
         assert_eq!(found.code, "only-constrained:altitude-km");
         assert!(
-            found.message.contains("max-pdop moves"),
+            found.message.contains("affects only `max-pdop`"),
             "{}",
             found.message
         );

@@ -1,4 +1,4 @@
-//! Whether a search still moves at its end.
+//! Whether a search is still improving at its end.
 
 use crate::optimize::Record;
 use crate::run::Diagnostic;
@@ -7,38 +7,38 @@ use crate::search::Quantity;
 /// Relative rise that counts as progress.
 const RISE: f64 = 1e-4;
 
-/// Share of the generations without progress from which on it is worth saying.
+/// Fraction of the generations without progress above which this is reported.
 const IDLE_SHARE: f64 = 1.0 / 3.0;
 
-/// The last share of the generations, and the relative rise in it from which on more of them
+/// The last fraction of the generations, and the relative rise during it above which more of them
 /// would help.
 const LAST_SHARE: f64 = 0.2;
 const LAST_RISE: f64 = 1e-3;
 
-/// Fewer generations than this show nothing.
+/// Fewer generations than this are not judged.
 const FEWEST_GENERATIONS: usize = 5;
 
-/// What a history measures its progress by, rising.
+/// The measure of progress in a history; it rises.
 struct Course {
-    /// What it is, in words.
+    /// Its name.
     what: String,
-    /// How it goes on.
-    verb: [&'static str; 2],
+    /// The verb of its progress, in the past tense.
+    verb: &'static str,
     values: Vec<f64>,
-    /// What a change is a share of.
+    /// The value to which a change is relative.
     scale: f64,
 }
 
 impl Course {
-    /// The best value of a single objective, else the hypervolume; the value is `None` before
-    /// anything feasible is known.
+    /// The best value of a single objective, otherwise the hypervolume; `None` until something
+    /// feasible is known.
     fn of(history: &[Record], objectives: &[Quantity]) -> Option<Self> {
         let last = history.last()?;
         if let ([objective], Some(ideal)) = (objectives, &last.ideal) {
             let best = |record: &Record| -record.ideal.as_ref().map_or(f64::INFINITY, |i| i[0]);
             return Some(Self {
                 what: format!("best value of {objective}"),
-                verb: ["improved", "improved"],
+                verb: "improved",
                 values: history.iter().map(best).collect(),
                 scale: if ideal[0] == 0.0 { 1.0 } else { ideal[0].abs() },
             });
@@ -47,18 +47,18 @@ impl Course {
         let last = (*volumes.last()?)?;
         (last > 0.0).then(|| Self {
             what: "hypervolume".to_owned(),
-            verb: ["risen", "rose"],
+            verb: "rose",
             values: volumes.iter().map(|v| v.unwrap_or(0.0)).collect(),
             scale: last,
         })
     }
 }
 
-/// What the history says about the number of generations.
+/// Whether the history calls for more generations.
 pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<Diagnostic> {
     let Course {
         what,
-        verb: [has, did],
+        verb,
         values,
         scale,
     } = Course::of(history, objectives)?;
@@ -76,8 +76,8 @@ pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<
         return Some(Diagnostic::new(
             "no-progress",
             format!(
-                "the {what} has not {has} by more than {} % in the last {idle} of {count} \
-                 generations: more of them will hardly help",
+                "the {what} {verb} by at most {} % in the last {idle} of {count} generations; more \
+                 generations are unlikely to help",
                 100.0 * RISE
             ),
         ));
@@ -85,16 +85,14 @@ pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<
     let tail = ((LAST_SHARE * count as f64).ceil() as usize).max(1);
     let rise = last - values[count - 1 - tail];
     (rise > LAST_RISE * scale).then(|| {
-        let by = if rise.is_finite() {
-            format!("{did} by {:.2} %", 100.0 * rise / scale)
+        let event = if rise.is_finite() {
+            format!("the {what} still {verb} by {:.2} %", 100.0 * rise / scale)
         } else {
-            "was first feasible".to_owned()
+            "the first feasible design was found".to_owned()
         };
         Diagnostic::new(
             "still-improving",
-            format!(
-                "the {what} {by} in the last {tail} of {count} generations: more of them may help"
-            ),
+            format!("{event} in the last {tail} of {count} generations; consider more generations"),
         )
     })
 }
@@ -125,7 +123,7 @@ mod tests {
         let mut flat = rising.clone();
         flat.extend([10.0; 6]);
         assert_eq!(code(&flat).as_deref(), Some("no-progress"));
-        // Slow but steady: neither idle nor in need of more.
+        // Slow but steady: neither stalled nor in need of more.
         let steady: Vec<f64> = (0..10_u8).map(|k| 1.0 + 3e-4 * f64::from(k)).collect();
         assert_eq!(code(&steady), None);
         assert_eq!(code(&rising[..4]), None);
@@ -160,7 +158,7 @@ mod tests {
         assert!(
             found
                 .message
-                .contains("best value of max-pdop improved by 9.52 %"),
+                .contains("best value of max-pdop still improved by 9.52 %"),
             "{}",
             found.message
         );
@@ -178,7 +176,7 @@ mod tests {
         let late = [None, None, None, None, None, Some(2.0)];
         let found = told(&late, Quantity::MaxPdop).unwrap();
         assert!(
-            found.message.contains("was first feasible"),
+            found.message.contains("first feasible design"),
             "{}",
             found.message
         );

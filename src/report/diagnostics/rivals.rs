@@ -1,12 +1,12 @@
-//! A front against another search, and a search against itself with other seeds.
+//! A front compared with another search, and with the same search under other seeds.
 
 use crate::optimize::dominates;
 use crate::run::Diagnostic;
 
-/// Relative standard deviation up to which the seed does not matter.
+/// Relative standard deviation up to which seeds agree.
 const STEADY: f64 = 0.005;
 
-/// How many members of a front a sweep dominates, objectives as they are minimised; `None` when
+/// How many members of a front a grid sweep dominates, with all objectives minimised; `None` if
 /// there is nothing to compare.
 #[must_use]
 pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic> {
@@ -18,25 +18,25 @@ pub fn dominated_by(front: &[Vec<f64>], sweep: &[Vec<f64>]) -> Option<Diagnostic
     let (code, consequence) = if count == 0 {
         (
             "not-dominated-by-sweep",
-            "nothing that the search found is worse than a design of the grid",
+            "no design of the front is worse than one of the grid",
         )
     } else {
         (
             "dominated-by-sweep",
-            "a larger budget would find better designs",
+            "a larger population or more generations would find better designs",
         )
     };
     Some(Diagnostic::new(
         code,
         format!(
-            "the grid sweep dominates {count} of {} front members: {consequence}",
+            "the grid sweep dominates {count} of {} designs of the front: {consequence}",
             front.len()
         ),
     ))
 }
 
-/// What the spread over several seeds says: of the hypervolume, or of the best value of a single
-/// objective.
+/// Whether several seeds agree, from the spread of their hypervolumes or of their best values of a
+/// single objective.
 #[must_use]
 pub fn seed_spread(what: &str, mean: f64, std_dev: f64, seeds: usize) -> Option<Diagnostic> {
     if seeds < 2 || mean == 0.0 {
@@ -44,18 +44,18 @@ pub fn seed_spread(what: &str, mean: f64, std_dev: f64, seeds: usize) -> Option<
     }
     let relative = std_dev / mean.abs();
     let (code, consequence) = if relative <= STEADY {
-        ("seeds-agree", "one of them is as good as another")
+        ("seeds-agree", "any seed will do")
     } else {
         (
             "seeds-differ",
-            "a single run is not to be trusted; take more generations or a larger population",
+            "do not rely on a single run; use more generations or a larger population",
         )
     };
     Some(Diagnostic::new(
         code,
         format!(
-            "over {seeds} seeds the {what} spreads by {:.2} % of its mean (standard \
-             deviation): {consequence}",
+            "over {seeds} seeds the standard deviation of the {what} is {:.2} % of its mean: \
+             {consequence}",
             100.0 * relative
         ),
     ))

@@ -7,7 +7,7 @@ use crate::run::ValidateResult;
 /// The root mean square differences of each case, by axis.
 ///
 /// # Errors
-/// When there is no validation with a budget.
+/// If there is no validation with a budget.
 pub fn budget(validation: Option<&ValidateResult>) -> Result<Plate, FigureError> {
     let lines = validation.map_or(&[][..], |validation| &validation.findings.budget);
     if lines.is_empty() {

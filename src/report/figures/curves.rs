@@ -9,16 +9,16 @@ use crate::report::shown;
 use crate::run::Run;
 use crate::units::{SECONDS_PER_HOUR, round_decimal};
 
-/// A profile with the name that it has in the legend.
+/// A profile with its name in the legend.
 #[derive(Debug, Clone)]
 pub struct NamedProfile<'a> {
-    /// What the design is called.
+    /// Name of the design.
     pub name: String,
     /// Its cuts.
     pub profile: &'a Profile,
 }
 
-/// What has a value at each instant.
+/// Quantities with a value at each instant.
 const OVER_TIME: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
 
 /// The value of a measure at an instant.
@@ -30,20 +30,20 @@ pub(in crate::report) fn at_epoch(measure: Measure, epoch: &EpochMetrics) -> Opt
     }
 }
 
-/// The label of a measure of one instant over the points.
+/// The label of a measure over the points at one instant.
 fn label_over_points(measure: Measure) -> &'static str {
     match measure {
         Measure::MeanVisible => "E_g(N_visible): visible LEO satellites, mean over the points",
-        Measure::MaxPdop => "maximum PDOP of the points",
+        Measure::MaxPdop => "maximum PDOP over the points",
         _ => "E_g(PDOP): mean PDOP over the points",
     }
 }
 
-/// The distribution of a measure: of [`Measure::Pdop`] over all points and instants with the tail
-/// of the first design, of the others over the instants (figures 3a and 4a of the paper).
+/// The distribution of a measure: [`Measure::Pdop`] over all points and instants, with the tail of
+/// the first design; the others over the instants (figures 3a and 4a of the paper).
 ///
 /// # Errors
-/// When the measure has no distribution, or nothing is to be shown.
+/// If the measure has no distribution, or there is nothing to show.
 pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, FigureError> {
     let figure = Figure::Cdf;
     let distribution = |profile: &Profile| -> Vec<Quantile> {
@@ -79,7 +79,7 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     }
     layers.retain(|layer| !layer.points.is_empty());
     if layers.is_empty() {
-        let reason = "no sample is solved";
+        let reason = "all samples are unsolved";
         return Err(FigureError::Nothing { figure, reason });
     }
     let x = match measure {
@@ -89,7 +89,7 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     let chart = PlaneChart {
         title: "Cumulative distribution".to_owned(),
         x: x.to_owned(),
-        y: "share at or below".to_owned(),
+        y: "fraction at or below".to_owned(),
         layers,
     };
     Ok(Plate {
@@ -98,7 +98,7 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
     })
 }
 
-/// The distribution as the staircase that it is, as far as its levels are drawn.
+/// The distribution as a step function, up to the last drawn level.
 fn steps(quantiles: &[Quantile]) -> Vec<(f64, f64)> {
     quantiles.iter().map(|q| (q.value, q.level)).collect()
 }
@@ -122,7 +122,10 @@ fn tail_marks(profile: &Profile) -> Vec<Layer> {
             ),
             tail.value_at_risk,
         ),
-        line(format!("CVaR {}", shown::pdop(Some(tail.cvar))), tail.cvar),
+        line(
+            format!("CVaR of PDOP {}", shown::pdop(Some(tail.cvar))),
+            tail.cvar,
+        ),
     ]
 }
 
@@ -138,7 +141,7 @@ fn measure_column(measure: Measure) -> &'static str {
 /// A measure over time (figures 3b and 4b of the paper).
 ///
 /// # Errors
-/// When the measure has no value at an instant, or nothing is to be shown.
+/// If the measure has no value at an instant, or there is nothing to show.
 pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, FigureError> {
     let figure = Figure::Series;
     if !OVER_TIME.contains(&measure) {
@@ -172,11 +175,11 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
             style: Style::Line(n),
         });
     }
-    // The first design is drawn last, so that it lies on top.
+    // The first design is drawn last, so it is on top.
     layers.reverse();
     layers.retain(|layer| !layer.points.is_empty());
     if layers.is_empty() {
-        let reason = "no sample is solved";
+        let reason = "all samples are unsolved";
         return Err(FigureError::Nothing { figure, reason });
     }
     let chart = PlaneChart {
@@ -191,10 +194,10 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
     })
 }
 
-/// The hypervolume over the evaluations; the size of the front where there is no hypervolume.
+/// The hypervolume over the evaluations; without a hypervolume, the size of the front.
 ///
 /// # Errors
-/// When the run has no history.
+/// If the run has no history.
 pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
     if run.history.is_empty() {
         return Err(FigureError::Nothing {
@@ -234,7 +237,7 @@ pub fn convergence(run: &Run) -> Result<Plate, FigureError> {
             format!("hypervolume at {}", shown::point(&reference))
         }
         (true, None) => "hypervolume".to_owned(),
-        (false, _) => "designs in the front".to_owned(),
+        (false, _) => "designs on the front".to_owned(),
     };
     let chart = PlaneChart {
         title: "Convergence of the search".to_owned(),

@@ -1,7 +1,7 @@
-//! Charts as SVG, through plotters, and as PNG, through resvg from the SVG.
+//! Charts as SVG with plotters, and as PNG with resvg from the SVG.
 //!
-//! No system font is read: text is set in Ubuntu Light, which comes with the library. PNG has
-//! its shapes; SVG names a generic `sans-serif` and has its widths.
+//! No system font is read: text is set in Ubuntu Light, which comes with the library. PNG has its
+//! shapes; SVG names a generic `sans-serif` and uses its widths.
 
 mod map;
 mod plane;
@@ -32,19 +32,19 @@ keywords! {
 /// Why a chart cannot be drawn.
 #[derive(Debug, Error)]
 pub enum DrawError {
-    /// The drawing itself.
+    /// Drawing.
     #[error("cannot draw the figure")]
     Drawing(#[from] DrawingAreaErrorKind<io::Error>),
-    /// The dots of the picture.
+    /// Rasterisation.
     #[error("cannot rasterize the figure")]
     Dots(#[from] usvg::Error),
     /// The picture is larger than memory allows.
     #[error("the figure of {0} by {1} pixels is too large")]
     Size(u32, u32),
-    /// The picture as a file.
+    /// Encoding the picture.
     #[error("cannot encode the figure")]
     Encoding(#[from] png::EncodingError),
-    /// Where it goes.
+    /// Writing the figure.
     #[error("cannot write the figure")]
     Write(#[from] io::Error),
 }
@@ -52,10 +52,10 @@ pub enum DrawError {
 /// Pixels of a PNG for each unit of a figure: 7.2 inches wide at 300 dots per inch.
 const PNG_SCALE: u32 = 3;
 
-/// Plotters draws at whole coordinates; so many of them to a unit keep curves smooth.
+/// Plotters draws at integer coordinates; this many per unit keep curves smooth.
 const FINE: u32 = 4;
 
-/// Dots per metre of a PNG: 300 per inch.
+/// Pixels per metre of a PNG: 300 per inch.
 const PNG_DOTS_PER_METRE: u32 = 11_811;
 
 /// Width of a figure.
@@ -64,7 +64,7 @@ const WIDTH: u32 = 720;
 /// Height of a figure other than a map.
 const HEIGHT: u32 = 480;
 
-/// Colours that the colour-blind tell apart: Okabe and Ito, *Color Universal Design* (2008).
+/// Colours that colour-blind readers can distinguish: Okabe and Ito, *Color Universal Design* (2008).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -80,32 +80,32 @@ const GRID: RGBColor = RGBColor(225, 225, 225);
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), DrawingAreaErrorKind<io::Error>>;
 
-/// A length as it is drawn.
+/// A length in drawing coordinates.
 const fn fine(units: u32) -> u32 {
     units * FINE
 }
 
-/// A length as it is drawn, for what has a direction.
+/// A signed length in drawing coordinates.
 const fn signed(units: i32) -> i32 {
     units * FINE as i32
 }
 
-/// A line of a width.
+/// A line style of a given width.
 fn line(colour: RGBColor, units: u32) -> ShapeStyle {
     colour.stroke_width(fine(units))
 }
 
-/// Text of a size.
+/// A text style of a given size.
 fn font(size: u32) -> TextStyle<'static> {
     ("sans-serif", fine(size)).into_font().color(&INK)
 }
 
-/// The typeface in which texts are measured.
+/// The typeface used to measure texts.
 fn register_typeface() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let bytes = epaint_default_fonts::UBUNTU_LIGHT;
-        // It fails for bytes that are no font; these are, and a test sets text in them.
+        // It fails only for bytes that are not a font; a test sets text in this one.
         let _ = register_font("sans-serif", FontStyle::Normal, bytes);
     });
 }
@@ -113,7 +113,7 @@ fn register_typeface() {
 /// Writes a chart as SVG.
 ///
 /// # Errors
-/// When it cannot be drawn or written.
+/// If it cannot be drawn or written.
 pub fn svg(chart: &Chart, mut to: impl Write) -> Result<(), DrawError> {
     Ok(to.write_all(text(chart)?.as_bytes())?)
 }
@@ -121,7 +121,7 @@ pub fn svg(chart: &Chart, mut to: impl Write) -> Result<(), DrawError> {
 /// Writes a chart as PNG.
 ///
 /// # Errors
-/// When it cannot be drawn or written.
+/// If it cannot be drawn or written.
 pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
@@ -147,7 +147,7 @@ pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
         yppu: PNG_DOTS_PER_METRE,
         unit: png::Unit::Meter,
     }));
-    // Every figure has an opaque ground, so that the colours are not scaled by any opacity.
+    // Every figure has an opaque background, so colours are not scaled by opacity.
     let rgb: Vec<u8> = picture
         .data()
         .chunks_exact(4)
@@ -191,13 +191,13 @@ fn text(chart: &Chart) -> Result<String, DrawError> {
     Ok(text.replacen(&size(FINE), &size(1), 1))
 }
 
-/// Digits behind the point that tell the ticks of an axis apart.
+/// Decimals needed to distinguish the ticks of an axis.
 fn decimals(range: &std::ops::Range<f64>) -> usize {
     let magnitude = (range.end - range.start).abs().log10().floor();
     (1.0 - magnitude).clamp(0.0, 9.0) as usize
 }
 
-/// The least and the greatest of some values with a margin on both sides; [0, 1] without values.
+/// The range of values with a margin on both sides; [0, 1] without values.
 fn padded(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     let (lo, hi) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
         (lo.min(x), hi.max(x))
@@ -213,7 +213,7 @@ fn padded(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     lo - margin..hi + margin
 }
 
-/// Share of the space of a group that its bars take.
+/// Fraction of the width of a group that its bars take.
 const GROUP_SHARE: f64 = 0.8;
 
 fn bars(root: &Area<'_>, chart: &BarChart) -> Drawn {
@@ -229,7 +229,7 @@ fn bars(root: &Area<'_>, chart: &BarChart) -> Drawn {
     } else {
         (least, most)
     };
-    // Whole powers of ten around the sizes, so that the smallest bar can be seen.
+    // Powers of ten around the heights, so that the smallest bar is visible.
     let floor = 10_f64.powf((least / 1.5).log10().floor());
     // Room for the legend above the bars.
     let top = most * 12.0;

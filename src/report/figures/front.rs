@@ -9,7 +9,7 @@ use crate::scenario::{Keyword, Quantity};
 /// The front of another run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedFront {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// Its members.
     pub front: Vec<FrontMember>,
@@ -27,11 +27,11 @@ struct FrontRow<'a> {
     membership: Option<f64>,
 }
 
-/// Figure 2a of the paper: the front, the fronts of earlier generations behind it, and designs and
-/// fronts beside it. The plane is that of the first two objectives.
+/// Figure 2a of the paper: the front in the plane of the first two objectives, with earlier
+/// generations behind it, and designs and fronts for comparison.
 ///
 /// # Errors
-/// When the run has no front or only one objective.
+/// If the run has no front or only one objective.
 pub fn pareto(
     run: &Run,
     baselines: &[Baseline],
@@ -82,7 +82,7 @@ pub fn pareto(
     let chosen = run.chosen().map(|n| &run.front[n]);
     let at = chosen.and_then(|m| Some((m.objectives.first()?.1, m.objectives.get(1)?.1)));
     layers.push(layer(
-        "fuzzy choice",
+        "fuzzy pick",
         at.into_iter().collect(),
         Style::Marks(0),
     ));
@@ -144,7 +144,7 @@ fn rows<'a>(
     rows
 }
 
-/// The fronts of earlier generations, point by point, in the objectives' own directions.
+/// The fronts of earlier generations, point by point, in the original sense of the objectives.
 pub(in crate::report) fn earlier(run: &Run, names: &[String]) -> Vec<(u64, Vec<f64>)> {
     let quantities: Vec<_> = names
         .iter()

@@ -6,7 +6,7 @@ use crate::evaluate::PointMetrics;
 use crate::report::coastline::Bounds;
 use crate::report::profile::Profile;
 
-/// What maps can show.
+/// Measures that a map can show.
 const MEASURES: [Measure; 5] = [
     Measure::MeanVisible,
     Measure::MeanPdop,
@@ -30,7 +30,7 @@ pub(in crate::report) fn at_point(measure: Measure, point: &PointMetrics) -> Opt
 /// A design's measure over the points; `cell_deg` are the steps of a grid.
 ///
 /// # Errors
-/// When the measure is none of a point.
+/// If the measure has no value at a point.
 pub fn map(
     profile: &Profile,
     measure: Measure,

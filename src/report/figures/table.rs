@@ -29,7 +29,7 @@ impl Csv {
     }
 }
 
-/// The shortest digits that read back; empty for none.
+/// The shortest digits that round-trip; empty for no value.
 pub(super) fn optional(value: Option<f64>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }

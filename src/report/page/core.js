@@ -110,7 +110,7 @@ const Core = (() => {
 
   listeners.push(() => refresh(true));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => refresh(false));
-  // Print takes the light colours, and figures that nobody has scrolled to.
+  // Print uses the light colours, and draws figures that have not been scrolled to.
   // The sheet is not as wide as the window, and no figure is told: it gets half a sheet.
   const SHEET = { width: 345, height: 310 };
   let printing = false;

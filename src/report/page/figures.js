@@ -9,13 +9,13 @@
   const label = (n) => plain(innerWidth < 600 ? objectives[n].name : objectives[n].label);
   const members = [...Array(count).keys()];
 
-  /** What is compared in curves: the selected design, the choice, and those beside the front. */
+  /** The designs compared in curves: the selected one, the fuzzy pick, and the baselines. */
   function compared(colours) {
     const selected = { name: front.notation[state.place], cuts: cutsOf(state.place),
       line: { color: colours.accent, width: 2.5 } };
     const list = [selected];
     if (data.chosen !== null && data.chosen !== state.place) {
-      list.push({ name: "fuzzy choice", cuts: cutsOf(data.chosen),
+      list.push({ name: "fuzzy pick", cuts: cutsOf(data.chosen),
         line: { color: colours.second, width: 1.5 } });
     }
     data.baselines.forEach((b, n) => list.push({ name: b.name, cuts: open(b.cuts),
@@ -57,7 +57,7 @@
     const ring = (name, place, color, size) => traces.push({ type: "scatter", mode: "markers", name,
       x: [front.objectives[x][place]], y: [second[place]], hoverinfo: "skip",
       marker: { size, symbol: "circle-open", color, line: { width: 2.5, color } } });
-    if (data.chosen !== null) ring("fuzzy choice", data.chosen, colours.second, 16);
+    if (data.chosen !== null) ring("fuzzy pick", data.chosen, colours.second, 16);
     ring("selected", state.place, colours.ink, 22);
     const close = document.getElementById("close-up").checked;
     return { data: traces, layout: layout(colours, {
@@ -74,7 +74,7 @@
       hovertemplate: "%{text}<br>%{y}<extra></extra>", line: { color, width: 1, dash: "dot" },
       marker: { color, size: 7 } });
     const traces = [trace("worst-case membership", front.membership, "y", colours.accent, "lines+markers"),
-      trace("normalized sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
+      trace("normalised sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
     traces.push({ type: "scatter", mode: "markers", name: "selected", x: [x[state.place]],
       y: [front.membership[state.place]], hoverinfo: "skip",
       marker: { size: 18, symbol: "circle-open", color: colours.ink, line: { width: 2.5, color: colours.ink } } });
@@ -84,7 +84,7 @@
   }
 
   const LABELS = { "mean-visible": "satellites", "mean-pdop": "PDOP", "p95-pdop": "PDOP", "max-pdop": "PDOP",
-    "availability": "share" };
+    "availability": "fraction" };
 
   /** The range of a measure over all designs whose maps the page has. */
   function commonRange(measure) {
@@ -156,9 +156,9 @@
   function cdfVisible(colours) {
     const traces = compared(colours).map((one) => ({ type: "scatter", mode: "lines", name: plain(one.name),
       x: one.cuts.overTime["mean-visible"], y: data.levels, line: { ...one.line, shape: "vh" },
-      hovertemplate: "%{x:.4~g} or less in %{y:.1%} of the time<extra></extra>" }));
+      hovertemplate: "%{x:.4~g} or less for %{y:.1%} of the time<extra></extra>" }));
     return { data: traces, layout: layout(colours, { xaxis: { title: { text: "E<sub>g</sub>(N<sub>visible</sub>)" } },
-      yaxis: { title: { text: "share of the time" }, range: [0, 1.02] } }) };
+      yaxis: { title: { text: "fraction of the time" }, range: [0, 1.02] } }) };
   }
 
   const hours = unpack(data.region?.elapsed_h);
@@ -178,7 +178,7 @@
     const last = data.levels.length - 1;
     const traces = compared(colours).filter((one) => one.cuts.pdop.length > 0).map((one) => ({ type: "scatter", mode: "lines",
       name: plain(one.name), x: one.cuts.pdop.slice(0, last), y: larger.slice(0, last), line: one.line,
-      hovertemplate: "PDOP above %{x:.4~g}: share %{y:.2~g}<extra></extra>" }));
+      hovertemplate: "PDOP above %{x:.4~g}: fraction %{y:.2~g}<extra></extra>" }));
     const selected = cutsOf(state.place);
     const shapes = [], annotations = [];
     if (selected?.tail) {
@@ -189,10 +189,10 @@
           font: { size: 11, color } });
       };
       upright(atRisk, digits(100 * level) + " % quantile " + selected.tailShown[0] + " ", "dot", colours.soft, ["right", "bottom"]);
-      upright(cvar, " CVaR " + selected.tailShown[1], "dash", colours.second, ["left", "top"]);
+      upright(cvar, " CVaR of PDOP " + selected.tailShown[1], "dash", colours.second, ["left", "top"]);
     }
     return { data: traces, layout: layout(colours, { shapes, annotations, xaxis: { title: { text: "PDOP" } },
-      yaxis: { title: { text: "share with a higher PDOP" }, type: "log", dtick: 1 } }) };
+      yaxis: { title: { text: "fraction with a higher PDOP" }, type: "log", dtick: 1 } }) };
   }
 
   function convergence(colours) {
@@ -203,7 +203,7 @@
       line: { color: colours.accent }, text: data.history.map((r) => r.evaluations + " designs, front of " + r.front_size),
       hovertemplate: "generation %{x}: %{y:.6~g}<br>%{text}<extra></extra>" }];
     return { data: traces, layout: layout(colours, { showlegend: false, xaxis: { title: { text: "generation" } },
-      yaxis: { title: { text: volume ? "hypervolume" + at : "designs in the front" } } }) };
+      yaxis: { title: { text: volume ? "hypervolume" + at : "designs on the front" } } }) };
   }
 
   /** Columns of the parallel coordinates that vary. */

@@ -313,7 +313,7 @@ const Globe = (() => {
   function tick(now) {
     if (visibleNow && !document.hidden) {
       if (time.playing) {
-        // A page that was hidden goes on where it was.
+        // A page that was hidden resumes where it was.
         time.elapsed += time.speed * Math.min(0.1, (now - (before ?? now)) / 1000);
         draw();
       }
@@ -342,7 +342,7 @@ const Globe = (() => {
   showPlay();
   document.getElementById("speed").addEventListener("input", (event) => { time.speed = SPEEDS[event.target.value]; });
 
-  // A drag turns the globe, a click without one asks for the sky of a place.
+  // A drag rotates the globe; a click without a drag shows the sky of a point.
   let grip = null;
   globe.addEventListener("pointerdown", (event) => {
     grip = { x: event.clientX, y: event.clientY, longitude: view.longitude, latitude: view.latitude, moved: false };

@@ -37,7 +37,7 @@
     show(state.place);
     if (data.region) {
       document.getElementById("availability-caption").textContent =
-        "Availability: share of the time with PDOP at most " + data.region.availability_pdop + ".";
+        "Availability: fraction of the time with PDOP at most " + data.region.availability_pdop + ".";
     } else {
       document.getElementById("maps").hidden = true;
       document.getElementById("curves").hidden = true;

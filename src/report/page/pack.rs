@@ -1,14 +1,14 @@
-//! Numbers in few characters: 16 bits each, over their own range, as base64.
+//! Compact numbers: 16 bits each, scaled to their own range, as base64.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-/// What stands for a missing value; finite ones use the codes below.
+/// Code of a missing value; finite values use the codes below.
 const MISSING: u16 = u16::MAX;
 
-/// A row of numbers: value = lo + (hi - lo) code / 65534, code 65535 where there is none; the
-/// codes as little-endian base64.
+/// A row of numbers: value = lo + (hi - lo) code / 65534, code 65535 for a missing value; codes as
+/// little-endian base64.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub(super) struct Packed {
     lo: f64,
@@ -45,7 +45,7 @@ impl Packed {
 /// A number with six significant digits.
 pub(super) fn short(value: f64) -> f64 {
     let text = format!("{value:.5e}");
-    // What was just written can be read.
+    // It was written just above, so it can be read.
     text.parse().unwrap_or(value)
 }
 

@@ -1,4 +1,4 @@
-//! The numbers that the page carries for its figures.
+//! The numbers embedded in the page for its figures.
 
 use super::Page;
 use super::pack::{Packed, short};
@@ -19,10 +19,10 @@ use chrono::{DateTime, Timelike, Utc};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// Most instants of a series in the page; longer ones are drawn by intervals.
+/// Maximum number of instants of a series in the page; longer series are reduced to intervals.
 const MOST_EPOCHS: usize = 1440;
 
-/// What the page shows over the region.
+/// Measures shown over the region.
 const MAPS: [Measure; 5] = [
     Measure::MeanVisible,
     Measure::MeanPdop,
@@ -31,10 +31,10 @@ const MAPS: [Measure; 5] = [
     Measure::Availability,
 ];
 
-/// What the page shows over time.
+/// Measures shown over time.
 const SERIES: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
 
-/// Everything that the script of the page reads.
+/// All data for the script of the page.
 #[derive(Serialize)]
 pub(super) struct Payload {
     objectives: Vec<Objective>,
@@ -46,7 +46,7 @@ pub(super) struct Payload {
     history: Vec<Generation>,
     reference: Option<String>,
     levels: Vec<f64>,
-    /// By place in the front.
+    /// By position in the front.
     cuts: BTreeMap<usize, Cuts>,
     region: Option<RegionData>,
     world: Option<World>,
@@ -115,7 +115,7 @@ struct Cuts {
     orbit: Orbit,
 }
 
-/// What the globe draws: mean elements at the epoch and their rates.
+/// Data of the globe: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
     semi_major_axis_km: f64,
@@ -125,7 +125,7 @@ struct Orbit {
     per_plane: usize,
     raan_deg: Vec<f64>,
     mean_anomaly_deg: Packed,
-    /// Of node, perigee and mean anomaly, degrees a second.
+    /// Of node, perigee and mean anomaly, degrees per second.
     rates_deg_s: [f64; 3],
 }
 
@@ -166,7 +166,7 @@ struct Budget {
     rms_km: [f64; 3],
 }
 
-/// About as many bytes of the page as the cuts of one design take.
+/// Approximate bytes of the page for the cuts of one design.
 pub(super) fn cut_bytes(epochs: usize, points: usize) -> usize {
     let numbers = SERIES.len() * epochs.min(MOST_EPOCHS)
         + MAPS.len() * points
@@ -347,9 +347,11 @@ fn tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
             tiles.push(tile(label, &|m| shown::named(name, value(m))));
         }
     }
-    tiles.push(tile("95 % PDOP", &|m| shown::pdop(m.metrics.p95_pdop)));
+    tiles.push(tile("95 % quantile of PDOP", &|m| {
+        shown::pdop(m.metrics.p95_pdop)
+    }));
     let solved = |m: &FrontMember| shown::share(Some(m.metrics.solved_fraction));
-    tiles.push(tile("solved", &solved));
+    tiles.push(tile("solved fraction", &solved));
     tiles.extend(super::words::further(run).iter().map(quantity));
     tiles
 }
@@ -402,12 +404,12 @@ fn levels(quantiles: &[Quantile]) -> Packed {
     Packed::of(quantiles.iter().map(|q| q.value))
 }
 
-/// Instants in an interval that is drawn as one.
+/// Instants in an interval that is drawn as one point.
 fn interval(epochs: usize) -> usize {
     epochs.div_ceil(MOST_EPOCHS).max(1)
 }
 
-/// A measure over time; of intervals the mean, but of the maximum PDOP the largest.
+/// A measure over time: the mean of each interval, or the maximum for the maximum PDOP.
 fn by_intervals(epochs: &[EpochMetrics], measure: Measure) -> Packed {
     let of_interval = |interval: &[EpochMetrics]| {
         let values: Vec<f64> = interval

@@ -69,7 +69,7 @@ fn the_page_carries_plotly_and_not_mathjax() {
     assert!(
         html.contains("* plotly.js v") && !html.contains("MathJax={}") && !html.contains("tex-svg")
     );
-    // Plotly is 4.65 MB of it.
+    // Plotly takes 4.65 MB of it.
     assert!(
         (4_600_000..4_900_000).contains(&html.len()),
         "{} bytes",

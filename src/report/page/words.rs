@@ -1,6 +1,7 @@
-//! What the page says in words and tables.
+//! The texts and tables of the page.
 
 use super::Page;
+use crate::constellation::gnss::Preset;
 use crate::earth;
 use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
@@ -12,11 +13,11 @@ use crate::time::leap_seconds_note;
 use crate::units::round_decimal;
 use crate::validate::Tally;
 
-/// The beginning of the page.
+/// The summary at the top of the page.
 pub(super) struct PageSummary {
-    /// What was studied and found.
+    /// The study and its result.
     pub(super) paragraphs: Vec<String>,
-    /// What the program noticed.
+    /// Diagnostics of the search.
     pub(super) notes: Vec<String>,
     /// What is missing.
     pub(super) gaps: Vec<String>,
@@ -58,13 +59,13 @@ pub(super) fn title(run: &Run) -> String {
     }
 }
 
-/// The name of an algorithm as the literature writes it.
+/// The name of an algorithm as written in the literature.
 fn algorithm_title(word: &str) -> &str {
     match Algorithm::from_keyword(word) {
         Ok(Algorithm::Nsga2) => "NSGA-II",
         Ok(Algorithm::Mopso) => "MOPSO",
         Ok(Algorithm::Random) => "Random search",
-        Ok(Algorithm::Exhaustive) => "The exhaustive search",
+        Ok(Algorithm::Exhaustive) => "Exhaustive search",
         Err(_) => word,
     }
 }
@@ -88,7 +89,7 @@ impl PageSummary {
         let (cut, all) = (places_with_cuts.len(), run.front.len());
         if page.evaluator.is_some() && cut < all {
             gaps.push(format!(
-                "this page holds the maps and series of {cut} of the {all} designs on the front; \
+                "this page has the maps and series of {cut} of the {all} designs on the front; \
                  use navwalker plot --pick N for the others"
             ));
         }
@@ -100,7 +101,7 @@ impl PageSummary {
     }
 }
 
-/// Where, when and with what.
+/// Region, time span and GNSS.
 fn setting(scenario: &Scenario) -> String {
     let region = match &scenario.region {
         Region::Grid(grid) => {
@@ -115,13 +116,13 @@ fn setting(scenario: &Scenario) -> String {
                 longitude_label(east)
             )
         }
-        Region::Points { file } => format!("the points of {file}"),
+        Region::Points { file } => format!("the points in {file}"),
     };
     let gnss: Vec<&str> = scenario
         .gnss
         .constellations
         .iter()
-        .map(|c| c.keyword())
+        .map(|preset| preset_title(*preset))
         .collect();
     let gnss = if gnss.is_empty() && scenario.gnss.files.is_empty() {
         "no GNSS".to_owned()
@@ -133,13 +134,23 @@ fn setting(scenario: &Scenario) -> String {
             .join(" and ")
     };
     format!(
-        "Low-Earth-orbit designs that augment {gnss} over {region}, sampled every {} s for {} h from \
+        "Low-Earth-orbit constellations that augment {gnss} over {region}, sampled every {} s for {} h from \
          {}; {}.",
         scenario.time.step_s,
         scenario.time.duration_h,
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
         mask_clause(&scenario.visibility)
     )
+}
+
+/// The name of a GNSS as its operator writes it.
+fn preset_title(preset: Preset) -> &'static str {
+    match preset {
+        Preset::Beidou3 => "BeiDou-3",
+        Preset::Gps => "GPS",
+        Preset::Galileo => "Galileo",
+        Preset::Glonass => "GLONASS",
+    }
 }
 
 fn latitude_label(degrees: f64) -> String {
@@ -197,7 +208,7 @@ fn choice(page: &Page<'_>) -> Option<String> {
     let run = page.run;
     let member = &run.front[run.chosen()?];
     let mut text = format!(
-        "The fuzzy decision picks {} ({}), which has the best worst-case membership of the front, {}.",
+        "The fuzzy pick is {} ({}), with the best worst-case membership on the front, {}.",
         member.design.notation,
         shown::objectives(member),
         shown::membership(member.membership),
@@ -213,7 +224,7 @@ fn choice(page: &Page<'_>) -> Option<String> {
     }
     let metrics = &member.metrics;
     text += &format!(
-        " On average {} LEO satellites are in view; PDOP: mean {}, CVaR {}, maximum {}.",
+        " On average {} LEO satellites are in view; mean PDOP is {}, CVaR of PDOP {}, maximum PDOP {}.",
         shown::named("mean-visible", Some(metrics.mean_visible)),
         shown::pdop(metrics.mean_pdop),
         shown::pdop(metrics.cvar_pdop),
@@ -249,7 +260,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
     run.objective_names().iter().filter_map(of).collect()
 }
 
-/// The members of the table: at most `most`, evenly over the front, and the chosen one.
+/// The members in the table: at most `most`, evenly spaced over the front, plus the chosen one.
 pub(super) fn members(run: &Run, most: usize) -> Vec<MemberRow> {
     let all = &run.front;
     let further = further(run);
@@ -275,7 +286,7 @@ const ALWAYS: [&str; 5] = [
     "availability",
 ];
 
-/// Quantities under constraints that have no other column.
+/// Constrained quantities that have no other column.
 pub(super) fn further(run: &Run) -> Vec<String> {
     let mut names = run.constraint_names();
     names.retain(|name| !ALWAYS.contains(&name.as_str()));
@@ -335,7 +346,7 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
     row.collect()
 }
 
-/// What every number rests on.
+/// The conventions behind every number.
 pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         (
@@ -365,12 +376,12 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
             match run.scenario.as_ref().map(|s| s.visibility.weighting) {
                 None | Some(ObservationWeights::Unit) => "unit-weight least squares".to_owned(),
                 Some(weighting) => format!("least squares with weights {weighting}"),
-            } + "; samples without a solution are excluded",
+            } + "; unsolved samples are excluded",
         ),
         (
             "Quantiles and CVaR",
-            "order statistics; CVaR is the mean of the worst share, with fractional weight on its \
-             quantile (Rockafellar and Uryasev)"
+            "order statistics; CVaR is the mean of the worst 1 - \u{3b1} of the samples, with fractional weight \
+             on the quantile (Rockafellar and Uryasev)"
                 .to_owned(),
         ),
     ];
@@ -387,7 +398,7 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         format!("run by navwalker {by}; this page by navwalker {VERSION}"),
     ));
     rows.push((
-        "Parts of this page",
+        "Credits",
         "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \
          (public domain)"
             .to_owned(),
@@ -410,7 +421,7 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         (
             "Objectives",
             format!(
-                "{}; \u{3bb} = {}, \u{3b1} = {}; available means PDOP at most {}",
+                "{}; CVaR weight \u{3bb} = {}, CVaR level \u{3b1} = {}; available means PDOP at most {}",
                 run_names(scenario),
                 objectives.cvar_weight,
                 objectives.cvar_level,

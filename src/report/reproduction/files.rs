@@ -1,4 +1,4 @@
-//! The files of the study: one table each, and the data of the paper's figures.
+//! The files of the reproduction: its tables and the data of the paper's figures.
 
 use super::{ReproduceResult, expected};
 use crate::run::columns::optional;
@@ -29,7 +29,7 @@ fn cell(value: f64) -> String {
     value.to_string()
 }
 
-/// The statements, one a row.
+/// The statements, one per row.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -61,7 +61,7 @@ pub fn reproduction_csv(lines: &[Statement]) -> io::Result<String> {
     text(writer)
 }
 
-/// Table II, the paper's and ours, one row a row.
+/// Table II with the paper's values and ours, one row each.
 fn table2_csv(study: &Reproduction) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
@@ -99,7 +99,7 @@ fn table2_csv(study: &Reproduction) -> io::Result<String> {
     text(writer)
 }
 
-/// The sensitivity of every row, one assumption and row a row.
+/// The sensitivity of every row to every assumption.
 fn sensitivity_csv(study: &Reproduction) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
@@ -125,7 +125,7 @@ fn sensitivity_csv(study: &Reproduction) -> io::Result<String> {
     text(writer)
 }
 
-/// Figure 2: places in the plane of both objectives, with the fuzzy values over each set.
+/// Figure 2: designs in the plane of both objectives, with their fuzzy memberships over each set.
 fn places_csv(places: &[PlacedDesign]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([

@@ -184,7 +184,7 @@ where
 /// Two values in rising order.
 pub(in crate::scenario) struct Interval<R> {
     pub(in crate::scenario) of: R,
-    /// Whether one value alone stands for both limits.
+    /// Whether a single value gives both limits.
     pub(in crate::scenario) or_single: bool,
 }
 
@@ -231,7 +231,7 @@ impl<R: Rule<Value: Copy + PartialOrd>> Rule for Interval<R> {
     }
 }
 
-/// A western and an eastern longitude in degrees; the second is turned by 360 if it is the smaller.
+/// A western and an eastern longitude in degrees; 360 is added to the second if it is the smaller.
 pub(in crate::scenario) struct Eastward;
 
 impl Eastward {

@@ -1,4 +1,4 @@
-//! What is searched for.
+//! The objectives and constraints of the search.
 
 use crate::scenario::keys::{key, section};
 use crate::scenario::problem::Fault;
@@ -15,9 +15,9 @@ section! {
             default vec![Quantity::JPos, Quantity::JCost];
         /// Weight of the tail in j-pos, the mean PDOP plus weight times CVaR.
         pub cvar_weight: f64 = Number::at_least(0.0), default 0.5;
-        /// Level of the tail; 0.95 is the mean of the worst twentieth.
+        /// Level of CVaR; 0.95 means the mean of the worst 5 %.
         pub cvar_level: f64 = Number::between(0.0, 1.0), default 0.95;
-        /// What a feasible design keeps, of the same quantities as the objectives.
+        /// Bounds that a feasible design must meet, on the same quantities as the objectives.
         pub constraints: Vec<Constraint> = Constraints, default Vec::new();
         /// PDOP up to which a sample counts as available.
         pub availability_pdop: f64 = Number::above(0.0), default 6.0;
@@ -33,17 +33,17 @@ section! {
 
 section! {
     impl LaunchCost in "objectives", prefix "launch-cost-" {
-        /// Part of launch-cost: one satellite, before its altitude counts; the unit of the cost is
+        /// Part of launch-cost: one satellite at zero altitude; the unit of the cost is
         /// yours.
         per_satellite = Number::from_to(0.0, 1e12), default 1.0;
-        /// Part of launch-cost: opening one plane, in the same unit.
+        /// Part of launch-cost: one plane, in the same unit.
         per_plane = Number::from_to(0.0, 1e12), default 5.0;
-        /// Part of launch-cost: the share that a satellite costs more for each 1000 km of altitude.
+        /// Part of launch-cost: fraction by which a satellite costs more for each 1000 km of altitude.
         per_1000_km = Number::from_to(0.0, 1e12), default 0.2;
     }
 }
 
-/// The reference point as given, or the usual one of the objectives if they have one.
+/// The reference point as given, or the default of the objectives if they have one.
 fn finish_reference(objectives: &mut Objectives, reader: &mut Reader<'_>) {
     let key = key!(Objectives.hypervolume_reference);
     if !reader.is_given(key) {

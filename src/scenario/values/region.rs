@@ -8,7 +8,7 @@ use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Eastward, Interval, Number, OneOf, Steps, Text};
 
-/// Points of a grid: the globe at every quarter of a degree.
+/// Maximum points of a grid: the globe at every quarter of a degree.
 const MAX_POINTS: u64 = 1_040_000;
 
 /// The points where the receivers are.
@@ -28,20 +28,20 @@ section! {
         /// Southern and northern limit of the grid.
         latitude_deg = Interval { of: Number::from_to(-90.0, 90.0), or_single: false }, unit "deg",
             default [3.0, 54.0];
-        /// Western and eastern limit of the grid; [160, -155] runs over the date line.
+        /// Western and eastern limit of the grid; [160, -155] crosses the date line.
         longitude_deg = Eastward, unit "deg", default [73.0, 136.0];
         /// Step of the grid from its south-western corner.
         step_deg = Steps(Number::above_to(0.0, 360.0)), unit "deg", default [5.0, 5.0];
-        /// How the points of the grid count in a mean.
+        /// Weights of the points of the grid in means and quantiles.
         weights = OneOf::new(), default PointWeights::Equal;
     }
 }
 
 section! {
-    /// What names a file of points in place of a grid.
+    /// The key of a points file instead of a grid.
     pub(in crate::scenario) struct PointsFile in "region" {
-        /// CSV file with the columns latitude_deg, longitude_deg and, if wanted, weight and name, in
-        /// place of the grid; path relative to this file.
+        /// CSV file with the columns latitude_deg, longitude_deg and, optionally, weight and name,
+        /// instead of the grid; path relative to this file.
         pub points: String = Text::Any, follows "the grid", example "points.csv".to_owned();
     }
 }
@@ -71,7 +71,7 @@ impl Section for Region {
     }
 }
 
-/// Refuses the keys of a grid beside a file of points.
+/// Rejects grid keys together with a points file.
 fn refuse_grid(reader: &mut Reader<'_>) {
     for rival in paths::<Grid>() {
         if reader.is_given(rival) {

@@ -1,4 +1,4 @@
-//! The designs among which is searched, and how.
+//! The search space and the settings of the search.
 
 use super::count;
 use crate::earth::RADIUS_KM;
@@ -9,11 +9,11 @@ use crate::scenario::rule::{Integer, Interval, Number, OneOf};
 use crate::scenario::{Algorithm, Pattern};
 use crate::search::DesignSpace;
 
-/// The most satellites of one design.
+/// Maximum number of satellites of a design.
 const MAX_SATELLITES: u32 = 100_000;
 
 section! {
-    /// The designs among which is searched.
+    /// The search space.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct SearchSpace in "search" {
         /// The designs; every interval includes its limits.
@@ -35,24 +35,24 @@ section! {
         pattern = OneOf::new(), default Pattern::Delta;
         /// Number of planes.
         planes = integers(1, MAX_SATELLITES), default [11, 15];
-        /// Number of satellites in a plane.
+        /// Number of satellites per plane.
         satellites_per_plane = integers(1, MAX_SATELLITES), default [11, 15];
         /// Inclination.
         inclination_deg = numbers(Number::from_to(0.0, 180.0)), unit "deg", default [40.0, 60.0];
         /// Altitude over the equatorial radius.
         altitude_km = numbers(Number::above_to(0.0, 100_000.0)), unit "km",
             default [400.0, 1000.0];
-        /// Walker's F, or N_c of a lattice, cut at the number of planes minus one.
+        /// Walker's F, or N_c of a lattice, capped at the number of planes minus one.
         phasing = integers(0, MAX_SATELLITES), default [1, 1];
-        /// Eccentricity; a variable of the search where the limits differ.
+        /// Eccentricity; a variable of the search if the limits differ.
         eccentricity = numbers(Number::from_below(0.0, 0.9)), default [0.0, 0.0];
-        /// Argument of perigee; a variable of the search where the limits differ.
+        /// Argument of perigee; a variable of the search if the limits differ.
         arg_perigee_deg = numbers(Number::from_to(0.0, 360.0)), unit "deg", default [0.0, 0.0];
     }
 }
 
 impl SearchSpace {
-    /// The phasing allowed with `planes` planes: both limits cut at `planes - 1`.
+    /// The phasing allowed with `planes` planes: both limits capped at `planes - 1`.
     #[must_use]
     pub fn phasing_for(&self, planes: u32) -> [u32; 2] {
         self.designs
@@ -60,7 +60,7 @@ impl SearchSpace {
             .map(|limit| limit.min(planes.saturating_sub(1)))
     }
 
-    /// At most so many designs has an exhaustive search.
+    /// Upper bound on the number of designs of an exhaustive search.
     pub(super) fn design_count(&self) -> f64 {
         let whole = |limits: [u32; 2]| count(limits.map(f64::from), 1.0);
         let designs = &self.designs;
@@ -100,7 +100,7 @@ fn finish_designs(designs: &mut DesignSpace, reader: &mut Reader<'_>) {
     check_above_ground(designs, reader);
 }
 
-/// The default of the phasing is cut for a search of one plane alone, where only 0 exists.
+/// The default phasing is capped for a search with a single plane, where only 0 exists.
 fn finish_phasing(designs: &mut DesignSpace, reader: &mut Reader<'_>) {
     let key = key!(DesignSpace.phasing);
     let planes = designs.planes[1];
@@ -133,12 +133,12 @@ fn check_above_ground(designs: &DesignSpace, reader: &mut Reader<'_>) {
 }
 
 section! {
-    /// How it is searched.
+    /// The algorithm of the search and its settings.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct Optimizer in "optimizer" {
         /// Strategy of the search.
         pub algorithm: Algorithm = OneOf::new(), default Algorithm::Nsga2;
-        /// Designs in a generation.
+        /// Designs per generation.
         pub population: u32 = Integer { low: 4, high: 10_000 }, default 30;
         /// Number of generations.
         pub generations: u32 = Integer { low: 1, high: 1_000_000 }, default 30;

@@ -1,4 +1,4 @@
-//! The setting of a study: when, on which Earth, seen how, beside which GNSS.
+//! The setting of a study: time, Earth, visibility and GNSS.
 
 use chrono::{DateTime, Utc};
 
@@ -9,14 +9,14 @@ use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Number, OneOf, Paths, Skyline, SomeOf, UtcInstant};
 use crate::scenario::{Clocks, Model, ObservationWeights, Preset, Surface};
 
-/// Samples in time: 366 days at every 3.2 seconds.
+/// Maximum number of instants: 366 days at every 3.2 seconds.
 const MAX_SAMPLES: u64 = 10_000_000;
 
 section! {
     /// Samples at `epoch + k step_s` for every k from 0 with `k step_s < duration_h`.
     #[derive(Debug, Clone, Copy, PartialEq)]
     pub struct TimeSpan in "time", finish check_samples {
-        /// First sample, UTC; the elements of every design hold at it.
+        /// First instant, UTC; the epoch of the elements of every design.
         pub epoch: DateTime<Utc> = UtcInstant, default JANUARY_2025;
         /// Length of the study; the end instant is excluded.
         pub duration_h: f64 = Number::above_to(0.0, 366.0 * 24.0), unit "h", default 24.0;
@@ -47,7 +47,7 @@ section! {
     /// The Earth.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub struct Earth in "earth" {
-        /// Surface on which ground points lie and to which their verticals belong.
+        /// Surface of the ground points and their verticals.
         pub surface: Surface = OneOf::new(), default Surface::Wgs84;
     }
 }
@@ -56,13 +56,13 @@ section! {
     /// The motion of the LEO design.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub struct Propagation in "propagation" {
-        /// Motion of the LEO design; GNSS constellations are always propagated as they are defined.
+        /// Propagation model of the LEO design; GNSS constellations always use their own.
         pub model: Model = OneOf::new(), default Model::J2;
     }
 }
 
 section! {
-    /// What a receiver sees, and when it has a solution.
+    /// Visibility, and when a sample is solved.
     #[derive(Debug, Clone, PartialEq)]
     pub struct Visibility in "visibility", finish share_mask {
         /// Lowest elevation of a visible LEO satellite.
@@ -70,17 +70,17 @@ section! {
         /// Lowest elevation of a visible GNSS satellite.
         pub gnss_mask_deg: f64 = Number::from_below(0.0, 90.0), unit "deg",
             follows "mask-deg", example 7.0;
-        /// Skyline [[azimuth, mask], ...] from 0 to 360 deg, linear between its points; counts where
-        /// it is higher than a mask.
+        /// Mask by azimuth [[azimuth, mask], ...] from 0 to 360 deg, linear between its points; applies
+        /// where it is higher than a mask.
         pub mask_table: Vec<MaskPoint> = Skyline, unit "deg", default Vec::new();
-        /// How a line of sight counts in the least-squares solution.
+        /// Weight of an observation in the least-squares solution.
         pub weighting: ObservationWeights = OneOf::new(), default ObservationWeights::Unit;
-        /// PDOP above which a sample has no solution.
+        /// PDOP above which a sample is unsolved.
         pub pdop_cap: f64 = Number::above_to(1.0, MOST_PDOP_CAP), default 100.0;
     }
 }
 
-/// One point of a skyline.
+/// One point of a mask by azimuth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaskPoint {
     /// Azimuth from north over east, degrees, 0 to 360.
@@ -103,7 +103,7 @@ section! {
         pub constellations: Vec<Preset> = SomeOf::at_least(0), default vec![Preset::Beidou3];
         /// TLE or OMM files of GNSS satellites, paths relative to this file.
         pub files: Vec<String> = Paths, default Vec::new();
-        /// Receiver clocks solved for beside the position.
+        /// Receiver clocks solved for in addition to the position.
         pub clocks: Clocks = OneOf::new(), default Clocks::PerSystem;
     }
 }

@@ -1,4 +1,4 @@
-//! What the paper does not state, one change at a time.
+//! Alternatives to what the paper does not state, one change at a time.
 
 use super::PaperError;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
@@ -12,24 +12,24 @@ use crate::visibility::Mask;
 /// Masks that are tried, degrees.
 const MASKS_DEG: [f64; 4] = [0.0, 5.0, 7.0, 10.0];
 
-/// Turn of the GEO and IGSO slots, degrees: a sixth of the 60° between GEO, as a slot may be off.
+/// Shift of the GEO and IGSO slots, degrees: a sixth of the 60° spanned by the GEO, a plausible error.
 const SLOT_TURN_DEG: f64 = 10.0;
 
-/// Shifts of the epoch, hours: with them the Earth turns under the constellations.
+/// Shifts of the epoch, hours: each rotates the Earth under the constellations.
 const EPOCH_SHIFTS_H: [f64; 2] = [6.0, 12.0];
 
-/// Two areas count the same if their weights differ by less than this share.
+/// Relative difference below which two area weights count as equal.
 const SAME: f64 = 1e-12;
 
 /// A setup that differs from the scenario's in one assumption.
 pub(super) struct Alternative {
-    /// What differs, in words.
+    /// The difference, in words.
     pub(super) name: String,
     /// The setup.
     pub(super) setup: Setup,
 }
 
-/// Every alternative to `base`, without those that are what `base` assumes.
+/// Every alternative to `base`, without those that `base` assumes already.
 pub(super) fn alternatives(base: &Setup) -> Result<Vec<Alternative>, PaperError> {
     let mut found = Vec::new();
     let mut add = |name: String, setup: Setup| found.push(Alternative { name, setup });
@@ -106,7 +106,7 @@ const SUBSETS: [(&str, Keeps); 2] = [
 
 type Turned = fn(&GnssSatellite) -> GnssSatellite;
 
-/// Slots that may lie elsewhere.
+/// Slots that may be elsewhere.
 const TURNS: [(&str, Turned); 2] = [
     ("GEO", |satellite| {
         let mut satellite = satellite.clone();

@@ -8,8 +8,7 @@ use crate::evaluate::{EpochMetrics, Evaluator};
 use crate::optimize::fuzzy;
 use rayon::prelude::*;
 
-/// One design of Figure 2: its place in the plane of both objectives and its fuzzy values over
-/// the combined set.
+/// One design of Figure 2: its two objectives and its fuzzy memberships over the combined set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlacedDesign {
     /// `table` for the rows of Table II as printed, `search` for the sets found here.
@@ -22,13 +21,13 @@ pub struct PlacedDesign {
     pub j_pos: f64,
     /// Equation (9).
     pub j_cost: f64,
-    /// The least membership over the objectives.
+    /// The worst-case membership over the objectives.
     pub membership: f64,
     /// The normalised sum of memberships.
     pub membership_sum: f64,
 }
 
-/// The course of one design over time, from which Figures 3 and 4 are drawn.
+/// The time series of one design for Figures 3 and 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     /// Name in the figure.
@@ -40,8 +39,8 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// E_g(N_visible) of all instants, from the least to the greatest: the abscissae of its
-    /// distribution function, which rises by equal steps.
+    /// E_g(N_visible) of all instants in ascending order: the abscissae of its distribution
+    /// function, which rises in equal steps.
     #[must_use]
     pub fn sorted_visible(&self) -> Vec<f64> {
         let mut visible: Vec<f64> = self.epochs.iter().map(|epoch| epoch.mean_visible).collect();
@@ -50,7 +49,7 @@ impl Curve {
     }
 }
 
-/// What Figures 2 to 4 are drawn from.
+/// The data of Figures 2 to 4.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figures {
     /// Figure 2.
@@ -82,8 +81,8 @@ pub(super) fn figures(
     })
 }
 
-/// The curves of the rows that share the paper's own number of satellites, 182: number 2 of each
-/// kind, propagated as `designs`.
+/// The curves of the rows with the 182 satellites of the paper's own pick: number 2 of each kind,
+/// propagated as `designs`.
 pub(super) fn compared(
     evaluator: &Evaluator,
     rows: &[TableRow],

@@ -7,24 +7,24 @@ use crate::visibility::Mask;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Agreement with a printed N̄ at which a fit ends: a twentieth of its last digit.
+/// Agreement with a printed N̄ at which a fit stops: a twentieth of its last digit.
 const CLOSE: f64 = 5e-4;
 
-/// Evaluations after which a fit ends in any case: halving alone narrows 90° to 1e-4°.
+/// Maximum evaluations of a fit: bisection alone narrows 90° to 1e-4°.
 const MOST_STEPS: usize = 20;
 
-/// Steps and reach of the walk away from a printed inclination, degrees.
+/// Step and range of the search around a printed inclination, degrees.
 const WALK_STEP_DEG: f64 = 2.5;
 const WALK_STEPS: u32 = 4;
 
-/// Masks between which a row's own mask is sought, degrees.
+/// Masks between which a row's mask is sought, degrees.
 const MASKS_DEG: [f64; 2] = [0.0, 30.0];
 
-/// Deviation from the median within which a row is said to agree with it, degrees.
+/// Deviation from the median within which a row counts as agreeing, degrees.
 const AGREEMENT_DEG: f64 = 0.1;
 
-/// Where a function crosses zero between two places of opposite sign, by regula falsi with
-/// Illinois' weights; `None` when the signs are equal.
+/// The zero of a function between two arguments of opposite sign, by regula falsi (Illinois
+/// variant); `None` if the signs are equal.
 fn crossing(
     mut function: impl FnMut(f64) -> Result<f64, PaperError>,
     [mut a, mut b]: [f64; 2],
@@ -57,7 +57,7 @@ fn crossing(
     Ok(Some(x))
 }
 
-/// The setup without GNSS, which visibility does not need.
+/// The setup without GNSS, which mean visible does not need.
 pub(super) fn sky(setup: &Setup) -> Setup {
     Setup {
         gnss: Vec::new(),
@@ -73,8 +73,8 @@ pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, 
     })?)
 }
 
-/// The inclination nearest to the printed one at which the row's N̄ comes out, in steps of a
-/// tenth of a degree as the paper prints them; `None` when there is none within 10°.
+/// The inclination nearest to the printed one that gives the row's N̄, in steps of a tenth of a
+/// degree as the paper prints them; `None` if there is none within 10°.
 pub(super) fn fitting_inclination(
     evaluator: &Evaluator,
     row: &TableRow,
@@ -103,12 +103,12 @@ pub(super) fn fitting_inclination(
     Ok(None)
 }
 
-/// The mask that a row's visibility asks for.
+/// The mask implied by a row's visibility.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RowMask {
     /// Name of the row.
     pub row: String,
-    /// Mask at which its printed N̄ comes out at its printed inclination, degrees.
+    /// Mask that gives its printed N̄ at its printed inclination, degrees.
     pub mask_deg: Option<f64>,
 }
 
@@ -117,7 +117,7 @@ pub struct RowMask {
 pub struct MaskFit {
     /// Row by row.
     pub rows: Vec<RowMask>,
-    /// Their median, degrees: rows whose inclination is misprinted do not move it.
+    /// Their median, degrees, which rows with a misprinted inclination do not affect.
     pub median_deg: Option<f64>,
     /// Rows within a tenth of a degree of the median.
     pub agreeing: usize,

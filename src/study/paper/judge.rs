@@ -1,4 +1,4 @@
-//! The rule by which a statement of the paper is met.
+//! The rule that decides whether a statement of the paper is met.
 
 use crate::keyword::{Keyword, keywords};
 use serde::{Serialize, Serializer};
@@ -6,17 +6,17 @@ use serde::{Serialize, Serializer};
 keywords! {
     /// Verdict on a statement.
     Verdict {
-        /// It holds under the assumptions of the scenario, none of which was found from it.
+        /// True under the assumptions of the scenario, none of which was derived from it.
         Met = "met",
-        /// It holds with one assumption changed, which was not found from it.
+        /// True with one assumption changed, which was not derived from it.
         MetUnderAssumption = "met-under-assumption",
-        /// It holds, but it was used to find an assumption under which it does: no evidence.
+        /// True, but used to find the assumption under which it is: no evidence.
         Fitted = "fitted",
-        /// It is a parameter that was copied from the paper: no evidence either.
+        /// A parameter copied from the paper: no evidence either.
         Input = "input",
-        /// It holds under no assumption that was tried.
+        /// True under no assumption tried.
         NotMet = "not-met",
-        /// Nothing could be computed to hold it against.
+        /// No number could be computed to compare it with.
         Unconfirmed = "unconfirmed",
     }
 }
@@ -38,25 +38,25 @@ impl Serialize for Verdict {
     }
 }
 
-/// What the paper says of a quantity.
+/// What the paper says about a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Expected {
-    /// A number, and by how much another may differ from it and still be the same.
+    /// A number and the tolerance around it.
     Value {
         /// The number.
         value: f64,
         /// The largest difference.
         tolerance: f64,
     },
-    /// At least so much.
+    /// At least this value.
     AtLeast(f64),
-    /// More than so much.
+    /// More than this value.
     MoreThan(f64),
 }
 
 impl Expected {
-    /// Whether `found` is what the paper says; what is not a number never is.
+    /// Whether `found` agrees with the paper; never true for NaN.
     pub(super) fn holds(self, found: f64) -> bool {
         match self {
             Self::Value { value, tolerance } => (found - value).abs() <= tolerance,
@@ -66,7 +66,7 @@ impl Expected {
     }
 }
 
-/// One statement of the paper, judged.
+/// One statement of the paper with its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statement {
     /// Where the paper says it.
@@ -77,13 +77,13 @@ pub struct Statement {
     pub unit: String,
     /// What the paper says.
     pub expected: Expected,
-    /// What comes out under the assumptions of the scenario.
+    /// Our value under the assumptions of the scenario.
     pub ours: Option<f64>,
     /// The verdict.
     pub verdict: Verdict,
-    /// The one assumption under which it holds, where it does not hold as it is.
+    /// The changed assumption under which it is met, if it is not met as the scenario stands.
     pub assumption: Option<String>,
-    /// What comes out under that assumption.
+    /// Our value under that assumption.
     pub ours_there: Option<f64>,
 }
 
@@ -93,9 +93,9 @@ pub(super) struct OtherAssumption<'a> {
     pub(super) found: Option<f64>,
 }
 
-/// Judges a statement. It holds if it does as the scenario stands, else under any of `others`, of
-/// which the one with the smallest difference is named (the first of equals). What holds is met,
-/// unless its provenance makes it no evidence; what has no number at all is unconfirmed.
+/// Judges a statement. It holds if true under the scenario, or else under any of `others`, of which
+/// the one with the smallest difference is named (the first of equals). A statement that holds is
+/// met, unless its provenance makes it no evidence; one without any number is unconfirmed.
 pub(super) fn judge(
     [place, statement, unit]: [&str; 3],
     provenance: Provenance,

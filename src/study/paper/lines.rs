@@ -13,26 +13,26 @@ use crate::evaluate::Setup;
 use crate::optimize::{dominates, fuzzy};
 use crate::orbit::Propagator;
 
-/// The row whose numbers the paper's text compares.
+/// The row that the paper's text compares with others.
 pub(super) const REFERENCE: &str = "proposed-2";
 
-/// Largest difference of N̄: half of its last printed digit, and 0.01 for what a different epoch
-/// (under 0.005) and sampling move it by.
+/// Tolerance of N̄: half of its last printed digit, plus 0.01 for the effect of another epoch
+/// (under 0.005) and sampling.
 pub const VISIBLE_TOLERANCE: f64 = 0.015;
 
-/// Largest relative difference of mean PDOP, percent: the sum of what the epoch and the slots of
-/// GEO and IGSO, which the paper does not state, move it by (1.1, 1.0 and 0.3 % of a polar row), and
-/// a little more. The rounding of the table is far below.
+/// Relative tolerance of mean PDOP, percent: the sum of the effects of the epoch and of the GEO and
+/// IGSO slots, which the paper does not state (1.1, 1.0 and 0.3 % for a polar row), and a little
+/// more. The rounding of the table is far below this.
 pub const PDOP_TOLERANCE_PERCENT: f64 = 3.0;
 
-/// Largest difference of a percentage of the text, percentage points: two rounded N̄ of about 6
-/// and 8 and [`VISIBLE_TOLERANCE`] in each.
+/// Tolerance of a percentage in the text, percentage points: two rounded N̄ of about 6 and 8, with
+/// [`VISIBLE_TOLERANCE`] in each.
 const PERCENTAGE_TOLERANCE: f64 = 0.5;
 
-/// The same for a ratio of two mean PDOPs, each good to some percent.
+/// The same for a ratio of two mean PDOPs, each accurate to a few percent.
 const PDOP_PERCENTAGE_TOLERANCE: f64 = 3.0;
 
-/// "Consistently": in this share of all cases, percent.
+/// "Consistently": in this fraction of all cases, percent.
 const CONSISTENTLY_PERCENT: f64 = 95.0;
 
 /// Difference from the mask that Table II implies, degrees: half the last digit of the row masks.
@@ -41,7 +41,7 @@ const MASK_TOLERANCE_DEG: f64 = 0.1;
 /// Table I gives whole degrees and kilometres.
 const TABLE1_TOLERANCE: f64 = 0.5;
 
-/// What the lines are judged by.
+/// The evidence for the verdicts.
 pub(super) struct Evidence<'a> {
     pub(super) setup: &'a Setup,
     pub(super) table: &'a Measurements,
@@ -57,7 +57,7 @@ impl Measurements {
         found.ok_or_else(|| PaperError::NoRow(name.to_owned()))
     }
 
-    /// Judges a quantity that follows from the values of all rows.
+    /// Judges a quantity derived from the values of all rows.
     fn judge(
         &self,
         texts: [&str; 3],
@@ -72,7 +72,7 @@ impl Measurements {
         self.judge_fitted(texts, provenance, expected, fitting, of)
     }
 
-    /// The same, with the inclinations that fit in other words, or without them.
+    /// The same, with another description of the fitting inclinations, or without them.
     fn judge_fitted<'a>(
         &'a self,
         texts: [&str; 3],
@@ -154,14 +154,14 @@ fn table1(evidence: &Evidence<'_>) -> Vec<Statement> {
     lines
 }
 
-/// The mask of the scenario against the one that Table II implies.
+/// The mask of the scenario compared with the one that Table II implies.
 fn mask(evidence: &Evidence<'_>) -> Option<Statement> {
     let expected = Expected::Value {
         value: evidence.mask_fit.median_deg?,
         tolerance: MASK_TOLERANCE_DEG,
     };
     let ours = Some(evidence.setup.mask.degrees());
-    let texts = ["Table II", "mask that its visibility implies", "deg"];
+    let texts = ["Table II", "mask implied by its visibility", "deg"];
     Some(judge(texts, Provenance::Fitted, expected, ours, &[]))
 }
 
@@ -213,7 +213,7 @@ pub(super) fn judged_rows(table: &Measurements) -> Vec<JudgedRow> {
         let [visible, pdop] = printed(row);
         JudgedRow {
             row: *row,
-            mean_visible: judge("visible", Provenance::Fitted, visible, |value| {
+            mean_visible: judge("mean visible", Provenance::Fitted, visible, |value| {
                 Some(value.mean_visible)
             }),
             mean_pdop: judge("mean PDOP", Provenance::Computed, pdop, |value| {
@@ -225,7 +225,7 @@ pub(super) fn judged_rows(table: &Measurements) -> Vec<JudgedRow> {
     rows.enumerate().map(judged).collect()
 }
 
-/// Whether one assumption gives a whole column: an assumption that suits one row may fail another.
+/// Whether one assumption reproduces an entire column: one that suits a row may fail another.
 fn whole_table2(table: &Measurements) -> [Statement; 2] {
     let share = |values: &[RowValue], which: usize| {
         let rows = table.rows.iter().zip(values);
@@ -242,12 +242,12 @@ fn whole_table2(table: &Measurements) -> [Statement; 2] {
     };
     [
         line(
-            "rows whose visible satellites come out together",
+            "rows whose mean visible is reproduced, all under one assumption",
             Provenance::Fitted,
             0,
         ),
         line(
-            "rows whose mean PDOP comes out together",
+            "rows whose mean PDOP is reproduced, all under one assumption",
             Provenance::Computed,
             1,
         ),
@@ -270,7 +270,7 @@ fn pareto(evidence: &Evidence<'_>) -> Option<Statement> {
         let points = points.filter_map(|(_, value)| Some([value.j_pos?, value.j_cost?]));
         percent(points.map(|point| !front.iter().any(|member| dominates(member, &point))))
     };
-    // The front is that of the scenario: only there can its members be compared.
+    // The front belongs to the scenario, so its members can be compared only there.
     let ours = share(&evidence.table.printed.values);
     let there = share(&evidence.table.at_fitting.values);
     let texts = [
@@ -383,7 +383,7 @@ fn figure3(evidence: &Evidence<'_>) -> Vec<Statement> {
         line(
             [
                 "Fig. 3(a)",
-                "quantiles at which the proposed design sees the most",
+                "quantiles at which the proposed design has the most visible satellites",
                 "%",
             ],
             most_visible,
@@ -391,7 +391,7 @@ fn figure3(evidence: &Evidence<'_>) -> Vec<Statement> {
         line(
             [
                 "Fig. 3(b)",
-                "instants at which it has the lowest PDOP_max",
+                "instants at which it has the lowest maximum PDOP",
                 "%",
             ],
             lowest_max,
@@ -399,14 +399,14 @@ fn figure3(evidence: &Evidence<'_>) -> Vec<Statement> {
     ]
 }
 
-/// Share of the quantiles of E_g(N_visible) at which the first curve is above all others.
+/// Percentage of the quantiles of E_g(N_visible) at which the first curve is above all others.
 fn most_visible(curves: &[Curve]) -> Option<f64> {
     let sorted: Vec<Vec<f64>> = curves.iter().map(Curve::sorted_visible).collect();
     let (own, others) = sorted.split_first()?;
     percent((own.iter().enumerate()).map(|(k, x)| others.iter().all(|other| other[k] < *x)))
 }
 
-/// Share of the instants at which the maximum PDOP of the first curve is below all others.
+/// Percentage of the instants at which the maximum PDOP of the first curve is below all others.
 fn lowest_max(curves: &[Curve]) -> Option<f64> {
     let (own, others) = curves.split_first()?;
     let below = |k: usize, x: f64| {
@@ -452,7 +452,7 @@ fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
     let size = |m: &super::FoundMember| Some(m.design.satellite_count() as f64);
     vec![
         line(
-            "max-pdop alone sees more satellites, by",
+            "max-pdop alone has more visible satellites, by",
             ours(visible, &single),
             Some(printed.mean_visible),
             1.0,
@@ -484,7 +484,7 @@ fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
     ]
 }
 
-/// The share of cases that hold, percent; `None` without a case.
+/// The percentage of cases that are true; `None` if there are none.
 fn percent(cases: impl Iterator<Item = bool>) -> Option<f64> {
     let (hold, all) = cases.fold((0_u32, 0_u32), |(hold, all), case| {
         (hold + u32::from(case), all + 1)

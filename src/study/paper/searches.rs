@@ -11,7 +11,7 @@ use serde::Serialize;
 /// Inclinations of the Iridium-like rows of Table II, degrees.
 const IRIDIUM_LIKE_DEG: [f64; 2] = [83.2, 86.4];
 
-/// A design of a set, with what figures show of it.
+/// A design of a set, with its metrics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FoundMember {
     /// The design.
@@ -42,7 +42,7 @@ impl Serialize for FoundMember {
 pub struct FoundSet {
     /// Name of the search.
     pub name: &'static str,
-    /// What was searched, how and for what, in words.
+    /// The design space, the objectives and the algorithm, in words.
     pub what: String,
     /// Designs evaluated.
     pub evaluations: u64,
@@ -68,7 +68,7 @@ struct Plan {
     swarm: bool,
 }
 
-/// Names by which the lines find the sets of the paper's three strategies.
+/// Names of the sets of the paper's three strategies.
 pub(super) const PROPOSED: &str = "proposed";
 pub(super) const SINGLE: &str = "max-pdop alone";
 pub(super) const SATELLITES: &str = "satellites and max-pdop";
@@ -85,7 +85,7 @@ fn plans(own: DesignSpace) -> Vec<Plan> {
     };
     let lattice = DesignSpace {
         pattern: Pattern::Lattice,
-        // Its rows of Table II lie at 78.2° and 83.9°, beyond the bounds of the paper's own designs.
+        // Its rows of Table II are at 78.2° and 83.9°, outside the bounds of the paper's own designs.
         inclination_deg: [own.inclination_deg[0], own.inclination_deg[1].max(90.0)],
         phasing: [0, own.planes[1].saturating_sub(1)],
         ..own

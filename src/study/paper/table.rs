@@ -1,4 +1,4 @@
-//! What the paper prints, as data.
+//! The paper's printed values, as data.
 
 use super::PaperError;
 use crate::constellation::Design;
@@ -38,19 +38,19 @@ pub struct TableRow {
     pub mean_visible: f64,
     /// E(PDOP) as printed.
     pub mean_pdop: f64,
-    /// Where the printed inclination does not give the printed N̄ (mask 7°, sphere): one that does.
+    /// An inclination that gives the printed N̄ (mask 7°, sphere), if the printed one does not.
     pub fitting_inclination_deg: Option<f64>,
 }
 
 impl TableRow {
-    /// A name that is unique in the table, as `polar-2`.
+    /// A name that is unique in the table, such as `polar-2`.
     #[must_use]
     pub fn name(&self) -> String {
         format!("{}-{}", self.scheme, self.number)
     }
 }
 
-/// A row as it stands in the file.
+/// A row as written in the file.
 #[derive(Deserialize)]
 struct Printed {
     scheme: String,
@@ -61,10 +61,10 @@ struct Printed {
     fitting_inclination_deg: Option<f64>,
 }
 
-/// Table II, in its order.
+/// Table II, in the order of the paper.
 ///
 /// # Errors
-/// Never, as long as the file that is built in is as a test finds it.
+/// Never for the built-in file, as a test confirms.
 pub fn table2() -> Result<Vec<TableRow>, PaperError> {
     let text = include_str!("../../../data/paper/table2.csv");
     let mut reader = csv::ReaderBuilder::new()
@@ -111,35 +111,35 @@ pub enum Printable {
 /// The percentages of the abstract and of section IV-B(2), all of designs with 182 satellites.
 pub const PERCENTAGES: [Percentage; 5] = [
     Percentage {
-        name: "visible satellites over Polar",
+        name: "mean visible relative to Polar",
         of: Printable::MeanVisible,
         row: "proposed-2",
         with: "polar-2",
         percent: 42.5,
     },
     Percentage {
-        name: "visible satellites over Iridium-like",
+        name: "mean visible relative to Iridium-like",
         of: Printable::MeanVisible,
         row: "proposed-2",
         with: "iridium-like-2",
         percent: 42.0,
     },
     Percentage {
-        name: "visible satellites over optimized-LFC",
+        name: "mean visible relative to optimized-LFC",
         of: Printable::MeanVisible,
         row: "proposed-2",
         with: "optimized-lfc-2",
         percent: 24.4,
     },
     Percentage {
-        name: "mean PDOP against Polar",
+        name: "mean PDOP relative to Polar",
         of: Printable::MeanPdop,
         row: "proposed-2",
         with: "polar-2",
         percent: -18.9,
     },
     Percentage {
-        name: "mean PDOP against optimized-LFC",
+        name: "mean PDOP relative to optimized-LFC",
         of: Printable::MeanPdop,
         row: "proposed-2",
         with: "optimized-lfc-2",
@@ -178,7 +178,7 @@ mod tests {
                 Printable::MeanPdop => find(name).mean_pdop,
             };
             let change = 100.0 * (value(percentage.row) / value(percentage.with) - 1.0);
-            // Half of the last printed digit, and as much again for the digits of N̄.
+            // Half of the last printed digit, and the same again for the digits of N̄.
             let name = percentage.name;
             assert!((change - percentage.percent).abs() < 0.1, "{name} {change}");
         }

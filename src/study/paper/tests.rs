@@ -4,7 +4,7 @@ use crate::dop::Clocks;
 use crate::scenario::{Scenario, builtin};
 use std::sync::LazyLock;
 
-/// The built-in scenario on a coarse grid in time; N̄ is a mean over 143 points and a whole day, which
+/// The built-in scenario on a coarse time grid; N̄ is a mean over 143 points and a full day, which
 /// ten-minute samples give within 0.003, and mean PDOP within 0.3 %.
 fn scenario(overrides: &[&str]) -> Scenario {
     let overrides: Vec<&str> = [
@@ -29,7 +29,7 @@ fn study(overrides: &[&str]) -> PaperStudy {
     }
 }
 
-/// The study as the scenario stands.
+/// The study under the built-in scenario.
 static PAPER: LazyLock<Reproduction> = LazyLock::new(|| reproduce(&study(&[])).unwrap());
 
 fn line<'a>(reproduction: &'a Reproduction, statement: &str) -> &'a Statement {
@@ -46,24 +46,24 @@ fn verdicts_change_with_the_scenario() {
     let other = ["visibility.mask-deg=10", "gnss.constellations=[\"gps\"]"];
     let low = reproduce(&study(&other)).unwrap();
 
-    let visible = line(paper, "polar-2 visible");
+    let visible = line(paper, "polar-2 mean visible");
     assert_eq!(visible.verdict, Verdict::Fitted);
     assert_eq!(visible.assumption, None);
-    let visible = line(&low, "polar-2 visible");
+    let visible = line(&low, "polar-2 mean visible");
     assert_eq!(visible.verdict, Verdict::Fitted);
     assert_eq!(visible.assumption.as_deref(), Some("mask 7°"));
 
-    let mask = "mask that its visibility implies";
+    let mask = "mask implied by its visibility";
     assert_eq!(line(paper, mask).verdict, Verdict::Fitted);
     assert_eq!(line(&low, mask).verdict, Verdict::NotMet);
-    // The fit does not look at the mask of the scenario.
+    // The fit does not use the mask of the scenario.
     assert_eq!(paper.mask_fit, low.mask_fit);
 
     assert_eq!(
-        line(paper, "mean PDOP against Polar").verdict,
+        line(paper, "mean PDOP relative to Polar").verdict,
         Verdict::NotMet
     );
-    let visible = line(paper, "proposed-1 visible");
+    let visible = line(paper, "proposed-1 mean visible");
     assert_eq!(visible.verdict, Verdict::Fitted);
     assert!(
         visible
@@ -129,7 +129,7 @@ fn one_assumption_changes_at_a_time() {
             "{name} is not in {names:?}"
         );
     }
-    // What the scenario has already is not an alternative.
+    // The scenario's own assumptions are not alternatives.
     for name in ["mask 7°", "surface sphere", "clocks per-system"] {
         assert!(
             names.iter().all(|found| found != name),

@@ -21,7 +21,7 @@ fn averaged([a, e, i]: [f64; 3]) -> f64 {
         .map(|k| {
             let f = TAU * k as f64 / NODES as f64;
             let r = parameter / (1.0 + e * f.cos());
-            // The argument of perigee averages out of sin² (ω + f); a quarter turn more shows it.
+            // The argument of perigee averages out of sin² (ω + f), as adding a quarter turn shows.
             let s2 = i.sin().powi(2) * (0.7 + f).sin().powi(2);
             let potential = -MU_KM3_S2 / r * J2 * (RADIUS_KM / r).powi(2) * 0.5 * (3.0 * s2 - 1.0);
             // dM = (r/a)²/sqrt(1 - e²) df
@@ -71,7 +71,7 @@ fn propagated_rates(orbit: &MeanElements, after: &MeanElements, expected: [f64; 
         after.raan_rad - orbit.raan_rad,
         after.mean_argument_of_latitude_rad() - orbit.mean_argument_of_latitude_rad(),
     ];
-    // The whole turns are those that are expected.
+    // The number of full revolutions is the expected one.
     [0, 1].map(|n| {
         let excess = wrap_pi(turned[n] - expected[n] * SECONDS_PER_DAY);
         expected[n] + excess / SECONDS_PER_DAY
@@ -81,7 +81,7 @@ fn propagated_rates(orbit: &MeanElements, after: &MeanElements, expected: [f64; 
 /// The rates of the mean elements of the model against those of the averaged potential of its field.
 pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     let orbit = subject.orbit();
-    // Without a node its rate and that of ω are not told apart.
+    // Without a node its rate and that of ω cannot be separated.
     if orbit.inclination_rad.sin() < 0.02 {
         return Vec::new();
     }
@@ -91,11 +91,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     let (expected, reason) = match subject.model() {
         Model::TwoBody => (
             [0.0, orbit.kepler_mean_motion_rad_s()],
-            "two bodies: the node stays, and the argument of latitude goes at Kepler's mean motion; rounding",
+            "two bodies: the node stays fixed, and the argument of latitude advances at Kepler's mean motion; rounding only",
         ),
         _ => (
             rates(&orbit),
-            "Lagrange's equations with the J2 potential averaged by quadrature: central differences of fourth order are good to 1e-10 of the J2 rates",
+            "Lagrange's equations with the J2 potential averaged by quadrature; fourth-order central differences, accurate to 1e-10 of the J2 rates",
         ),
     };
     let found = propagated_rates(&orbit, &after, expected);

@@ -1,4 +1,4 @@
-//! Visibility and PDOP of the study once more, by angles and whole matrices.
+//! Visibility and PDOP of the study recomputed from angles and full matrices.
 
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, ObservationWeights};
@@ -11,17 +11,17 @@ use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use crate::visibility::Mask;
 use nalgebra::{DMatrix, Vector3};
 
-/// Instants that are computed again.
+/// Instants that are recomputed.
 const INSTANTS: usize = 12;
 
-/// Points that are computed again.
+/// Points that are recomputed.
 const POINTS: usize = 40;
 
-/// The smallest singular value of a geometry with a PDOP of 1e7, the largest cap ten times over;
-/// rounding leaves 1e-15 of one that is zero.
+/// The smallest singular value of a geometry with a PDOP of 1e7, ten times the largest cap; rounding
+/// turns a zero into 1e-15.
 const LEAST_SINGULAR_VALUE: f64 = 1e-7;
 
-/// A study of some instants and points of another, and its systems propagated.
+/// A study over some instants and points of another, with its systems propagated.
 struct Again {
     setup: Setup,
     gnss: Vec<Ephemeris>,
@@ -31,7 +31,7 @@ impl Again {
     fn new(subject: &Subject<'_>) -> Option<Self> {
         let full = subject.setup();
         let span_s = full.grid.len() as f64 * full.grid.step_s();
-        // A step that is not a divisor of the day or the period.
+        // A step that divides neither the day nor the period.
         let step_s = span_s / (INSTANTS as f64 - 0.37);
         let grid = TimeGrid::new(full.grid.epoch(), span_s, step_s).ok()?;
         let stride = full.sites.len().div_ceil(POINTS);
@@ -76,8 +76,8 @@ impl Again {
         Ok(lines)
     }
 
-    /// PDOP from the singular values of the whole geometry matrix, none of which may be rounding;
-    /// `groups` are the lines of each clock.
+    /// PDOP from the singular values of the full geometry matrix, none of which may be mere rounding;
+    /// `groups` are the lines of sight of each clock.
     fn pdop(&self, groups: &[Vec<Vector3<f64>>]) -> Option<f64> {
         let groups: Vec<_> = groups.iter().filter(|group| !group.is_empty()).collect();
         let rows: usize = groups.iter().map(|group| group.len()).sum();
@@ -152,11 +152,11 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     )?;
     let samples = setup.sample_count() as f64;
     let unit_weights = setup.observation_weights == ObservationWeights::Unit;
-    let reason = "the same definitions by another way: angles for squares of sines, whole matrices for Schur complements";
+    let reason = "the same definitions by another route: angles instead of squared sines, full matrices instead of Schur complements";
     let mut checks = vec![Check::new(
         "analytic/geometry/mean-visible",
         CheckedQuantity {
-            quantity: "mean visible satellites of some samples, by angles",
+            quantity: "mean visible over selected samples, from angles",
             unit: "1",
             statistic: "difference",
         },
@@ -166,9 +166,9 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         reason,
     )];
     let pdop = [
-        // The fast path has single precision where geometry is good: 1e-7 of a PDOP below 2.
+        // The fast path uses single precision where geometry is good: 1e-7 of a PDOP below 2.
         ("mean-pdop", metrics.mean_pdop, sum / solved, 2e-7),
-        // Bad geometry costs both ways digits: the condition number goes with PDOP squared.
+        // Poor geometry costs both methods digits: the condition number grows as PDOP squared.
         (
             "max-pdop",
             metrics.max_pdop,
@@ -181,7 +181,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
             checks.push(Check::new(
                 &format!("analytic/geometry/{name}"),
                 CheckedQuantity {
-                    quantity: &format!("{name} of some samples, by whole matrices"),
+                    quantity: &format!("{name} of selected samples, from full matrices"),
                     unit: "1",
                     statistic: "difference",
                 },

@@ -1,9 +1,9 @@
-//! The mean number of visible satellites without stepping time.
+//! Mean visible without stepping through time.
 //!
-//! Over a long time the node of a satellite turns evenly past every meridian, independently of its
-//! place in the orbit. For each place, the longitudes from which it is seen are an arc about its own
-//! meridian, whose ends follow from the definition of the elevation; the share of visibility is the
-//! mean of the arcs over the mean anomaly.
+//! Over a long time the node of a satellite drifts evenly past every meridian, independently of its
+//! position in the orbit. For each position, the longitudes from which it is visible form an arc
+//! about its own meridian, whose ends follow from the definition of elevation; the fraction of time
+//! in view is the mean of the arcs over the mean anomaly.
 
 use crate::evaluate::Setup;
 use crate::ground::Site;
@@ -13,10 +13,10 @@ use crate::orbit::{MeanElements, Model};
 use crate::validate::{Check, CheckedQuantity, Subject, ValidateError};
 use std::f64::consts::{PI, TAU};
 
-/// Nodes over the mean anomaly. Arcs end like square roots: an error of N^-3/2, 1e-6.
+/// Nodes over the mean anomaly. Arcs vanish like a square root, so the error is N^-3/2, 1e-6.
 const NODES: usize = 20_000;
 
-/// Share of time for which a site sees a satellite of this orbit.
+/// Fraction of time for which a site sees a satellite of this orbit.
 pub(super) fn visible_share(orbit: &MeanElements, site: &Site, mask_deg: f64) -> f64 {
     let (up, origin) = (site.local.up, site.local.origin_km.km());
     // Everything is symmetric about the site's meridian: distance from the axis, and height over the
@@ -73,7 +73,7 @@ fn arc(seen: impl Fn(f64) -> f64) -> f64 {
     (0.5_f64 * (below + above)).acos()
 }
 
-/// Sites with weights, one for each latitude: the share does not depend on longitude.
+/// Sites with weights, one per latitude, since the fraction does not depend on longitude.
 fn rows(setup: &Setup) -> Vec<(Site, f64)> {
     let mut rows: Vec<(Site, f64)> = Vec::new();
     for site in &setup.sites {
@@ -88,11 +88,11 @@ fn rows(setup: &Setup) -> Vec<(Site, f64)> {
     rows
 }
 
-/// Relative difference that a finite span may leave.
+/// Relative difference that a finite span may cause.
 ///
 /// The discrepancy of one satellite over D days is that of a sequence of N = 15 D revolutions:
-/// each passes the site at some longitude, and the count is off by at most one pass in N, 0.6 of one
-/// at random. T satellites share it; twice the deviation is 1.2/(N √T).
+/// each passes the site at some longitude, and the count is off by at most one pass in N, or 0.6 of
+/// one at random. For T satellites, twice the standard deviation is 1.2/(N √T).
 fn finite_span(subject: &Subject<'_>) -> f64 {
     let revolutions = subject.days() * 86_400.0 * subject.orbit().kepler_mean_motion_rad_s() / TAU;
     let satellites = subject.design.satellite_count() as f64;
@@ -123,7 +123,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     let setup = subject.setup();
     let orbit = figure(subject);
     let rows = rows(setup);
-    // A list of points has as many latitudes as points; some tell enough.
+    // A list of points may have as many latitudes as points; a sample is enough.
     if rows.len() > 200 {
         return Ok(Vec::new());
     }
@@ -140,24 +140,24 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         Check::new(
             "analytic/mean-visible/quadrature",
             CheckedQuantity {
-                quantity: "mean visible satellites, by quadrature",
+                quantity: "mean visible, by quadrature",
                 unit: "1",
                 statistic: "mean",
             },
             expected,
             None,
-            "the limit of a long time: node and place in the orbit independent",
+            "reported only: the long-time limit, where node and position in the orbit are independent",
         ),
         Check::new(
             "analytic/mean-visible",
             CheckedQuantity {
-                quantity: "mean visible satellites of the study over quadrature, less 1",
+                quantity: "mean visible of the study relative to quadrature, minus 1",
                 unit: "1",
                 statistic: "mean",
             },
             found / expected - 1.0,
             Some(finite_span(subject)),
-            "a finite span misses at most a pass or two of each satellite's revolutions; satellites that are spread share the error",
+            "a finite span cuts off at most a pass or two per satellite; the errors of evenly spread satellites average out",
         ),
     ])
 }

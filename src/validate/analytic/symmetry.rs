@@ -1,4 +1,4 @@
-//! What does not change when a pattern is turned, satellites are reordered, or the mask is raised.
+//! Invariants: a pattern that is rotated, satellites that are reordered, a mask that is raised.
 
 use crate::constellation::{Pattern, Satellite};
 use crate::ephemeris::{Ephemeris, EphemerisError, object_name};
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 /// Steps by which the mask is raised, degrees.
 const MASK_STEPS_DEG: [f64; 4] = [2.0, 5.0, 10.0, 20.0];
 
-/// Largest design whose places are matched one by one.
+/// Largest design whose positions are matched one by one.
 const MOST_MATCHED: usize = 2_000;
 
 pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError> {
@@ -26,20 +26,20 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
     Ok(checks)
 }
 
-/// How a pattern comes to lie on itself: the turn of the nodes and the shift of M, rad.
+/// What maps a pattern onto itself: the rotation of the nodes and the shift of M, rad.
 fn symmetry(subject: &Subject<'_>) -> (f64, f64) {
     let design = &subject.design;
     let (planes, per_plane) = (design.planes() as f64, design.satellites_per_plane() as f64);
     let phase = TAU * design.phasing() as f64 / (planes * per_plane);
     match design.pattern() {
         Pattern::Delta => (TAU / planes, phase),
-        // Half a turn: the second half of the nodes is not occupied.
+        // Half a revolution: the other half of the nodes is not occupied.
         Pattern::Star => (0.5 * TAU / planes, phase),
         Pattern::Lattice => (TAU / planes, -phase),
     }
 }
 
-/// Largest distance of a turned place from the nearest place of the pattern, km.
+/// Largest distance of a rotated position from the nearest position of the pattern, km.
 fn turn_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let satellites = subject.satellites();
     if satellites.len() > MOST_MATCHED {
@@ -73,27 +73,27 @@ fn turn_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
             mean_anomaly_rad: wrap_two_pi(elements.mean_anomaly_rad + shift),
             ..*elements
         };
-        // Turned forwards about the pole by the angle.
+        // Rotated forwards about the pole by the angle.
         let place: Vector3<f64> = rotation.direction_to_teme(position(satellite, &shifted)?);
         let distances = places.iter().map(|other| (other - place).norm());
         largest = largest.max(distances.fold(f64::INFINITY, f64::min));
     }
-    // Sun and Moon, which SGP4 has far out, do not turn with the pattern.
+    // The Sun and Moon, which SGP4 includes for deep-space orbits, do not rotate with the pattern.
     let orbit = subject.orbit();
     let turns = subject.model() != Model::Sgp4 || !is_deep_space(&orbit);
-    // Angles of whole turns are rounded, some times over.
+    // Angles of whole revolutions are rounded several times over.
     let angle_rad = TAU + orbit.kepler_mean_motion_rad_s() * at_s;
     let gate_km = 16.0 * f64::EPSILON * angle_rad * orbit.semi_major_axis_km;
     Ok(Some(Check::new(
         "analytic/symmetry/turn",
         CheckedQuantity {
-            quantity: "distance of the pattern, turned and shifted, from itself",
+            quantity: "distance between the pattern and its rotated and shifted copy",
             unit: "km",
             statistic: "max",
         },
         largest,
         turns.then_some(gate_km),
-        "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P, but for the seam; rounding only",
+        "delta: 360/P and 360 F/T; lattice: 360/N_o and -360 N_c/T; star: 180/P except at the seam; rounding only",
     )))
 }
 
@@ -119,17 +119,17 @@ fn order_check(subject: &Subject<'_>) -> Result<Check, ValidateError> {
     Ok(Check::new(
         "analytic/symmetry/order",
         CheckedQuantity {
-            quantity: "change of the metrics when satellites are reordered",
+            quantity: "change in the metrics when satellites are reordered",
             unit: "1",
             statistic: "max",
         },
         pairs.into_iter().map(change).fold(0.0, f64::max),
         Some(1e-6),
-        "sums in another order: rounding only, of single precision where the fast path takes it",
+        "sums in another order: rounding only, in single precision where the fast path uses it",
     ))
 }
 
-/// The largest gain of mean visible satellites when the mask is raised, which must not be.
+/// The largest gain in mean visible when the mask is raised; there must be none.
 fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
     let setup = subject.setup();
     let propagated = subject.propagate_model()?;
@@ -149,13 +149,13 @@ fn mask_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
         Check::new(
             "analytic/mask",
             CheckedQuantity {
-                quantity: "gain of mean visible satellites when the mask is raised",
+                quantity: "gain in mean visible when the mask is raised",
                 unit: "1",
                 statistic: "max",
             },
             largest_gain.max(0.0),
             Some(0.0),
-            "what is above a higher mask is above the lower one",
+            "a satellite above the higher mask is also above the lower one",
         )
     }))
 }

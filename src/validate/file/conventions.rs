@@ -1,4 +1,4 @@
-//! Conventions of other tools, tried one after the other on what a file holds.
+//! Conventions of other tools, tried one by one on the contents of a file.
 
 mod propagators;
 
@@ -18,16 +18,16 @@ use propagators::{about_j2000, gps_minus_utc_s, mislabelled, taken_as_osculating
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A convention explains a difference when it leaves less than this share of it...
+/// A convention explains a difference if less than this fraction of it remains...
 const EXPLAINED: f64 = 0.1;
 
-/// ... and less than this, km: what is left must be a matter of the force model, not of the pattern.
+/// ... and less than this, km: the remainder must be due to the force model, not the pattern.
 const MOST_LEFT_KM: f64 = 50.0;
 
 /// Samples at which conventions are tried, over all objects.
 const SAMPLES: usize = 600;
 
-/// Digit to which a fitted radius is rounded, km: a decimetre.
+/// Resolution to which a fitted radius is rounded, km: a decimetre.
 const RADIUS_DIGIT_KM: f64 = 1e-4;
 
 /// The convention that explains a difference.
@@ -37,9 +37,9 @@ pub struct Explanation {
     pub convention: String,
     /// What it means.
     pub meaning: String,
-    /// Root mean square distance before, km; `None` when not every object was near a slot.
+    /// Root mean square distance before, km; `None` if some object was not near a slot.
     pub before_km: Option<f64>,
-    /// What is left with it, km.
+    /// Root mean square distance with it, km.
     pub after_km: f64,
 }
 
@@ -53,16 +53,16 @@ struct Convention {
     propagate: fn(&Subject<'_>, Fitted) -> Vec<(String, OtherPropagator)>,
 }
 
-/// What conventions take from the files.
+/// What the conventions use from the files.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Fitted {
-    /// How much larger the orbits of the files are at their first samples, km.
+    /// Excess of the files' orbit radii at their first samples, km.
     pub(super) radius_offset_km: f64,
 }
 
 impl Fitted {
-    /// The mean excess of the radii at the first samples, at which nothing has drifted yet, as an
-    /// excess of the semi-major axis; zero when not every object is near a slot.
+    /// The mean excess of the radii at the first samples, before anything has drifted, taken as an
+    /// excess of the semi-major axis; zero if some object is not near a slot.
     fn to(subject: &Subject<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
         let ours = subject.propagate_model()?;
         let matching = Matching::of(subject, &ours, tracks);
@@ -119,7 +119,7 @@ fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, OtherProp
     })
 }
 
-/// The design in another pattern or with another phase step, in turns between planes.
+/// The design with another pattern or phase step, in revolutions between planes.
 fn with_layout(
     subject: &Subject<'_>,
     node_turns: f64,
@@ -137,7 +137,7 @@ fn with_layout(
     })
 }
 
-/// Turns of the node between planes, and of the phase: those of the design.
+/// The design's steps of node and phase between planes, revolutions.
 fn layout(design: &Design) -> (f64, f64) {
     let (p, t) = (design.planes() as f64, design.satellite_count() as f64);
     let f = design.phasing() as f64;
@@ -158,7 +158,7 @@ fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, OtherPropag
 /// The convention whose radius is fitted.
 const ANOTHER_RADIUS: &str = "altitude-over-another-radius";
 
-/// The conventions, cheap ones first.
+/// The conventions, the cheapest first.
 const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
@@ -167,7 +167,7 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "two-body",
-        meaning: "no J2 at all",
+        meaning: "two-body motion, without J2",
         propagate: |subject, _| {
             propagate_each(&subject.design.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
@@ -203,17 +203,17 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "sgp4",
-        meaning: "SGP4 with dM/dt of J2 in the mean motion slot",
+        meaning: "SGP4 with dM/dt of secular J2 in the mean motion field",
         propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kozai),
     },
     Convention {
         name: "sgp4-kepler-slot",
-        meaning: "SGP4 with sqrt(mu/a^3) in the mean motion slot",
+        meaning: "SGP4 with sqrt(mu/a^3) in the mean motion field",
         propagate: |subject, _| sgp4(subject, MeanMotionSlot::Kepler),
     },
     Convention {
         name: ANOTHER_RADIUS,
-        meaning: "altitudes over another radius of the Earth",
+        meaning: "altitudes measured from another Earth radius",
         propagate: |subject, fitted| with_altitude(subject, fitted.radius_offset_km),
     },
     Convention {
@@ -278,32 +278,32 @@ const CONVENTIONS: &[Convention] = &[
     },
     Convention {
         name: "teme-taken-for-eme2000",
-        meaning: "TEME states, labelled EME2000; or, the same, elements and pole of J2 counted from the equator of J2000",
+        meaning: "TEME states labelled EME2000, or equivalently elements and J2 pole referred to the J2000 equator",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, true),
     },
     Convention {
         name: "eme2000-taken-for-teme",
-        meaning: "EME2000 states, labelled TEME",
+        meaning: "EME2000 states labelled TEME",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::Eme2000, false),
     },
     Convention {
         name: "teme-taken-for-earth-fixed",
-        meaning: "TEME states, labelled as of the rotating Earth",
+        meaning: "TEME states labelled Earth-fixed",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, true),
     },
     Convention {
         name: "earth-fixed-taken-for-teme",
-        meaning: "states of the rotating Earth, labelled TEME",
+        meaning: "Earth-fixed states labelled TEME",
         propagate: |subject, _| mislabelled(subject, 0.0, Frame::EarthFixed, false),
     },
     Convention {
         name: "utc-taken-for-gps",
-        meaning: "UTC instants, labelled GPS time",
+        meaning: "UTC instants labelled GPS time",
         propagate: |subject, _| mislabelled(subject, gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
         name: "gps-taken-for-utc",
-        meaning: "GPS instants, labelled UTC",
+        meaning: "GPS instants labelled UTC",
         propagate: |subject, _| mislabelled(subject, -gps_minus_utc_s(subject), Frame::Teme, false),
     },
     Convention {
@@ -313,10 +313,10 @@ const CONVENTIONS: &[Convention] = &[
     },
 ];
 
-/// The convention that leaves least, if it leaves little enough.
+/// The convention with the smallest remainder, if that is small enough.
 ///
 /// # Errors
-/// When the design itself cannot be propagated.
+/// If the design itself cannot be propagated.
 pub(super) fn explanation(
     subject: &Subject<'_>,
     tracks: &[Track],
@@ -343,7 +343,7 @@ pub(super) fn explanation(
             convention: convention.name.to_owned(),
             meaning: if convention.name == ANOTHER_RADIUS {
                 let radius_km = RADIUS_KM + fitted.radius_offset_km;
-                format!("altitudes over a radius of {radius_km:.4} km (fitted)")
+                format!("altitudes measured from a radius of {radius_km:.4} km (fitted)")
             } else {
                 convention.meaning.to_owned()
             },
@@ -352,8 +352,7 @@ pub(super) fn explanation(
         }))
 }
 
-/// Root mean square distance of the tracks from an ephemeris, every object counted; `None` when
-/// not all of them match.
+/// Root mean square distance of all tracks from an ephemeris; `None` unless all of them match.
 fn rms_km(subject: &Subject<'_>, propagated: Ephemeris, tracks: &[Track]) -> Option<f64> {
     let matching = Matching::of(subject, &propagated, tracks);
     let pairs = matching.pairs(tracks);

@@ -1,4 +1,4 @@
-//! Which object of a file is which slot.
+//! Matching the objects of a file to the slots of a design.
 
 use super::tracks::Track;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -15,7 +15,7 @@ pub(super) struct Matching {
 }
 
 impl Matching {
-    /// By name when every object has the name of a slot, or else by place.
+    /// By name if every object has the name of a slot, otherwise by position.
     pub(super) fn of(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
         Self::by_name(ours, tracks).unwrap_or_else(|| Self::by_place(subject, ours, tracks))
     }
@@ -30,7 +30,7 @@ impl Matching {
         let mut object_of_slot = vec![None; slots.len()];
         for (object, track) in tracks.iter().enumerate() {
             let slot = *slots.get(&track.name.trim().to_ascii_uppercase())?;
-            // Two objects of one name are told apart by place.
+            // Two objects with the same name are matched by position.
             if object_of_slot[slot].replace(object).is_some() {
                 return None;
             }
@@ -42,7 +42,7 @@ impl Matching {
         })
     }
 
-    /// The nearest pairs first, as far as they are nearer than half the way to the next slot.
+    /// Nearest pairs first, as long as they are closer than half the distance to the next slot.
     fn by_place(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
         let mut pairs = Vec::new();
         for (object, track) in tracks.iter().enumerate() {
@@ -57,7 +57,7 @@ impl Matching {
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // A satellite that is late on its circle is as late in its course.
+        // A satellite that lags on its circle lags in velocity by the same angle.
         let reach_km = reach_km(subject) * std::f64::consts::SQRT_2;
         let mut object_of_slot = vec![None; ours.satellites().len()];
         let mut taken = vec![false; tracks.len()];
@@ -77,8 +77,8 @@ impl Matching {
         }
     }
 
-    /// How many pairs of names are no pairs of places: farther apart at their first sample than
-    /// objects are matched by place.
+    /// How many pairs matched by name are too far apart at their first sample to be matched by
+    /// position.
     pub(super) fn misplaced(
         &self,
         subject: &Subject<'_>,
@@ -139,8 +139,8 @@ impl Matching {
     }
 }
 
-/// Distance of two states, km, velocities counted by the way in a radian of the orbit: satellites of
-/// two planes that cross are in one place, but not on one course.
+/// Distance between two states, km, with velocities scaled by the time of one radian along the
+/// orbit: satellites of two crossing planes may share a position but not a direction.
 fn apart_km(subject: &Subject<'_>, theirs: &State<Teme>, own: &State<Teme>) -> f64 {
     let apart_km = (theirs.position_km - own.position_km).norm();
     if theirs.velocity_km_s.norm() == 0.0 {
@@ -150,8 +150,8 @@ fn apart_km(subject: &Subject<'_>, theirs: &State<Teme>, own: &State<Teme>) -> f
     apart_km.hypot((theirs.velocity_km_s - own.velocity_km_s).norm() / rate_rad_s)
 }
 
-/// How far from its slot an object may be: a third of the way to the next satellite of the plane,
-/// and at most 1500 km.
+/// How far from its slot an object may be: a third of the distance to the next satellite in the
+/// plane, at most 1500 km.
 fn reach_km(subject: &Subject<'_>) -> f64 {
     let per_plane = subject.design.satellites_per_plane() as f64;
     let spacing = std::f64::consts::TAU * subject.orbit().semi_major_axis_km / per_plane;

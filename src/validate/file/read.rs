@@ -10,7 +10,7 @@ use thiserror::Error;
 /// Why a file cannot be compared with a design.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// The text breaks a rule of its format, or its states have no way to TEME.
+    /// The text violates its format, or its states cannot be transformed to TEME.
     #[error("{file}: {source}")]
     Read {
         /// The file.
@@ -18,10 +18,12 @@ pub enum FileError {
         /// What is wrong with it.
         source: ReadFleetError,
     },
-    /// Mean elements or almanacs, which are of other theories.
-    #[error("{0} holds mean elements or almanacs; states or SGP4 element sets can be compared")]
+    /// Mean elements or almanacs, which belong to other theories.
+    #[error(
+        "{0} holds mean elements or almanacs; only states and SGP4 element sets can be compared"
+    )]
     MeanElements(String),
-    /// SGP4 does not propagate an element set.
+    /// SGP4 fails to propagate an element set.
     #[error("{object}: {source}")]
     ElementSet {
         /// The object.
@@ -29,9 +31,9 @@ pub enum FileError {
         /// Why not.
         source: crate::orbit::PropagationError,
     },
-    /// No state lies in the span of the study.
+    /// No state is within the time span of the study.
     #[error(
-        "none of the {objects} objects has a state within the span of the study, {from} to {to}; the first object covers {first} to {last}"
+        "none of the {objects} objects has a state within the time span of the study, {from} to {to}; the first object covers {first} to {last}"
     )]
     AnotherEpoch {
         /// Objects of the files.
@@ -47,7 +49,7 @@ pub enum FileError {
     },
     /// No object is near a slot.
     #[error(
-        "none of the {objects} objects of {source_name} matches one of the {slots} slots by name or place"
+        "none of the {objects} objects of {source_name} matches any of the {slots} slots by name or position"
     )]
     NothingMatches {
         /// The files.
@@ -58,7 +60,7 @@ pub enum FileError {
         slots: usize,
     },
     /// No object at all.
-    #[error("{0} has no object")]
+    #[error("{0} has no objects")]
     Empty(String),
 }
 
@@ -71,10 +73,11 @@ pub enum Comparand {
     Elements(Box<::sgp4::Elements>),
 }
 
-/// The objects of a file in `format`, or in the one that its content or else its name shows, and what is not read of it.
+/// The objects of a file and what was left out of it. Without a `format`, the format is recognised by
+/// content or else by name.
 ///
 /// # Errors
-/// When the file breaks its format, or its states are in a frame or time that is not known.
+/// If the file violates its format, or its states are in an unknown frame or time system.
 pub fn read(
     file: &str,
     input: impl BufRead,

@@ -31,7 +31,7 @@ fn design() -> Design {
 fn propagated(convention: &str) -> Vec<Comparand> {
     let evaluator = evaluator();
     let subject = Subject::new(design(), &evaluator);
-    // 6371 km, from which other tools count altitudes.
+    // 6371 km, from which other tools measure altitudes.
     let fitted = conventions::Fitted {
         radius_offset_km: -7.137,
     };
@@ -65,18 +65,18 @@ fn compared(comparands: &[Comparand]) -> Result<Findings, ValidateError> {
     against_file(&Subject::new(design(), &evaluator), "test", comparands)
 }
 
-/// Conventions that put satellites elsewhere from the first sample on.
+/// Conventions that move satellites already at the first sample.
 fn is_another_place(convention: &str) -> bool {
     let elsewhere = ["star-for-delta", "phasing-", "earth-fixed"];
     elsewhere.iter().any(|part| convention.contains(part))
 }
 
-/// Every convention that the list knows is found again from what it makes: from objects with the
-/// names of the slots, and from objects with names of their own.
+/// Every convention of the list is recognised in an ephemeris made with it, whether objects have
+/// the names of the slots or other names.
 #[test]
 fn each_convention_explains_its_own_ephemeris() {
     for name in conventions::names().filter(|name| *name != "mean-j2") {
-        // For a delta pattern it is not a mistake that could be made.
+        // This mistake cannot be made with a delta pattern.
         if name == "delta-for-star" {
             continue;
         }
@@ -93,7 +93,7 @@ fn each_convention_explains_its_own_ephemeris() {
             assert_eq!(found, Some(name), "{how} {:?}", comparison.explanation);
             assert_eq!(comparison.matched_by, how);
             assert!(!comparison.agrees);
-            // Who is elsewhere is said to be, and nobody else.
+            // Displaced objects are reported, and no others.
             let failed = findings.failures();
             let failed: Vec<_> = failed.map(|check| check.name.as_str()).collect();
             let expected: &[&str] = match (is_another_place(name), how) {
@@ -112,11 +112,11 @@ fn a_radius_is_fitted() {
     let explanation = findings.files[0].explanation.as_ref().unwrap();
     assert_eq!(
         explanation.meaning,
-        "altitudes over a radius of 6371.0000 km (fitted)"
+        "altitudes measured from a radius of 6371.0000 km (fitted)"
     );
 }
 
-/// What is not a convention of the list is not given the name of one, however large it is.
+/// A difference that no convention causes is not attributed to one, however large it is.
 #[test]
 fn an_unknown_difference_is_not_explained() {
     let mut comparands = renamed(propagated("mean-j2"));
@@ -185,7 +185,7 @@ fn the_design_itself_needs_no_explanation() {
     assert_eq!(flips.unwrap().value, 0.0);
 }
 
-/// What is exported comes back: each format by its own reader, in its own frame.
+/// Every export is read back by the reader of its format, in its own frame.
 #[test]
 fn exported_files_are_the_design() {
     let subject = ExportSubject {
@@ -205,7 +205,7 @@ fn exported_files_are_the_design() {
         // Six decimals of a km.
         (Product::Sp3, 2e-6),
         (Product::Stk, 1e-6),
-        // SGP4 is another theory: the budget of SGP4.
+        // SGP4 is another theory; its error budget applies.
         (Product::Tle, 25.0),
         (Product::Omm, 25.0),
     ] {
@@ -243,7 +243,7 @@ fn missing_and_surplus_objects_fail_by_name() {
     assert_eq!(failed, ["file/test/unmatched-slots"]);
     let comparison = &findings.files[0];
     assert!(!comparison.agrees && comparison.matched_agree());
-    // No metrics of part of a constellation.
+    // No metrics from part of a constellation.
     assert!(
         findings
             .checks
@@ -283,7 +283,7 @@ fn a_short_span_fails_and_is_measured() {
     assert!(check.passed == Some(false) && (check.value - 71.0 / 143.0).abs() < 1e-12);
 }
 
-/// Nothing is interpolated over a gap, and no metrics are made of it.
+/// A gap is not interpolated, and no metrics are computed across it.
 #[test]
 fn a_gap_is_no_coverage() {
     let mut comparands = propagated("mean-j2");
@@ -311,7 +311,7 @@ fn a_file_that_breaks_its_format_is_named() {
 }
 
 /// Orekit integrates J2 from the design's elements, which it takes as osculating: the comparison
-/// says so, and what is left is that of two integrators.
+/// says so, and what remains is the difference between two integrators.
 #[test]
 fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");

@@ -1,4 +1,4 @@
-//! The objects of files as TEME states on the clock of the study.
+//! The objects of files as TEME states in the time scale of the study.
 
 use super::read::{Comparand, FileError};
 use crate::ephemeris::hermite::hermite_position;
@@ -9,14 +9,14 @@ use crate::validate::{Subject, ValidateError};
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// Samples on either side of an instant that an interpolation takes.
+/// Samples used on either side of an interpolated instant.
 const NODES: usize = 8;
 
-/// Widest gap between states that is interpolated, revolutions: Hermite's polynomial through eight of
-/// them is then good to metres.
+/// Widest gap between states that is interpolated, revolutions: Hermite's polynomial through eight
+/// states is then accurate to metres.
 const WIDEST_GAP_TURNS: f64 = 0.1;
 
-/// Most samples at which an object is compared.
+/// Maximum number of samples of an object that are compared.
 const MOST_SAMPLES: usize = 2_000;
 
 /// An object: states by the seconds since the epoch of the study.
@@ -33,7 +33,7 @@ pub(super) struct Track {
 /// The objects in the span of the study.
 ///
 /// # Errors
-/// When no state of any object lies in the span, or SGP4 refuses an element set.
+/// If no object has a state in the span, or SGP4 rejects an element set.
 pub(super) fn tracks(
     subject: &Subject<'_>,
     comparands: &[Comparand],
@@ -124,8 +124,8 @@ fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
 }
 
 impl Track {
-    /// Share of the span of the study that the states reach over without a gap too wide to be
-    /// interpolated.
+    /// Fraction of the study's time span that the states cover without a gap too wide to
+    /// interpolate.
     pub(super) fn covered_share(&self, subject: &Subject<'_>) -> f64 {
         let last_s = last_s(subject);
         if self.propagated.is_some() {
@@ -143,14 +143,14 @@ impl Track {
         (covered_s / last_s).clamp(0.0, 1.0)
     }
 
-    /// Whether the states reach over the whole span and carry an interpolation.
+    /// Whether the states cover the full span and can be interpolated.
     pub(super) fn covers(&self, subject: &Subject<'_>) -> bool {
         let has_velocity = |(_, state): &(f64, State<Teme>)| state.velocity_km_s.norm() > 0.0;
         self.covered_share(subject) > 1.0 - 1e-9
             && (self.propagated.is_some() || self.all.iter().all(has_velocity))
     }
 
-    /// A state near an instant, by the sample that is nearest in time.
+    /// The state of the sample nearest to an instant.
     pub(super) fn at(&self, elapsed_s: f64) -> Option<(f64, State<Teme>)> {
         let apart = |(t, _): &&(f64, State<Teme>)| (t - elapsed_s).abs();
         self.states
@@ -161,7 +161,7 @@ impl Track {
 }
 
 impl Propagator for Track {
-    /// The state by Hermite interpolation, or of the sample itself; inside the span only.
+    /// The interpolated state (Hermite), or that of the sample itself; only within the span.
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         if let Some(propagated) = &self.propagated {
             return propagated.state_at(elapsed_s);

@@ -10,10 +10,10 @@ use super::geodetic_position_km;
 /// Corners of a polygon; a regular one of 180 covers (2π/180)²/6 = 2e-4 less than its circle.
 const CORNERS: usize = 180;
 
-/// Latitudes below which the satellite stands, degrees.
+/// Latitudes of the sub-satellite point, degrees.
 const LATITUDES_DEG: [f64; 5] = [0.0, 20.0, 45.0, 55.0, 80.0];
 
-/// Way from below the satellite, m, at which it stands at the mask.
+/// Distance from the sub-satellite point, m, at which the elevation equals the mask.
 fn edge_m(subject: &Subject<'_>, earth: &Geodesic, latitude: f64, bearing: f64) -> f64 {
     let height_km = subject.design.altitude_km();
     let satellite = geodetic_position_km([latitude, 0.0], height_km);
@@ -60,7 +60,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         Check::new(
             "geographiclib/footprint/cap",
             CheckedQuantity {
-                quantity: "area of the footprint by the cap formula",
+                quantity: "footprint area by the spherical cap formula",
                 unit: "km^2",
                 statistic: "value",
             },
@@ -71,15 +71,14 @@ pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
         Check::new(
             "geographiclib/footprint/geodesic-polygon",
             CheckedQuantity {
-                quantity: "area of the footprint by a geodesic polygon over that of the cap, less 1",
+                quantity: "footprint area by geodesic polygon relative to the cap, minus 1",
                 unit: "1",
                 statistic: "max",
             },
             worst,
-            // Radii of curvature are between R (1 - 2f) and R (1 + f); at a fixed height the area
-            // goes with the first power of the radius.
+            // Radii of curvature are between R (1 - 2f) and R (1 + f); at a fixed height the area            // is proportional to the radius.
             Some(2.0 * FLATTENING + 3e-4),
-            "radii of curvature of the ellipsoid are off the equatorial radius by up to 2 f; 180 corners cut 2e-4",
+            "the ellipsoid's radii of curvature differ from the equatorial radius by up to 2 f; a polygon of 180 corners loses 2e-4",
         ),
     ]
 }

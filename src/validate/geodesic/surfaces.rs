@@ -1,4 +1,4 @@
-//! What a spherical Earth, or a geocentric vertical on the ellipsoid, does to the metrics.
+//! Effect on the metrics of a spherical Earth or of geocentric verticals on the ellipsoid.
 
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup};
@@ -34,7 +34,7 @@ fn setup_with(setup: &Setup, frame: Frames) -> Setup {
     }
 }
 
-/// The change of the metrics by the surface, against WGS 84.
+/// The change in the metrics due to the surface, relative to WGS 84.
 pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let propagated = subject.propagate_model()?;
     let metrics = |frame: Frames| {
@@ -45,12 +45,12 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
     let others: [(&str, &str, Frames); 2] = [
         (
             "sphere",
-            "latitudes taken as geocentric on the sphere of the equatorial radius: a shift of the points by up to 21 km",
+            "latitudes read as geocentric on a sphere of the equatorial radius: points shift by up to 21 km",
             |lat, lon| LocalFrame::new(Surface::Sphere, lat, lon),
         ),
         (
             "geocentric-vertical",
-            "points of the ellipsoid whose vertical points away from the centre: a tilt of up to 0.19 deg",
+            "points on the ellipsoid with geocentric verticals: a tilt of up to 0.19 deg",
             with_geocentric_vertical,
         ),
     ];
@@ -59,7 +59,7 @@ pub(super) fn findings(subject: &Subject<'_>) -> Result<Findings, ValidateError>
         let wrong = metrics(frame)?;
         let mut add = |quantity: &str, before: Option<f64>, after: Option<f64>| {
             if let (Some(before), Some(after)) = (before, after) {
-                let label = format!("change of {quantity} against WGS 84");
+                let label = format!("change in {quantity} relative to WGS 84");
                 findings.checks.push(Check::new(
                     &format!("geographiclib/{name}/{quantity}"),
                     CheckedQuantity {

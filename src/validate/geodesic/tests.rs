@@ -85,7 +85,7 @@ fn validate_look_angles_and_footprints() {
     let findings = against_geodesics(&subject).unwrap();
     let failed: Vec<_> = findings.failures().collect();
     assert!(failed.is_empty(), "{failed:#?}");
-    // The limits of the curvature method show: at geosynchronous height it is off by more than its gate.
+    // The curvature method has limits: at geosynchronous height it is off by more than its gate.
     let high = findings
         .checks
         .iter()

@@ -15,8 +15,8 @@ use thiserror::Error;
 /// Relative and absolute (km, km/s) tolerance of a step.
 const TOLERANCE: f64 = 1e-13;
 
-/// Steps in a revolution, at least: longer steps would be exact at their ends, but not in between,
-/// where the dense output is of one order less.
+/// Minimum steps per revolution: longer steps would be accurate at their ends but not in between,
+/// where the dense output is of lower order.
 const STEPS_PER_REVOLUTION: f64 = 128.0;
 
 /// More steps than 30 days of the lowest orbit take.
@@ -28,9 +28,9 @@ const MAX_STEPS: usize = 5_000_000;
 pub struct IntegrationError {
     /// Length of the span, s.
     span_s: f64,
-    /// States asked for.
+    /// States requested.
     wanted: usize,
-    /// States that came.
+    /// States returned.
     found: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Closed forms of what mean J2 leaves out, from which the gates are made.
+//! Closed forms of the terms that mean J2 neglects, from which the gates are derived.
 
 use crate::constellation::Satellite;
 use crate::earth::{J2, RADIUS_KM};
@@ -14,8 +14,8 @@ const DEEP_SPACE_PERIOD_S: f64 = 225.0 * 60.0;
 /// -J3/J2 of WGS-72, the constants of SGP4 (Vallado et al., AIAA 2006-6753, table 1).
 const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
-/// Factor by which a closed form at e = 0 and first order may be exceeded: terms of order e and
-/// J2, the frozen eccentricity's own turn in a day, and the sampling of the extremes.
+/// Factor by which a first-order closed form at e = 0 may be exceeded: terms of order e and J2, the
+/// rotation of the frozen eccentricity in a day, and the sampling of the extremes.
 const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// Secular rates that SGP4 has beyond first-order J2, rad/s ([M-46](crate::models#m-46)): Hoots and
@@ -74,9 +74,9 @@ pub(in crate::validate) struct Causes {
     a_km: f64,
     /// Sine and cosine of the inclination.
     inclination: [f64; 2],
-    /// In-track rate of sqrt(μ/a³) in the Kozai slot, km/day.
+    /// In-track rate of sqrt(μ/a³) in the Kozai mean motion field, km/day.
     pub(in crate::validate) kepler_slot_km_per_day: f64,
-    /// Share of first-order sizes that the eccentricity adds.
+    /// Factor by which the eccentricity increases first-order terms.
     pub(in crate::validate) eccentric_factor: f64,
 }
 
@@ -163,14 +163,14 @@ impl Causes {
         })
     }
 
-    /// The bounds that are left when the short-period theory of J2 is propagated too.
+    /// The bounds that remain when the short-period terms of J2 are propagated too.
     pub(in crate::validate) fn osculating_gates_km(
         &self,
         zonals: ZonalHarmonics,
         days: f64,
     ) -> [f64; 3] {
         let mut without = *self;
-        // First-order terms are good to J2 of their size, with coefficients of a few.
+        // First-order terms are accurate to a fraction J2 of their size, times a factor of a few.
         without.radius_shift_km = 3e-3 * self.radius_shift_km;
         without.short_period_km = self
             .short_period_km
@@ -178,9 +178,9 @@ impl Causes {
         without.rms_gates_km(zonals, days)
     }
 
-    /// Bound on the slope of the mean in-track difference less its closed form, km/day: what is of
-    /// third order in J2, the eccentricity, the constants (5 m/day), and what the periodic terms
-    /// leave of a slope, as shares of amplitudes that go once and twice around.
+    /// Bound on the slope of the mean in-track difference minus its closed form, km/day: third order
+    /// in J2, the eccentricity, the constants (5 m/day), and the slope left by the periodic terms, as
+    /// fractions of the amplitudes at once and twice per revolution.
     pub(in crate::validate) fn growth_gate_km_per_day(
         &self,
         zonals: ZonalHarmonics,

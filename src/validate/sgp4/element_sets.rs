@@ -1,4 +1,4 @@
-//! The element sets that an export writes: what their digits and their epoch cost.
+//! Exported element sets: the loss from their digits and their epoch.
 
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::formats::metadata::Object;
@@ -18,9 +18,9 @@ const ECCENTRICITY: f64 = 0.5e-7;
 
 /// A design as element sets, propagated by SGP4.
 pub(super) struct WrittenSets {
-    /// As a reader finds them in the lines.
+    /// As read back from the lines.
     pub(super) propagated: Ephemeris,
-    /// With all digits, at the epoch that a TLE can write.
+    /// With all digits, at the epoch as a TLE can represent it.
     unrounded: Ephemeris,
     /// From the epoch of the study to that which a TLE can write, s.
     since_s: f64,
@@ -76,7 +76,7 @@ impl WrittenSets {
         )?;
         let epoch = compare(
             "sgp4/sgp4-at-tle-epoch",
-            "epoch of a TLE, in steps of 1e-8 day, elements carried there by J2",
+            "epoch of a TLE, in steps of 1e-8 day, with the elements propagated there by J2",
             exact,
             &self.unrounded,
         )?;
@@ -101,14 +101,14 @@ fn digits_check(subject: &Subject<'_>, line: &BudgetLine) -> Check {
     Check::new(
         "sgp4/tle/digits",
         CheckedQuantity {
-            quantity: "distance by the digits of a TLE",
+            quantity: "distance due to the digits of a TLE",
             unit: "km",
             statistic: "max",
         },
         line.worst.distance_km,
-        // Sets whose epoch lies before the span drift a little longer; 10 % covers it.
+        // Sets whose epoch is before the span drift a little longer; 10 % covers this.
         Some(1.1 * (angles_km + shape_km + drift_km)),
-        "half a digit in each of four angles, in e and in the mean motion over the span",
+        "half a digit in each of the four angles, in e and in the mean motion, over the span",
     )
 }
 
@@ -116,19 +116,19 @@ fn epoch_check(line: &BudgetLine, since_s: f64) -> Check {
     let (gate, reason) = if since_s == 0.0 {
         (
             None,
-            "reported only: a TLE can write this epoch, and nothing is carried",
+            "reported only: a TLE can represent this epoch, so the elements stay as they are",
         )
     } else {
         (
-            // A double of years holds an instant to 20 us.
+            // A double of years resolves an instant to 20 us.
             Some(2e-4),
-            "elements are carried to the rounded epoch, at most 0.43 ms away: what is left is the dating of doubles, 20 us; uncarried it would be 3.2 m",
+            "elements are propagated to the rounded epoch, at most 0.43 ms away; the remainder is the resolution of dates in doubles, 20 us; without this step it would be 3.2 m",
         )
     };
     Check::new(
         "sgp4/tle/epoch",
         CheckedQuantity {
-            quantity: "distance by the epoch of a TLE",
+            quantity: "distance due to the epoch of a TLE",
             unit: "km",
             statistic: "max",
         },
@@ -138,7 +138,7 @@ fn epoch_check(line: &BudgetLine, since_s: f64) -> Check {
     )
 }
 
-/// Our sidereal time against the one of SGP4 in AFSPC mode, along the orbit.
+/// Our sidereal time compared with SGP4's in AFSPC mode, along the orbit.
 fn sidereal_check(subject: &Subject<'_>) -> Check {
     let grid = subject.grid();
     let last_s = grid.elapsed_s(grid.len() - 1);
@@ -154,12 +154,12 @@ fn sidereal_check(subject: &Subject<'_>) -> Check {
     Check::new(
         "sgp4/sidereal-time",
         CheckedQuantity {
-            quantity: "shift of the Earth by SGP4's own sidereal time",
+            quantity: "rotation of the Earth by SGP4's own sidereal time",
             unit: "km",
             statistic: "max",
         },
         apart[0].max(apart[1]),
         Some(1e-3),
-        "the expression of AFSPC mode (1970) and IAU 1982 differ by less than 1e-7 rad this century",
+        "the AFSPC expression (1970) and IAU 1982 differ by less than 1e-7 rad this century",
     )
 }

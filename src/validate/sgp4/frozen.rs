@@ -1,4 +1,4 @@
-//! The eccentricity that J3 forces, and how an element set cancels it.
+//! The eccentricity forced by J3, and how an element set cancels it.
 
 use super::GateScale;
 use super::causes::Causes;
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// Samples over the first revolution.
 const SAMPLES: usize = 72;
 
-/// The eccentricity vector of one propagation less that of another over the first revolution.
+/// The eccentricity vector of one propagation minus that of another over the first revolution.
 fn vector(
     orbit: &MeanElements,
     with: &impl Propagator,
@@ -38,8 +38,8 @@ fn vector(
     ))
 }
 
-/// The frozen eccentricity against its closed form, and what is left when an element set carries it
-/// at the perigee that cancels it. For circular designs.
+/// The frozen eccentricity compared with its closed form, and the remainder when an element set has
+/// it at the perigee that cancels it. For circular designs.
 pub(super) fn checks(
     subject: &Subject<'_>,
     scale: &GateScale,
@@ -57,14 +57,14 @@ pub(super) fn checks(
         return Ok(Vec::new());
     };
     let frozen = scale.causes.frozen_km / orbit.semi_major_axis_km;
-    // SGP4's floor of the eccentricity, 1e-6, in either propagation, and terms of order J2 of the forced
-    // one with coefficients of a few.
+    // SGP4's minimum eccentricity, 1e-6, in either propagation, and terms of order J2 of the forced
+    // one, with coefficients of a few.
     let gate = 0.005 * frozen + 2e-6;
     Ok(vec![
         Check::new(
             "sgp4/frozen-eccentricity",
             CheckedQuantity {
-                quantity: "e sin w that J3 forces",
+                quantity: "e sin w forced by J3",
                 unit: "1",
                 statistic: "fit",
             },
@@ -75,29 +75,29 @@ pub(super) fn checks(
         Check::new(
             "sgp4/frozen-eccentricity/closed-form",
             CheckedQuantity {
-                quantity: "forced e sin w less |J3/(2 J2)| R/a sin i",
+                quantity: "forced e sin w minus |J3/(2 J2)| R/a sin i",
                 unit: "1",
                 statistic: "fit",
             },
             forced[1] - frozen,
             Some(gate),
-            "first order in J3/J2, up to some J2 of its size; SGP4 floors the eccentricity at 1e-6",
+            "first order in J3/J2, accurate to a few J2 of its size; SGP4 keeps the eccentricity at 1e-6 or more",
         ),
         Check::new(
             "sgp4/frozen-eccentricity/cancelled",
             CheckedQuantity {
-                quantity: "e left when the set carries the frozen e at the cancelling w",
+                quantity: "e that remains when the set has the frozen e at the cancelling w",
                 unit: "1",
                 statistic: "fit",
             },
             left[0].hypot(left[1]),
             Some(gate),
-            "the frozen eccentricity written at w = 270 deg cancels it at the epoch; at 90 deg it would double it",
+            "a frozen eccentricity written at w = 270 deg cancels the forced one at the epoch; at 90 deg it would double it",
         ),
     ])
 }
 
-/// The eccentricity vector of SGP4 less that of J2 alone, and what is left of it with the frozen
+/// The eccentricity vector of SGP4 minus that of J2 alone, and the remainder with the frozen
 /// eccentricity in the set.
 fn eccentricities(
     subject: &Subject<'_>,

@@ -10,7 +10,7 @@ use crate::stats::line_fit;
 use crate::units::{SECONDS_PER_DAY, wrap_pi};
 use crate::validate::{Check, CheckedQuantity, Subject};
 
-/// Below this sine of the inclination there is no node to speak of.
+/// Below this sine of the inclination the node is ill-defined.
 const LEAST_SIN_I: f64 = 0.02;
 
 /// Node and argument of latitude of a state, rad.
@@ -38,7 +38,7 @@ pub(in crate::validate) fn closed_form(subject: &Subject<'_>) -> [f64; 2] {
     ]
 }
 
-/// Slopes of the angles less their closed forms, deg/day: the mean over the constellation.
+/// Slopes of the angles minus their closed forms, deg/day: the mean over the constellation.
 fn excess_deg_per_day(
     subject: &Subject<'_>,
     propagated: &Ephemeris,
@@ -62,7 +62,7 @@ fn excess_deg_per_day(
     Ok(means.map(|mean| line_fit(&days, &mean).map_or(0.0, |(_, slope)| slope.to_degrees())))
 }
 
-/// The rates of the model of the study and of SGP4 against the closed forms.
+/// The rates of the model of the study and of SGP4 compared with the closed forms.
 pub(super) fn checks(
     subject: &Subject<'_>,
     scale: &GateScale,
@@ -85,11 +85,11 @@ pub(super) fn checks(
     })?;
     let theirs = excess_deg_per_day(subject, &sgp4)?;
     let known = scale.causes.excess_rad_s(ZonalHarmonics::Full);
-    // Of eccentric orbits the true argument of latitude swings about the mean by 2e.
+    // On an eccentric orbit the true argument of latitude oscillates about the mean by 2e.
     let swing_deg = (2.0 * orbit.eccentricity).to_degrees();
     let in_track_km = scale.growth_gate_km_per_day(ZonalHarmonics::Full);
     let in_track_deg = (in_track_km / orbit.semi_major_axis_km).to_degrees();
-    // What a position is known to is seen from the node under 1/sin i.
+    // An error in position moves the node by a factor 1/sin i.
     let lever = 1.0 / orbit.inclination_rad.sin();
     let leftover_deg = 0.02 * swing_deg / scale.days.min(1.0);
     // The velocity turns with the node: r × v swings about the normal of the plane by dΩ/dt / n, twice
@@ -127,7 +127,7 @@ pub(super) fn checks(
                 },
                 ours[n],
                 Some(rounding_deg + if n == 1 { leftover_deg } else { 0.0 }),
-                "states of the model against the secular rates of J2 in closed form: rounding, and the residual of an incomplete revolution",
+                "states of the model compared with the secular rates of J2 in closed form: rounding, plus the residual of an incomplete revolution",
             ));
         }
         checks.push(Check::new(
@@ -139,7 +139,7 @@ pub(super) fn checks(
             },
             theirs[n] - deg_per_day(known[n]),
             scale.gate(lever * in_track_deg + leftover_deg),
-            scale.reason("SGP4's own secular rates: terms of third order, the constants of WGS-72, over sin i as the node is far away in a flat orbit, and the residual of an incomplete revolution"),
+            scale.reason("SGP4's own secular rates: third-order terms and the constants of WGS-72, divided by sin i because the node is sensitive at low inclination, plus the residual of an incomplete revolution"),
         ));
     }
     Ok(checks)

@@ -1,5 +1,5 @@
-//! The budget by cause over inclinations and altitudes: a closed form that holds for one design might
-//! do so by chance.
+//! The budget by cause over inclinations and altitudes: a closed form that is right for one design
+//! may be so by chance.
 
 use super::{GateScale, Propagations};
 use crate::constellation::{Design, DesignParameters, Pattern};
@@ -10,13 +10,13 @@ use crate::validate::residuals::Ric;
 use crate::validate::{Check, CheckedQuantity, Findings, Subject, ValidateError};
 use serde::{Deserialize, Serialize};
 
-/// From where the mean radius shift is largest, over 54.7°, where the common mistake of the mean
-/// motion slot hides, to a sun-synchronous orbit.
+/// From where the mean radius shift is largest, past 54.7°, where the common mean motion mistake
+/// cancels out, to a sun-synchronous orbit.
 const INCLINATIONS_DEG: [f64; 8] = [30.0, 40.0, 50.0, 55.0, 60.0, 70.0, 86.4, 98.0];
 
 const ALTITUDES_KM: [f64; 3] = [400.0, 925.0, 1500.0];
 
-/// Time between samples, s: eleven or so in a revolution.
+/// Time between samples, s: about eleven per revolution.
 const STEP_S: f64 = 480.0;
 
 /// A case of the budget in a cell.
@@ -39,14 +39,14 @@ pub struct SweepCell {
     pub altitude_km: f64,
     /// The cases of the model of the study and of J2 against SGP4.
     pub budget: Vec<SweepLine>,
-    /// The largest share of a gate that a number of this cell takes.
+    /// The largest value of this cell as a fraction of its gate.
     pub share_of_gate: f64,
 }
 
-/// A number of a cell as a share of its gate.
+/// A value of a cell as a fraction of its gate.
 type Share = Residual<(f64, f64, String)>;
 
-/// The budget in each cell, and how close its numbers come to the gates made of closed forms.
+/// The budget in each cell, and how close its values come to the gates from closed forms.
 pub(super) fn over_inclination_and_altitude(
     subject: &Subject<'_>,
 ) -> Result<Findings, ValidateError> {
@@ -57,7 +57,7 @@ pub(super) fn over_inclination_and_altitude(
             let design = Design::new(DesignParameters {
                 pattern: Pattern::Delta,
                 planes: 3,
-                // Four in a plane cancel what goes once, twice or thrice around.
+                // Four satellites in a plane cancel harmonics of order one to three.
                 satellites_per_plane: 4,
                 phasing: 1,
                 inclination_deg,
@@ -74,17 +74,17 @@ pub(super) fn over_inclination_and_altitude(
     findings.checks.push(Check::new(
         name,
         CheckedQuantity {
-            quantity: "largest share of a gate over inclination and altitude",
+            quantity: "largest fraction of a gate over inclination and altitude",
             unit: "1",
             statistic: "max",
         },
         worst,
         Some(1.0),
-        "the closed forms hold from 30 to 98 deg and from 400 to 1500 km, and not by chance at one design",
+        "the closed forms are valid from 30 to 98 deg and from 400 to 1500 km, not just by chance for one design",
     ));
     findings.distributions.extend(Distribution::of(
         name,
-        ["share of the gate", "1"],
+        ["fraction of the gate", "1"],
         &shares,
         |(inclination, altitude, check)| format!("{check} at {inclination} deg, {altitude} km"),
     ));

@@ -18,7 +18,7 @@ fn design(inclination_deg: f64, altitude_km: f64) -> Design {
         .unwrap()
 }
 
-/// A study of few points over a day.
+/// A study with few points over a day.
 fn evaluator() -> Evaluator {
     testing::evaluator(day())
 }
@@ -35,7 +35,7 @@ fn line<'a>(findings: &'a Findings, case: &str) -> &'a BudgetLine {
         .unwrap()
 }
 
-/// Drift of the naive slot against J2 with its dM/dt term at 925 km, from an independent
+/// Drift of the naive mean motion against J2 with its dM/dt term at 925 km, from an independent
 /// calculation with SGP4's secular rates (km/day, printed to 1 km/day).
 #[test]
 fn validate_drift_of_the_kepler_slot() {
@@ -43,7 +43,7 @@ fn validate_drift_of_the_kepler_slot() {
     for (inclination_deg, expected) in INCLINATIONS_DEG.into_iter().zip(expected) {
         let findings = found(design(inclination_deg, 925.0));
         let growth = line(&findings, "kepler-slot").growth_km_per_day.in_track;
-        // Half a printed digit, and the chord of 400 km being 0.05 km short of the arc.
+        // Half a printed digit, and a chord that is 0.05 km shorter than its arc of 400 km.
         assert!(
             (growth - expected).abs() < 0.6,
             "{inclination_deg}: {growth}"
@@ -74,7 +74,7 @@ fn validate_rms_of_the_budget() {
     }
 }
 
-/// The sweep has what single designs have: the drift of the naive slot of the test above at 40, 50,
+/// The sweep agrees with single designs: the drift of the naive mean motion as above at 40, 50,
 /// 55, 60 and 86.4°.
 #[test]
 fn validate_the_sweep() {
@@ -93,7 +93,7 @@ fn validate_the_sweep() {
         let cell = findings.sweep.iter().find(at).unwrap();
         let kepler = cell.budget.iter().find(|line| line.case == "kepler-slot");
         let growth = kepler.unwrap().growth_km_per_day.in_track;
-        // As above, and up to 0.5 km/day that twelve satellites do not average out.
+        // As above, plus up to 0.5 km/day that twelve satellites do not average out.
         assert!(
             (growth - expected).abs() < 1.1,
             "{inclination_deg}: {growth}"
@@ -102,8 +102,8 @@ fn validate_the_sweep() {
     assert_eq!(findings.sweep.len(), 24);
 }
 
-/// The gates are closed forms; they hold over all inclinations and LEO altitudes, for every model that
-/// has them to hold.
+/// The gates are closed forms that are valid at all inclinations and LEO altitudes, for every model
+/// that must meet them.
 #[test]
 fn gates_follow_inclination_and_altitude() {
     let mut failed = Vec::new();
@@ -215,14 +215,14 @@ fn an_eccentric_design_keeps_its_gates() {
 #[test]
 fn a_decayed_orbit_is_an_error() {
     let evaluator = evaluator();
-    // J3's frozen eccentricity takes a circle at 1 km some 6 km deep into the ground.
+    // J3's frozen eccentricity takes a circular orbit at 1 km about 6 km below the ground.
     let subject = Subject::new("delta:55:4/2/1@1".parse().unwrap(), &evaluator);
     let error = against_sgp4(&subject).unwrap_err().to_string();
     assert!(
         error.starts_with("NW-P") && error.contains("the orbit has decayed"),
         "{error}"
     );
-    // At 20 km it stays above ground, and nothing else is wrong.
+    // At 20 km it stays above the ground, and everything else is fine.
     let subject = Subject::new("delta:55:4/2/1@20".parse().unwrap(), &evaluator);
     assert!(against_sgp4(&subject).unwrap().passed());
 }
@@ -230,7 +230,7 @@ fn a_decayed_orbit_is_an_error() {
 #[test]
 fn deep_space_is_reported_only() {
     let findings = found("delta:55:4/2/1@20000".parse().unwrap());
-    // Those of the design; the sweep is of low orbits.
+    // The design's own; the sweep covers low orbits.
     let budget = |check: &&Check| check.name.starts_with("sgp4/mean-j2/sgp4");
     assert!(findings.passed());
     assert!(
@@ -247,12 +247,12 @@ fn deep_space_is_reported_only() {
 fn validate_the_crate_against_the_verification_set() {
     let findings = against_the_verification_set(Sgp4Theory::STANDARD);
     let states: Vec<_> = findings.distributions.iter().map(|d| d.n).collect();
-    // 700 lines less 33 headings less the state of the refused set; the C++ code refuses two more.
+    // 700 lines minus 33 headings minus the state of the rejected set; the C++ code rejects two more.
     assert_eq!(states, [666, 665, 665]);
     assert!(findings.passed(), "{:#?}", findings.checks);
 }
 
-/// An epoch between two steps of a TLE: the elements are carried, not relabelled.
+/// An epoch between two steps of a TLE: the elements are propagated, not relabelled.
 #[test]
 fn the_epoch_of_a_tle_costs_nothing() {
     let epoch = Epoch::from_utc("2025-03-20T11:22:33.4444444Z".parse().unwrap());

@@ -17,17 +17,17 @@ const SETS: &str = include_str!("../../../validation/cases/sgp4/SGP4-VER.TLE");
 const PUBLISHED: &str = include_str!("../../../validation/cases/sgp4/tcppver.out");
 const MODES: &str = include_str!("../../../validation/cases/sgp4/modes.csv");
 
-/// The set that is there to be refused; its line repeats a state of the set before.
+/// The set meant to be rejected; its line repeats a state of the set before.
 const REFUSED: u64 = 33_334;
 
-/// A state that the list gives.
+/// A state of the list.
 struct PublishedState {
     number: u64,
     minutes: f64,
     position_km: Position<Teme>,
 }
 
-/// The element sets by catalogue number; the lines go on behind column 69 with the span to propagate.
+/// The element sets by catalogue number; after column 69 the lines give the span to propagate.
 fn sets() -> BTreeMap<u64, ::sgp4::Elements> {
     let lines: Vec<&str> = SETS.lines().filter(|line| !line.starts_with('#')).collect();
     lines
@@ -41,8 +41,8 @@ fn sets() -> BTreeMap<u64, ::sgp4::Elements> {
         .collect()
 }
 
-/// A line with the checksum that it should have, and the ephemeris type that one of them leaves out:
-/// some of the sets break these rules, which are not what they are there for.
+/// A line with its checksum corrected, and with the ephemeris type that one of them omits: some of
+/// the sets violate these rules, which are not the point of the test.
 fn repaired(line: &str) -> Vec<u8> {
     let mut bytes = line.as_bytes().to_vec();
     if bytes[0] == b'1' && bytes[62] == b' ' {
@@ -96,7 +96,7 @@ fn row(number: u64, fields: [&str; 4]) -> Option<PublishedState> {
     })
 }
 
-/// Distances of the crate's states from a list, km; a state that the crate refuses is infinitely far.
+/// Distances of the crate's states from a list, km; infinite for a state that the crate rejects.
 fn distances(expected: &[PublishedState], theory: Sgp4Theory) -> Vec<Residual<(u64, f64)>> {
     let sets = sets();
     let distance = |case: &PublishedState| -> Result<f64, PropagationError> {
@@ -117,12 +117,12 @@ fn distances(expected: &[PublishedState], theory: Sgp4Theory) -> Vec<Residual<(u
         .collect()
 }
 
-/// SGP4 by the `sgp4` crate against the published states, and against the C++ code in both modes.
+/// SGP4 by the `sgp4` crate compared with the published states, and with the C++ code in both modes.
 #[must_use]
 pub fn against_the_verification_set(sgp4: Sgp4Theory) -> Findings {
     let mut findings = Findings::default();
-    let rounding = "the same theory in the same constants: after 3.5 years a geosynchronous mean anomaly of 8e3 rad is rounded to 1e-12 rad, 4e-8 km, some times over; and the printed 1e-8 km";
-    let sidereal = "the crate's improved mode has a later expression of sidereal time, which resonant and deep-space terms see";
+    let rounding = "the same theory with the same constants: after 3.5 years a geosynchronous mean anomaly of 8e3 rad is rounded to 1e-12 rad, 4e-8 km, several times over; plus the printed 1e-8 km";
+    let sidereal = "the crate's improved mode uses a newer sidereal time expression, which affects resonant and deep-space terms";
     for (name, expected, mode, gate, reason) in [
         ("published", published(), Sgp4Mode::Improved, 1e-5, sidereal),
         ("afspc", of_mode("afspc"), Sgp4Mode::Afspc, 4e-7, rounding),
@@ -141,7 +141,7 @@ pub fn against_the_verification_set(sgp4: Sgp4Theory) -> Findings {
         findings.checks.push(Check::new(
             name,
             CheckedQuantity {
-                quantity: "distance of the sgp4 crate from the verification set",
+                quantity: "distance between the sgp4 crate and the verification set",
                 unit: "km",
                 statistic: "max",
             },

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Tables of all seeds.
 const TABLE: [&str; 3] = ["seeds.csv", "seeds.json", "joint-front.csv"];
 
-/// What the run directories of the seeds start with.
+/// Prefix of the run directories of the seeds.
 const RUN: &str = "seed-";
 
 pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
@@ -25,7 +25,7 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
         .ok()
         .and_then(|more| first.checked_add(more));
     let last =
-        last.with_context(|| format!("{count} seeds from {first} on exceed {}", u64::MAX))?;
+        last.with_context(|| format!("{count} seeds starting at {first} exceed {}", u64::MAX))?;
     let name = &study.scenario.name;
     let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
     let out = args.out.clone().unwrap_or_else(default_out);
@@ -97,7 +97,7 @@ fn first_run(directory: &Path) -> Option<PathBuf> {
     Some(directory.join(format!("{RUN}{first}")))
 }
 
-/// Refuses a directory that holds anything but runs of seeds and their tables.
+/// Rejects a directory with anything but runs of seeds and their tables.
 fn require_seeds(directory: &Path) -> Result<()> {
     if files::is_vacant(directory)? {
         return Ok(());

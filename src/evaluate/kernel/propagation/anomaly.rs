@@ -1,13 +1,13 @@
 //! Kepler's equation in lanes.
 //!
 //! With δ = E - M the equation is δ = e sin(M + δ). When e is small so is δ, and its sine and
-//! cosine are short polynomials: nothing but products, sums and divisions of numbers that are
-//! there already, so that the compiler makes vector instructions of it.
+//! cosine are short polynomials: only products, sums and divisions of available numbers, which the
+//! compiler turns into vector instructions.
 
-/// Largest eccentricity for which [`eccentric`] holds what it says.
+/// Largest eccentricity for which [`eccentric`] has the stated accuracy.
 pub(super) const LARGEST_ECCENTRICITY: f64 = 0.25;
 
-/// Steps of Newton. The start is within e³/6 = 0.003 of the solution at the largest eccentricity;
+/// Newton steps. The start is within e³/6 = 0.003 of the solution at the largest eccentricity;
 /// each step squares that and multiplies it by e / (2 (1 - e)) = 1/6 at most: 1.5e-6, 4e-13, 3e-26.
 const STEPS: usize = 3;
 
@@ -22,7 +22,7 @@ pub(super) fn eccentric(cos_mean: f64, sin_mean: f64, e: f64) -> (f64, f64) {
     turned((cos_mean, sin_mean), delta)
 }
 
-/// Cosine and sine of an angle turned by a small one.
+/// Cosine and sine of an angle plus a small one.
 #[inline(always)]
 fn turned((cos_mean, sin_mean): (f64, f64), delta: f64) -> (f64, f64) {
     let (sin, cos) = small_sine_cosine(delta);

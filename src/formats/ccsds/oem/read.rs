@@ -131,7 +131,7 @@ impl OemParser {
             }
             (OemSection::Covariance(covariance), _) if covariance.is_untouched() => return,
             _ => {
-                let message = "a comment may stand only at the beginning of a section (7.8.9)";
+                let message = "a comment is allowed only at the beginning of a section (7.8.9)";
                 findings.warning((number, 1), "oem-comment", message);
                 return;
             }
@@ -145,7 +145,7 @@ impl OemParser {
             OemSection::Metadata(block) => block.accept(pair, findings),
             OemSection::Covariance(covariance) => covariance.pair(pair, findings),
             OemSection::Ephemeris | OemSection::BetweenSegments => {
-                let message = format!("keyword {} does not belong here", pair.key);
+                let message = format!("keyword {} is not allowed here", pair.key);
                 findings.error(pair.key_place, "ccsds-keyword", message);
             }
         }
@@ -236,7 +236,7 @@ impl OemParser {
             OemSection::Ephemeris | OemSection::BetweenSegments => self.end_segment(findings, take),
             OemSection::Header => {
                 self.header = header(&self.header_block, number, findings);
-                findings.error((number, 1), "oem-truncated", "the message has no segment");
+                findings.error((number, 1), "oem-truncated", "the message has no segments");
             }
             OemSection::Metadata(_) => {
                 findings.error((number, 1), "oem-truncated", "META_STOP is missing");
@@ -258,9 +258,10 @@ pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: 
         None => 1,
     };
     if lines == 0 {
-        findings.error(place, "oem-empty", "the segment has no ephemeris line");
+        findings.error(place, "oem-empty", "the segment has no ephemeris lines");
     } else if lines < needed {
-        let message = format!("{lines} lines do not carry the interpolation; it needs {needed}");
+        let message =
+            format!("{lines} lines are too few for the interpolation, which needs {needed}");
         findings.warning(place, "oem-interpolation", message);
     }
     if segment
@@ -274,7 +275,7 @@ pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: 
 }
 
 fn misplaced_marker(marker: &str, number: usize, findings: &mut FindingList) {
-    let message = format!("{marker} does not belong here");
+    let message = format!("{marker} is not allowed here");
     findings.error((number, 1), "oem-marker", message);
 }
 
@@ -379,7 +380,7 @@ impl Covariance {
         self.rows += 1;
         let fields: Vec<_> = words(&line.text).take(8).collect();
         if self.rows > 6 || fields.len() != self.rows || self.block.is_none() {
-            let message = "not the next row of a lower triangular 6x6 matrix behind its EPOCH";
+            let message = "not the next row of a lower triangular 6x6 matrix after its EPOCH";
             findings.error((line.number, 1), "oem-covariance", message);
             return;
         }

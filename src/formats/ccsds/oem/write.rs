@@ -16,7 +16,7 @@ use std::io::Write;
 pub struct OemWriter<'a> {
     /// Version of the messages.
     pub version: CcsdsVersion,
-    /// What they say of themselves.
+    /// Their metadata.
     pub metadata: &'a Metadata,
     /// The satellites in the frame of the messages.
     pub sampled: &'a Sampled<'a, Frame>,
@@ -48,7 +48,7 @@ impl OemWriter<'_> {
     /// Writes the message of one satellite in keyword = value notation.
     ///
     /// # Errors
-    /// When the satellite has no state, or the output fails.
+    /// If the satellite has no state, or the output fails.
     pub fn kvn(
         &self,
         out: &mut impl Write,
@@ -65,7 +65,7 @@ impl OemWriter<'_> {
     /// Writes the message of one satellite as an XML file.
     ///
     /// # Errors
-    /// When the satellite has no state, or the output fails.
+    /// If the satellite has no state, or the output fails.
     pub fn xml(
         &self,
         out: &mut impl Write,
@@ -79,7 +79,7 @@ impl OemWriter<'_> {
     /// Writes the messages of several satellites as one combined instantiation in XML.
     ///
     /// # Errors
-    /// When a satellite has no state, or the output fails.
+    /// If a satellite has no state, or the output fails.
     pub fn combined_xml<'s>(
         &self,
         out: &mut impl Write,

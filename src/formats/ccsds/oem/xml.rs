@@ -51,7 +51,7 @@ impl Oem {
     }
 }
 
-/// Writes what stands before the states of a segment.
+/// Writes the part of a segment before its states.
 pub(super) fn begin_segment(
     out: &mut impl Write,
     metadata: &SegmentMetadata,
@@ -139,7 +139,7 @@ enum OemXmlSection {
     Covariance,
 }
 
-/// A message as it comes in.
+/// A message while it is read.
 pub(in crate::formats::ccsds) struct XmlMessage {
     part: OemXmlSection,
     header: KvnBlock,
@@ -209,7 +209,7 @@ impl XmlMessage {
             (OemXmlSection::Covariance, _) => {}
             (OemXmlSection::Data, None) if is_comment => {}
             (OemXmlSection::Body | OemXmlSection::Data, _) => {
-                let message = format!("element {} does not belong here", leaf.name);
+                let message = format!("element {} is not allowed here", leaf.name);
                 findings.error(place, "ccsds-keyword", message);
             }
         }
@@ -257,7 +257,7 @@ impl XmlMessage {
     ) -> Option<Oem> {
         let header = header(&self.header, place.0, findings);
         if self.segments.is_empty() {
-            findings.error(place, "oem-empty", "the message has no segment");
+            findings.error(place, "oem-empty", "the message has no segments");
         }
         Some(Oem {
             header: header?,

@@ -105,7 +105,7 @@ pub fn parse_kvn(
             Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {}
             Item::Pair(pair) => {
                 if pair.key == VERSION && started {
-                    let message = "a second message begins; the standard has one a file";
+                    let message = "a second message begins; the standard allows one per file";
                     findings.warning(pair.key_place, "omm-several", message);
                     message_of(&block, begin, line.number, findings)
                         .into_iter()
@@ -243,7 +243,11 @@ pub fn parse_csv(
         .iter()
         .all(|key| !KvnBlock::of_record(&[RECORD]).knows(key))
     {
-        findings.error((1, 1), "csv-header", "no column is a keyword of an OMM");
+        findings.error(
+            (1, 1),
+            "csv-header",
+            "none of the columns is an OMM keyword",
+        );
         return Ok(());
     }
     let mut row = ::csv::StringRecord::new();
@@ -306,7 +310,7 @@ fn set(
         if (low..=high).contains(&value) {
             return Some(value);
         }
-        let message = format!("{key} {value} is not from {low} to {high}");
+        let message = format!("{key} {value} is outside {low} to {high}");
         findings.error(block.place(key), "omm-range", message);
         None
     };

@@ -115,7 +115,7 @@ fn take_user_defined(
         return;
     }
     if kept.iter().any(|(key, _)| key == pair.key) {
-        let message = format!("{} is given twice", pair.key);
+        let message = format!("{} appears twice", pair.key);
         findings.error(pair.key_place, "ccsds-repeated", message);
         return;
     }
@@ -179,7 +179,7 @@ fn keplerian(block: &KvnBlock, findings: &mut FindingList) -> Option<Keplerian> 
     let first = keys.iter().chain(&anomalies).find(|key| given(key))?;
     let missing = keys.iter().find(|key| !given(key));
     if missing.is_some() || anomalies.iter().filter(|key| given(key)).count() != 1 {
-        let message = "the osculating elements need all six, one anomaly of the two, and GM";
+        let message = "osculating elements need all six, with one of the two anomalies, and GM";
         findings.error(block.place(first), "opm-elements", message);
         return None;
     }

@@ -22,7 +22,7 @@ const MAX_PACKET: usize = 1 << 30;
 /// Most references from one position to the next.
 const MOST_REFERENCES: usize = 8;
 
-/// Reads the satellites; those of a GNSS that `navwalker` wrote beside a design are passed over.
+/// Reads the satellites; those of a GNSS that `navwalker` wrote in addition to a design are skipped.
 ///
 /// # Errors
 /// The first finding, or a failure of the input.
@@ -54,7 +54,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
         }
     }
     if first && !findings.is_full() {
-        findings.error((1, 1), "czml-document", "there is no packet");
+        findings.error((1, 1), "czml-document", "the document has no packets");
     }
     Ok(document.trajectories(findings))
 }
@@ -76,7 +76,7 @@ fn document_fault(packet: &Packet) -> Option<PacketFault> {
     })
 }
 
-/// What the packets of a document have said of its objects so far.
+/// The objects of a document, from the packets read so far.
 #[derive(Default)]
 struct CzmlDocument {
     objects: Vec<CzmlObject>,
@@ -419,7 +419,7 @@ fn frame(position: &PositionPacket, kind: Kind) -> Result<Frame, PacketFault> {
     }
 }
 
-/// The samples, their times being texts or seconds since the epoch.
+/// The samples, whose times are texts or seconds since the epoch.
 fn nodes(
     key: &'static str,
     samples: &Samples,
@@ -429,7 +429,7 @@ fn nodes(
     let broken = |message: String| ("czml-samples", key, message);
     let length = kind.numbers() + 1;
     if !samples.numbers.len().is_multiple_of(length) || samples.numbers.is_empty() {
-        let message = format!("samples are a time and {} numbers each", length - 1);
+        let message = format!("each sample is a time and {} numbers", length - 1);
         return Err(broken(message));
     }
     if samples

@@ -82,7 +82,7 @@ fn the_document_holds_the_scenario() {
     ids.sort_unstable();
     ids.dedup();
     assert_eq!(ids.len(), packets.len());
-    // The middle column of the region stands on the antimeridian.
+    // The middle column of the region is on the antimeridian.
     let across = |p: &Value| {
         let edges = &p["rectangle"]["coordinates"]["wsenDegrees"];
         edges[0] == 175.0 && edges[2] == -175.0

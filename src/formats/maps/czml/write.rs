@@ -24,7 +24,7 @@ const SPACINGS_S: [f64; 9] = [
     3600.0, 1800.0, 1200.0, 600.0, 300.0, 120.0, 60.0, 30.0, 10.0,
 ];
 
-/// Most intervals between samples that are looked at for the error of a spacing.
+/// Maximum number of intervals between samples that are checked for the error of a spacing.
 const INTERVALS: usize = 500;
 
 /// Samples beyond each end.
@@ -40,7 +40,7 @@ const CELL_OPACITY: u8 = 130;
 /// each constellation.
 ///
 /// # Errors
-/// When a satellite has no state, or the output fails.
+/// If a satellite has no state, or the output fails.
 pub fn write(
     out: &mut impl Write,
     scene: &Scene<'_>,
@@ -360,7 +360,7 @@ fn place(
         "name": point.label(),
         "parent": "region",
         "description": format!(
-            "<table><tr><td>mean PDOP</td><td>{}</td></tr><tr><td>95 % PDOP</td><td>{}</td></tr>\
+            "<table><tr><td>mean PDOP</td><td>{}</td></tr><tr><td>95 % quantile of PDOP</td><td>{}</td></tr>\
              <tr><td>mean visible</td><td>{:.2}</td></tr><tr><td>availability</td><td>{:.4}</td></tr>\
              </table>",
             text(point.mean_pdop), text(point.p95_pdop), point.mean_visible, point.availability

@@ -1,4 +1,4 @@
-//! A measure over a region, with coastlines and a scale of colours.
+//! A measure over a region, with coastlines and a colour scale.
 
 use super::{Area, Drawn, INK, decimals, fine, font, line, signed};
 use crate::report::coastline;
@@ -6,22 +6,22 @@ use crate::report::figures::MapChart;
 use plotters::prelude::*;
 use plotters::style::colors::colormaps::ViridisRGB;
 
-/// Room for the scale of colours.
+/// Space for the colour scale.
 const SCALE_WIDTH: u32 = 96;
 
-/// Room above, below and beside the map.
+/// Margins of the map.
 const TITLE: u32 = 34;
 const MARGIN: u32 = 12;
 const X_LABELS: u32 = 44;
 const Y_LABELS: u32 = 56;
 
-/// What has no value.
+/// Colour of a missing value.
 const NOTHING: RGBColor = RGBColor(215, 215, 215);
 
-/// Heights between which a map stays readable.
+/// Range of heights in which a map is readable.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 260.0..=900.0;
 
-/// The height at which a degree is as long northwards as eastwards in the middle of the map.
+/// The height at which degrees of latitude and longitude have equal scale at the centre of the map.
 pub(super) fn height(chart: &MapChart, width: u32) -> u32 {
     let [south, north] = chart.bounds.latitude_deg;
     let [west, east] = chart.bounds.longitude_deg;
@@ -84,7 +84,7 @@ fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Dr
     let coast = line(BLACK, 1);
     for line in coastline::within(&chart.bounds) {
         let points = line.into_iter().map(|[x, y]| {
-            // A coast may leave the map with its last point.
+            // The last point of a coast may be outside the map.
             (x.clamp(west, east), y.clamp(south, north))
         });
         context.draw_series(LineSeries::new(points, coast))?;
@@ -103,7 +103,7 @@ fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Dr
         .draw()
 }
 
-/// Steps of the scale of colours.
+/// Steps of the colour scale.
 const STEPS: u32 = 128;
 
 fn colours(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Drawn {

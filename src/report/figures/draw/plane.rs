@@ -11,7 +11,7 @@ use plotters::prelude::*;
 type Context<'a, 'b> =
     ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
-/// Points from which on a line is drawn thin.
+/// Number of points above which a line is drawn thin.
 const DENSE: usize = 400;
 
 const FAINT: RGBColor = RGBColor(200, 204, 210);
@@ -61,7 +61,7 @@ pub(super) fn draw(root: &Area<'_>, chart: &PlaneChart) -> Drawn {
     Ok(())
 }
 
-/// The corner with the fewest points, and whether it has none: of equals the upper right.
+/// The corner with the fewest points, and whether it has none; the upper right if equal.
 fn corner<'a>(
     points: impl Iterator<Item = &'a (f64, f64)>,
     x: &std::ops::Range<f64>,
@@ -94,7 +94,7 @@ fn draw_layer(context: &mut Context<'_, '_>, layer: &Layer) -> Drawn {
     let points = layer.points.iter().copied();
     match layer.style {
         Style::Line(n) => {
-            // Many points would fill the plane with a bold line.
+            // A bold line through many points would fill the plane.
             let width = if layer.points.len() > DENSE { 1 } else { 2 };
             let style = line(colour(n), width);
             let drawn = context.draw_series(LineSeries::new(points, style))?;

@@ -104,7 +104,7 @@ fn a_png_has_text_without_system_fonts() {
     let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
     let info = reader.next_frame(&mut pixels).unwrap();
     assert_eq!((info.width, info.height), (3 * WIDTH, 3 * HEIGHT));
-    // The title stands in the topmost strip, where there is nothing else.
+    // The title is in the topmost strip, where there is nothing else.
     let strip = &pixels[..3 * info.width as usize * 100];
     let dark = strip.chunks(3).filter(|p| p[0] < 100).count();
     assert!(dark > 500, "{dark} dark dots in the title");

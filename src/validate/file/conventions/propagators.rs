@@ -1,4 +1,4 @@
-//! Propagators that are more than other elements: mislabelled states, another pole, an integration.
+//! Propagators for conventions beyond other elements: mislabelled states, another pole, integration.
 
 use super::{OtherPropagator, propagate_each};
 use crate::frames::{
@@ -11,14 +11,14 @@ use crate::units::wrap_two_pi;
 use crate::validate::Subject;
 use crate::validate::numerical::integrator::ZonalField;
 
-/// A propagation whose states are seen through another clock or frame.
+/// A propagation whose states are labelled with another clock or frame.
 struct Mislabelled<P> {
     propagation: P,
     epoch: Epoch,
     late_s: f64,
-    /// The frame that the states are in, while they are taken for TEME.
+    /// The frame of the states, which are taken as TEME.
     frame: Frame,
-    /// Whether it is the other way about: TEME states taken for that frame.
+    /// Whether it is the other way round: TEME states taken as that frame.
     inverse: bool,
 }
 
@@ -33,7 +33,7 @@ impl<P: Propagator> Propagator for Mislabelled<P> {
     }
 }
 
-/// The numbers of a state taken for those of another frame: the mistake itself.
+/// The components of a state taken as those of another frame: the mistake itself.
 fn taken_for<F, G>(state: State<F>) -> State<G> {
     State {
         position_km: Position::new(state.position_km.km()),
@@ -64,8 +64,8 @@ pub(super) fn gps_minus_utc_s(subject: &Subject<'_>) -> f64 {
     subject.epoch().leap_seconds() - 19.0
 }
 
-/// Secular J2 about the pole of J2000: the same orbit at the epoch, its elements counted from the
-/// equator of J2000, on which the node regresses.
+/// Secular J2 about the pole of J2000: the same orbit at the epoch, with its elements referred to
+/// the equator of J2000, along which the node regresses.
 struct AboutJ2000 {
     orbit: SecularOrbit,
     from_teme: FromTeme<Eme2000>,
@@ -87,7 +87,7 @@ pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, OtherPropagator
         let inclination_rad = normal.z.clamp(-1.0, 1.0).acos();
         let raan_rad = normal.x.atan2(-normal.y);
         let turned = crate::frames::OrbitPlane::new(raan_rad, inclination_rad);
-        // The way from the new node to the old one, within the plane.
+        // The angle from the new node to the old one, within the plane.
         let moved = node.dot(&turned.ahead).atan2(node.dot(&turned.node));
         let elements = MeanElements {
             inclination_rad,
@@ -104,7 +104,7 @@ pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, OtherPropagator
 
 /// The elements taken as osculating at the epoch, and J2 integrated.
 struct Integrated {
-    /// One state each [`INTEGRATED_STEP_S`].
+    /// One state every [`INTEGRATED_STEP_S`].
     states: Vec<State<Teme>>,
     step_s: f64,
 }
