@@ -10,6 +10,7 @@
 
 mod args;
 mod chart;
+mod coincidence;
 mod commands;
 mod files;
 mod output;

@@ -1,5 +1,6 @@
 //! Satellites on a time grid: what the evaluator, the file formats and the validators consume.
 
+pub mod coincidence;
 pub(crate) mod derivative;
 pub mod hermite;
 pub mod sampled;

@@ -245,9 +245,9 @@ impl<'a> DesignProblem<'a> {
             .goals
             .constraints
             .iter()
-            .map(|c| c.violation(value(c.quantity)))
+            .map(|c| c.violation(value(c.quantity), metrics.solved_fraction))
             .sum();
-        // A design with unsolved samples is infeasible for what is made of PDOP.
+        // A design with unsolved samples is infeasible for an objective that is made of PDOP.
         if self
             .goals
             .objectives
@@ -369,15 +369,88 @@ mod tests {
             relation: Relation::AtMost,
             bound: 2.0,
         };
-        assert_eq!(at_most.violation(Some(2.0)), 0.0);
-        assert_eq!(at_most.violation(Some(3.0)), 0.5);
-        assert_eq!(at_most.violation(None), 1.0);
+        assert_eq!(at_most.violation(Some(2.0), 1.0), 0.0);
+        assert_eq!(at_most.violation(Some(3.0), 1.0), 0.5);
+        assert_eq!(at_most.violation(None, 0.0), 1.0);
         let at_least = Constraint {
             quantity: Quantity::Availability,
             relation: Relation::AtLeast,
             bound: 0.75,
         };
-        assert_eq!(at_least.violation(Some(0.5)), 0.25);
+        // A share of all samples: those without a solution are in it already.
+        assert_eq!(at_least.violation(Some(0.5), 0.5), 0.25);
+        let cost: Constraint = "j-cost <= 10".parse().unwrap();
+        assert_eq!(cost.violation(None, 1.0), 1.0);
+    }
+
+    /// An unsolved sample is infinite: one is too much for a mean, a tail or a maximum, a share
+    /// above 1 - q for a quantile.
+    #[test]
+    fn unsolved_samples_violate_what_they_would_make_infinite() {
+        let violation = |text: &str, value, solved| {
+            let constraint: Constraint = text.parse().unwrap();
+            constraint.violation(Some(value), solved)
+        };
+        let one_of_a_million = 1.0 - 1e-6;
+        for quantity in ["mean-pdop", "cvar-pdop", "max-pdop", "j-pos"] {
+            let text = format!("{quantity} <= 20");
+            assert_eq!(violation(&text, 2.0, 1.0), 0.0);
+            assert_eq!(
+                violation(&text, 2.0, one_of_a_million),
+                1.0 - one_of_a_million
+            );
+            // The excess on the solved samples comes on top.
+            assert_eq!(violation(&text, 30.0, 0.75), 0.5 + 0.25);
+        }
+        for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99)] {
+            let text = format!("{quantity} <= 20");
+            assert_eq!(violation(&text, 2.0, level), 0.0);
+            assert_eq!(violation(&text, 30.0, level), 0.5);
+            let fewer = level - 1e-6;
+            assert_eq!(violation(&text, 2.0, fewer), 1.0 - fewer);
+        }
+        for quantity in ["satellites", "mean-visible", "availability", "j-cost"] {
+            assert_eq!(violation(&format!("{quantity} <= 20"), 2.0, 0.1), 0.0);
+        }
+    }
+
+    /// LEO alone, of which hardly any sample is solved: no bound on PDOP calls that feasible,
+    /// whatever the objectives.
+    #[test]
+    fn what_is_not_solved_is_not_feasible() {
+        use crate::constellation::gnss::Preset;
+        use crate::earth::Surface;
+        use crate::evaluate::Setup;
+        use crate::ground::Site;
+        use crate::time::{Epoch, TimeGrid};
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, 14_400.0, 300.0).unwrap();
+        let site = |latitude| Site::new(Surface::Sphere, latitude, 100.0, 1.0).unwrap();
+        let answer = |gnss, constraint: &str| {
+            let setup = Setup::new(grid, vec![site(10.0), site(30.0), site(50.0)]).with_gnss(gnss);
+            let evaluator = Evaluator::new(setup).unwrap();
+            let goals = Goals {
+                objectives: vec![Quantity::Satellites],
+                constraints: vec![constraint.parse().unwrap()],
+                launch_cost: LaunchCost {
+                    per_satellite: 1.0,
+                    per_plane: 5.0,
+                    per_1000_km: 0.2,
+                },
+            };
+            let problem = DesignProblem::new(&evaluator, space(), goals).unwrap();
+            let genome = vec![5.0, 16.0, 42.8, 933.0, 1.0];
+            let (_, metrics) = problem.evaluated(&genome).unwrap();
+            (problem.answer(&genome).violation, metrics)
+        };
+        for constraint in ["mean-pdop <= 20", "p95-pdop <= 20"] {
+            let (violation, metrics) = answer(vec![], constraint);
+            assert!(metrics.mean_pdop.unwrap() < 20.0, "{metrics:?}");
+            assert!(metrics.solved_fraction < 0.9, "{metrics:?}");
+            assert!(violation >= 1.0 - metrics.solved_fraction, "{violation}");
+        }
+        let (violation, metrics) = answer(vec![Preset::Beidou3.into()], "mean-pdop <= 20");
+        assert_eq!((violation, metrics.solved_fraction), (0.0, 1.0));
     }
 
     #[test]

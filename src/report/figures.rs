@@ -85,6 +85,8 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::JCost => "J_cost = satellites per visible satellite",
         Quantity::MeanPdop => "mean PDOP",
         Quantity::CvarPdop => "CVaR of PDOP",
+        Quantity::P95Pdop => "95 % quantile of PDOP",
+        Quantity::P99Pdop => "99 % quantile of PDOP",
         Quantity::MaxPdop => "maximum PDOP",
         Quantity::Satellites => "satellites",
         Quantity::Planes => "planes",

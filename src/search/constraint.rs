@@ -50,16 +50,30 @@ pub enum ConstraintError {
 }
 
 impl Constraint {
-    /// How far a value is from keeping the bound, relative to the bound (absolute for bounds
-    /// below 1); 1 for a value that does not exist.
+    /// How far a design is from keeping the bound ([M-33](crate::models#m-33)): the excess of the
+    /// value, relative to the bound (absolute for bounds below 1), and for a statistic of PDOP that
+    /// unsolved samples would make infinite their share. 1 for another value that does not exist.
     #[must_use]
-    pub fn violation(&self, value: Option<f64>) -> f64 {
-        let Some(value) = value else { return 1.0 };
+    pub fn violation(&self, value: Option<f64>, solved_fraction: f64) -> f64 {
+        let unsolved = self.unsolved(solved_fraction);
+        let Some(value) = value else {
+            return if unsolved > 0.0 { unsolved } else { 1.0 };
+        };
         let excess = match self.relation {
             Relation::AtMost => value - self.bound,
             Relation::AtLeast => self.bound - value,
         };
-        excess.max(0.0) / self.bound.abs().max(1.0)
+        excess.max(0.0) / self.bound.abs().max(1.0) + unsolved
+    }
+
+    /// The unsolved share, if it is more than the quantity bears.
+    fn unsolved(&self, solved_fraction: f64) -> f64 {
+        /// Rounding of a share that is made of weights.
+        const ROUNDING: f64 = 1e-12;
+        match self.quantity.solved_share_needed() {
+            Some(needed) if solved_fraction < needed - ROUNDING => 1.0 - solved_fraction,
+            _ => 0.0,
+        }
     }
 }
 

@@ -15,6 +15,10 @@ keywords! {
         MeanPdop = "mean-pdop",
         /// Mean of the worst share of PDOP; without unit, minimised.
         CvarPdop = "cvar-pdop",
+        /// 95 % quantile of PDOP; without unit, minimised.
+        P95Pdop = "p95-pdop",
+        /// 99 % quantile of PDOP; without unit, minimised.
+        P99Pdop = "p99-pdop",
         /// Maximum PDOP; without unit, minimised.
         MaxPdop = "max-pdop",
         /// Satellites T; minimised.
@@ -62,10 +66,25 @@ impl Quantity {
     /// Whether it is a statistic of the solved samples, so that unsolved ones would flatter it.
     #[must_use]
     pub fn needs_solution(self) -> bool {
-        matches!(
-            self,
-            Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop
-        )
+        self.solved_share_needed().is_some()
+    }
+
+    /// Share of the samples that have to be solved for a statistic of PDOP to be finite if an
+    /// unsolved sample counts as infinite: all of them for a mean, a tail or a maximum, q for the
+    /// quantile of level q. `None` for what is not a statistic of PDOP.
+    #[must_use]
+    pub fn solved_share_needed(self) -> Option<f64> {
+        match self {
+            Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
+            Self::P95Pdop => Some(0.95),
+            Self::P99Pdop => Some(0.99),
+            Self::JCost
+            | Self::Satellites
+            | Self::Planes
+            | Self::MeanVisible
+            | Self::Availability
+            | Self::LaunchCost => None,
+        }
     }
 
     /// The value as an optimiser minimises it; the same map leads back.
@@ -84,6 +103,8 @@ impl Quantity {
             Self::JCost => metrics.j_cost,
             Self::MeanPdop => metrics.mean_pdop,
             Self::CvarPdop => metrics.cvar_pdop,
+            Self::P95Pdop => metrics.p95_pdop,
+            Self::P99Pdop => metrics.p99_pdop,
             Self::MaxPdop => metrics.max_pdop,
             Self::Satellites => Some(satellites),
             Self::Planes => Some(planes),

@@ -7,7 +7,7 @@ satellite in degrees, `|` between satellites that keep clocks of their own. The 
 of position and clocks is made and inverted by mpmath; no formula of the program is used. The
 columns of a sky whose matrix is singular, or that has fewer satellites than states, are empty.
 
-Weights are `unit`, or `sine`: sin² of the elevation. No PDOP is within 5 % of a cap that the test
+Weights are `unit`, or `sine-elevation`: sin² of it. No PDOP is within 5 % of a cap that the test
 sets (100, 1e4, 1e6), so that every verdict is certain.
 """
 
@@ -124,7 +124,7 @@ def dilutions(groups, weights):
         row[1] = mp.cos(elevation) * mp.cos(azimuth)
         row[2] = mp.sin(elevation)
         row[3 + clock] = mp.mpf(1)
-        weight = mp.sin(elevation) ** 2 if weights == "sine" else 1
+        weight = mp.sin(elevation) ** 2 if weights == "sine-elevation" else 1
         for i in range(size):
             for j in range(size):
                 normal[i, j] += weight * row[i] * row[j]
@@ -150,7 +150,7 @@ with OUT.open("w", newline="") as file:
     for kind, count in KINDS:
         made = 0
         while made < count:
-            groups, weights = kind(), draw.choice(["unit", "unit", "sine"])
+            groups, weights = kind(), draw.choice(["unit", "unit", "sine-elevation"])
             if any(not 1 < mp.mpf(elevation) < 90 for group in groups for elevation, _ in group):
                 continue
             found = dilutions(groups, weights)

@@ -2,7 +2,7 @@
 
 use crate::cli::args::{EvaluateArgs, OutputFormat};
 use crate::cli::study::Study;
-use crate::cli::{Status, files, output, read_constellation};
+use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
@@ -43,6 +43,7 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
+    coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate(design)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
@@ -57,6 +58,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
+    coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
     let dops = further(args, &evaluator, &ephemeris)?;
     let name = |path: &PathBuf| {

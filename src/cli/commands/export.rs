@@ -3,9 +3,10 @@
 use crate::cli::args::ExportArgs;
 use crate::cli::progress::FileCount;
 use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, files, output, read_constellation};
+use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
+use crate::ephemeris::Ephemeris;
 use crate::exchange::export::{Choices, ExportSubject, Product, Request, export};
 use crate::exchange::lint::Format as LintFormat;
 use crate::exchange::manifest::{ExportedStudy, Manifest};
@@ -42,6 +43,9 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         originator: scenario.export.originator.clone(),
         creation: Epoch::from_utc(scenario.export.creation_date),
     };
+    if let Ok(satellites) = Ephemeris::of_design(&subject.design, subject.model, subject.grid) {
+        coincidence::warn(&[], subject.grid, Some(&satellites));
+    }
     let products = products(args);
     let choices = Choices {
         frame: args.frame.unwrap_or(Frame::Eme2000),

@@ -6,7 +6,7 @@ use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::progress::SearchBar;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
-use crate::cli::{Status, chart, output};
+use crate::cli::{Status, chart, coincidence, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::{Align, Table};
@@ -39,6 +39,7 @@ fn one(args: &OptimizeArgs, study: &Study) -> Result<Status> {
     };
     let out = args.out.clone().unwrap_or_else(default_out);
     let setup = study.setup()?;
+    coincidence::warn(&setup.gnss, setup.grid, None);
     let directory = open(args, study, &out)?;
     let evaluator = Evaluator::new(setup)?;
     let interrupted = interrupt_flag()?;

@@ -2,7 +2,8 @@
 
 use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, files, output};
+use crate::cli::{Status, coincidence, files, output};
+use crate::ephemeris::Ephemeris;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
@@ -44,6 +45,10 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
     let evaluator = study.evaluator()?;
+    let setup = evaluator.setup();
+    if let Ok(satellites) = Ephemeris::of_design(&design, setup.model, setup.grid) {
+        coincidence::warn(&setup.gnss, setup.grid, Some(&satellites));
+    }
     let subject = Subject::new(design, &evaluator);
     let mut findings = Findings::default();
     for target in &targets {

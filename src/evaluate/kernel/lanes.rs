@@ -404,6 +404,10 @@ impl<R: Real> NormalLanes<R> {
 /// smallest eigenvalue is then 2⁻¹⁶ of the trace or more, and rounding 2⁻²² of it.
 const LEAST_DETERMINANT: f32 = 1.0 / 65_536.0;
 
+/// The least trace. PDOP² is 9 over it or more, so no PDOP that f32 is trusted with is lost; below,
+/// rounding may be all that there is.
+const LEAST_TRACE: f32 = 1.0;
+
 impl NormalLanes<f32> {
     /// PDOP by the minors; infinite where the matrix is too close to a singular one for f32.
     #[inline(always)]
@@ -418,7 +422,8 @@ impl NormalLanes<f32> {
             let minor_xx = yy * zz - yz * yz;
             let determinant = xx * minor_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
             let trace = xx + yy + zz;
-            let sound = determinant > LEAST_DETERMINANT * trace * trace * trace;
+            let sound =
+                (trace > LEAST_TRACE) & (determinant > LEAST_DETERMINANT * trace * trace * trace);
             let pdop = ((minor_xx + minor_yy + minor_zz) / determinant).root();
             lanes.0[l] = if sound { pdop } else { f32::INFINITY };
         }

@@ -77,7 +77,7 @@ fn visibility() -> impl Strategy<Value = Visibility> {
         };
         points.into_iter().map(point).collect()
     });
-    (0.0..90.0, 0.0..90.0, table, word(), 1.01..1e20).prop_map(
+    (0.0..90.0, 0.0..90.0, table, word(), 1.01..1e6).prop_map(
         |(mask_deg, gnss_mask_deg, mask_table, weighting, pdop_cap)| Visibility {
             mask_deg,
             gnss_mask_deg,

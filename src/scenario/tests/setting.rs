@@ -128,13 +128,15 @@ fn masks_are_from_the_horizon_to_below_the_zenith() {
 }
 
 #[test]
-fn the_pdop_cap_is_above_one() {
-    refuses(
-        "visibility",
-        "pdop-cap = 1",
-        "pdop-cap",
-        "found 1, expected a number > 1",
-    );
+fn the_pdop_cap_is_above_one_and_above_rounding() {
+    for cap in ["1", "1000001"] {
+        refuses(
+            "visibility",
+            &format!("pdop-cap = {cap}"),
+            "pdop-cap",
+            &format!("found {cap}, expected a number > 1 and <= 1000000"),
+        );
+    }
     refuses(
         "objectives",
         "availability-pdop = 0",

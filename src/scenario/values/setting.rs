@@ -3,6 +3,7 @@
 use chrono::{DateTime, Utc};
 
 use super::{JANUARY_2025, STEP_SLACK};
+use crate::dop::MOST_PDOP_CAP;
 use crate::scenario::keys::{key, section};
 use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Number, OneOf, Paths, Skyline, SomeOf, UtcInstant};
@@ -75,7 +76,7 @@ section! {
         /// How a line of sight counts in the least-squares solution.
         pub weighting: ObservationWeights = OneOf::new(), default ObservationWeights::Unit;
         /// PDOP above which a sample has no solution.
-        pub pdop_cap: f64 = Number::above(1.0), default 100.0;
+        pub pdop_cap: f64 = Number::above_to(1.0, MOST_PDOP_CAP), default 100.0;
     }
 }
 

@@ -17,6 +17,10 @@ const INSTANTS: usize = 12;
 /// Points that are computed again.
 const POINTS: usize = 40;
 
+/// The smallest singular value of a geometry with a PDOP of 1e7, the largest cap ten times over;
+/// rounding leaves 1e-15 of one that is zero.
+const LEAST_SINGULAR_VALUE: f64 = 1e-7;
+
 /// A study of some instants and points of another, and its systems propagated.
 struct Again {
     setup: Setup,
@@ -72,7 +76,8 @@ impl Again {
         Ok(lines)
     }
 
-    /// PDOP from the inverse of the whole normal matrix; `groups` are the lines of each clock.
+    /// PDOP from the singular values of the whole geometry matrix, none of which may be rounding;
+    /// `groups` are the lines of each clock.
     fn pdop(&self, groups: &[Vec<Vector3<f64>>]) -> Option<f64> {
         let groups: Vec<_> = groups.iter().filter(|group| !group.is_empty()).collect();
         let rows: usize = groups.iter().map(|group| group.len()).sum();
@@ -91,10 +96,20 @@ impl Again {
             }
             design[(row, 3 + clock)] = 1.0;
         }
-        let inverse = (design.transpose() * &design).try_inverse()?;
-        let pdop2 = inverse[(0, 0)] + inverse[(1, 1)] + inverse[(2, 2)];
-        let pdop = pdop2.sqrt();
-        (pdop2 > 0.0 && pdop <= self.setup.pdop_cap).then_some(pdop)
+        let svd = design.svd(false, true);
+        let smallest = svd.singular_values.min();
+        if smallest <= LEAST_SINGULAR_VALUE {
+            return None;
+        }
+        // The inverse of the normal matrix is V S⁻² Vᵀ
+        let right = svd.v_t?;
+        let variance = |state: usize| -> f64 {
+            let column = right.column(state);
+            let terms = column.iter().zip(svd.singular_values.iter());
+            terms.map(|(v, s)| (v / s).powi(2)).sum()
+        };
+        let pdop = (0..3).map(variance).sum::<f64>().sqrt();
+        (pdop <= self.setup.pdop_cap).then_some(pdop)
     }
 }
 

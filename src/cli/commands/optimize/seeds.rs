@@ -3,7 +3,7 @@
 use super::{Ended, Sweep, hint_resume, interrupt_flag, open, search, status, sweep, text};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::study::Study;
-use crate::cli::{Status, files, output};
+use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
 use anyhow::{Context, Result, bail};
@@ -28,6 +28,7 @@ pub(super) fn run(args: &OptimizeArgs, mut study: Study, count: NonZeroUsize) ->
     let default_out = || PathBuf::from(format!("runs/{name}-{first}-to-{last}"));
     let out = args.out.clone().unwrap_or_else(default_out);
     let setup = study.setup()?;
+    coincidence::warn(&setup.gnss, setup.grid, None);
     if !args.force {
         require_seeds(&out)?;
     }

@@ -1,0 +1,51 @@
+//! The warning about satellites in one place.
+
+use crate::cli::output;
+use crate::constellation::gnss::System;
+use crate::ephemeris::Ephemeris;
+use crate::ephemeris::coincidence::{COINCIDENT_WITHIN_KM, Member, coincident};
+use crate::time::TimeGrid;
+
+/// Groups, and members of a group, that are named.
+const NAMED: usize = 3;
+
+/// Says which satellites of the constellation and of the GNSS are in one place. A satellite that
+/// cannot be propagated is left to the command, which says so where it needs it.
+pub(crate) fn warn(gnss: &[System], grid: TimeGrid, leo: Option<&Ephemeris>) {
+    let systems: Vec<Ephemeris> = gnss
+        .iter()
+        .map(|system| Ephemeris::of_gnss(system.satellites(grid.epoch()), grid))
+        .collect();
+    let all: Vec<&Ephemeris> = leo.into_iter().chain(&systems).collect();
+    if let Ok(groups) = coincident(&all)
+        && !groups.is_empty()
+    {
+        output::warning(&text(&all, &groups));
+    }
+}
+
+fn text(all: &[&Ephemeris], groups: &[Vec<Member>]) -> String {
+    let satellites: usize = groups.iter().map(Vec::len).sum();
+    let name = |&(number, place): &Member| all[number].satellites()[place].name.clone();
+    let members = |group: &Vec<Member>| listed(&group.iter().map(name).collect::<Vec<_>>(), " = ");
+    let named: Vec<String> = groups.iter().map(members).collect();
+    let places = match groups.len() {
+        1 => "one place".to_owned(),
+        count => format!("{count} places"),
+    };
+    format!(
+        "{satellites} satellites are in {places}, within {} m of each other all the time: {}; each \
+         counts as visible, but a place is one direction and helps the solution once",
+        COINCIDENT_WITHIN_KM * 1000.0,
+        listed(&named, ", ")
+    )
+}
+
+/// The first of some names, and how many there are besides.
+fn listed(names: &[String], between: &str) -> String {
+    let shown = names[..names.len().min(NAMED)].join(between);
+    match names.len().saturating_sub(NAMED) {
+        0 => shown,
+        more => format!("{shown}{between}{more} more"),
+    }
+}

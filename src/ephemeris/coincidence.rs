@@ -1,0 +1,129 @@
+//! Satellites that are in one place all the time: docked, listed twice, or a pattern that puts
+//! several into one slot.
+//!
+//! They are one direction to a receiver, however many are counted in view.
+
+use super::{Ephemeris, EphemerisError};
+use nalgebra::Vector3;
+
+/// Satellites within this distance of each other at every instant looked at are in one place, km.
+///
+/// Seen from 500 km or farther away they are 4 seconds of arc apart at most, so a solution that
+/// rests on the difference has a PDOP above 10 000. It is more than an element set is rounded by.
+pub const COINCIDENT_WITHIN_KM: f64 = 0.01;
+
+/// A satellite by the number of its ephemeris and its place there.
+pub type Member = (usize, usize);
+
+/// The groups of two satellites or more that are in one place, each in the order of the satellites.
+///
+/// Looks at three instants of the grid, not evenly spread: orbits that cross meet at one and not at
+/// all of them. All ephemerides are looked at on the grid of the first.
+///
+/// # Errors
+/// When a satellite cannot be propagated.
+pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, EphemerisError> {
+    let Some(first) = ephemerides.first() else {
+        return Ok(Vec::new());
+    };
+    let last = first.grid().len().saturating_sub(1);
+    let instants = [0, last * 2 / 5, last].map(|n| first.grid().elapsed_s(n));
+    let mut tracks = Vec::new();
+    for (number, ephemeris) in ephemerides.iter().enumerate() {
+        for (place, satellite) in ephemeris.satellites().iter().enumerate() {
+            let mut track = [Vector3::zeros(); 3];
+            for (position, elapsed_s) in track.iter_mut().zip(instants) {
+                *position = ephemeris.state(satellite, elapsed_s)?.position_km.km();
+            }
+            tracks.push(((number, place), track));
+        }
+    }
+    tracks.sort_by(|a, b| a.1[0].x.total_cmp(&b.1[0].x));
+    Ok(groups(&tracks))
+}
+
+type Track = (Member, [Vector3<f64>; 3]);
+
+/// Groups of tracks that run together, of tracks in the order of x at the first instant.
+fn groups(tracks: &[Track]) -> Vec<Vec<Member>> {
+    // The group that each belongs to, by the first of its tracks.
+    let mut leaders: Vec<usize> = (0..tracks.len()).collect();
+    for (n, (_, track)) in tracks.iter().enumerate() {
+        let near = |(_, other): &&Track| other[0].x - track[0].x <= COINCIDENT_WITHIN_KM;
+        for (m, (_, other)) in tracks
+            .iter()
+            .enumerate()
+            .skip(n + 1)
+            .take_while(|(_, t)| near(t))
+        {
+            let together = track
+                .iter()
+                .zip(other)
+                .all(|(a, b)| (a - b).norm() <= COINCIDENT_WITHIN_KM);
+            if together && leaders[m] == m {
+                leaders[m] = leaders[n];
+            }
+        }
+    }
+    let mut groups: Vec<Vec<Member>> = vec![Vec::new(); tracks.len()];
+    for (leader, (member, _)) in leaders.into_iter().zip(tracks) {
+        groups[leader].push(*member);
+    }
+    groups.retain(|group| group.len() > 1);
+    groups.iter_mut().for_each(|group| group.sort_unstable());
+    groups.sort_unstable();
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::constellation::Design;
+    use crate::constellation::gnss::Preset;
+    use crate::orbit::Model;
+    use crate::time::{Epoch, TimeGrid};
+
+    fn grid() -> TimeGrid {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        TimeGrid::new(epoch, 86_400.0, 60.0).unwrap()
+    }
+
+    fn ephemeris(text: &str) -> Ephemeris {
+        let design: Design = text.parse().unwrap();
+        Ephemeris::of_design(&design, Model::J2, grid()).unwrap()
+    }
+
+    #[test]
+    fn planes_of_an_equatorial_ring_share_their_places() {
+        let groups = coincident(&[&ephemeris("delta:0:36/6/0@3000")]).unwrap();
+        assert_eq!(groups.len(), 6);
+        assert!(groups.iter().all(|group| group.len() == 6));
+        // Slot j of plane k is 60° (j + k) along the equator.
+        let first = [0, 11, 16, 21, 26, 31].map(|place| (0, place));
+        assert_eq!(groups[0], first);
+    }
+
+    /// All planes of a star pattern without phasing cross at the poles, where their satellites meet
+    /// twice a revolution.
+    #[test]
+    fn orbits_that_cross_are_not_one_place() {
+        for text in [
+            "star:90:24/6/0@925",
+            "delta:55:182/13/1@925",
+            "delta:0:36/6/1@3000",
+        ] {
+            assert_eq!(coincident(&[&ephemeris(text)]), Ok(vec![]), "{text}");
+        }
+    }
+
+    #[test]
+    fn satellites_of_two_lists_are_found() {
+        let gnss = |_| Ephemeris::of_gnss(Preset::Gps.satellites(grid().epoch()), grid());
+        let lists = [0, 1].map(gnss);
+        let leo = ephemeris("delta:55:24/6/1@925");
+        let groups = coincident(&[&leo, &lists[0], &lists[1]]).unwrap();
+        assert_eq!(groups.len(), 24);
+        assert_eq!(groups[3], [(1, 3), (2, 3)]);
+        assert_eq!(coincident(&[]), Ok(vec![]));
+    }
+}
