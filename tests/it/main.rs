@@ -10,6 +10,7 @@ mod look;
 mod names;
 mod reference;
 mod scenes;
+mod singular;
 mod study;
 mod tidy;
 mod trust;

@@ -126,8 +126,8 @@ fn optimizers_are_bounded() {
 #[test]
 fn objectives_are_known_and_different() {
     let choices = "unknown word \"mean-pdp\", did you mean \"mean-pdop\"? (choices: j-pos, j-cost, \
-                   mean-pdop, cvar-pdop, max-pdop, satellites, planes, mean-visible, \
-                   availability, launch-cost)";
+                   mean-pdop, cvar-pdop, p95-pdop, p99-pdop, max-pdop, satellites, planes, \
+                   mean-visible, availability, launch-cost)";
     refuses(
         "objectives",
         "minimize = [\"mean-pdp\"]",
