@@ -27,25 +27,26 @@ pub(crate) fn warn(gnss: &[System], grid: TimeGrid, leo: Option<&Ephemeris>) {
 fn text(all: &[&Ephemeris], groups: &[Vec<Member>]) -> String {
     let satellites: usize = groups.iter().map(Vec::len).sum();
     let name = |&(number, place): &Member| all[number].satellites()[place].name.clone();
-    let members = |group: &Vec<Member>| listed(&group.iter().map(name).collect::<Vec<_>>(), " = ");
+    let members =
+        |group: &Vec<Member>| listed(&group.iter().map(name).collect::<Vec<_>>(), " = ", "more");
     let named: Vec<String> = groups.iter().map(members).collect();
     let places = match groups.len() {
         1 => "one place".to_owned(),
         count => format!("{count} places"),
     };
     format!(
-        "{satellites} satellites are in {places}, within {} m of each other all the time: {}; each \
-         counts as visible, but a place is one direction and helps the solution once",
+        "{satellites} satellites are in {places}, within {} m of each other all the time ({}): each \
+         counts as visible, but together they are one direction",
         COINCIDENT_WITHIN_KM * 1000.0,
-        listed(&named, ", ")
+        listed(&named, "; ", "more places")
     )
 }
 
 /// The first of some names, and how many there are besides.
-fn listed(names: &[String], between: &str) -> String {
+fn listed(names: &[String], between: &str, rest: &str) -> String {
     let shown = names[..names.len().min(NAMED)].join(between);
     match names.len().saturating_sub(NAMED) {
         0 => shown,
-        more => format!("{shown}{between}{more} more"),
+        more => format!("{shown}{between}{more} {rest}"),
     }
 }

@@ -42,10 +42,11 @@ pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, Epheme
     Ok(groups(&tracks))
 }
 
-type Track = (Member, [Vector3<f64>; 3]);
+/// A satellite and its positions at the three instants, km.
+type Located = (Member, [Vector3<f64>; 3]);
 
 /// Groups of tracks that run together, of tracks in the order of x at the first instant.
-fn groups(tracks: &[Track]) -> Vec<Vec<Member>> {
+fn groups(tracks: &[Located]) -> Vec<Vec<Member>> {
     // The group that each belongs to, by the first of its tracks.
     let mut leaders: Vec<usize> = (0..tracks.len()).collect();
     for (n, (_, track)) in tracks.iter().enumerate() {
