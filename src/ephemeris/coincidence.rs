@@ -50,7 +50,7 @@ fn groups(tracks: &[Located]) -> Vec<Vec<Member>> {
     // The group that each belongs to, by the first of its tracks.
     let mut leaders: Vec<usize> = (0..tracks.len()).collect();
     for (n, (_, track)) in tracks.iter().enumerate() {
-        let near = |(_, other): &&Track| other[0].x - track[0].x <= COINCIDENT_WITHIN_KM;
+        let near = |(_, other): &&Located| other[0].x - track[0].x <= COINCIDENT_WITHIN_KM;
         for (m, (_, other)) in tracks
             .iter()
             .enumerate()
