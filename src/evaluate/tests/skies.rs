@@ -312,6 +312,42 @@ fn validate_shared_clocks_on_planted_skies() {
     }
 }
 
+/// Nine hundred satellites, half of them GNSS, that leave a pivot close to its floor: sums
+/// of the same satellites in another order would decide differently.
+#[test]
+fn pivots_at_the_floor_are_decided_by_the_same_sums() {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let elevation_deg = 40.0_f64;
+    // Elevations spread evenly over ±s about a cone give a pivot of n s² cos² ε / 3.
+    let at_floor_rad = (3.0 * pivot_floor(1.0)).sqrt() / elevation_deg.to_radians().cos();
+    let (mut solved, mut unsolved) = (0, 0);
+    for step in 0..60 {
+        let spread_deg = at_floor_rad.to_degrees() * (0.95 + 0.004 * f64::from(step));
+        let direction = |n: i32| {
+            let along = (f64::from(n) * GOLDEN).fract() * 2.0 - 1.0;
+            let azimuth_deg = (f64::from(n) * GOLDEN * GOLDEN).fract() * 360.0;
+            (elevation_deg + along * spread_deg, azimuth_deg)
+        };
+        let all: Vec<Direction> = (0..900).map(direction).collect();
+        let sky = Sky {
+            text: "",
+            weights: ObservationWeights::Unit,
+            groups: vec![all[..450].to_vec(), all[450..].to_vec()],
+            truth: None,
+        };
+        let (setup, ephemeris) = sky.study(1e6);
+        for clocks in [Clocks::PerSystem, Clocks::Shared] {
+            let paths = verdicts(&setup.clone().with_clocks(clocks), &ephemeris);
+            for (path, verdict) in &paths[1..] {
+                assert_eq!(verdict.solved, paths[0].1.solved, "{path} {step} {clocks}");
+            }
+            solved += i32::from(paths[0].1.solved == 1.0);
+            unsolved += i32::from(paths[0].1.solved == 0.0);
+        }
+    }
+    assert!(solved > 20 && unsolved > 20, "{solved} {unsolved}");
+}
+
 /// Satellites docked to each other in two places at most, as seen from anywhere: none of the many
 /// samples with enough of them is solved, by any path at any cap.
 #[test]
