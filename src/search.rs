@@ -247,15 +247,14 @@ impl<'a> DesignProblem<'a> {
             .iter()
             .map(|c| c.violation(value(c.quantity), metrics.solved_fraction))
             .sum();
-        // A design with unsolved samples is infeasible for an objective that is made of PDOP.
-        if self
+        // A design is infeasible for an objective that unsolved samples make infinite.
+        let unsolved = |quantity: &Quantity| quantity.unsolved_share(metrics.solved_fraction);
+        violation += self
             .goals
             .objectives
             .iter()
-            .any(|objective| objective.needs_solution())
-        {
-            violation += 1.0 - metrics.solved_fraction;
-        }
+            .map(unsolved)
+            .fold(0.0, f64::max);
         let minimised = |objective: &Quantity| match value(*objective) {
             Some(value) => objective.minimised(value),
             None => f64::INFINITY,

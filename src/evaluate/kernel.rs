@@ -6,9 +6,9 @@
 //! A group of n visible satellites that share a clock contributes Σ v vᵀ - (Σ v)(Σ v)ᵀ / n to the
 //! normal matrix of the position ([M-24](crate::models#m-24)). So nine sums and a count over the
 //! visible LEO satellites are all that a sample needs: Σ v vᵀ (five numbers: the sixth follows from
-//! tr Σ v vᵀ = n), Σ v and n. The part of the GNSS does not change between designs and is made once
-//! ([`fixed`]). PDOP² is the sum of the principal minors over the determinant, so that no matrix is
-//! inverted.
+//! tr Σ v vᵀ = n, but in f64 it is summed too), Σ v and n. The part of the GNSS does not change
+//! between designs and is made once ([`fixed`]). In f32 PDOP² is the sum of the principal minors
+//! over the determinant, in f64 it comes from the factor of the plain path.
 //!
 //! # In what order
 //!

@@ -55,7 +55,7 @@ impl Constraint {
     /// unsolved samples would make infinite their share. 1 for another value that does not exist.
     #[must_use]
     pub fn violation(&self, value: Option<f64>, solved_fraction: f64) -> f64 {
-        let unsolved = self.unsolved(solved_fraction);
+        let unsolved = self.quantity.unsolved_share(solved_fraction);
         let Some(value) = value else {
             return if unsolved > 0.0 { unsolved } else { 1.0 };
         };
@@ -64,16 +64,6 @@ impl Constraint {
             Relation::AtLeast => self.bound - value,
         };
         excess.max(0.0) / self.bound.abs().max(1.0) + unsolved
-    }
-
-    /// The unsolved share, if it is more than the quantity bears.
-    fn unsolved(&self, solved_fraction: f64) -> f64 {
-        /// Rounding of a share that is made of weights.
-        const ROUNDING: f64 = 1e-12;
-        match self.quantity.solved_share_needed() {
-            Some(needed) if solved_fraction < needed - ROUNDING => 1.0 - solved_fraction,
-            _ => 0.0,
-        }
     }
 }
 

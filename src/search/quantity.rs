@@ -63,17 +63,21 @@ impl Quantity {
         }
     }
 
-    /// Whether it is a statistic of the solved samples, so that unsolved ones would flatter it.
+    /// The share of unsolved samples where, each of them counted as infinite, they make the quantity
+    /// infinite; otherwise 0. A statistic of the solved samples alone would be flattered by them.
     #[must_use]
-    pub fn needs_solution(self) -> bool {
-        self.solved_share_needed().is_some()
+    pub fn unsolved_share(self, solved_fraction: f64) -> f64 {
+        /// Rounding of a share that is made of weights.
+        const ROUNDING: f64 = 1e-12;
+        match self.solved_share_needed() {
+            Some(needed) if solved_fraction < needed - ROUNDING => 1.0 - solved_fraction,
+            _ => 0.0,
+        }
     }
 
-    /// Share of the samples that have to be solved for a statistic of PDOP to be finite if an
-    /// unsolved sample counts as infinite: all of them for a mean, a tail or a maximum, q for the
-    /// quantile of level q. `None` for what is not a statistic of PDOP.
-    #[must_use]
-    pub fn solved_share_needed(self) -> Option<f64> {
+    /// Share of the samples that have to be solved: all of them for a mean, a tail or a maximum of
+    /// PDOP, q for its quantile of level q. `None` for what is not a statistic of PDOP.
+    fn solved_share_needed(self) -> Option<f64> {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
             Self::P95Pdop => Some(0.95),

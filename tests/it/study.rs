@@ -117,6 +117,8 @@ fn every_objective_constraint_and_pattern_can_be_searched() {
         "mean-visible",
         "availability",
         "launch-cost",
+        "p95-pdop",
+        "p99-pdop",
     ];
     for (n, objective) in objectives.into_iter().enumerate() {
         let minimize = format!("objectives.minimize=[\"{objective}\"]");

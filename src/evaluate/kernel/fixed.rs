@@ -1,6 +1,7 @@
 //! The GNSS part of the geometry, which no design changes.
 
 use super::super::Setup;
+use super::super::fixed::systems;
 use super::candidates::{Candidates, bits};
 use super::instructions::{InstructionSet, Work};
 use super::lanes::{
@@ -101,7 +102,7 @@ impl Fixed {
         kept_bytes: usize,
     ) -> Result<Self, EphemerisError> {
         let mut fixed = Self {
-            systems: super::super::fixed::systems(setup),
+            systems: systems(setup),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
             instructions,
