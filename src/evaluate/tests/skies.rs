@@ -322,7 +322,7 @@ fn pivots_at_the_floor_are_decided_by_the_same_sums() {
     let at_floor_rad = (3.0 * pivot_floor(1.0)).sqrt() / elevation_deg.to_radians().cos();
     let (mut solved, mut unsolved) = (0, 0);
     for step in 0..60 {
-        let spread_deg = at_floor_rad.to_degrees() * (0.95 + 0.004 * f64::from(step));
+        let spread_deg = at_floor_rad.to_degrees() * (0.8 + 0.014 * f64::from(step));
         let direction = |n: i32| {
             let along = (f64::from(n) * GOLDEN).fract() * 2.0 - 1.0;
             let azimuth_deg = (f64::from(n) * GOLDEN * GOLDEN).fract() * 360.0;
