@@ -207,10 +207,7 @@ fn record(
         findings.error((first.number, 3), "tle-catalogue-number", error.to_string());
         return None;
     }
-    let name = match name {
-        Some(line) => Some(checked_name(&line, findings)),
-        None => None,
-    };
+    let name = name.map(|line| checked_name(&line, findings));
     if !is_for_sgp4(first, findings) || !ranges_fit(first, second, findings) {
         return None;
     }

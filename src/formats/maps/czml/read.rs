@@ -4,6 +4,7 @@
 use super::packet::{Packet, PositionPacket, Samples};
 use crate::earth::Surface;
 use crate::ephemeris::arc::{Arc, Interpolation, still};
+use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::{JsonObject, Objects};
@@ -299,6 +300,17 @@ impl Piece {
             self.nodes.reverse();
             self.nodes.sort_by_key(|(at, _)| *at);
             self.nodes.dedup_by_key(|(at, _)| *at);
+        }
+        if !self.has_velocities {
+            let positions: Vec<_> = self
+                .nodes
+                .iter()
+                .map(|(at, s)| (*at, s.position_km))
+                .collect();
+            let derived = velocities(&positions).unwrap_or_default();
+            for ((_, state), velocity_km_s) in self.nodes.iter_mut().zip(derived) {
+                state.velocity_km_s = velocity_km_s;
+            }
         }
         // The nodes of CesiumJS: `LagrangePolynomialApproximation`, `HermitePolynomialApproximation`,
         // the latter without velocities being the former.
