@@ -256,11 +256,11 @@ pub(crate) struct EvaluateArgs {
 
     /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
     /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
-    #[arg(long, value_name = "PATTERN", requires = "constellation")]
+    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
     pub(crate) only: Vec<String>,
 
     /// Leave these satellites of the files out, named as for `--only`; may be repeated.
-    #[arg(long, value_name = "PATTERN", requires = "constellation")]
+    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
     pub(crate) exclude: Vec<String>,
 
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.

@@ -69,6 +69,67 @@ fn an_element_set_that_sgp4_refuses_is_told() {
     );
 }
 
+/// Satellites of files are chosen by pattern; what a file holds besides is told; old sets are warned of.
+#[test]
+fn satellites_of_files_are_chosen_and_the_rest_is_told() {
+    let directory = TempDir::new().unwrap();
+    let omm = |name: &str, number: u32| {
+        format!(
+            "<omm id=\"CCSDS_OMM_VERS\" version=\"2.0\"><header><CREATION_DATE>2025-01-01T00:00:00</CREATION_DATE>\
+             <ORIGINATOR>X</ORIGINATOR></header><body><segment><metadata><OBJECT_NAME>{name}</OBJECT_NAME>\
+             <OBJECT_ID>UNKNOWN</OBJECT_ID><CENTER_NAME>EARTH</CENTER_NAME><REF_FRAME>TEME</REF_FRAME>\
+             <TIME_SYSTEM>UTC</TIME_SYSTEM><MEAN_ELEMENT_THEORY>SGP4</MEAN_ELEMENT_THEORY></metadata><data>\
+             <meanElements><EPOCH>2024-12-01T00:00:00</EPOCH><MEAN_MOTION>13.9</MEAN_MOTION>\
+             <ECCENTRICITY>0.0001</ECCENTRICITY><INCLINATION>55.0</INCLINATION>\
+             <RA_OF_ASC_NODE>10.0</RA_OF_ASC_NODE><ARG_OF_PERICENTER>20.0</ARG_OF_PERICENTER>\
+             <MEAN_ANOMALY>30.0</MEAN_ANOMALY></meanElements><tleParameters><NORAD_CAT_ID>{number}</NORAD_CAT_ID>\
+             <BSTAR>0.0</BSTAR></tleParameters></data></segment></body></omm>\n"
+        )
+    };
+    let file = format!(
+        "<ndm>\n{}{}<opm><header><ORIGINATOR>X</ORIGINATOR></header></opm>\n</ndm>\n",
+        omm("ALPHA-1", 90001),
+        omm("BETA-1", 90002)
+    );
+    fs::write(directory.path().join("mixed.xml"), file).unwrap();
+    let evaluated = |arguments: &[&str]| {
+        let mut all = vec![
+            "evaluate",
+            "--constellation",
+            "mixed.xml",
+            "--format",
+            "json",
+        ];
+        all.extend(["--set", "time.duration-h=1", "--set", "time.step-s=600"]);
+        all.extend(["--set", "region.step-deg=20"]);
+        all.extend(arguments);
+        ran(directory.path(), &all)
+    };
+    for (arguments, satellites) in [
+        (&[][..], 2),
+        (&["--only", "alpha-*"], 1),
+        (&["--exclude", "90001"], 1),
+    ] {
+        let ran = evaluated(arguments);
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        let result: Value = serde_json::from_str(&ran.stdout).unwrap();
+        assert_eq!(result["constellation"]["satellites"], satellites);
+        let told = "mixed.xml: left out: 1 (message: opm)";
+        assert!(ran.stderr.contains(told), "{}", ran.stderr);
+        assert!(
+            ran.stderr.contains("31.0 days from the study"),
+            "{}",
+            ran.stderr
+        );
+    }
+    let unknown = evaluated(&["--only", "ALPHA-2"]);
+    assert_eq!(unknown.status, 2);
+    let told = "no satellite matches 'ALPHA-2'; did you mean 'ALPHA-1'?";
+    assert!(unknown.stderr.contains(told), "{}", unknown.stderr);
+    let design = ["evaluate", "--design", "delta:55:4/2/1@925", "--only", "x"];
+    assert_eq!(ran(directory.path(), &design).status, 2);
+}
+
 fn notation(path: &Path, place: impl Fn(&Value) -> bool) -> String {
     let front: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
     let members = front["front"].as_array().unwrap();

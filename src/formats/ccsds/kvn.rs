@@ -126,7 +126,7 @@ pub(crate) struct Pair<'a> {
 
 /// The lines of a message, whose comments may hold any text.
 pub(crate) fn lines<R: BufRead>(input: R) -> Lines<R> {
-    Lines::new(input).with_free_text(|line| line.trim_ascii_start().starts_with(b"COMMENT"))
+    Lines::new(input).with_comments(|line| line.trim_ascii_start().starts_with(b"COMMENT"))
 }
 
 /// What a line of a message is.
@@ -286,7 +286,7 @@ impl KvnBlock {
     ) -> Option<f64> {
         let place = pair.value_place;
         if !self.is_message {
-            return number::read_number(pair.value, place, "omm-number", findings);
+            return number::read(pair.value, place, "omm-number", findings);
         }
         let (text, shown) = match pair.value.split_once('[') {
             Some((text, rest)) if rest.ends_with(']') => {
@@ -419,7 +419,12 @@ pub(crate) fn read_number(
     place: (usize, usize),
     findings: &mut FindingList,
 ) -> Option<f64> {
-    let value = number::read_number(text, place, "ccsds-number", findings)?;
+    // A number of Fortran is none here.
+    if text.contains(['d', 'D']) {
+        findings.error(place, "ccsds-number", format!("'{text}' is not a number"));
+        return None;
+    }
+    let value = number::read(text, place, "ccsds-number", findings)?;
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));

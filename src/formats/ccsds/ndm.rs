@@ -68,6 +68,9 @@ pub fn parse(
                     }
                 });
             }
+            (XmlNode::Leaf(leaf), None) if KINDS.contains(&leaf.name.as_str()) => {
+                findings.leave_out(place, "message", &leaf.name);
+            }
             (XmlNode::Close(name), Some(Open::Oem(_))) if name == "oem" => {
                 if let Some(Open::Oem(message)) = open.take() {
                     let message = message.end(place, findings);

@@ -9,7 +9,7 @@ use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
-use crate::formats::text::number::read_number;
+use crate::formats::text::number;
 use crate::frames::{Frame, State};
 use crate::orbit::earth_orbit::{ImplausibleState, check_position, check_state};
 use crate::time::Epoch;
@@ -254,7 +254,7 @@ impl StkParser {
         }
         let mut values = [0.0; 10];
         for (value, (column, text)) in values.iter_mut().zip(fields) {
-            match read_number(text, (line.number, column), "stk-number", findings) {
+            match number::read(text, (line.number, column), "stk-number", findings) {
                 Some(number) => *value = number,
                 None => return,
             }

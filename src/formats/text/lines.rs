@@ -25,7 +25,7 @@ pub(crate) struct Lines<R> {
     /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
     takes_tabs: bool,
     /// Lines whose text means nothing to the reader, or is a name: they may hold any characters.
-    is_free_text: fn(&[u8]) -> bool,
+    is_comment: fn(&[u8]) -> bool,
 }
 
 /// How the bytes of a line were taken.
@@ -42,17 +42,14 @@ impl<R: BufRead> Lines<R> {
             number: 0,
             after_carriage_return: false,
             takes_tabs: false,
-            is_free_text: |_| false,
+            is_comment: |_| false,
         }
     }
 
-    /// The same, with lines that may hold more than printable ASCII: comments and names. `is_free_text` sees the
+    /// The same, with lines that may hold more than printable ASCII: comments and names. `is_comment` sees the
     /// bytes of a line.
-    pub(crate) fn with_free_text(self, is_free_text: fn(&[u8]) -> bool) -> Self {
-        Self {
-            is_free_text,
-            ..self
-        }
+    pub(crate) fn with_comments(self, is_comment: fn(&[u8]) -> bool) -> Self {
+        Self { is_comment, ..self }
     }
 
     /// Lines of a format that separates its words by tabs too.
@@ -80,7 +77,7 @@ impl<R: BufRead> Lines<R> {
             if matches!(taken, Taken::TooLong) {
                 let message = format!("the line is longer than {MAX_LINE} bytes");
                 let place = (self.number, MAX_LINE + 1);
-                if !(self.is_free_text)(&bytes) {
+                if !(self.is_comment)(&bytes) {
                     findings.error(place, "line-length", message);
                     continue;
                 }
@@ -96,7 +93,7 @@ impl<R: BufRead> Lines<R> {
                     let message = format!("byte 0x{:02X} is not printable ASCII", bytes[at]);
                     let place = (self.number, at + 1);
                     let has_control = bytes.iter().any(|b| b.is_ascii_control());
-                    if (self.is_free_text)(&bytes) && !has_control {
+                    if (self.is_comment)(&bytes) && !has_control {
                         findings.warning(place, "character", message);
                         return Ok(Some(self.line(&bytes)));
                     }
@@ -219,7 +216,7 @@ mod tests {
         let latin_1 = b"COMMENT \xd6BB\nCOMMENT \0\n";
         let bytes = [bytes, latin_1].concat();
         let mut findings = FindingList::of_linter(10);
-        let mut reader = Lines::new(&bytes[..]).with_free_text(|line| line.starts_with(b"COMMENT"));
+        let mut reader = Lines::new(&bytes[..]).with_comments(|line| line.starts_with(b"COMMENT"));
         let mut texts = Vec::new();
         while let Some(line) = reader.next(&mut findings).unwrap() {
             texts.push(line.text);

@@ -1,22 +1,23 @@
-//! Decimal numbers, as every format writes them.
+//! Decimal numbers of formats that leave their form open.
 
 use crate::formats::text::finding::FindingList;
 
-/// A finite decimal number, perhaps with an exponent; Rust alone would also take `inf` and `nan`.
-pub(crate) fn decimal(text: &str) -> Option<f64> {
-    let is_decimal = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
-    let value = text.parse::<f64>().ok()?;
-    (value.is_finite() && text.bytes().all(is_decimal)).then_some(value)
-}
-
-/// Reads a number; a finding of `rule` if it is none.
-pub(crate) fn read_number(
+/// A finite number in decimal digits, with the exponent of C or of Fortran; a finding under `rule` if it is none.
+pub(crate) fn read(
     text: &str,
     place: (usize, usize),
     rule: &'static str,
     findings: &mut FindingList,
 ) -> Option<f64> {
-    let value = decimal(text);
+    let is_of_number = |byte: u8| {
+        byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.' | b'e' | b'E' | b'd' | b'D')
+    };
+    // Rust would also take "inf" and "nan".
+    let value = match text.bytes().all(is_of_number) {
+        true => text.replace(['d', 'D'], "e").parse::<f64>().ok(),
+        false => None,
+    };
+    let value = value.filter(|value| value.is_finite());
     if value.is_none() {
         findings.error(place, rule, format!("'{text}' is not a number"));
     }
@@ -28,20 +29,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_finite_decimals() {
+    fn numbers_of_c_and_fortran_are_read() {
+        let mut findings = FindingList::of_linter(20);
         for (text, value) in [
             ("1", Some(1.0)),
-            ("-.5e-3", Some(-0.5e-3)),
-            ("+7.", Some(7.0)),
+            (".5", Some(0.5)),
+            ("-2.", Some(-2.0)),
+            ("+3.5E-003", Some(0.0035)),
+            ("1.25D+02", Some(125.0)),
+            ("0.12345678901234567890", Some(0.123_456_789_012_345_68)),
             ("nan", None),
-            ("-inf", None),
-            ("infinity", None),
+            ("inf", None),
             ("1e999", None),
-            ("0x10", None),
-            ("1_0", None),
             ("", None),
+            ("1,5", None),
         ] {
-            assert_eq!(decimal(text), value, "{text}");
+            assert_eq!(
+                read(text, (1, 1), "a-number", &mut findings),
+                value,
+                "{text}"
+            );
         }
+        assert_eq!(findings.into_vec().len(), 5);
     }
 }

@@ -37,7 +37,7 @@ pub fn parse(
     findings: &mut FindingList,
     mut take: impl FnMut(TleRecord),
 ) -> io::Result<()> {
-    let mut lines = Lines::new(input).with_free_text(is_name);
+    let mut lines = Lines::new(input).with_comments(is_name);
     let mut name: Option<Line> = None;
     let mut first: Option<Line> = None;
     let mut any = false;
