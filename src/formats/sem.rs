@@ -8,7 +8,7 @@ use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::Lines;
-use crate::formats::text::number::read_number;
+use crate::formats::text::number;
 use crate::formats::yuma::Almanac;
 use std::f64::consts::PI;
 use std::io::{self, BufRead};
@@ -67,7 +67,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
                 findings.error((line.number, column), "sem-count", message);
                 return Ok(almanacs);
             }
-            record.extend(read_number(
+            record.extend(number::read(
                 text,
                 (line.number, column),
                 "sem-number",

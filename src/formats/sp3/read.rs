@@ -29,7 +29,7 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Sp3> {
-    let mut lines = Lines::new(input).with_free_text(is_comment);
+    let mut lines = Lines::new(input).with_comments(is_comment);
     let mut parser = Sp3Parser::new();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);

@@ -47,7 +47,7 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<StkEphemeris>> {
     let is_comment = |line: &[u8]| line.trim_ascii_start().starts_with(b"#");
-    let mut lines = Lines::with_tabs(input).with_free_text(is_comment);
+    let mut lines = Lines::with_tabs(input).with_comments(is_comment);
     let mut parser = StkParser::default();
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
@@ -299,7 +299,7 @@ impl StkParser {
 
     fn boundaries(&mut self, line: &Line, findings: &mut FindingList) {
         for (column, text) in words(&line.text) {
-            self.boundaries_s.extend(read_number(
+            self.boundaries_s.extend(number::read(
                 text,
                 (line.number, column),
                 "stk-number",

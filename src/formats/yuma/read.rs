@@ -4,7 +4,7 @@ use super::Almanac;
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines};
-use crate::formats::text::number::read_number;
+use crate::formats::text::number;
 use std::io::{self, BufRead};
 
 /// The fields by the beginnings of their keys, in the order of a block.
@@ -104,7 +104,7 @@ impl Block {
         }
         let column = line.text.len() - value.trim_start().len() + 1;
         let place = (line.number, column);
-        self.values[at] = read_number(value.trim(), place, "yuma-number", findings);
+        self.values[at] = number::read(value.trim(), place, "yuma-number", findings);
     }
 
     fn almanac(self, findings: &mut FindingList) -> Option<Almanac> {
