@@ -69,7 +69,7 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
-    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML,
+    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, almanacs,
     /// and tables of elements and states.
     ///
     /// Example: navwalker lint constellation.tle oem/*.oem

@@ -167,7 +167,7 @@ impl Arc {
         if since(node) <= SAME_INSTANT_S {
             return Some((node.1, false));
         }
-        if next == 0 {
+        if next == 0 || !self.carries_interpolation() {
             return None;
         }
         let table: Vec<_> = window(&self.nodes, next, self.interpolation.nodes())
@@ -186,7 +186,13 @@ impl Arc {
             .partition_point(|node| since(node) < -SAME_INSTANT_S);
         let node = self.nodes.get(next).filter(|_| self.covers(at))?;
         let interpolated = since(node) > SAME_INSTANT_S;
-        (next > 0 || !interpolated).then_some(interpolated)
+        let holds = !interpolated || (next > 0 && self.carries_interpolation());
+        holds.then_some(interpolated)
+    }
+
+    /// Whether there are nodes for the polynomial: of a run between gaps, whose file names none, all of them.
+    fn carries_interpolation(&self) -> bool {
+        !self.is_open || self.nodes.len() >= self.interpolation.nodes()
     }
 
     /// Largest distance, km, between samples and what the others give when every other one is left out: that of

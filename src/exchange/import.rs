@@ -241,6 +241,7 @@ impl Fleet {
         if let Self::Sampled(trajectories) = self {
             for (place, trajectory) in (1..).zip(trajectories) {
                 trajectory.name = format!("{place}");
+                trajectory.id.clone_from(&trajectory.name);
             }
         }
     }

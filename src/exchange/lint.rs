@@ -228,7 +228,7 @@ mod tests {
             }
         }
         for (path, bytes) in &files {
-            let whole = [".csv", ".tle"];
+            let whole = [".csv", ".tle", ".alm"];
             if whole.iter().any(|end| path.ends_with(end)) || !is_read(path) {
                 continue;
             }

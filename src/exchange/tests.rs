@@ -15,7 +15,7 @@ use crate::time::{Epoch, TimeGrid};
 
 /// SEM is read and not written: two satellites in the layout of its definition.
 const SEM: &str = "\
- 2  CURRENT.ALM
+2  CURRENT.ALM
  299 258048
 
 1

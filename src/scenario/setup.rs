@@ -110,7 +110,7 @@ impl SetupError {
     }
 }
 
-/// Why a file of element sets gives no system.
+/// Why a file gives no navigation system.
 #[derive(Debug, Error)]
 pub enum GnssFileError {
     /// It cannot be read.
@@ -119,7 +119,7 @@ pub enum GnssFileError {
     /// A line of it is wrong.
     #[error(transparent)]
     Format(#[from] ReadFleetError),
-    /// It is not a file of element sets.
+    /// It holds nothing that moves by itself.
     #[error("the file holds {content}; element sets, almanacs or states are needed")]
     NoSets {
         /// Its content.

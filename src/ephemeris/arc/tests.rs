@@ -111,3 +111,19 @@ fn the_estimate_is_above_the_true_error() {
         None
     );
 }
+
+/// A run between gaps that is too short for the usual polynomial stands at its samples alone.
+#[test]
+fn short_runs_are_not_interpolated() {
+    for (count, expected) in [(10, None), (11, Some(true))] {
+        let mut run = arc(Interpolation::Lagrange(10), 60.0, count);
+        run.is_open = true;
+        let at = start().plus_seconds(30.0);
+        assert_eq!(
+            run.state(at).map(|(_, interpolated)| interpolated),
+            expected
+        );
+        assert_eq!(run.is_interpolated(at), expected);
+        assert_eq!(run.is_interpolated(start()), Some(false));
+    }
+}

@@ -126,11 +126,7 @@ fn a_second_late(fleet: &mut Fleet) {
         Fleet::Almanacs(_) | Fleet::Mixed(_) => unreachable!("a product is of one kind"),
         Fleet::Sampled(trajectories) => {
             for arc in trajectories.iter_mut().flat_map(|one| &mut one.arcs) {
-                for (at, state) in &mut arc.nodes {
-                    // Positions alone reach beyond the span.
-                    if state.velocity_km_s.norm() == 0.0 {
-                        *at = at.plus_seconds(1.0);
-                    }
+                for (_, state) in &mut arc.nodes {
                     state.position_km = state.position_km + -state.velocity_km_s;
                 }
             }

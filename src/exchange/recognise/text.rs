@@ -30,9 +30,20 @@ pub(super) fn content(seen: &[u8], complete: bool) -> Option<Content> {
         .filter(|line| !line.trim_start().starts_with("COMMENT"));
     let mut rows = said.clone().skip_while(|line| is_hash_comment(line));
     let first = rows.next();
-    let by_first = first.and_then(|first| by_line(first).or_else(|| almanac(first, rows)));
+    let by_first = first.and_then(|first| by_line(first).or_else(|| almanac(first, rows.clone())));
     if let Some(content) = by_first {
-        return Some(content);
+        let mut blocks = rows.filter_map(|line| {
+            let (word, block) = line.trim_start().split_once(' ')?;
+            word.eq_ignore_ascii_case("BEGIN").then_some(block)
+        });
+        return Some(match (&content, blocks.next().map(str::trim)) {
+            (Content::Format(Format::Stk), Some(block))
+                if !block.eq_ignore_ascii_case("Ephemeris") =>
+            {
+                Content::other(format_args!("an STK file of another kind, {block}"))
+            }
+            _ => content,
+        });
     }
     if is_element_sets(&mut said) {
         return Some(Content::Format(Format::Tle));

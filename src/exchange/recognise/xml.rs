@@ -63,7 +63,8 @@ fn messages(mut rest: &[u8], complete: bool) -> Option<Content> {
             _ => {}
         }
     }
-    complete.then(|| Content::other("a CCSDS NDM with no message of a kind that is read (oem, omm)"))
+    complete
+        .then(|| Content::other("a CCSDS NDM with no message of a kind that is read (oem, omm)"))
 }
 
 fn is_name(byte: u8) -> bool {

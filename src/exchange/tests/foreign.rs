@@ -347,7 +347,8 @@ fn validate_ephemerides_of_stk() {
         }
     }
     let one = "EphemerisTimePos\r\n 0 7100 0 1300";
-    let text = stk("J2000", "", one).replace("Points\t\t 3", "Points\t\t 1");
+    let text =
+        stk("J2000", "DistanceUnit Kilometers\r\n", one).replace("Points\t\t 3", "Points\t\t 1");
     let report = lint(text.as_bytes(), None, None, 10).unwrap();
     assert_eq!(report.findings[0].rule, "stk-velocity");
 }

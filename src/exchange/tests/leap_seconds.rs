@@ -104,13 +104,14 @@ fn validate_labels_of_products_over_a_leap_second() {
         ]
     );
     assert!(sp3.contains("## 1929 604757.00000000    30.00000000 57753 "));
-    let files = exported(grid, Product::Stk, Choices::default());
+    // With a scene, STK has its Connect commands too.
+    let products = [Product::Stk, Product::Czml];
+    let files = in_memory(&subject(design(), grid), &products, Choices::default()).1;
     let stk = text(&files, "stk/NW-P01-S01.e");
     assert!(stk.contains("ScenarioEpoch 31 Dec 2016 23:59:00.000000000\n"));
     assert_eq!(first_words(stk), ["0", "30", "60", "90", "120", "150"]);
     let connect = text(&files, "stk-scenario/connect.txt");
     assert!(connect.contains("\"31 Dec 2016 23:59:00.000000\" \"1 Jan 2017 00:01:59.000000\"\n"));
-    let files = exported(grid, Product::Czml, Choices::default());
     assert!(text(&files, "scene.czml").contains("2016-12-31T23:59:00Z/2017-01-01T00:01:59Z"));
 }
 

@@ -25,9 +25,9 @@ pub enum NdmMessage {
 }
 
 /// A message as it comes in.
-enum Open {
-    Oem(Box<oem::XmlMessage>),
-    Omm(Box<omm::XmlMessage>),
+enum OpenMessage {
+    Oem(Box<oem::OemXmlMessage>),
+    Omm(Box<omm::OmmXmlMessage>),
     /// A kind that is not read, at this depth.
     Other(usize),
 }
@@ -44,7 +44,7 @@ pub fn parse(
     mut take: impl FnMut(NdmMessage),
 ) -> io::Result<()> {
     let mut nodes = Nodes::new(input);
-    let mut open: Option<Open> = None;
+    let mut open: Option<OpenMessage> = None;
     let (mut depth, mut any) = (0, false);
     while let Some((place, node)) = nodes.next(findings)? {
         match (&node, &mut open) {
@@ -53,39 +53,43 @@ pub fn parse(
                 open = Some(match name.as_str() {
                     "oem" if wanted.contains(&"oem") => {
                         any = true;
-                        Open::Oem(Box::new(oem::XmlMessage::new(version, place, findings)))
+                        OpenMessage::Oem(Box::new(oem::OemXmlMessage::new(
+                            version, place, findings,
+                        )))
                     }
                     "omm" if wanted.contains(&"omm") => {
                         any = true;
-                        Open::Omm(Box::new(omm::XmlMessage::new(version, place, findings)))
+                        OpenMessage::Omm(Box::new(omm::OmmXmlMessage::new(
+                            version, place, findings,
+                        )))
                     }
                     name => {
                         // A root of no kind at all is no message.
                         if depth > 0 || KINDS.contains(&name) {
                             findings.leave_out(place, "message", name);
                         }
-                        Open::Other(depth)
+                        OpenMessage::Other(depth)
                     }
                 });
             }
             (XmlNode::Leaf(leaf), None) if KINDS.contains(&leaf.name.as_str()) => {
                 findings.leave_out(place, "message", &leaf.name);
             }
-            (XmlNode::Close(name), Some(Open::Oem(_))) if name == "oem" => {
-                if let Some(Open::Oem(message)) = open.take() {
+            (XmlNode::Close(name), Some(OpenMessage::Oem(_))) if name == "oem" => {
+                if let Some(OpenMessage::Oem(message)) = open.take() {
                     let message = message.end(place, findings);
                     message.map(NdmMessage::Oem).into_iter().for_each(&mut take);
                 }
             }
-            (XmlNode::Close(name), Some(Open::Omm(_))) if name == "omm" => {
-                if let Some(Open::Omm(message)) = open.take() {
+            (XmlNode::Close(name), Some(OpenMessage::Omm(_))) if name == "omm" => {
+                if let Some(OpenMessage::Omm(message)) = open.take() {
                     let message = message.end(nodes.place(), findings);
                     message.map(NdmMessage::Omm).into_iter().for_each(&mut take);
                 }
             }
-            (XmlNode::Close(_), Some(Open::Other(at))) if *at + 1 == depth => open = None,
-            (_, Some(Open::Oem(message))) => message.node(&node, place, findings),
-            (_, Some(Open::Omm(message))) => message.node(&node, place, findings),
+            (XmlNode::Close(_), Some(OpenMessage::Other(at))) if *at + 1 == depth => open = None,
+            (_, Some(OpenMessage::Oem(message))) => message.node(&node, place, findings),
+            (_, Some(OpenMessage::Omm(message))) => message.node(&node, place, findings),
             _ => {}
         }
         match node {

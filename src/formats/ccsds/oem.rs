@@ -12,7 +12,7 @@ mod xml;
 
 pub use read::{parse, read};
 pub use write::OemWriter;
-pub(super) use xml::XmlMessage;
+pub(super) use xml::OemXmlMessage;
 pub use xml::{parse_xml, read_xml};
 
 use crate::ephemeris::arc::{Arc, Interpolation};

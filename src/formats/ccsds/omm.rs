@@ -7,7 +7,7 @@
 
 mod read;
 
-pub(super) use read::XmlMessage;
+pub(super) use read::OmmXmlMessage;
 pub use read::{parse_csv, parse_json, parse_kvn, parse_xml};
 
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};

@@ -14,6 +14,9 @@ use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::io::{self, BufRead};
 
+/// A state and its instant.
+type TimedState = (Epoch, State<Frame>);
+
 /// A row of a table of elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementsRow {
@@ -135,7 +138,7 @@ pub fn parse_states(
     input: impl BufRead,
     findings: &mut FindingList,
 ) -> io::Result<Vec<Trajectory>> {
-    let mut satellites: Vec<(String, Frame, Vec<(Epoch, State<Frame>)>)> = Vec::new();
+    let mut satellites: Vec<(String, Frame, Vec<TimedState>)> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     rows(input, &STATES, findings, |frame, row, findings| {
         let at = row.stamp(1, findings);

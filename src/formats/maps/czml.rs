@@ -10,6 +10,7 @@
 
 mod packet;
 mod read;
+mod value;
 mod write;
 
 pub use read::{parse, read};

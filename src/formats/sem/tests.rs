@@ -2,7 +2,7 @@ use super::*;
 use crate::formats::text::finding::Finding;
 
 const TWO: &str = "\
- 2  CURRENT.ALM
+2  CURRENT.ALM
  299 258048
 
 1
@@ -51,9 +51,9 @@ fn validate_units_of_the_definition() {
 #[test]
 fn broken_rules_are_named_with_their_place() {
     for (from, to, expected) in [
-        (" 2  C", " x  C", (1, 2, "sem-first-line")),
-        (" 2  C", " 3  C", (20, 1, "sem-count")),
-        (" 2  C", " 1  C", (13, 1, "sem-count")),
+        ("2  C", "x  C", (1, 1, "sem-first-line")),
+        ("2  C", "3  C", (20, 1, "sem-count")),
+        ("2  C", "1  C", (13, 1, "sem-count")),
         ("63\n11\n", "63\n", (19, 1, "sem-truncated")),
         (
             " 5.0E-03  5.0E-03",

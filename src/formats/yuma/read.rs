@@ -87,11 +87,11 @@ impl Block {
         let place = (line.number, 1);
         let known = line.text.split_once(':').and_then(|(key, value)| {
             let key = key.trim_start();
-            let is_key = |known: &&str| {
+            let is_key = |known: &str| {
                 let start = key.get(..known.len());
                 start.is_some_and(|start| start.eq_ignore_ascii_case(known))
             };
-            Some((KEYS.iter().position(|known| is_key(&known))?, value))
+            Some((KEYS.iter().position(|known| is_key(known))?, value))
         });
         let Some((at, value)) = known else {
             findings.error(place, "yuma-line", "this is not a field of a YUMA almanac");

@@ -101,7 +101,7 @@ section! {
     pub struct GnssSetup in "gnss" {
         /// Built-in GNSS constellations that the design augments.
         pub constellations: Vec<Preset> = SomeOf::at_least(0), default vec![Preset::Beidou3];
-        /// TLE or OMM files of GNSS satellites, paths relative to this file.
+        /// TLE, OMM, SP3, OEM or almanacs of GNSS satellites, paths relative to this file.
         pub files: Vec<String> = Paths, default Vec::new();
         /// Receiver clocks solved for in addition to the position.
         pub clocks: Clocks = OneOf::new(), default Clocks::PerSystem;

@@ -71,7 +71,9 @@ fn states_are_interpolated_off_the_step_of_the_file() {
         else {
             panic!("{product}: {notes:?}")
         };
-        assert!(km < 1.0, "{product}: {km}");
+        // CZML has its samples as far apart as a metre of error allows: 2^8 times that, and more at the ends.
+        let most_km = if product == Product::Czml { 5.0 } else { 1e-3 };
+        assert!(km < most_km, "{product}: {km}");
         assert!(notes[0].to_string().contains("are interpolated"));
         // At the samples of the file nothing is, except in CZML, whose samples lie wider.
         let at_samples = fleet.sampling_notes(grid(600.0, 3_000.0, 60.0));
@@ -158,7 +160,7 @@ fn a_satellite_that_ends_early_has_no_state_beyond() {
     assert!(states(1_710.0).is_some() && states(1_800.0).is_none());
     assert!(
         fleet
-            .propagate(grid(0.0, 7_200.0, 90.0), Model::J2)
+            .propagate(grid(0.0, 10_800.0, 90.0), Model::J2)
             .is_err()
     );
 }

@@ -140,7 +140,7 @@ enum OemXmlSection {
 }
 
 /// A message while it is read.
-pub(in crate::formats::ccsds) struct XmlMessage {
+pub(in crate::formats::ccsds) struct OemXmlMessage {
     part: OemXmlSection,
     header: KvnBlock,
     rules: MessageRules,
@@ -149,7 +149,7 @@ pub(in crate::formats::ccsds) struct XmlMessage {
     segments: Vec<Segment>,
 }
 
-impl XmlMessage {
+impl OemXmlMessage {
     pub(in crate::formats::ccsds) fn new(
         version: Option<&str>,
         place: (usize, usize),

@@ -147,12 +147,12 @@ pub fn parse_xml(
 }
 
 /// A message in XML as it comes in.
-pub(in crate::formats::ccsds) struct XmlMessage {
+pub(in crate::formats::ccsds) struct OmmXmlMessage {
     begin: usize,
     block: KvnBlock,
 }
 
-impl XmlMessage {
+impl OmmXmlMessage {
     pub(in crate::formats::ccsds) fn new(
         version: Option<&str>,
         place: (usize, usize),

@@ -1,18 +1,17 @@
 //! Reads the satellites of a CZML document: packets with sampled positions, in one interval or several, in one
 //! packet or several.
 
-use super::packet::{Packet, PositionPacket, Samples};
-use crate::earth::Surface;
-use crate::ephemeris::arc::{Arc, Interpolation, still};
+use super::packet::{Packet, PositionPacket};
+use super::value::{Kind, algorithm, frame, interval, nodes, samples};
+use crate::ephemeris::arc::{Arc, Interpolation};
+use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::{JsonObject, Objects};
-use crate::formats::text::timestamp;
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, State};
 use crate::orbit::earth_orbit::check_position;
 use crate::time::Epoch;
-use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::io::{self, BufRead};
 
@@ -60,7 +59,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
 }
 
 /// The rule that is broken, the key at which, and how.
-type PacketFault = (&'static str, &'static str, String);
+pub(super) type PacketFault = (&'static str, &'static str, String);
 
 /// *CZML Guide*, "CZML Structure": the first packet has the id `document` and the version.
 fn document_fault(packet: &Packet) -> Option<PacketFault> {
@@ -104,7 +103,7 @@ struct Piece {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Algorithm {
+pub(super) enum Algorithm {
     Linear,
     Lagrange,
     Hermite,
@@ -300,6 +299,17 @@ impl Piece {
             self.nodes.sort_by_key(|(at, _)| *at);
             self.nodes.dedup_by_key(|(at, _)| *at);
         }
+        if !self.has_velocities {
+            let positions: Vec<_> = self
+                .nodes
+                .iter()
+                .map(|(at, s)| (*at, s.position_km))
+                .collect();
+            let derived = velocities(&positions).unwrap_or_default();
+            for ((_, state), velocity_km_s) in self.nodes.iter_mut().zip(derived) {
+                state.velocity_km_s = velocity_km_s;
+            }
+        }
         // The nodes of CesiumJS: `LagrangePolynomialApproximation`, `HermitePolynomialApproximation`,
         // the latter without velocities being the former.
         let degree = self.degree.unwrap_or(1);
@@ -332,157 +342,4 @@ fn within(arcs: Vec<Arc>, availability: &[(Epoch, Epoch)]) -> Vec<Arc> {
             arcs.iter().flat_map(cut).collect()
         }
     }
-}
-
-/// What the numbers of a position mean.
-#[derive(Clone, Copy, PartialEq)]
-enum Kind {
-    Cartesian,
-    CartesianVelocity,
-    Degrees,
-    Radians,
-}
-
-impl Kind {
-    /// Numbers of a sample, without the time.
-    fn numbers(self) -> usize {
-        match self {
-            Self::CartesianVelocity => 6,
-            _ => 3,
-        }
-    }
-
-    /// Kilometres from metres, or from longitude, latitude and height on the ellipsoid.
-    fn state(self, numbers: &[f64]) -> State<Frame> {
-        let vector = |from: usize| Vector3::from_row_slice(&numbers[from..from + 3]) / 1000.0;
-        let geodetic = |longitude_rad: f64, latitude_rad: f64| {
-            let surface = Surface::Wgs84;
-            let foot_km = surface.position_km(latitude_rad, longitude_rad);
-            let up = surface.vertical(latitude_rad, longitude_rad);
-            still(foot_km + up * (numbers[2] / 1000.0))
-        };
-        match self {
-            Self::Cartesian => still(vector(0)),
-            Self::CartesianVelocity => State::new(vector(0), vector(3)),
-            Self::Degrees => geodetic(numbers[0].to_radians(), numbers[1].to_radians()),
-            Self::Radians => geodetic(numbers[0], numbers[1]),
-        }
-    }
-}
-
-fn samples(position: &PositionPacket) -> Option<(&'static str, &Samples, Kind)> {
-    let given = [
-        (
-            "cartesianVelocity",
-            &position.cartesian_velocity,
-            Kind::CartesianVelocity,
-        ),
-        ("cartesian", &position.cartesian, Kind::Cartesian),
-        (
-            "cartographicDegrees",
-            &position.cartographic_degrees,
-            Kind::Degrees,
-        ),
-        (
-            "cartographicRadians",
-            &position.cartographic_radians,
-            Kind::Radians,
-        ),
-    ];
-    let mut given = given.into_iter();
-    given.find_map(|(key, samples, kind)| Some((key, samples.as_ref()?, kind)))
-}
-
-fn algorithm(position: &PositionPacket) -> Result<Option<Algorithm>, PacketFault> {
-    match position.interpolation_algorithm.as_deref() {
-        None => Ok(None),
-        Some("LINEAR") => Ok(Some(Algorithm::Linear)),
-        Some("LAGRANGE") => Ok(Some(Algorithm::Lagrange)),
-        Some("HERMITE") => Ok(Some(Algorithm::Hermite)),
-        Some(other) => {
-            let message = format!("interpolation {other} is not LINEAR, LAGRANGE or HERMITE");
-            Err(("czml-interpolation", "interpolationAlgorithm", message))
-        }
-    }
-}
-
-/// Cartographic positions are Earth-fixed whatever the frame.
-fn frame(position: &PositionPacket, kind: Kind) -> Result<Frame, PacketFault> {
-    match position.reference_frame.as_deref() {
-        _ if matches!(kind, Kind::Degrees | Kind::Radians) => Ok(Frame::EarthFixed),
-        None | Some("FIXED") => Ok(Frame::EarthFixed),
-        Some("INERTIAL") => Ok(Frame::Gcrf),
-        Some(other) => {
-            let message = format!("frame {other:?} is neither FIXED nor INERTIAL");
-            Err(("czml-frame", "referenceFrame", message))
-        }
-    }
-}
-
-/// The samples, whose times are texts or seconds since the epoch.
-fn nodes(
-    key: &'static str,
-    samples: &Samples,
-    kind: Kind,
-    epoch: Option<&str>,
-) -> Result<Vec<(Epoch, State<Frame>)>, PacketFault> {
-    let broken = |message: String| ("czml-samples", key, message);
-    let length = kind.numbers() + 1;
-    if !samples.numbers.len().is_multiple_of(length) || samples.numbers.is_empty() {
-        let message = format!("each sample is a time and {} numbers", length - 1);
-        return Err(broken(message));
-    }
-    if samples
-        .texts
-        .iter()
-        .any(|(place, _)| !place.is_multiple_of(length))
-    {
-        return Err(broken("a sample is not of numbers".to_owned()));
-    }
-    let texts: HashMap<usize, &String> = samples
-        .texts
-        .iter()
-        .map(|(place, text)| (*place, text))
-        .collect();
-    let origin = match epoch {
-        Some(text) => Some(instant(text).ok_or_else(|| {
-            let message = format!("epoch {text:?} is not an ISO 8601 date and time");
-            ("czml-epoch", "epoch", message)
-        })?),
-        None => None,
-    };
-    let mut nodes: Vec<(Epoch, State<Frame>)> = Vec::with_capacity(samples.numbers.len() / length);
-    for (k, sample) in samples.numbers.chunks_exact(length).enumerate() {
-        let at = match (texts.get(&(k * length)), origin) {
-            (Some(text), _) => instant(text)
-                .ok_or_else(|| broken(format!("{text:?} is not an ISO 8601 date and time")))?,
-            (None, Some(origin)) => origin.plus_seconds(sample[0]),
-            (None, None) => {
-                let message = "samples in seconds need an epoch".to_owned();
-                return Err(("czml-epoch", key, message));
-            }
-        };
-        if nodes.last().is_some_and(|(before, _)| *before > at) {
-            return Err(broken(
-                "the times of the samples do not increase".to_owned(),
-            ));
-        }
-        nodes.push((at, kind.state(&sample[1..])));
-    }
-    Ok(nodes)
-}
-
-/// The two instants of `2025-01-01T00:00:00Z/2025-01-02T00:00:00Z`.
-fn interval(key: &'static str, text: &str) -> Result<(Epoch, Epoch), PacketFault> {
-    let ends = text.split_once('/');
-    let ends = ends.and_then(|(first, last)| Some((instant(first)?, instant(last)?)));
-    ends.filter(|(first, last)| first <= last).ok_or_else(|| {
-        let message = format!("{text:?} is not an interval of ISO 8601 dates and times");
-        ("czml-interval", key, message)
-    })
-}
-
-/// An instant in UTC or with an offset from it.
-fn instant(text: &str) -> Option<Epoch> {
-    timestamp::parse_with_offset(text).map(|at| Epoch::from_utc(at.and_utc()))
 }
