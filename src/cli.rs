@@ -12,6 +12,7 @@ mod args;
 mod chart;
 mod commands;
 mod files;
+mod interrupt;
 mod output;
 mod progress;
 mod read_constellation;
@@ -58,6 +59,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn run(cli: Cli) -> anyhow::Result<Status> {
     output::set_quiet(cli.quiet);
+    interrupt::install();
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())

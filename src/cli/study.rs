@@ -51,6 +51,7 @@ impl Study {
 
     /// The scenario that a run was made with, which names the run's own copies of its files.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
+        files::recovered(directory)?;
         let path = directory.join(SCENARIO);
         let bytes = files::read_whole(&path)
             .with_context(|| format!("{} is not a run directory", directory.display()))

@@ -1,6 +1,7 @@
 //! `navwalker evaluate`.
 
 use crate::cli::args::{EvaluateArgs, OutputFormat};
+use crate::cli::files::StagedDirectory;
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
@@ -20,9 +21,17 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
         files::require_vacant(directory, args.force)?;
     }
     let study = Study::load(&args.study, &[])?;
+    let series = args
+        .series
+        .as_deref()
+        .map(StagedDirectory::new)
+        .transpose()?;
     match &args.design {
-        Some(design) => run_design(args, &study, design)?,
-        None => run_constellation(args, &study)?,
+        Some(design) => run_design(args, &study, design, series.as_ref())?,
+        None => run_constellation(args, &study, series.as_ref())?,
+    }
+    if let Some(series) = series {
+        series.commit()?;
     }
     if let Some(directory) = &args.series {
         output::hint(&format!(
@@ -39,12 +48,17 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()> {
+fn run_design(
+    args: &EvaluateArgs,
+    study: &Study,
+    design: &Design,
+    series: Option<&StagedDirectory>,
+) -> Result<()> {
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
     let metrics = evaluator.evaluate(design)?;
-    let dops = further(args, &evaluator, &ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris, series)?;
     let result = EvaluateResult::new(design, metrics, dops, study.stamp()?);
     let csv = || metrics_csv([(&result.design, &result.metrics)]);
     let notation = &result.design.notation;
@@ -52,7 +66,11 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     print(args, study, notation, &result.metrics, dops, &result, csv)
 }
 
-fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
+fn run_constellation(
+    args: &EvaluateArgs,
+    study: &Study,
+    series: Option<&StagedDirectory>,
+) -> Result<()> {
     let (format, fleet) = read_constellation::read(&args.constellation)?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
@@ -67,7 +85,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     }
     let ephemeris = fleet.propagate(setup.grid, setup.model)?;
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
-    let dops = further(args, &evaluator, &ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris, series)?;
     let result = ConstellationResult {
         constellation: ConstellationSummary {
             name,
@@ -95,10 +113,11 @@ fn further(
     args: &EvaluateArgs,
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
+    series: Option<&StagedDirectory>,
 ) -> Result<Option<DopStatistics>> {
     let dops = args.dops.then(|| evaluator.dops(ephemeris)).transpose()?;
-    if let Some(directory) = &args.series {
-        write_series(evaluator, ephemeris, directory)?;
+    if let Some(series) = series {
+        write_series(evaluator, ephemeris, series.path())?;
     }
     Ok(dops)
 }
@@ -127,13 +146,10 @@ fn print(
 
 fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) -> Result<()> {
     let series = evaluator.series(ephemeris)?;
-    let staged = files::StagedDirectory::new(directory)?;
-    let write = |name: &str, text: String| {
-        files::write_atomically(&staged.path().join(name), text.as_bytes())
-    };
+    let write =
+        |name: &str, text: String| files::write_atomically(&directory.join(name), text.as_bytes());
     write("epochs.csv", records_csv(&series.epochs)?)?;
-    write("points.csv", records_csv(&series.points)?)?;
-    staged.commit()
+    write("points.csv", records_csv(&series.points)?)
 }
 
 fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatistics>) -> String {

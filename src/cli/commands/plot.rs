@@ -15,16 +15,21 @@ use std::path::Path;
 pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let form = form(args)?;
     let view = RunView::at(&args.run)?;
+    let staged = args
+        .out
+        .as_deref()
+        .map(files::StagedFile::new)
+        .transpose()?;
     let plate = plate(args, &view)?;
     let bytes = render(&plate, form)?;
-    let Some(out) = &args.out else {
+    let (Some(out), Some(staged)) = (&args.out, staged) else {
         if form == Form::Png && io::stdout().is_terminal() {
             bail!("a PNG cannot be shown in a terminal; name a file with --out");
         }
         io::stdout().lock().write_all(&bytes)?;
         return Ok(Status::Done);
     };
-    files::write_atomically(out, &bytes)?;
+    staged.commit(&bytes)?;
     let mut written = out.display().to_string();
     if form != Form::Csv {
         let table = out.with_extension("csv");

@@ -42,6 +42,10 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     if let Some(directory) = &out {
         files::require_vacant(directory, args.force)?;
     }
+    let staged = out
+        .as_deref()
+        .map(files::StagedDirectory::new)
+        .transpose()?;
     let (study, design) = study_and_design(&args.study, &args.design)?;
     let evaluator = study.evaluator()?;
     let subject = Subject::new(design, &evaluator);
@@ -61,14 +65,14 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         }
     }
     let result = ValidateResult::new(&design, args.against.clone(), findings, study.stamp()?);
-    if let Some(directory) = &out {
-        write_reports(directory, &result)?;
+    output::result(&render(&result, args.format)?)?;
+    if let Some(staged) = staged {
+        write_reports(staged, &result)?;
     }
     if let Some(run) = run {
         let page = super::report::of_run(run, out.as_deref())?;
         output::hint(&format!("report written to {}", page.display()));
     }
-    output::result(&render(&result, args.format)?)?;
     Ok(if result.passed {
         Status::Done
     } else {
@@ -153,8 +157,7 @@ fn sorted_files(directory: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-fn write_reports(directory: &Path, result: &ValidateResult) -> Result<()> {
-    let staged = files::StagedDirectory::new(directory)?;
+fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Result<()> {
     for (name, format) in [
         ("report.txt", ReportFormat::Text),
         ("report.json", ReportFormat::Json),

@@ -1,0 +1,276 @@
+//! The program under fire: killed at any moment, given places that it cannot have.
+
+use crate::cli::{optimize, ran};
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+use tempfile::TempDir;
+
+fn started(directory: &Path, arguments: &[&str]) -> Child {
+    let program = assert_cmd::cargo::cargo_bin!("navwalker");
+    let mut command = Command::new(program);
+    command.current_dir(directory).args(arguments);
+    command.stdout(Stdio::null()).stderr(Stdio::null());
+    command.spawn().unwrap()
+}
+
+/// Names in a directory, sorted.
+fn names(directory: &Path) -> Vec<String> {
+    let entries = fs::read_dir(directory).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
+fn line(text: &str) -> Vec<&str> {
+    text.split(' ').collect()
+}
+
+const EXPORT: &str = "export --quiet --design delta:55:24/6/1@925 --as oem,stk,sp3 --out a";
+
+/// Waits for a staged directory beside the place of an export, then kills.
+#[cfg(unix)]
+fn killed_while_staged(place: &Path, signal: &str) -> i32 {
+    let mut child = started(place, &line(EXPORT));
+    while !names(place)
+        .iter()
+        .any(|name| name.starts_with(".a.navwalker-"))
+    {
+        assert_eq!(child.try_wait().unwrap(), None, "the export was too fast");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let kill = ["-s", signal, &child.id().to_string()].map(str::to_owned);
+    assert!(Command::new("kill").args(kill).status().unwrap().success());
+    child.wait().unwrap().code().unwrap_or(-1)
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_nothing() {
+    let directory = TempDir::new().unwrap();
+    assert_eq!(killed_while_staged(directory.path(), "INT"), 130);
+    assert_eq!(names(directory.path()), [""; 0]);
+}
+
+/// What a kill leaves is in nobody's way: the next export has only its own files, and removes it.
+#[cfg(unix)]
+#[test]
+fn what_a_kill_leaves_is_removed() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    killed_while_staged(place, "KILL");
+    assert_eq!(names(place).len(), 1);
+    // Files of users, and a link, that only look alike.
+    fs::write(place.join(".a.navwalker-notes"), "mine").unwrap();
+    fs::create_dir(place.join("precious")).unwrap();
+    fs::write(place.join("precious/file"), "mine").unwrap();
+    let link = place.join(".a.navwalker-abcdefghijkl");
+    std::os::unix::fs::symlink("precious", &link).unwrap();
+    assert_eq!(ran(place, &line(EXPORT)).status, 0);
+    let expected = [
+        ".a.navwalker-abcdefghijkl",
+        ".a.navwalker-notes",
+        "a",
+        "precious",
+    ];
+    assert_eq!(names(place), expected);
+    assert_eq!(names(&place.join("precious")), ["file"]);
+    assert!(
+        !names(&place.join("a"))
+            .iter()
+            .any(|name| name.starts_with('.'))
+    );
+}
+
+/// A staged file that its writer still holds is not taken for stale.
+#[test]
+fn what_is_being_written_stays() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let held = place.join(".a.navwalker-abcdefghijkl");
+    fs::create_dir(&held).unwrap();
+    let lock = fs::File::open(&held).unwrap();
+    lock.try_lock().unwrap();
+    assert_eq!(ran(place, &line(EXPORT)).status, 0);
+    assert!(held.exists());
+    drop(lock);
+    assert_eq!(ran(place, &line(&format!("{EXPORT} --force"))).status, 0);
+    assert_eq!(names(place), ["a"]);
+}
+
+/// A search that is killed at any of its moments resumes to the bytes of one that was not.
+#[test]
+fn a_search_resumes_wherever_it_is_killed() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for further in [&[][..], &["--seeds", "2"], &["--certify"]] {
+        let steps = [
+            "--set",
+            "search.inclination-step-deg=10",
+            "--set",
+            "search.altitude-step-km=300",
+        ];
+        let further = [further, &steps].concat();
+        let whole = optimize(&[&["--out", "whole"], further.as_slice()].concat());
+        assert_eq!(ran(place, &whole).status, 0);
+        let broken = optimize(&[&["--out", "broken", "--resume"], further.as_slice()].concat());
+        // Each time a little further: from before the directory is there to the end.
+        for milliseconds in 1..400 {
+            let mut child = started(place, &broken);
+            std::thread::sleep(Duration::from_millis(milliseconds));
+            child.kill().unwrap();
+            if child.wait().unwrap().success() {
+                break;
+            }
+        }
+        let resumed = ran(place, &broken);
+        assert_eq!(resumed.status, 0, "{further:?}: {}", resumed.stderr);
+        for (one, other) in [("whole", "broken"), ("whole-sweep", "broken-sweep")] {
+            let (one, other) = (place.join(one), place.join(other));
+            if one.exists() {
+                assert_same(&one, &other);
+                fs::remove_dir_all(one).unwrap();
+                fs::remove_dir_all(other).unwrap();
+            }
+        }
+        assert_eq!(names(place), [""; 0], "{further:?}");
+    }
+}
+
+fn assert_same(one: &Path, other: &Path) {
+    assert_eq!(names(one), names(other), "{}", other.display());
+    for name in names(one) {
+        let (one, other) = (one.join(&name), other.join(&name));
+        if one.is_dir() {
+            assert_same(&one, &other);
+        } else {
+            assert!(
+                fs::read(one).unwrap() == fs::read(&other).unwrap(),
+                "{}",
+                other.display()
+            );
+        }
+    }
+}
+
+/// What a kill leaves before the first checkpoint, and between the renames of a checkpoint.
+#[test]
+fn a_run_without_a_checkpoint_resumes() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    let front = fs::read(place.join("run/front.json")).unwrap();
+    for name in ["checkpoint", "checkpoint.previous"] {
+        fs::remove_file(place.join("run").join(name)).unwrap();
+        fs::write(place.join("run/.checkpoint.navwalker-abcdefghijkl"), "half").unwrap();
+        let resumed = ran(place, &optimize(&["--out", "run", "--resume"]));
+        assert_eq!(resumed.status, 0, "{}", resumed.stderr);
+        assert!(fs::read(place.join("run/front.json")).unwrap() == front);
+        let left = names(&place.join("run"));
+        assert!(!left.iter().any(|name| name.starts_with('.')), "{left:?}");
+    }
+}
+
+/// What users put beside a run, before it and while it works, stays.
+#[test]
+fn what_lies_beside_a_run_stays() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::create_dir(place.join("run/notes")).unwrap();
+    fs::write(place.join("run/notes/one.txt"), "mine").unwrap();
+    let longer = [
+        "--out",
+        "run",
+        "--resume",
+        "--set",
+        "optimizer.generations=400",
+    ];
+    let mut child = started(place, &optimize(&longer));
+    while !place.join("run/.lock").exists() {
+        assert_eq!(child.try_wait().unwrap(), None);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    fs::write(place.join("run/two.txt"), "mine too").unwrap();
+    assert!(child.wait().unwrap().success());
+    assert_eq!(
+        fs::read_to_string(place.join("run/notes/one.txt")).unwrap(),
+        "mine"
+    );
+    assert_eq!(
+        fs::read_to_string(place.join("run/two.txt")).unwrap(),
+        "mine too"
+    );
+    let history = fs::read_to_string(place.join("run/history.csv")).unwrap();
+    assert_eq!(history.lines().count(), 1 + 400);
+}
+
+/// A second process in the same run is told who holds it.
+#[cfg(unix)]
+#[test]
+fn a_run_has_one_process() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let long = ["--out", "run", "--set", "optimizer.generations=100000"];
+    let mut child = started(place, &optimize(&long));
+    while !place.join("run/.lock").exists() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    std::thread::sleep(Duration::from_millis(50));
+    for further in ["--resume", "--force"] {
+        let second = ran(place, &optimize(&["--out", "run", further]));
+        assert_eq!(second.status, 2, "{}", second.stderr);
+        let message = format!("run is in use: process {} works in it", child.id());
+        assert!(second.stderr.contains(&message), "{}", second.stderr);
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // A process that is gone holds nothing.
+    let next = ran(place, &optimize(&["--out", "run"]));
+    assert_eq!(next.status, 0, "{}", next.stderr);
+    assert!(!place.join("run/.lock").exists());
+}
+
+/// A place that cannot be had is found before the work, and nothing is left of the attempt.
+#[test]
+fn a_place_is_tried_before_the_work() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    fs::write(place.join("file"), "mine").unwrap();
+    let too_long = "x".repeat(300);
+    // The work would take hours.
+    let long = ["--set", "optimizer.generations=100000", "--out"];
+    for (out, message) in [
+        (
+            "file",
+            "is a file or lies in one, and a directory is needed",
+        ),
+        (
+            "file/run",
+            "is a file or lies in one, and a directory is needed",
+        ),
+        (too_long.as_str(), "too long"),
+        ("/proc/self/run", "cannot"),
+        ("/proc", "something else than a run"),
+    ] {
+        let optimized = ran(place, &[optimize(&[]), long.to_vec(), vec![out]].concat());
+        assert_eq!(optimized.status, 2, "{out}: {}", optimized.stderr);
+        assert!(
+            optimized.stderr.contains(message),
+            "{out}: {}",
+            optimized.stderr
+        );
+        let evaluate = "evaluate --design delta:55:182/13/1@925 --set time.step-s=0.2 --set \
+                        region.step-deg=2 --force --series";
+        let evaluated = ran(place, &[line(evaluate), vec![out]].concat());
+        assert_eq!(
+            (evaluated.status, evaluated.stdout.as_str()),
+            (2, ""),
+            "{out}"
+        );
+    }
+    assert_eq!(names(place), ["file"]);
+    assert_eq!(fs::read_to_string(place.join("file")).unwrap(), "mine");
+}
