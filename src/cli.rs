@@ -23,6 +23,7 @@ mod study;
 use args::{Cli, Command};
 use clap::Parser;
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// How a command ended, as its exit status.
@@ -43,8 +44,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     output::choose_colors();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
-        // clap prints help to stdout with status 0 and errors to stderr with status 2.
-        Err(error) => error.exit(),
+        Err(error) => return said(&error),
     };
     let status = match run(cli) {
         Ok(status) => status,
@@ -55,6 +55,17 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     ExitCode::from(status as u8)
+}
+
+/// Prints what parsing came to: help to stdout with status 0, errors to stderr with status 2.
+fn said(message: &clap::Error) -> ExitCode {
+    match message.print().and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            output::error(&anyhow::Error::new(error).context("cannot print"));
+            ExitCode::from(Status::CouldNotRun as u8)
+        }
+        _ => u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),
+    }
 }
 
 fn run(cli: Cli) -> anyhow::Result<Status> {

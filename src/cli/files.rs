@@ -1,13 +1,16 @@
 //! Files and directories that are either whole or absent: written beside, then renamed.
 
+mod guard;
 mod replace;
 mod staging;
 
+pub(crate) use guard::{refuse_foreign, refuse_inputs};
 pub(crate) use staging::{is_staged, lock};
 
 use crate::cli::interrupt::Removed;
 use crate::cli::output;
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -248,8 +251,9 @@ fn check_place(place: &Path, parent: &Path) -> Result<()> {
         Ok(found) if is_mount_point(&found, &parent.metadata()?) => {
             bail!("it is a mount point, which cannot be replaced; choose a directory in it")
         }
-        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error.into()),
-        _ => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error.into()),
+        Ok(_) => guard::refuse_ground(place),
     }
 }
 
@@ -296,13 +300,17 @@ pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
     }
 }
 
-/// Refuses a directory that holds something.
-pub(crate) fn require_vacant(path: &Path, force: bool) -> Result<()> {
-    if !force && !is_vacant(path)? {
+/// Refuses a directory that holds something; with `force` only where that is more than `own`, what
+/// this program writes there, as [`refuse_foreign`] has it.
+pub(crate) fn require_replaceable(path: &Path, force: bool, own: &BTreeSet<String>) -> Result<()> {
+    if is_vacant(path)? {
+        return Ok(());
+    }
+    if !force {
         bail!(
             "{} is not empty; choose another directory, or replace it with --force",
             path.display()
         );
     }
-    Ok(())
+    refuse_foreign(path, own)
 }

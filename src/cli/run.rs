@@ -7,16 +7,27 @@ use crate::optimize::{Pick, Search, Strategy};
 use crate::run::checkpoint::{self, Identity};
 use crate::run::{
     CHECKPOINT, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
-    PREVIOUS_CHECKPOINT, SCENARIO, result_files,
+    PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 /// The process that works in a run directory, while one does.
 const HOLDER: &str = ".lock";
+
+/// What this program writes in a run directory.
+fn own() -> BTreeSet<String> {
+    let mut own: BTreeSet<String> = FILES.iter().map(|name| (*name).to_owned()).collect();
+    for directory in [INPUTS, VALIDATION, "figures"] {
+        own.insert(format!("{directory}/"));
+    }
+    own.extend(["report.html".to_owned(), HOLDER.to_owned()]);
+    own
+}
 
 /// The lock of a directory, if there is one that can be locked; refuses one that another process
 /// works in.
@@ -72,6 +83,8 @@ impl RunDirectory {
             kept.retain(|name| !begun(name));
             run.begin(&kept)?;
         } else if force {
+            files::refuse_inputs(&run.path, study.inputs().iter().map(PathBuf::as_path))?;
+            files::refuse_foreign(&run.path, &own())?;
             run.warn_of_others()?;
             run.begin(&[])?;
         } else {
@@ -93,6 +106,11 @@ impl RunDirectory {
         files::write_all(staged.path(), &self.first_files)?;
         self.lock = staged.commit_keeping(kept)?;
         Ok(())
+    }
+
+    /// The directory, to be shown.
+    pub(crate) fn display(&self) -> std::path::Display<'_> {
+        self.path.display()
     }
 
     /// What the directory holds, by name.

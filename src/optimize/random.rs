@@ -85,7 +85,7 @@ impl RandomSearch {
         self.config.evaluations = evaluations;
     }
 
-    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+    pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         check_equal("history", self.history.len() as u64, self.step)?;
         let evaluations = self.config.evaluated(self.step);

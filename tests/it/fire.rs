@@ -274,3 +274,274 @@ fn a_place_is_tried_before_the_work() {
     assert_eq!(names(place), ["file"]);
     assert_eq!(fs::read_to_string(place.join("file")).unwrap(), "mine");
 }
+
+/// Inputs are not outputs: whatever `--force` says, they stay.
+#[test]
+fn inputs_stay() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::write(place.join("study.toml"), "name = \"mine\"\n").unwrap();
+    let tle = "export --quiet --design delta:55:24/6/1@925 --as tle --out fleet/of/us";
+    assert_eq!(ran(place, &line(tle)).status, 0);
+    fs::create_dir_all(place.join("repository/.git")).unwrap();
+    fs::create_dir_all(place.join("inside")).unwrap();
+    let all = || -> Vec<_> {
+        let mut all = Vec::new();
+        let mut waiting = vec![place.to_owned()];
+        while let Some(next) = waiting.pop() {
+            for name in names(&next) {
+                let path = next.join(name);
+                all.push((path.clone(), fs::read(&path).unwrap_or_default()));
+                if path.is_dir() {
+                    waiting.push(path);
+                }
+            }
+        }
+        all
+    };
+    let before = all();
+    let export = "export --run run --as tle --force --out";
+    let evaluate = "evaluate --constellation fleet/of/us/constellation.tle --force --series";
+    for (command, message) in [
+        (
+            "report run --out run/front.json".to_owned(),
+            "lies in the input run",
+        ),
+        (
+            "plot run --figure pareto --out run/front.svg".to_owned(),
+            "lies in the input run",
+        ),
+        (
+            "plot run --figure pareto --force --out run/history.svg".to_owned(),
+            "lies in the input run",
+        ),
+        (
+            format!("{export} run"),
+            "holds what this program did not write",
+        ),
+        (format!("{export} run/new"), "lies in the input run"),
+        (
+            format!("{export} ."),
+            "holds what this program did not write",
+        ),
+        (
+            format!("{export} repository"),
+            "holds what this program did not write",
+        ),
+        (
+            format!("{evaluate} fleet"),
+            "holds what this program did not write",
+        ),
+        (
+            format!("{evaluate} fleet/of/us"),
+            "holds what this program did not write",
+        ),
+        (
+            "export study.toml --as tle --out study.toml".to_owned(),
+            "a directory is needed",
+        ),
+    ] {
+        let refused = ran(place, &line(&command));
+        assert_eq!(refused.status, 2, "{command}: {}", refused.stderr);
+        assert!(
+            refused.stderr.contains(message),
+            "{command}: {}",
+            refused.stderr
+        );
+    }
+    // An empty directory may be replaced, but not the one that the program stands in.
+    let inside = place.join("inside");
+    let refused = ran(&inside, &line("export --as tle --out ."));
+    assert!(
+        refused.stderr.contains("the working directory"),
+        "{}",
+        refused.stderr
+    );
+    assert!(all() == before);
+    // The program's own places in a run are not inputs.
+    for command in [
+        "report run --out run/report.html",
+        "plot run --figure pareto --out run/figures/pareto.svg",
+        "validate --run run --against sgp4 --out run/validation",
+    ] {
+        let done = ran(place, &line(command));
+        assert_eq!(done.status, 0, "{command}: {}", done.stderr);
+    }
+}
+
+/// The table of a figure takes no name that exists with other contents, unless that is said.
+#[test]
+fn the_table_of_a_figure_replaces_nothing() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::write(place.join("front.csv"), "mine").unwrap();
+    let plot = line("plot run --figure pareto --out front.svg");
+    let refused = ran(place, &plot);
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused
+            .stderr
+            .contains("front.csv, which holds something else"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(names(place), ["front.csv", "run"]);
+    assert_eq!(fs::read_to_string(place.join("front.csv")).unwrap(), "mine");
+    assert_eq!(
+        ran(place, &[plot.clone(), vec!["--force"]].concat()).status,
+        0
+    );
+    // Its own table is no obstacle.
+    assert_eq!(ran(place, &plot).status, 0);
+}
+
+/// `--force` says what it would delete that this program did not write, and stops.
+#[test]
+fn force_replaces_only_what_was_written() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let forced = line("export --quiet --design delta:55:24/6/1@925 --as oem --force --out a");
+    assert_eq!(ran(place, &forced).status, 0);
+    assert_eq!(ran(place, &forced).status, 0);
+    fs::write(place.join("a/oem/notes.txt"), "mine").unwrap();
+    let refused = ran(place, &forced);
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused
+            .stderr
+            .contains("--force would delete it: oem/notes.txt;"),
+        "{}",
+        refused.stderr
+    );
+    assert!(place.join("a/oem/notes.txt").exists());
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::write(place.join("run/notes.txt"), "mine").unwrap();
+    let refused = ran(
+        place,
+        &optimize(&["--out", "run", "--seed", "2", "--force"]),
+    );
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused.stderr.contains("would delete it: notes.txt;"),
+        "{}",
+        refused.stderr
+    );
+}
+
+/// A link as output keeps being one, and what it leads to is written.
+#[cfg(unix)]
+#[test]
+fn a_link_as_output_stays_a_link() {
+    use std::os::unix::fs::symlink;
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    fs::create_dir(place.join("disk")).unwrap();
+    symlink("disk/run", place.join("run")).unwrap();
+    symlink("disk/page.html", place.join("page.html")).unwrap();
+    for _ in 0..2 {
+        assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+        assert_eq!(ran(place, &line("report run --out page.html")).status, 0);
+    }
+    assert!(place.join("run").is_symlink() && place.join("page.html").is_symlink());
+    assert!(place.join("disk/run/front.json").exists());
+    assert_eq!(names(&place.join("disk")), ["page.html", "run"]);
+    assert_eq!(names(place), ["disk", "page.html", "run"]);
+}
+
+/// A checkpoint that is whole but of other lengths is refused, not run into.
+#[test]
+fn a_checkpoint_of_other_lengths_is_refused() {
+    use sha2::{Digest, Sha256};
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    let path = place.join("run/checkpoint");
+    let text = fs::read_to_string(&path).unwrap();
+    let (header, state) = text.split_once('\n').unwrap();
+    for pointer in [
+        "/nsga2/population/0/genome",
+        "/nsga2/population/0/objectives",
+        "/nsga2/history",
+    ] {
+        let mut header: serde_json::Value = serde_json::from_str(header).unwrap();
+        let mut state: serde_json::Value = serde_json::from_str(state).unwrap();
+        state
+            .pointer_mut(pointer)
+            .unwrap()
+            .as_array_mut()
+            .unwrap()
+            .pop();
+        let state = state.to_string();
+        let sum = Sha256::digest(state.as_bytes());
+        let hex: String = sum.iter().map(|byte| format!("{byte:02x}")).collect();
+        header["sha256"] = hex.into();
+        fs::write(&path, format!("{header}\n{state}\n")).unwrap();
+        let refused = ran(place, &optimize(&["--out", "run", "--resume"]));
+        assert_eq!(refused.status, 2, "{pointer}: {}", refused.stderr);
+        let message = "run holds a checkpoint that is not of this search";
+        assert!(
+            refused.stderr.contains(message),
+            "{pointer}: {}",
+            refused.stderr
+        );
+    }
+}
+
+/// The manifest of an export that is compared with leads nowhere else.
+#[test]
+fn a_manifest_stays_in_its_directory() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let export = line("export --quiet --design delta:55:6/3/1@925 --as tle --out a");
+    assert_eq!(ran(place, &export).status, 0);
+    fs::rename(
+        place.join("a/constellation.tle"),
+        place.join("constellation.tle"),
+    )
+    .unwrap();
+    let manifest = fs::read_to_string(place.join("a/manifest.json")).unwrap();
+    for path in [
+        "../constellation.tle".to_owned(),
+        place.join("constellation.tle").display().to_string(),
+    ] {
+        let other = manifest.replace("\"constellation.tle\"", &format!("\"{path}\""));
+        assert!(other != manifest);
+        fs::write(place.join("a/manifest.json"), other).unwrap();
+        let refused = ran(
+            place,
+            &line("validate --design delta:55:6/3/1@925 --against ./a"),
+        );
+        assert_eq!(refused.status, 2, "{}{}", refused.stdout, refused.stderr);
+        assert!(
+            refused.stderr.contains("which lies elsewhere"),
+            "{}",
+            refused.stderr
+        );
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn help_to_a_full_device_fails() {
+    let program = assert_cmd::cargo::cargo_bin!("navwalker");
+    for arguments in [
+        &["--help"][..],
+        &["optimize", "--help"],
+        &["--version"],
+        &["scenario", "list"],
+    ] {
+        let full = fs::OpenOptions::new()
+            .write(true)
+            .open("/dev/full")
+            .unwrap();
+        let output = Command::new(program)
+            .args(arguments)
+            .stdout(full)
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(!output.stderr.is_empty(), "{arguments:?}");
+    }
+}

@@ -16,11 +16,20 @@ use anyhow::Result;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// The tables of a series.
+const SERIES: [&str; 2] = ["epochs.csv", "points.csv"];
+
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     if let Some(directory) = &args.series {
-        files::require_vacant(directory, args.force)?;
+        let own = SERIES.map(str::to_owned).into();
+        files::require_replaceable(directory, args.force, &own)?;
     }
     let study = Study::load(&args.study, &[])?;
+    if let Some(directory) = &args.series {
+        let inputs = study.inputs();
+        let inputs = inputs.iter().chain(&args.constellation);
+        files::refuse_inputs(directory, inputs.map(PathBuf::as_path))?;
+    }
     let series = args
         .series
         .as_deref()
@@ -148,8 +157,8 @@ fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) 
     let series = evaluator.series(ephemeris)?;
     let write =
         |name: &str, text: String| files::write_atomically(&directory.join(name), text.as_bytes());
-    write("epochs.csv", records_csv(&series.epochs)?)?;
-    write("points.csv", records_csv(&series.points)?)
+    write(SERIES[0], records_csv(&series.epochs)?)?;
+    write(SERIES[1], records_csv(&series.points)?)
 }
 
 fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatistics>) -> String {

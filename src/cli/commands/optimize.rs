@@ -14,7 +14,7 @@ use crate::run::inputs::InputError;
 use crate::run::{FrontMember, OptimizeResult, front_csv};
 use crate::scenario::Algorithm;
 use crate::search::DesignProblem;
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -216,6 +216,12 @@ fn start(
         None
     };
     if let Some(mut search) = resumed {
+        search.check(problem).with_context(|| {
+            format!(
+                "{} holds a checkpoint that is not of this search",
+                directory.display()
+            )
+        })?;
         search.set_budget(&study.scenario.method());
         let progress = search.progress();
         if progress.step > progress.steps {

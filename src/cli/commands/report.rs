@@ -31,6 +31,7 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
 
 fn write(args: &RunArgs, out: &Path) -> Result<()> {
     let view = RunView::at(args)?;
+    files::refuse_inputs(out, args.inputs())?;
     let staged = files::StagedFile::new(out)?;
     let mut html = Vec::new();
     let page = Page {

@@ -13,13 +13,32 @@ use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::BufReader;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A standard, or files of another program.
 enum Against {
     Standard(Target),
     Files(PathBuf),
 }
+
+impl Against {
+    /// The files, if it is files.
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Standard(_) => None,
+            Self::Files(path) => Some(path),
+        }
+    }
+}
+
+/// The reports of a validation.
+const REPORTS: [(&str, ReportFormat); 5] = [
+    ("report.txt", ReportFormat::Text),
+    ("report.json", ReportFormat::Json),
+    ("report.csv", ReportFormat::Csv),
+    ("report.md", ReportFormat::Markdown),
+    ("report.junit.xml", ReportFormat::Junit),
+];
 
 /// The targets that were typed; one with a dot or a slash in it is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {
@@ -40,13 +59,20 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let run = args.design.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));
     if let Some(directory) = &out {
-        files::require_vacant(directory, args.force)?;
+        let own = REPORTS.map(|(name, _)| name.to_owned()).into();
+        files::require_replaceable(directory, args.force, &own)?;
+    }
+    let (study, design) = study_and_design(&args.study, &args.design)?;
+    if let Some(directory) = &out {
+        let compared = targets.iter().filter_map(Against::path);
+        let inputs = study.inputs();
+        let inputs = inputs.iter().map(PathBuf::as_path).chain(compared);
+        files::refuse_inputs(directory, inputs)?;
     }
     let staged = out
         .as_deref()
         .map(files::StagedDirectory::new)
         .transpose()?;
-    let (study, design) = study_and_design(&args.study, &args.design)?;
     let evaluator = study.evaluator()?;
     let subject = Subject::new(design, &evaluator);
     let mut findings = Findings::default();
@@ -124,6 +150,13 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
         if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
+            if !is_inside(&file.path) {
+                bail!(
+                    "{}: the manifest names {}, which lies elsewhere",
+                    path.display(),
+                    file.path
+                );
+            }
             let found = read_one(&path.join(&file.path))?;
             by_format.entry(file.format).or_default().extend(found);
         }
@@ -136,6 +169,12 @@ fn comparisons(path: &Path) -> Result<Vec<(String, Vec<Comparand>)>> {
         );
     }
     Ok(by_format.into_iter().collect())
+}
+
+/// Whether a path of a manifest stays in its directory.
+fn is_inside(path: &str) -> bool {
+    let is_plain = |part| matches!(part, Component::Normal(_));
+    Path::new(path).components().all(is_plain) && !path.contains('\\')
 }
 
 /// Formats of an export that are read back.
@@ -158,13 +197,7 @@ fn sorted_files(directory: &Path) -> Result<Vec<PathBuf>> {
 }
 
 fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Result<()> {
-    for (name, format) in [
-        ("report.txt", ReportFormat::Text),
-        ("report.json", ReportFormat::Json),
-        ("report.csv", ReportFormat::Csv),
-        ("report.md", ReportFormat::Markdown),
-        ("report.junit.xml", ReportFormat::Junit),
-    ] {
+    for (name, format) in REPORTS {
         let text = render(result, format)?;
         files::write_atomically(&staged.path().join(name), text.as_bytes())?;
     }
