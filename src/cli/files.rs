@@ -190,7 +190,7 @@ impl StagedDirectory {
             for name in kept {
                 replace::carry_over(&place.join(name), &staging.join(name))?;
             }
-            if place.exists() {
+            if place.is_dir() {
                 replace::exchange(staging, place)
             } else {
                 fs::rename(staging, place)
@@ -313,4 +313,62 @@ pub(crate) fn require_replaceable(path: &Path, force: bool, own: &BTreeSet<Strin
         );
     }
     refuse_foreign(path, own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What cannot be put in its place at the end, because something else is there by now, is kept
+    /// under a name that the error gives; what is there stays.
+    #[test]
+    fn a_result_that_cannot_be_placed_is_kept() {
+        let directory = TempDir::new().unwrap();
+        let place = directory.path().join("run");
+        let staged = StagedDirectory::new(&place).unwrap();
+        fs::write(staged.path().join("result"), "ours").unwrap();
+        fs::write(&place, "mine").unwrap();
+        let error = staged.commit().unwrap_err().to_string();
+        let (_, kept) = error.split_once("; the result is in ").unwrap();
+        assert_eq!(
+            fs::read_to_string(Path::new(kept).join("result")).unwrap(),
+            "ours"
+        );
+        assert!(!is_staged(Path::new(kept).file_name().unwrap()));
+        assert_eq!(fs::read_to_string(&place).unwrap(), "mine");
+
+        let place = directory.path().join("page");
+        let staged = StagedFile::new(&place).unwrap();
+        fs::create_dir(&place).unwrap();
+        let error = staged.commit(b"ours").unwrap_err().to_string();
+        let (_, kept) = error.split_once("; the result is in ").unwrap();
+        assert_eq!(fs::read_to_string(kept).unwrap(), "ours");
+        assert!(place.is_dir());
+    }
+
+    /// Directories above a place that were made for it go with it.
+    #[test]
+    fn nothing_is_left_of_a_directory_that_is_dropped() {
+        let directory = TempDir::new().unwrap();
+        let staged = StagedDirectory::new(&directory.path().join("a/b/run")).unwrap();
+        fs::write(staged.path().join("half"), "").unwrap();
+        drop(staged);
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_any_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = TempDir::new().unwrap();
+        let (ours, any) = (directory.path().join("ours"), directory.path().join("any"));
+        write_atomically(&ours, b"").unwrap();
+        fs::write(&any, "").unwrap();
+        let staged = StagedDirectory::new(&directory.path().join("run")).unwrap();
+        let any_directory = directory.path().join("any-directory");
+        fs::create_dir(&any_directory).unwrap();
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&any));
+        assert_eq!(mode(staged.path()), mode(&any_directory));
+    }
 }

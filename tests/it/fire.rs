@@ -117,7 +117,7 @@ fn a_search_resumes_wherever_it_is_killed() {
         assert_eq!(ran(place, &whole).status, 0);
         let broken = optimize(&[&["--out", "broken", "--resume"], further.as_slice()].concat());
         // Each time a little further: from before the directory is there to the end.
-        for milliseconds in 1..400 {
+        for milliseconds in (1..400).step_by(7) {
             let mut child = started(place, &broken);
             std::thread::sleep(Duration::from_millis(milliseconds));
             child.kill().unwrap();
