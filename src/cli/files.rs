@@ -356,6 +356,22 @@ mod tests {
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
     }
 
+    /// What cannot be replaced at the end is refused at the beginning.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_mount_point_and_a_file_are_no_places() {
+        let refused = |place: &Path| StagedDirectory::new(place).err().map(|e| format!("{e:#}"));
+        let mounted = refused(Path::new("/proc")).unwrap();
+        assert!(mounted.contains("mount point"), "{mounted}");
+        let directory = TempDir::new().unwrap();
+        let file = directory.path().join("file");
+        fs::write(&file, "mine").unwrap();
+        let refused = refused(&file).unwrap();
+        assert!(refused.contains("a directory is needed"), "{refused}");
+        let names = fs::read_dir(directory.path()).unwrap();
+        assert_eq!(names.count(), 1);
+    }
+
     #[cfg(unix)]
     #[test]
     fn permissions_are_those_of_any_file() {

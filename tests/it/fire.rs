@@ -162,8 +162,10 @@ fn a_run_without_a_checkpoint_resumes() {
     let place = directory.path();
     assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
     let front = fs::read(place.join("run/front.json")).unwrap();
-    for name in ["checkpoint", "checkpoint.previous"] {
-        fs::remove_file(place.join("run").join(name)).unwrap();
+    for lost in [&["checkpoint"][..], &["checkpoint", "checkpoint.previous"]] {
+        for name in lost {
+            fs::remove_file(place.join("run").join(name)).unwrap();
+        }
         fs::write(place.join("run/.checkpoint.navwalker-abcdefghijkl"), "half").unwrap();
         let resumed = ran(place, &optimize(&["--out", "run", "--resume"]));
         assert_eq!(resumed.status, 0, "{}", resumed.stderr);
