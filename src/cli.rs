@@ -13,6 +13,7 @@ mod chart;
 mod coincidence;
 mod commands;
 mod files;
+mod interrupt;
 mod output;
 mod progress;
 mod read_constellation;
@@ -23,6 +24,7 @@ mod study;
 use args::{Cli, Command};
 use clap::Parser;
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// The exit status of a command.
@@ -43,8 +45,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     output::choose_colors();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
-        // clap prints help to stdout with status 0 and errors to stderr with status 2.
-        Err(error) => error.exit(),
+        Err(error) => return said(&error),
     };
     let status = match run(cli) {
         Ok(status) => status,
@@ -57,8 +58,20 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
     ExitCode::from(status as u8)
 }
 
+/// Prints what parsing came to: help to stdout with status 0, errors to stderr with status 2.
+fn said(message: &clap::Error) -> ExitCode {
+    match message.print().and_then(|()| io::stdout().flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            output::error(&anyhow::Error::new(error).context("cannot print"));
+            ExitCode::from(Status::CouldNotRun as u8)
+        }
+        _ => u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),
+    }
+}
+
 fn run(cli: Cli) -> anyhow::Result<Status> {
     output::set_quiet(cli.quiet);
+    interrupt::install();
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())

@@ -220,11 +220,11 @@ pub(crate) struct OptimizeArgs {
     #[arg(long)]
     pub(crate) certify: bool,
 
-    /// Resume from the checkpoint in the run directory.
+    /// Resume from the checkpoint in the run directory; without SCENARIO with the scenario of the run.
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Replace a directory that holds something else.
+    /// Replace another run that this program wrote; what it did not write is never deleted.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -312,7 +312,7 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Replace a directory that holds something else.
+    /// Replace another run that this program wrote; what it did not write is never deleted.
     #[arg(long)]
     pub(crate) force: bool,
 

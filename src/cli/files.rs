@@ -1,15 +1,29 @@
 //! Atomic writes: files and directories are written to a sibling and then renamed.
 
+mod guard;
+mod replace;
+mod staging;
+
+pub(crate) use guard::{refuse_foreign, refuse_inputs};
+pub(crate) use staging::{is_staged, lock};
+
+use crate::cli::interrupt::Removed;
+use crate::cli::output;
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use tempfile::{NamedTempFile, PersistError, TempDir};
 
 /// Maximum bytes of a file that is read into memory at once: a scenario, or a file it names.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// The bytes of a file, if it is not too long.
+/// Links behind links that are followed, as by the system.
+const MOST_LINKS: usize = 40;
+
+/// The bytes of a file that is not too long to be kept.
 pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?
@@ -24,15 +38,86 @@ pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
 
 /// Writes a file to a sibling and renames it.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
-    let partial = beside(path);
-    let written = File::create(&partial)
-        .and_then(|mut file| file.write_all(bytes).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&partial, path));
-    if written.is_err() {
-        // If it cannot be removed either, the error below names it.
-        let _ = fs::remove_file(&partial);
+    StagedFile::new(path)?.commit(bytes)
+}
+
+/// A file that replaces its place when it is complete. A link stays one, and its target is written;
+/// what is not a file, as a device, is written to.
+pub(crate) struct StagedFile {
+    place: PathBuf,
+    /// `None` for what is not a file.
+    staged: Option<(NamedTempFile, Removed)>,
+}
+
+impl StagedFile {
+    /// An empty file beside `path`; refuses a place that could not be taken.
+    pub(crate) fn new(path: &Path) -> Result<Self> {
+        let beside = || -> Result<Self> {
+            let place = resolved(path)?;
+            let found = match place.metadata() {
+                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error.into()),
+                found => found.ok(),
+            };
+            if found.as_ref().is_some_and(fs::Metadata::is_dir) {
+                bail!("it is a directory, and a file is needed");
+            }
+            let is_stream = found.is_some_and(|found| !found.is_file());
+            let staged = (!is_stream).then(|| staging::file(&place)).transpose()?;
+            Ok(Self { place, staged })
+        };
+        beside().with_context(|| format!("cannot write {}", path.display()))
     }
-    written.with_context(|| format!("cannot write {}", path.display()))
+
+    /// Puts the file with these contents in its place. Where that cannot be had, it stays beside,
+    /// and the error says so.
+    pub(crate) fn commit(self, bytes: &[u8]) -> Result<()> {
+        let cannot = format!("cannot write {}", self.place.display());
+        let Some((mut file, _removed)) = self.staged else {
+            let stream = File::options().write(true).open(&self.place);
+            return stream
+                .and_then(|mut stream| stream.write_all(bytes))
+                .context(cannot);
+        };
+        let written = file.write_all(bytes);
+        written
+            .and_then(|()| file.as_file().sync_all())
+            .with_context(|| cannot.clone())?;
+        match file.persist(&self.place) {
+            Ok(_) => Ok(()),
+            Err(PersistError { error, file }) => {
+                let kept = file.into_temp_path().keep();
+                let kept = kept.map_err(io::Error::from).map(|path| kept_beside(&path));
+                let kept = kept.map_or_else(|_| String::new(), |path| said(&path));
+                Err(error).context(cannot + &kept)
+            }
+        }
+    }
+}
+
+/// Gives what could not be put in its place a name that no later command takes for stale.
+fn kept_beside(staged: &Path) -> PathBuf {
+    let name = staged.file_name().unwrap_or_default().to_string_lossy();
+    let kept = staged.with_file_name(name.trim_start_matches('.'));
+    match fs::rename(staged, &kept) {
+        Ok(()) => kept,
+        Err(_) => staged.to_owned(),
+    }
+}
+
+fn said(kept: &Path) -> String {
+    format!("; the result is in {}", kept.display())
+}
+
+/// Where a path leads, whether there is something or not: links at its end are followed.
+fn resolved(path: &Path) -> io::Result<PathBuf> {
+    let mut path = std::path::absolute(path)?;
+    for _ in 0..MOST_LINKS {
+        let Ok(target) = fs::read_link(&path) else {
+            return Ok(path);
+        };
+        path = std::path::absolute(path.with_file_name("").join(target))?;
+    }
+    Err(io::Error::other("too many links"))
 }
 
 /// Writes files, each atomically, at paths relative to `directory`.
@@ -47,89 +132,259 @@ pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result
     Ok(())
 }
 
-/// A sibling of `path` that no other process of this program uses.
-fn beside(path: &Path) -> PathBuf {
-    let name = path
-        .file_name()
-        .map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    path.with_file_name(format!(".{name}.partial-{}", std::process::id()))
-}
-
-/// A directory that is moved into place when complete, and removed if dropped before.
+/// A directory that replaces its place when it is complete, and is gone when it is dropped before.
 pub(crate) struct StagedDirectory {
-    staging: PathBuf,
+    staging: TempDir,
     place: PathBuf,
+    /// Directories above the place that were made for it, the deepest first.
+    made: Vec<PathBuf>,
+    lock: Option<File>,
+    _removed: Removed,
 }
 
 impl StagedDirectory {
-    /// An empty sibling of `place`.
+    /// An empty directory beside `place`; refuses a place that could not be taken.
     pub(crate) fn new(place: &Path) -> Result<Self> {
-        let place = absolute(place)?;
-        let staging = beside(&place);
-        fs::create_dir_all(&staging)
-            .with_context(|| format!("cannot create a directory next to {}", place.display()))?;
-        Ok(Self { staging, place })
+        Self::beside(place).with_context(|| format!("cannot write to {}", place.display()))
+    }
+
+    fn beside(place: &Path) -> Result<Self> {
+        let place = resolved(place)?;
+        recovered(&place)?;
+        let mut made = Vec::new();
+        let parent = place
+            .parent()
+            .context("it is the root of the file system")?;
+        make_directories(parent, &mut made)?;
+        let staged = check_place(&place, parent).and_then(|()| Ok(staging::directory(&place)?));
+        match staged {
+            Ok((staging, lock, removed)) => Ok(Self {
+                staging,
+                place,
+                made,
+                lock,
+                _removed: removed,
+            }),
+            Err(error) => {
+                unmake(&made);
+                Err(error)
+            }
+        }
     }
 
     /// Where to write.
     pub(crate) fn path(&self) -> &Path {
-        &self.staging
+        self.staging.path()
     }
 
     /// Moves the directory into place, replacing what is there.
     pub(crate) fn commit(self) -> Result<()> {
-        self.commit_keeping(&[])
+        self.commit_keeping(&[]).map(drop)
     }
 
-    /// The same, but keeps the entries with these names from what is replaced.
-    pub(crate) fn commit_keeping(self, kept: &[OsString]) -> Result<()> {
+    /// The same, but entries of these names are taken over from what is replaced. Gives the lock of
+    /// the directory. Where it cannot be put in its place it stays beside, and the error says so.
+    pub(crate) fn commit_keeping(mut self, kept: &[OsString]) -> Result<Option<File>> {
+        let (staging, place) = (self.staging.path(), self.place.as_path());
         let replace = || -> io::Result<()> {
-            if self.place.exists() {
-                let old = beside(&self.place.with_extension("old"));
-                fs::rename(&self.place, &old)?;
-                if let Err(error) = fs::rename(&self.staging, &self.place) {
-                    fs::rename(&old, &self.place)?;
-                    return Err(error);
-                }
-                for name in kept.iter().filter(|name| old.join(name).exists()) {
-                    fs::rename(old.join(name), self.place.join(name))?;
-                }
-                fs::remove_dir_all(old)
+            for name in kept {
+                replace::carry_over(&place.join(name), &staging.join(name))?;
+            }
+            if place.is_dir() {
+                replace::exchange(staging, place)
             } else {
-                fs::rename(&self.staging, &self.place)
+                fs::rename(staging, place)
             }
         };
-        replace().with_context(|| format!("cannot write {}", self.place.display()))
+        if let Err(error) = replace() {
+            let kept = said(&kept_beside(staging));
+            self.staging.disable_cleanup(true);
+            self.made.clear();
+            let place = self.place.display();
+            return Err(error).with_context(|| format!("cannot write {place}{kept}"));
+        }
+        self.made.clear();
+        Ok(self.lock.take())
     }
 }
 
 impl Drop for StagedDirectory {
     fn drop(&mut self) {
-        // After a commit nothing is left to remove.
-        let _ = fs::remove_dir_all(&self.staging);
+        // Directories that were made for the place go if nothing is in them; the staging directory
+        // is still in the deepest.
+        if !self.made.is_empty() {
+            let _ = fs::remove_dir_all(self.staging.path());
+            unmake(&self.made);
+        }
     }
 }
 
-fn absolute(path: &Path) -> Result<PathBuf> {
-    std::path::absolute(path).with_context(|| format!("no directory '{}'", path.display()))
+fn make_directories(path: &Path, made: &mut Vec<PathBuf>) -> Result<()> {
+    if path.is_dir() {
+        return Ok(());
+    }
+    if let Some(parent) = path.parent() {
+        make_directories(parent, made)?;
+    }
+    match fs::create_dir(path) {
+        Ok(()) => made.insert(0, path.to_owned()),
+        Err(_) if path.is_dir() => {}
+        Err(error) => {
+            unmake(made);
+            return Err(error).with_context(|| format!("cannot create {}", path.display()));
+        }
+    }
+    Ok(())
+}
+
+fn unmake(made: &[PathBuf]) {
+    for path in made {
+        // One that is in use by now is not empty and stays.
+        let _ = fs::remove_dir(path);
+    }
+}
+
+/// Refuses what a directory cannot replace: a file, a mount point, a name that is too long.
+fn check_place(place: &Path, parent: &Path) -> Result<()> {
+    match place.symlink_metadata() {
+        Ok(found) if !found.is_dir() => bail!("it is a file, and a directory is needed"),
+        Ok(found) if is_mount_point(&found, &parent.metadata()?) => {
+            bail!("it is a mount point, which cannot be replaced; choose a directory in it")
+        }
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error.into()),
+        Ok(_) => guard::refuse_ground(place),
+    }
+}
+
+#[cfg(unix)]
+fn is_mount_point(place: &fs::Metadata, parent: &fs::Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    place.dev() != parent.dev()
+}
+
+#[cfg(not(unix))]
+fn is_mount_point(_: &fs::Metadata, _: &fs::Metadata) -> bool {
+    false
+}
+
+/// Puts back a directory that a kill in the middle of its replacement left aside.
+pub(crate) fn recovered(place: &Path) -> Result<()> {
+    let is_recovered =
+        replace::recover(place).with_context(|| format!("cannot restore {}", place.display()))?;
+    if is_recovered {
+        output::warning(&format!(
+            "{} was being replaced when the program was killed; what it held is back",
+            place.display()
+        ));
+    }
+    Ok(())
 }
 
 /// Whether a directory is missing or empty.
 pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
     match fs::read_dir(path) {
-        Ok(mut entries) => Ok(entries.next().is_none()),
+        Ok(entries) => {
+            let names = entries.filter_map(|entry| Some(entry.ok()?.file_name()));
+            let mut own = names.filter(|name| !is_staged(name));
+            Ok(own.next().is_none())
+        }
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(true),
+        Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
+            bail!(
+                "{} is a file or lies in one, and a directory is needed",
+                path.display()
+            )
+        }
         Err(error) => Err(error).with_context(|| format!("cannot use {}", path.display())),
     }
 }
 
-/// Rejects a directory that is not empty.
-pub(crate) fn require_vacant(path: &Path, force: bool) -> Result<()> {
-    if !force && !is_vacant(path)? {
+/// Refuses a directory that holds something; with `force` only where that is more than `own`, what
+/// this program writes there, as [`refuse_foreign`] has it.
+pub(crate) fn require_replaceable(path: &Path, force: bool, own: &BTreeSet<String>) -> Result<()> {
+    if is_vacant(path)? {
+        return Ok(());
+    }
+    if !force {
         bail!(
             "{} is not empty; choose another directory, or replace it with --force",
             path.display()
         );
     }
-    Ok(())
+    refuse_foreign(path, own)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What cannot be put in its place at the end, because something else is there by now, is kept
+    /// under a name that the error gives; what is there stays.
+    #[test]
+    fn a_result_that_cannot_be_placed_is_kept() {
+        let directory = TempDir::new().unwrap();
+        let place = directory.path().join("run");
+        let staged = StagedDirectory::new(&place).unwrap();
+        fs::write(staged.path().join("result"), "ours").unwrap();
+        fs::write(&place, "mine").unwrap();
+        let error = staged.commit().unwrap_err().to_string();
+        let (_, kept) = error.split_once("; the result is in ").unwrap();
+        assert_eq!(
+            fs::read_to_string(Path::new(kept).join("result")).unwrap(),
+            "ours"
+        );
+        assert!(!is_staged(Path::new(kept).file_name().unwrap()));
+        assert_eq!(fs::read_to_string(&place).unwrap(), "mine");
+
+        let place = directory.path().join("page");
+        let staged = StagedFile::new(&place).unwrap();
+        fs::create_dir(&place).unwrap();
+        let error = staged.commit(b"ours").unwrap_err().to_string();
+        let (_, kept) = error.split_once("; the result is in ").unwrap();
+        assert_eq!(fs::read_to_string(kept).unwrap(), "ours");
+        assert!(place.is_dir());
+    }
+
+    /// Directories above a place that were made for it go with it.
+    #[test]
+    fn nothing_is_left_of_a_directory_that_is_dropped() {
+        let directory = TempDir::new().unwrap();
+        let staged = StagedDirectory::new(&directory.path().join("a/b/run")).unwrap();
+        fs::write(staged.path().join("half"), "").unwrap();
+        drop(staged);
+        assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
+    }
+
+    /// What cannot be replaced at the end is refused at the beginning.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_mount_point_and_a_file_are_no_places() {
+        let refused = |place: &Path| StagedDirectory::new(place).err().map(|e| format!("{e:#}"));
+        let mounted = refused(Path::new("/proc")).unwrap();
+        assert!(mounted.contains("mount point"), "{mounted}");
+        let directory = TempDir::new().unwrap();
+        let file = directory.path().join("file");
+        fs::write(&file, "mine").unwrap();
+        let refused = refused(&file).unwrap();
+        assert!(refused.contains("a directory is needed"), "{refused}");
+        let names = fs::read_dir(directory.path()).unwrap();
+        assert_eq!(names.count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_any_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let directory = TempDir::new().unwrap();
+        let (ours, any) = (directory.path().join("ours"), directory.path().join("any"));
+        write_atomically(&ours, b"").unwrap();
+        fs::write(&any, "").unwrap();
+        let staged = StagedDirectory::new(&directory.path().join("run")).unwrap();
+        let any_directory = directory.path().join("any-directory");
+        fs::create_dir(&any_directory).unwrap();
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&any));
+        assert_eq!(mode(staged.path()), mode(&any_directory));
+    }
 }

@@ -6,13 +6,45 @@ use crate::constellation::Design;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::run::checkpoint::{self, Identity};
 use crate::run::{
-    CHECKPOINT, FILES, FRONT_JSON, FrontMember, OptimizeResult, PREVIOUS_CHECKPOINT, result_files,
+    CHECKPOINT, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
+    PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 use std::ffi::OsString;
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+
+/// The process that works in a run directory, while one does.
+const HOLDER: &str = ".lock";
+
+/// What this program writes in a run directory.
+fn own() -> BTreeSet<String> {
+    let mut own: BTreeSet<String> = FILES.iter().map(|name| (*name).to_owned()).collect();
+    for directory in [INPUTS, VALIDATION, "figures"] {
+        own.insert(format!("{directory}/"));
+    }
+    own.extend(["report.html".to_owned(), HOLDER.to_owned()]);
+    own
+}
+
+/// The lock of a directory, if there is one that can be locked; refuses one that another process
+/// works in.
+fn held(directory: &Path) -> Result<Option<File>> {
+    match files::lock(directory) {
+        Ok(lock) => Ok(Some(lock)),
+        Err(TryLockError::Error(_)) => Ok(None),
+        Err(TryLockError::WouldBlock) => {
+            let holder = fs::read_to_string(directory.join(HOLDER));
+            let holder = holder.map_or_else(
+                |_| "another process".to_owned(),
+                |id| format!("process {id}"),
+            );
+            bail!("{} is in use: {holder} works in it", directory.display())
+        }
+    }
+}
 
 /// A directory in which a run is under way.
 pub(crate) struct RunDirectory {
@@ -20,23 +52,41 @@ pub(crate) struct RunDirectory {
     identity: Identity,
     /// What the run begins with: the scenario, copies of its files, the manifest.
     first_files: Vec<(String, Vec<u8>)>,
+    /// Keeps other processes out; `None` where the file system has no locks.
+    lock: Option<File>,
+    /// Whether the directory says that this process works in it.
+    is_holder: bool,
 }
 
 impl RunDirectory {
-    /// The directory at `path` for a run of `study`, with the first files of a run.
+    /// The directory at `path` for a run of `study`, with what a run begins with in it. It is
+    /// replaced as at the end, so that a place that cannot be had is found before the work.
     pub(crate) fn open(path: PathBuf, study: &Study, force: bool) -> Result<Self> {
-        let run = Self {
+        let mut run = Self {
             path,
             identity: study.identity()?,
             first_files: study.first_files()?,
+            lock: None,
+            is_holder: false,
         };
+        files::recovered(&run.path)?;
+        run.lock = held(&run.path)?;
         if files::is_vacant(&run.path)? {
-            run.begin()?;
+            run.begin(&[])?;
         } else if run.found_identity().as_ref() == Some(&run.identity) {
-            files::write_all(&run.path, &run.first_files)?;
+            let begun = |name: &OsString| {
+                [SCENARIO, MANIFEST, INPUTS, HOLDER]
+                    .iter()
+                    .any(|n| name == n)
+            };
+            let mut kept = run.entries()?;
+            kept.retain(|name| !begun(name));
+            run.begin(&kept)?;
         } else if force {
+            files::refuse_inputs(&run.path, study.inputs().iter().map(PathBuf::as_path))?;
+            files::refuse_foreign(&run.path, &own())?;
             run.warn_of_others()?;
-            run.begin()?;
+            run.begin(&[])?;
         } else {
             bail!(
                 "{} holds {}; choose another --out, or replace it with --force",
@@ -44,27 +94,41 @@ impl RunDirectory {
                 run.what_else(study)
             );
         }
+        // Only those who wait read it.
+        let holder = fs::write(run.path.join(HOLDER), std::process::id().to_string());
+        run.is_holder = holder.is_ok();
         Ok(run)
     }
 
-    /// Replaces the directory with one that has only the first files of a run.
-    fn begin(&self) -> Result<()> {
+    /// Puts a directory with what a run begins with in the place, and these entries of the one there.
+    fn begin(&mut self, kept: &[OsString]) -> Result<()> {
         let staged = files::StagedDirectory::new(&self.path)?;
         files::write_all(staged.path(), &self.first_files)?;
-        staged.commit()
+        self.lock = staged.commit_keeping(kept)?;
+        Ok(())
+    }
+
+    /// The directory, to be shown.
+    pub(crate) fn display(&self) -> std::path::Display<'_> {
+        self.path.display()
+    }
+
+    /// What the directory holds, by name.
+    fn entries(&self) -> Result<Vec<OsString>> {
+        let cannot = || format!("cannot read {}", self.path.display());
+        let mut names = Vec::new();
+        for entry in fs::read_dir(&self.path).with_context(cannot)? {
+            names.push(entry.with_context(cannot)?.file_name());
+        }
+        names.retain(|name| !files::is_staged(name));
+        names.sort();
+        Ok(names)
     }
 
     /// Names of the entries that a run does not write.
     fn others(&self) -> Result<Vec<OsString>> {
-        let cannot = || format!("cannot read {}", self.path.display());
-        let mut others = Vec::new();
-        for entry in fs::read_dir(&self.path).with_context(cannot)? {
-            let name = entry.with_context(cannot)?.file_name();
-            if !FILES.iter().any(|own| name == *own) {
-                others.push(name);
-            }
-        }
-        others.sort();
+        let mut others = self.entries()?;
+        others.retain(|name| name != HOLDER && !FILES.iter().any(|own| name == *own));
         Ok(others)
     }
 
@@ -164,7 +228,7 @@ impl RunDirectory {
 
     /// Writes all results to a sibling directory and moves it into place.
     pub(crate) fn finish(
-        &self,
+        &mut self,
         scenario: &Scenario,
         search: &Search,
         result: &OptimizeResult,
@@ -178,6 +242,8 @@ impl RunDirectory {
             path: staged.path().to_owned(),
             identity: self.identity.clone(),
             first_files: Vec::new(),
+            lock: None,
+            is_holder: false,
         }
         .save(search)?;
         let previous = self.path.join(PREVIOUS_CHECKPOINT);
@@ -185,7 +251,17 @@ impl RunDirectory {
             fs::copy(&previous, staged.path().join(PREVIOUS_CHECKPOINT))
                 .with_context(|| format!("cannot copy {}", previous.display()))?;
         }
-        staged.commit_keeping(&self.others()?)
+        self.lock = staged.commit_keeping(&self.others()?)?;
+        Ok(())
+    }
+}
+
+impl Drop for RunDirectory {
+    fn drop(&mut self) {
+        // A run that is interrupted leaves nothing that is not of the run.
+        if self.is_holder {
+            let _ = fs::remove_file(self.path.join(HOLDER));
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! A run as `report` and `plot` show it: the contents of its directory and what follows from them.
 
 use crate::cli::args::RunArgs;
-use crate::cli::output;
 use crate::cli::study::Study;
+use crate::cli::{files, output};
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::optimize::Pick;
@@ -90,6 +90,7 @@ impl RunView {
 
 fn read(args: &RunArgs) -> Result<RunFiles> {
     let directory = &args.directory;
+    files::recovered(directory)?;
     let read = |name: &str| fs::read(directory.join(name)).map_err(reason);
     let files = RunFiles {
         scenario: read(SCENARIO),

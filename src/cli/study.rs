@@ -50,6 +50,7 @@ impl Study {
 
     /// The scenario of a run, which names the run's own copies of its files.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
+        files::recovered(directory)?;
         let path = directory.join(SCENARIO);
         let bytes = files::read_whole(&path)
             .with_context(|| format!("{} is not a run directory", directory.display()))
@@ -207,6 +208,19 @@ impl Study {
         }
     }
 
+    /// The files that it comes from, or the run directory.
+    pub(crate) fn inputs(&self) -> Vec<PathBuf> {
+        if self.manifest.is_some() {
+            return vec![self.directory.clone()];
+        }
+        let named = self.scenario.files().into_iter();
+        let mut inputs: Vec<PathBuf> = named.map(|file| self.directory.join(file)).collect();
+        if is_path(&self.written.label) {
+            inputs.push(PathBuf::from(&self.written.label));
+        }
+        inputs
+    }
+
     /// The design that is taken when none is named.
     pub(crate) fn reference_design(&self) -> Result<Design> {
         let design = self.scenario.reference_design();
@@ -253,9 +267,13 @@ pub(crate) fn read_manifest(directory: &Path) -> Result<Option<RunManifest>> {
     }
 }
 
+/// Whether the name of a scenario is that of a file.
+fn is_path(name: &str) -> bool {
+    name.contains(['/', '\\']) || Path::new(name).extension().is_some()
+}
+
 fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
-    let is_path = name.contains(['/', '\\']) || Path::new(name).extension().is_some();
-    if !is_path {
+    if !is_path(name) {
         let text = builtin(name).map_err(|unknown| {
             anyhow::anyhow!(
                 "no built-in scenario: {unknown}; a file name needs an extension, as in study.toml"

@@ -152,7 +152,7 @@ impl Exhaustive {
         })
     }
 
-    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+    pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let points = GridPoints::new(problem, &self.config.steps).points()?;
         check_equal("grid points", self.points, points)?;

@@ -8,7 +8,7 @@ use super::mopso::{Mopso, MopsoConfig};
 use super::nsga2::{Nsga2, Nsga2Config};
 use super::problem::{Individual, Problem};
 use super::random::{RandomConfig, RandomSearch};
-use super::strategy::{Progress, Record, Strategy};
+use super::strategy::{Progress, Record, Strategy, check_history};
 
 /// A strategy and its settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,6 +73,22 @@ impl Search {
             // The length of a grid is fixed, and another strategy's budget does not apply.
             _ => {}
         }
+    }
+
+    /// Checks a search that comes from outside, as from a checkpoint, against the problem: lengths,
+    /// counts and bounds, so that whatever is asked of it afterwards has an answer.
+    ///
+    /// # Errors
+    ///
+    /// If the search is not one of this problem.
+    pub fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+        match self {
+            Self::Nsga2(search) => search.check(problem),
+            Self::Mopso(search) => search.check(problem),
+            Self::Random(search) => search.check(problem),
+            Self::Exhaustive(search) => search.check(problem),
+        }?;
+        check_history(self.history(), self.progress(), problem)
     }
 
     fn strategy(&self) -> &dyn Strategy {
@@ -163,6 +179,65 @@ mod tests {
                 }
             }
             assert_eq!(continued, unbroken);
+        }
+    }
+
+    /// Every value of a search that is one shorter, or that is missing, is noticed or does no harm.
+    #[test]
+    fn a_search_of_other_lengths_is_refused() {
+        let problem = mixed();
+        for method in methods() {
+            let mut search = method.start(&problem, 5).unwrap();
+            for _ in 0..3 {
+                search.step(&problem).unwrap();
+            }
+            search.check(&problem).unwrap();
+            let value = serde_json::to_value(&search).unwrap();
+            let mut paths = Vec::new();
+            arrays(&value, String::new(), &mut paths);
+            assert!(
+                paths.iter().any(|path| path.ends_with("/ideal")),
+                "{paths:?}"
+            );
+            for path in &paths {
+                let mut spoiled = value.clone();
+                spoiled
+                    .pointer_mut(path)
+                    .unwrap()
+                    .as_array_mut()
+                    .unwrap()
+                    .pop();
+                let Ok(spoiled) = serde_json::from_value::<Search>(spoiled) else {
+                    continue;
+                };
+                // A set may have fewer members, and a record fewer points.
+                let is_free = ["/archive", "/front", "/population"]
+                    .iter()
+                    .any(|end| path.ends_with(end));
+                assert!(is_free || spoiled.check(&problem).is_err(), "{path}");
+                if spoiled.check(&problem).is_ok() {
+                    spoiled.front();
+                }
+            }
+        }
+    }
+
+    /// The places of all lists in a value.
+    fn arrays(value: &serde_json::Value, path: String, found: &mut Vec<String>) {
+        let children: Vec<(String, &serde_json::Value)> = match value {
+            serde_json::Value::Array(list) => {
+                found.push(path.clone());
+                let numbered = list.iter().enumerate();
+                numbered.map(|(n, value)| (n.to_string(), value)).collect()
+            }
+            serde_json::Value::Object(map) => map
+                .iter()
+                .map(|(name, value)| (name.clone(), value))
+                .collect(),
+            _ => Vec::new(),
+        };
+        for (name, child) in children {
+            arrays(child, format!("{path}/{name}"), found);
         }
     }
 

@@ -179,7 +179,7 @@ impl Mopso {
         self.config.iterations = iterations;
     }
 
-    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+    pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let begun = self.iteration.min(1);
         let swarm = begun * self.config.particles as u64;

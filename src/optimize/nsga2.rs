@@ -149,7 +149,7 @@ impl Nsga2 {
     }
 
     /// A state can come from a file: nothing in it is taken for granted.
-    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+    pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let held = self.population.len() as u64;
         check_at_most("population", held, self.config.population as u64)?;

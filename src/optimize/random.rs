@@ -84,7 +84,7 @@ impl RandomSearch {
         self.config.evaluations = evaluations;
     }
 
-    fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
+    pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         self.history.check(problem, self.step)?;
         let evaluations = self.config.evaluated(self.step);

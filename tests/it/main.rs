@@ -4,6 +4,7 @@
 
 mod cli;
 mod evidence;
+mod fire;
 mod gallery;
 mod interchange;
 mod look;

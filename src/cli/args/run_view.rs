@@ -5,7 +5,16 @@ use crate::optimize::Pick;
 use crate::report::figures::draw::Form;
 use crate::report::figures::{Figure, Measure};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+impl RunArgs {
+    /// What is read.
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
+        let directory = std::iter::once(&self.directory);
+        let others = self.front.iter().chain(&self.validation);
+        directory.chain(others).map(PathBuf::as_path)
+    }
+}
 
 /// A run, and what to compare it with.
 #[derive(Debug, Args)]
@@ -61,4 +70,8 @@ pub(crate) struct PlotArgs {
     /// Figure to write; its data goes next to it.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+
+    /// Replace the table next to the figure.
+    #[arg(long)]
+    pub(crate) force: bool,
 }

@@ -1,6 +1,7 @@
 //! `navwalker evaluate`.
 
 use crate::cli::args::{EvaluateArgs, OutputFormat};
+use crate::cli::files::StagedDirectory;
 use crate::cli::study::Study;
 use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::constellation::Design;
@@ -16,14 +17,31 @@ use anyhow::Result;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
+/// The tables of a series.
+const SERIES: [&str; 2] = ["epochs.csv", "points.csv"];
+
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     if let Some(directory) = &args.series {
-        files::require_vacant(directory, args.force)?;
+        let own = SERIES.map(str::to_owned).into();
+        files::require_replaceable(directory, args.force, &own)?;
     }
     let study = Study::load(&args.study, &[])?;
+    if let Some(directory) = &args.series {
+        let inputs = study.inputs();
+        let inputs = inputs.iter().chain(&args.constellation);
+        files::refuse_inputs(directory, inputs.map(PathBuf::as_path))?;
+    }
+    let series = args
+        .series
+        .as_deref()
+        .map(StagedDirectory::new)
+        .transpose()?;
     match &args.design {
-        Some(design) => run_design(args, &study, design)?,
-        None => run_constellation(args, &study)?,
+        Some(design) => run_design(args, &study, design, series.as_ref())?,
+        None => run_constellation(args, &study, series.as_ref())?,
+    }
+    if let Some(series) = series {
+        series.commit()?;
     }
     if let Some(directory) = &args.series {
         output::hint(&format!(
@@ -40,13 +58,18 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()> {
+fn run_design(
+    args: &EvaluateArgs,
+    study: &Study,
+    design: &Design,
+    series: Option<&StagedDirectory>,
+) -> Result<()> {
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate(design)?;
-    let dops = further(args, &evaluator, &ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris, series)?;
     let result = EvaluateResult::new(
         design,
         metrics,
@@ -62,7 +85,11 @@ fn run_design(args: &EvaluateArgs, study: &Study, design: &Design) -> Result<()>
     print(args, &text, dops, &result, csv)
 }
 
-fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
+fn run_constellation(
+    args: &EvaluateArgs,
+    study: &Study,
+    series: Option<&StagedDirectory>,
+) -> Result<()> {
     let (formats, mut fleet) = read_constellation::read(&args.constellation, args.input_format)?;
     let filter = SatelliteFilter {
         only: args.only.clone(),
@@ -86,7 +113,7 @@ fn run_constellation(args: &EvaluateArgs, study: &Study) -> Result<()> {
     }
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
-    let dops = further(args, &evaluator, &ephemeris)?;
+    let dops = further(args, &evaluator, &ephemeris, series)?;
     let result = ConstellationResult {
         constellation: ConstellationSummary {
             name,
@@ -113,10 +140,11 @@ fn further(
     args: &EvaluateArgs,
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
+    series: Option<&StagedDirectory>,
 ) -> Result<Option<DopStatistics>> {
     let dops = args.dops.then(|| evaluator.dops(ephemeris)).transpose()?;
-    if let Some(directory) = &args.series {
-        write_series(evaluator, ephemeris, directory)?;
+    if let Some(series) = series {
+        write_series(evaluator, ephemeris, series.path())?;
     }
     Ok(dops)
 }
@@ -143,13 +171,10 @@ fn print(
 
 fn write_series(evaluator: &Evaluator, ephemeris: &Ephemeris, directory: &Path) -> Result<()> {
     let series = evaluator.series(ephemeris)?;
-    let staged = files::StagedDirectory::new(directory)?;
-    let write = |name: &str, text: String| {
-        files::write_atomically(&staged.path().join(name), text.as_bytes())
-    };
-    write("epochs.csv", records_csv(&series.epochs)?)?;
-    write("points.csv", records_csv(&series.points)?)?;
-    staged.commit()
+    let write =
+        |name: &str, text: String| files::write_atomically(&directory.join(name), text.as_bytes());
+    write(SERIES[0], records_csv(&series.epochs)?)?;
+    write(SERIES[1], records_csv(&series.points)?)
 }
 
 fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatistics>) -> String {

@@ -9,7 +9,7 @@ use crate::constellation::gnss::Preset;
 use crate::ephemeris::Ephemeris;
 use crate::exchange::export::{Choices, ExportSubject, Product, Request, export};
 use crate::exchange::lint::Format as LintFormat;
-use crate::exchange::manifest::{ExportedStudy, Manifest};
+use crate::exchange::manifest::{ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
 use crate::formats::ccsds::oem;
 use crate::formats::maps::scene::Scene;
@@ -19,18 +19,21 @@ use crate::keyword::Keyword;
 use crate::report::{Align, Table};
 use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::path::PathBuf;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
-    files::require_vacant(&args.out, args.force)?;
+    files::require_replaceable(&args.out, args.force, &own(&args.out))?;
     let mut asked = args.study.clone();
     if let Some(date) = &args.creation_date {
         let key = format!("export.creation-date=\"{date}\"");
         asked.overrides.push(key);
     }
     let (study, design) = study_and_design(&asked, &args.design)?;
+    files::refuse_inputs(&args.out, study.inputs().iter().map(PathBuf::as_path))?;
     let scenario = &study.scenario;
     let subject = ExportSubject {
         design,
@@ -94,7 +97,16 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// Warns about the losses of the requested products.
+/// What the export before wrote, as its manifest says.
+fn own(directory: &Path) -> BTreeSet<String> {
+    let manifest = File::open(directory.join(FILE_NAME)).ok();
+    let manifest = manifest.and_then(|file| Manifest::read(BufReader::new(file)).ok());
+    let files = manifest.into_iter().flat_map(|manifest| manifest.files);
+    let files = files.map(|file| file.path);
+    files.chain([FILE_NAME.to_owned()]).collect()
+}
+
+/// Says what the products cost that were asked for.
 fn warn(args: &ExportArgs) {
     if args.tle_theory == ElementChoice::Kepler {
         output::warning(

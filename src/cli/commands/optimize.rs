@@ -6,7 +6,7 @@ use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::progress::SearchBar;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::{Study, read_manifest};
-use crate::cli::{Status, chart, coincidence, output};
+use crate::cli::{Status, chart, coincidence, interrupt, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::front_table::front_table;
@@ -17,7 +17,6 @@ use crate::scenario::Algorithm;
 use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
@@ -71,9 +70,9 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);
     let evaluator = Evaluator::new(setup)?;
-    let directory = open(args, study, &out)?;
-    let interrupted = interrupt_flag()?;
-    let sweep = match sweep(args, study, &evaluator, &out, &interrupted)? {
+    let mut directory = open(args, study, &out)?;
+    let interrupted = interrupt::flag();
+    let sweep = match sweep(args, study, &evaluator, &out, interrupted)? {
         Sweep::NotWanted => None,
         Sweep::Done(result) => Some(result),
         Sweep::Interrupted => return Ok(Status::Interrupted),
@@ -82,8 +81,8 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
         args,
         study,
         &evaluator,
-        &directory,
-        &interrupted,
+        &mut directory,
+        interrupted,
         sweep.as_deref(),
     )?;
     let result = &ended.result;
@@ -92,6 +91,7 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
         OutputFormat::Json => serde_json::to_string_pretty(result)?,
         OutputFormat::Csv => front_csv(&result.front)?,
     })?;
+    ended.placed?;
     let shown = out.display().to_string();
     if args.report {
         let page = super::report::of_run(&out, None)?;
@@ -134,8 +134,9 @@ pub(super) fn sweep(
         resume: true,
         ..args.clone()
     };
-    let directory = open(&args, &study, &place)?;
-    let ended = search(&args, &study, evaluator, &directory, interrupted, None)?;
+    let mut directory = open(&args, &study, &place)?;
+    let ended = search(&args, &study, evaluator, &mut directory, interrupted, None)?;
+    ended.placed?;
     if !ended.is_done {
         hint_resume(&ended.result, &place.display().to_string());
         return Ok(Sweep::Interrupted);
@@ -151,6 +152,8 @@ pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<Run
 /// How a search ended.
 pub(super) struct Ended {
     pub(super) result: OptimizeResult,
+    /// Whether the results are in the run directory.
+    pub(super) placed: Result<()>,
     /// Whether it used its full budget instead of being interrupted.
     pub(super) is_done: bool,
 }
@@ -160,7 +163,7 @@ pub(super) fn search(
     args: &OptimizeArgs,
     study: &Study,
     evaluator: &Evaluator,
-    directory: &RunDirectory,
+    directory: &mut RunDirectory,
     interrupted: &AtomicBool,
     sweep: Option<&OptimizeResult>,
 ) -> Result<Ended> {
@@ -178,9 +181,10 @@ pub(super) fn search(
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);
     }
-    directory.finish(scenario, &search, &result)?;
+    let placed = directory.finish(scenario, &search, &result);
     Ok(Ended {
         result,
+        placed,
         is_done: search.is_done(),
     })
 }
@@ -215,6 +219,12 @@ fn start(
         None
     };
     if let Some(mut search) = resumed {
+        search.check(problem).with_context(|| {
+            format!(
+                "{} holds a checkpoint that is not of this search",
+                directory.display()
+            )
+        })?;
         search.set_budget(&study.scenario.method());
         let progress = search.progress();
         if progress.step > progress.steps {
@@ -237,20 +247,6 @@ fn start(
         .scenario
         .method()
         .start(problem, study.scenario.optimizer.seed)?)
-}
-
-/// A flag that Ctrl-C sets; a second Ctrl-C ends the program at once.
-pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let seen = Arc::clone(&flag);
-    ctrlc::set_handler(move || {
-        if seen.swap(true, Ordering::Relaxed) {
-            std::process::exit(Status::Interrupted as i32);
-        }
-        output::hint("stopping after this generation; Ctrl-C again stops at once");
-    })
-    .context("cannot handle Ctrl-C")?;
-    Ok(flag)
 }
 
 pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {

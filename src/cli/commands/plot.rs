@@ -9,25 +9,35 @@ use crate::report::figures::{self, Figure, Measure, NamedProfile, Plate};
 use crate::report::profile::Profile;
 use crate::scenario::{Keyword, Region};
 use anyhow::{Context, Result, bail};
+use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let form = form(args)?;
     let view = RunView::at(&args.run)?;
+    let table = table_of(args, form)?;
+    make_own_place(args)?;
+    let staged = args
+        .out
+        .as_deref()
+        .map(files::StagedFile::new)
+        .transpose()?;
     let plate = plate(args, &view)?;
     let bytes = render(&plate, form)?;
-    let Some(out) = &args.out else {
+    let (Some(out), Some(staged)) = (&args.out, staged) else {
         if form == Form::Png && io::stdout().is_terminal() {
             bail!("a PNG cannot be written to a terminal; give a file with --out");
         }
         io::stdout().lock().write_all(&bytes)?;
         return Ok(Status::Done);
     };
-    files::write_atomically(out, &bytes)?;
+    if let Some(table) = table.as_deref().filter(|_| !args.force) {
+        require_same(table, plate.csv.as_bytes())?;
+    }
+    staged.commit(&bytes)?;
     let mut written = out.display().to_string();
-    if form != Form::Csv {
-        let table = out.with_extension("csv");
+    if let Some(table) = table {
         files::write_atomically(&table, plate.csv.as_bytes())?;
         written += &format!("\n{}", table.display());
     }
@@ -35,7 +45,44 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// The requested form, or that of the file's extension.
+/// Where the data of a figure goes: next to it.
+fn table_of(args: &PlotArgs, form: Form) -> Result<Option<PathBuf>> {
+    let Some(out) = &args.out else {
+        return Ok(None);
+    };
+    files::refuse_inputs(out, args.run.inputs())?;
+    if form == Form::Csv {
+        return Ok(None);
+    }
+    let table = out.with_extension("csv");
+    files::refuse_inputs(&table, args.run.inputs())?;
+    Ok(Some(table))
+}
+
+/// Refuses a table that is there with other data, which may be anything.
+fn require_same(table: &Path, data: &[u8]) -> Result<()> {
+    let is_other = table.exists() && files::read_whole(table).is_ok_and(|found| found != data);
+    if is_other {
+        bail!(
+            "the data of the figure goes to {}, which holds something else; choose another --out, \
+             or replace it with --force",
+            table.display()
+        );
+    }
+    Ok(())
+}
+
+/// Makes the directory for figures in the run, if the figure goes there.
+fn make_own_place(args: &PlotArgs) -> Result<()> {
+    let figures = args.run.directory.join("figures");
+    if args.out.as_deref().and_then(Path::parent) == Some(&figures) {
+        fs::create_dir_all(&figures)
+            .with_context(|| format!("cannot create {}", figures.display()))?;
+    }
+    Ok(())
+}
+
+/// The form asked for, or that of the file's extension.
 fn form(args: &PlotArgs) -> Result<Form> {
     if let Some(form) = args.form {
         return Ok(form);

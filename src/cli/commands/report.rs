@@ -31,6 +31,8 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
 
 fn write(args: &RunArgs, out: &Path) -> Result<()> {
     let view = RunView::at(args)?;
+    files::refuse_inputs(out, args.inputs())?;
+    let staged = files::StagedFile::new(out)?;
     let mut html = Vec::new();
     let page = Page {
         run: &view.run,
@@ -41,5 +43,5 @@ fn write(args: &RunArgs, out: &Path) -> Result<()> {
         fronts: &view.fronts,
     };
     page::write(&page, &mut html)?;
-    files::write_atomically(out, &html)
+    staged.commit(&html)
 }

@@ -14,13 +14,32 @@ use crate::validate::{Findings, Subject, Target};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A standard, or files of another program.
 enum Against {
     Standard(Target),
     Files(PathBuf),
 }
+
+impl Against {
+    /// The files, if it is files.
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Self::Standard(_) => None,
+            Self::Files(path) => Some(path),
+        }
+    }
+}
+
+/// The reports of a validation.
+const REPORTS: [(&str, ReportFormat); 5] = [
+    ("report.txt", ReportFormat::Text),
+    ("report.json", ReportFormat::Json),
+    ("report.csv", ReportFormat::Csv),
+    ("report.md", ReportFormat::Markdown),
+    ("report.junit.xml", ReportFormat::Junit),
+];
 
 /// The targets on the command line; one with a dot or a slash is a file or a directory.
 fn targets(typed: &[String]) -> Result<Vec<Against>> {
@@ -41,9 +60,20 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let run = args.design.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));
     if let Some(directory) = &out {
-        files::require_vacant(directory, args.force)?;
+        let own = REPORTS.map(|(name, _)| name.to_owned()).into();
+        files::require_replaceable(directory, args.force, &own)?;
     }
     let (study, design) = study_and_design(&args.study, &args.design)?;
+    if let Some(directory) = &out {
+        let compared = targets.iter().filter_map(Against::path);
+        let inputs = study.inputs();
+        let inputs = inputs.iter().map(PathBuf::as_path).chain(compared);
+        files::refuse_inputs(directory, inputs)?;
+    }
+    let staged = out
+        .as_deref()
+        .map(files::StagedDirectory::new)
+        .transpose()?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     if let Ok(satellites) = Ephemeris::of_design(&design, setup.model, setup.grid) {
@@ -68,14 +98,14 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let model = evaluator.setup().model;
     let against = args.against.clone();
     let result = ValidateResult::new(&design, model, against, findings, study.stamp()?);
-    if let Some(directory) = &out {
-        write_reports(directory, &result)?;
+    output::result(&render(&result, args.format)?)?;
+    if let Some(staged) = staged {
+        write_reports(staged, &result)?;
     }
     if let Some(run) = run {
         let page = super::report::of_run(run, out.as_deref())?;
         output::hint(&format!("report written to {}", page.display()));
     }
-    output::result(&render(&result, args.format)?)?;
     Ok(if result.passed {
         Status::Done
     } else {
@@ -125,6 +155,13 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
     let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
     for file in manifest.files {
         if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
+            if !is_inside(&file.path) {
+                bail!(
+                    "{}: the manifest names {}, which is outside the directory",
+                    path.display(),
+                    file.path
+                );
+            }
             let found = read_all(&path.join(&file.path))?;
             by_format.entry(file.format).or_default().extend(found);
         }
@@ -139,20 +176,19 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
     Ok(by_format.into_iter().collect())
 }
 
+/// Whether a path of a manifest stays in its directory.
+fn is_inside(path: &str) -> bool {
+    let is_plain = |part| matches!(part, Component::Normal(_));
+    Path::new(path).components().all(is_plain) && !path.contains('\\')
+}
+
 /// Formats of an export that can be read back.
 const COMPARED: [&str; 8] = [
     "tle", "omm", "omm-xml", "omm-json", "omm-csv", "oem", "sp3", "stk",
 ];
 
-fn write_reports(directory: &Path, result: &ValidateResult) -> Result<()> {
-    let staged = files::StagedDirectory::new(directory)?;
-    for (name, format) in [
-        ("report.txt", ReportFormat::Text),
-        ("report.json", ReportFormat::Json),
-        ("report.csv", ReportFormat::Csv),
-        ("report.md", ReportFormat::Markdown),
-        ("report.junit.xml", ReportFormat::Junit),
-    ] {
+fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Result<()> {
+    for (name, format) in REPORTS {
         let text = render(result, format)?;
         files::write_atomically(&staged.path().join(name), text.as_bytes())?;
     }

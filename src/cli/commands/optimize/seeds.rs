@@ -1,10 +1,8 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{
-    Ended, Sweep, hint_resume, interrupt_flag, load, open, resumed, search, status, sweep, text,
-};
+use super::{Ended, Sweep, hint_resume, load, open, resumed, search, status, sweep, text};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
-use crate::cli::{Status, coincidence, files, output};
+use crate::cli::{Status, coincidence, files, interrupt, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
 use anyhow::{Context, Result, bail};
@@ -38,8 +36,8 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
         require_seeds(&out)?;
     }
     let evaluator = Evaluator::new(setup)?;
-    let interrupted = interrupt_flag()?;
-    let sweep = match sweep(args, &study, &evaluator, &out, &interrupted)? {
+    let interrupted = interrupt::flag();
+    let sweep = match sweep(args, &study, &evaluator, &out, interrupted)? {
         Sweep::NotWanted => None,
         Sweep::Done(result) => Some(result),
         Sweep::Interrupted => return Ok(Status::Interrupted),
@@ -48,15 +46,20 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
     for seed in first..=last {
         study.scenario.optimizer.seed = seed;
         let place = out.join(format!("{RUN}{seed}"));
-        let directory = open(args, &study, &place)?;
-        let Ended { result, is_done } = search(
+        let mut directory = open(args, &study, &place)?;
+        let Ended {
+            result,
+            placed,
+            is_done,
+        } = search(
             args,
             &study,
             &evaluator,
-            &directory,
-            &interrupted,
+            &mut directory,
+            interrupted,
             sweep.as_deref(),
         )?;
+        placed?;
         if !is_done {
             hint_resume(&result, &place.display().to_string());
             return Ok(Status::Interrupted);
@@ -105,7 +108,11 @@ fn require_seeds(directory: &Path) -> Result<()> {
     let entries =
         fs::read_dir(directory).with_context(|| format!("cannot use {}", directory.display()))?;
     for entry in entries {
-        let name = entry?.file_name().to_string_lossy().into_owned();
+        let name = entry?.file_name();
+        if files::is_staged(&name) {
+            continue;
+        }
+        let name = name.to_string_lossy().into_owned();
         if !name.starts_with(RUN) && !TABLE.contains(&name.as_str()) {
             bail!(
                 "{} holds {name}, which is not the run of a seed; choose another --out, or replace what \

@@ -1,0 +1,148 @@
+//! Inputs are not outputs: what may be written, and what `--force` may replace.
+
+use anyhow::{Context, Result, bail};
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What this program writes into a run directory that it reads.
+const OWN_PLACES: [&str; 4] = ["report.html", "validation", "checkpoints", "figures"];
+/// Foreign files that are named.
+const MOST_NAMED: usize = 5;
+
+/// Refuses an output that is or holds an input, or that lies in one: in a run directory save this
+/// program's own places there.
+pub(crate) fn refuse_inputs<'a>(
+    out: &Path,
+    inputs: impl IntoIterator<Item = &'a Path>,
+) -> Result<()> {
+    let place = canonical(out)?;
+    for input in inputs {
+        let Ok(input_place) = input.canonicalize() else {
+            continue;
+        };
+        let (shown, named) = (out.display(), input.display());
+        if input_place == place {
+            bail!("{shown} is an input; choose another output");
+        }
+        if input_place.starts_with(&place) {
+            bail!("{shown} holds the input {named}; choose another output");
+        }
+        let Ok(rest) = place.strip_prefix(&input_place) else {
+            continue;
+        };
+        let first = rest.components().next();
+        let is_own = OWN_PLACES
+            .iter()
+            .any(|own| first.is_some_and(|first| first.as_os_str() == *own));
+        if !is_own {
+            bail!(
+                "{shown} lies in the input {named}; choose an output outside it, or in {}",
+                input.join("figures").display()
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Refuses to replace a directory that others than this program stand on: the working directory or
+/// what it lies in, a home, the root, a repository.
+pub(super) fn refuse_ground(place: &Path) -> Result<()> {
+    let place = canonical(place)?;
+    let holds = |path: io::Result<PathBuf>| path.is_ok_and(|path| path.starts_with(&place));
+    if place.parent().is_none() {
+        bail!("it is the root of the file system");
+    }
+    if holds(std::env::current_dir().and_then(|path| path.canonicalize())) {
+        bail!("it is or holds the working directory; choose a directory in it");
+    }
+    let home = std::env::var_os("HOME").filter(|home| !home.is_empty());
+    if home.is_some_and(|home| holds(Path::new(&home).canonicalize())) {
+        bail!("it is or holds a home directory; choose a directory in it");
+    }
+    if place.join(".git").exists() {
+        bail!("it is a repository; choose a directory in it");
+    }
+    Ok(())
+}
+
+/// Refuses to replace a directory that holds files other than `own`, paths from it with `/`; below a
+/// path that ends in `/` everything is own.
+pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result<()> {
+    let is_own = |path: &str| {
+        own.contains(path)
+            || own
+                .iter()
+                .any(|own| own.ends_with('/') && path.starts_with(own.as_str()))
+    };
+    let mut foreign =
+        files_below(directory).with_context(|| format!("cannot read {}", directory.display()))?;
+    foreign.retain(|path| !is_own(path));
+    let Some(named) = foreign
+        .get(..foreign.len().min(MOST_NAMED))
+        .filter(|n| !n.is_empty())
+    else {
+        return Ok(());
+    };
+    let more = foreign.len() - named.len();
+    let more = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
+    bail!(
+        "{} holds what this program did not write, and --force would delete it: {}{more}; choose \
+         another directory, or move them",
+        directory.display(),
+        named.join(", ")
+    );
+}
+
+/// The files below a directory, and its empty directories, by their paths from it.
+fn files_below(directory: &Path) -> io::Result<Vec<String>> {
+    let mut found = Vec::new();
+    let mut waiting = vec![(directory.to_owned(), String::new())];
+    while let Some((path, shown)) = waiting.pop() {
+        let mut is_empty = true;
+        for entry in fs::read_dir(&path)? {
+            let entry = entry?;
+            is_empty = false;
+            let name = entry.file_name();
+            if super::is_staged(&name) {
+                continue;
+            }
+            let shown = format!("{shown}{}", name.to_string_lossy());
+            if entry.file_type()?.is_dir() {
+                waiting.push((entry.path(), shown + "/"));
+            } else {
+                found.push(shown);
+            }
+        }
+        if is_empty && !shown.is_empty() {
+            found.push(shown);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Where a path leads, links followed as far as there is something.
+fn canonical(path: &Path) -> Result<PathBuf> {
+    let path = super::resolved(path)?;
+    let mut missing = Vec::new();
+    let mut there = path.as_path();
+    loop {
+        if let Ok(found) = there.canonicalize() {
+            let rest = missing.iter().rev();
+            return Ok(rest.fold(found, |found: PathBuf, name| found.join(name)));
+        }
+        match (there.parent(), there.file_name()) {
+            (Some(parent), Some(name)) => {
+                missing.push(name.to_owned());
+                there = parent;
+            }
+            _ => bail!("{} has no place in the file system", path.display()),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Files and directories written beside their places, under names that nobody foresees.
+//!
+//! Each is created exclusively and locked while it is written. One that is not locked was left by a
+//! process that was killed; the next that writes to the same place removes it.
+
+use crate::cli::interrupt::Removed;
+use std::ffi::OsStr;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::Path;
+use std::time::Duration;
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+/// What the name of everything that is staged contains.
+const MARK: &str = ".navwalker-";
+/// Random characters at the end of a name.
+const RANDOM: usize = 12;
+/// Bytes of the name of a place that go into the name of what is staged for it.
+const SHOWN: usize = 64;
+/// What passes at most between the creation of something staged and its lock.
+const UNTIL_LOCKED: Duration = Duration::from_millis(100);
+
+/// What the names of all that is staged for a place begin with.
+pub(super) fn prefix(place: &Path) -> String {
+    let name = place.file_name().unwrap_or_default().to_string_lossy();
+    let shown: String = name
+        .char_indices()
+        .take_while(|(at, _)| *at < SHOWN)
+        .map(|(_, c)| c)
+        .collect();
+    format!(".{shown}{MARK}")
+}
+
+/// Whether a name is that of something staged, rather than of a user's file.
+pub(crate) fn is_staged(name: &OsStr) -> bool {
+    let name = name.to_string_lossy();
+    name.starts_with('.')
+        && name.rsplit_once(MARK).is_some_and(|(_, end)| {
+            end.len() == RANDOM && end.chars().all(|c| c.is_ascii_alphanumeric())
+        })
+}
+
+/// A file beside `place`, open and locked.
+pub(super) fn file(place: &Path) -> io::Result<(NamedTempFile, Removed)> {
+    let parent = place.parent().unwrap_or(place);
+    remove_stale(parent, place);
+    let mut builder = Builder::new();
+    let prefix = prefix(place);
+    builder.prefix(&prefix).rand_bytes(RANDOM);
+    permit(&mut builder, 0o666);
+    let file = builder.tempfile_in(parent)?;
+    // Where locks are not to be had nothing is taken for stale either.
+    let _ = file.as_file().lock();
+    let removed = Removed::new(file.path());
+    Ok((file, removed))
+}
+
+/// A directory beside `place`, and its lock where there is one.
+pub(super) fn directory(place: &Path) -> io::Result<(TempDir, Option<File>, Removed)> {
+    let parent = place.parent().unwrap_or(place);
+    remove_stale(parent, place);
+    let mut builder = Builder::new();
+    let prefix = prefix(place);
+    builder.prefix(&prefix).rand_bytes(RANDOM);
+    permit(&mut builder, 0o777);
+    let directory = builder.tempdir_in(parent)?;
+    let lock = File::open(directory.path()).ok();
+    let lock = lock.filter(|lock| lock.lock().is_ok());
+    let removed = Removed::new(directory.path());
+    Ok((directory, lock, removed))
+}
+
+/// The permissions that any program gives; the user's mask takes from them.
+fn permit(builder: &mut Builder<'_, '_>, mode: u32) {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(mode));
+    }
+    #[cfg(not(unix))]
+    let _ = (builder, mode);
+}
+
+/// Locks a file or a directory; the lock ends with the handle.
+pub(crate) fn lock(path: &Path) -> Result<File, TryLockError> {
+    let file = File::open(path).map_err(TryLockError::Error)?;
+    file.try_lock()?;
+    Ok(file)
+}
+
+/// Removes what a killed process left beside `place`. What cannot be removed stays.
+fn remove_stale(parent: &Path, place: &Path) {
+    let prefix = prefix(place);
+    let Ok(entries) = fs::read_dir(parent) else {
+        return;
+    };
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        let path = entry.path();
+        let is_ours = is_staged(&name) && name.to_string_lossy().starts_with(&prefix);
+        // A link is nothing that this program makes.
+        if is_ours && !path.is_symlink() && is_abandoned(&path) {
+            let _ = if path.is_dir() {
+                fs::remove_dir_all(&path)
+            } else {
+                fs::remove_file(&path)
+            };
+        }
+    }
+}
+
+/// Whether nobody writes to something staged: it is not locked, and not just being created.
+fn is_abandoned(path: &Path) -> bool {
+    let is_free = || lock(path).is_ok();
+    is_free() && {
+        std::thread::sleep(UNTIL_LOCKED);
+        is_free()
+    }
+}

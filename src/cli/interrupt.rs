@@ -1,0 +1,56 @@
+//! Ctrl-C: what is half-written goes, and a search stops after its generation.
+
+use crate::cli::{Status, output};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Files and directories that are being written beside their places.
+static STAGED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+/// Whether the command ends by itself when [`SEEN`] is set.
+static ENDS_ITSELF: AtomicBool = AtomicBool::new(false);
+/// Whether Ctrl-C came.
+static SEEN: AtomicBool = AtomicBool::new(false);
+
+/// Cares for Ctrl-C from here on; where that cannot be had, the system ends the program.
+pub(crate) fn install() {
+    let _ = ctrlc::set_handler(|| {
+        if ENDS_ITSELF.load(Ordering::Relaxed) && !SEEN.swap(true, Ordering::Relaxed) {
+            output::hint("stopping after this generation; Ctrl-C again stops at once");
+            return;
+        }
+        let staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
+        for path in staged.iter() {
+            // What cannot be removed is found stale by the next that writes there.
+            let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
+        }
+        std::process::exit(Status::Interrupted as i32);
+    });
+}
+
+/// The flag that Ctrl-C sets, for a command that ends by itself then; a second Ctrl-C ends the
+/// program at once.
+pub(crate) fn flag() -> &'static AtomicBool {
+    ENDS_ITSELF.store(true, Ordering::Relaxed);
+    &SEEN
+}
+
+/// A path that is removed on Ctrl-C while this lives.
+pub(crate) struct Removed(PathBuf);
+
+impl Removed {
+    pub(crate) fn new(path: &Path) -> Self {
+        let mut staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
+        staged.insert(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for Removed {
+    fn drop(&mut self) {
+        let mut staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
+        staged.remove(&self.0);
+    }
+}
