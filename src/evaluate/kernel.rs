@@ -63,7 +63,7 @@ use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::PatternPropagator;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
-use sample::{Doubt, Limits, Outcome, Sample, SampleContext, Workspace};
+use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, Workspace};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
@@ -399,7 +399,7 @@ impl Kernel {
         mut take: impl FnMut(&[Lanes<f32>]),
     ) -> Result<Tallies, EphemerisError> {
         let mut work = Workspace::new(propagation.ephemeris.satellites().len());
-        let mut outcome = Outcome::new(self.scene.tiles.tiles.len());
+        let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
         let mut tallies = Tallies::default();
         for k in chunk {

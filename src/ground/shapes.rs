@@ -41,19 +41,24 @@ pub(crate) fn footprint(
         .map(|k| {
             let (sin, cos) = (TAU * k as f64 / CORNERS as f64).sin_cos();
             let towards = east * cos + north * sin;
-            edge(surface, satellite_km, Arc { centre, towards }, mask_rad)
+            edge(
+                surface,
+                satellite_km,
+                BoundaryArc { centre, towards },
+                mask_rad,
+            )
         })
         .collect()
 }
 
 /// A great circle through two perpendicular unit vectors.
 #[derive(Clone, Copy)]
-struct Arc {
+struct BoundaryArc {
     centre: Vector3<f64>,
     towards: Vector3<f64>,
 }
 
-impl Arc {
+impl BoundaryArc {
     /// The unit vector at an angle from the centre.
     fn direction(self, angle_rad: f64) -> Vector3<f64> {
         let (sin, cos) = angle_rad.sin_cos();
@@ -62,7 +67,12 @@ impl Arc {
 }
 
 /// The point in a direction from the sub-satellite point at which the elevation equals the mask.
-fn edge(surface: Surface, satellite_km: Position<EarthFixed>, arc: Arc, mask_rad: f64) -> LonLat {
+fn edge(
+    surface: Surface,
+    satellite_km: Position<EarthFixed>,
+    arc: BoundaryArc,
+    mask_rad: f64,
+) -> LonLat {
     let at = |angle: f64| surface.below_rad(foot(surface, arc.direction(angle)));
     let (mut seen, mut hidden) = (0.0, FRAC_PI_2);
     // 2⁻⁴⁰ of a quarter of the Earth is 10 micrometres.

@@ -116,7 +116,7 @@ pub(super) struct Undecided {
 
 /// The result of one sample.
 #[derive(Debug, Clone)]
-pub(super) struct Outcome {
+pub(super) struct SampleOutcome {
     /// PDOP of each slot, tile by tile; [`UNSOLVED`] if there is none.
     pub(super) pdop: Vec<Lanes<f32>>,
     /// Visible satellites, summed over the points without doubt.
@@ -129,7 +129,7 @@ pub(super) struct Outcome {
     pub(super) doubts: Vec<Undecided>,
 }
 
-impl Outcome {
+impl SampleOutcome {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
             pdop: vec![Lanes([UNSOLVED; LANES]); tiles],
@@ -151,7 +151,7 @@ pub(super) struct Sample<'a> {
     /// The GNSS part.
     pub(super) fixed: FixedSample<'a>,
     pub(super) work: &'a mut Workspace,
-    pub(super) outcome: &'a mut Outcome,
+    pub(super) outcome: &'a mut SampleOutcome,
 }
 
 impl Work for Sample<'_> {
@@ -178,7 +178,7 @@ fn evaluate(
     limits: Limits,
     fixed: &FixedSample<'_>,
     work: &mut Workspace,
-    out: &mut Outcome,
+    out: &mut SampleOutcome,
 ) {
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
@@ -317,7 +317,7 @@ fn doubt(
     doubt: Doubt,
     lanes: &Lanes<u32>,
     candidates: TileCandidates<'_>,
-    out: &mut Outcome,
+    out: &mut SampleOutcome,
 ) {
     let satellites: Vec<u32> = candidates.satellites().map(|n| n as u32).collect();
     for lane in (0..LANES).filter(|&lane| lanes.0[lane] != 0) {
@@ -341,7 +341,7 @@ fn compute_again(
     verdict: &LaneVerdict,
     positions: &Positions,
     candidates: TileCandidates<'_>,
-    out: &mut Outcome,
+    out: &mut SampleOutcome,
 ) -> u32 {
     let mut sums = Sums::<f64>::zero();
     let sites = &scene.tiles.tiles[number].double;

@@ -5,7 +5,7 @@ use super::super::fixed::{self, PlainGnssSample, PlainPositions};
 use super::super::{Setup, plain};
 use super::fixed::{FixedSample, SampleInstant};
 use super::lanes::{FixedTile, clear_pivot};
-use super::sample::{Doubt, Outcome, POSITION_STATES, SampleContext, UNSOLVED, Undecided};
+use super::sample::{Doubt, POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Undecided};
 use crate::dop::{Factor, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, LocalFrame, Position, State, Teme};
@@ -49,7 +49,7 @@ impl<'a> Settling<'a> {
         &self,
         leo: &Ephemeris,
         systems: &[Ephemeris],
-        outcome: &mut Outcome,
+        outcome: &mut SampleOutcome,
     ) -> Result<(), EphemerisError> {
         for undecided in std::mem::take(&mut outcome.doubts) {
             let Undecided { tile, lane, .. } = undecided;

@@ -294,7 +294,9 @@ fn validate_an_sp3_of_gps_time_over_a_leap_second() {
         ));
     }
     lines.push("EOF\n".to_owned());
-    let fleet = Fleet::read(lines.join("\n").as_bytes(), None, None).unwrap().fleet;
+    let fleet = Fleet::read(lines.join("\n").as_bytes(), None, None)
+        .unwrap()
+        .fleet;
     let grid = TimeGrid::new(
         Epoch::from_utc("2016-12-31T23:59:43Z".parse().unwrap()),
         60.0,

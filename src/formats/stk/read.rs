@@ -70,14 +70,14 @@ enum StkSection {
 
 /// What stands in a row behind the time.
 #[derive(Clone, Copy, PartialEq, Default)]
-enum Columns {
+enum StkColumns {
     #[default]
     PosVel,
     Pos,
     PosVelAcc,
 }
 
-impl Columns {
+impl StkColumns {
     fn of_keyword(key: &str) -> Option<Self> {
         match key.to_ascii_lowercase().as_str() {
             "ephemeristimepos" => Some(Self::Pos),
@@ -110,7 +110,7 @@ struct StkParser {
     frame: Option<Frame>,
     /// Kilometres in the unit of length; metres if none is named.
     unit_km: Option<f64>,
-    columns: Columns,
+    columns: StkColumns,
     boundaries_s: Vec<f64>,
     states: Vec<(f64, State<Frame>)>,
 }
@@ -174,7 +174,7 @@ impl StkParser {
                 findings.error(value_place, "stk-value", message);
             }
         };
-        if let Some(columns) = Columns::of_keyword(key) {
+        if let Some(columns) = StkColumns::of_keyword(key) {
             self.columns = columns;
             self.begin_table(place, findings);
             return;
@@ -283,7 +283,7 @@ impl StkParser {
 
     fn implausible(&self, state: &State<Frame>) -> Option<ImplausibleState> {
         match (self.columns, self.frame) {
-            (Columns::Pos, _) | (_, None) => check_position(&state.position_km.km()).err(),
+            (StkColumns::Pos, _) | (_, None) => check_position(&state.position_km.km()).err(),
             (_, Some(frame)) => check_state(frame, state).err(),
         }
     }
@@ -358,7 +358,7 @@ impl StkParser {
             _ if self.states.is_empty() => {
                 findings.error((number, 1), "stk-empty", "the table has no points");
             }
-            _ if self.columns != Columns::Pos => self.check_velocities(number, findings),
+            _ if self.columns != StkColumns::Pos => self.check_velocities(number, findings),
             _ => self.derive_velocities(number, findings),
         }
         Some(StkEphemeris {

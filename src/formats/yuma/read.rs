@@ -40,7 +40,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<Almanac>, ReadError> {
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<Almanac>> {
     let mut lines = Lines::with_tabs(input);
-    let mut block = Block::default();
+    let mut block = AlmanacBlock::default();
     let mut almanacs: Vec<Almanac> = Vec::new();
     loop {
         let line = lines.next(findings)?;
@@ -67,14 +67,14 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
 }
 
 #[derive(Default)]
-struct Block {
+struct AlmanacBlock {
     /// Line of the first field.
     first: usize,
     last: usize,
     values: [Option<f64>; KEYS.len()],
 }
 
-impl Block {
+impl AlmanacBlock {
     fn is_empty(&self) -> bool {
         self.first == 0
     }

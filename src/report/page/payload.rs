@@ -1,22 +1,21 @@
 //! The numbers embedded in the page for its figures.
 
+mod setting;
+
 use super::Page;
 use super::pack::{Packed, short};
 use crate::constellation::Design;
-use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
 use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
-use crate::ground::Site;
 use crate::optimize::Record;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
-use crate::report::coastline::{self, Bounds};
 use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_label};
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
 use crate::report::shown;
 use crate::run::{FrontMember, Run};
-use crate::scenario::{Keyword, Quantity, Region, Scenario};
-use chrono::{DateTime, Timelike, Utc};
+use crate::scenario::{Keyword, Quantity};
 use serde::Serialize;
+use setting::{RegionData, World};
 use std::collections::BTreeMap;
 
 /// Maximum number of instants of a series in the page; longer series are reduced to intervals.
@@ -130,37 +129,6 @@ struct Orbit {
 }
 
 #[derive(Serialize)]
-struct RegionData {
-    latitude_deg: Vec<f64>,
-    longitude_deg: Vec<f64>,
-    /// Names of the points; empty for those without one.
-    name: Vec<String>,
-    /// Steps in latitude and longitude, of a grid.
-    step_deg: Option<[f64; 2]>,
-    bounds: [f64; 4],
-    coast: Vec<Vec<i32>>,
-    elapsed_h: Packed,
-    availability_pdop: f64,
-}
-
-#[derive(Serialize)]
-struct World {
-    coast: Vec<Vec<i32>>,
-    /// UTC; inside a leap second the second before, which a browser can read.
-    epoch: String,
-    /// Seconds from the epoch to the beginning of each leap second of the span.
-    leap_seconds_s: Vec<f64>,
-    gmst_deg: f64,
-    gmst_rate_deg_s: f64,
-    radius_km: f64,
-    flattening: f64,
-    mask_deg: f64,
-    gnss_mask_deg: f64,
-    /// Azimuth and elevation of the skyline, degrees, once around; empty without one.
-    skyline_deg: Vec<[f64; 2]>,
-}
-
-#[derive(Serialize)]
 struct Budget {
     case: String,
     rms_km: [f64; 3],
@@ -263,12 +231,6 @@ fn budget(run: &Run) -> Vec<Budget> {
 }
 
 /// Polylines as longitude and latitude in hundredths of a degree.
-fn hundredths(lines: Vec<Vec<[f64; 2]>>) -> Vec<Vec<i32>> {
-    let whole = |x: f64| (100.0 * x).round() as i32;
-    let flat = |line: Vec<[f64; 2]>| line.into_iter().flatten().map(whole).collect();
-    lines.into_iter().map(flat).collect()
-}
-
 impl Objective {
     fn new(name: &str) -> Self {
         Self {
@@ -454,75 +416,6 @@ impl Orbit {
                 rates.mean_anomaly_rad_s,
             ]
             .map(f64::to_degrees),
-        }
-    }
-}
-
-fn name_of(site: &Site) -> String {
-    site.name.as_deref().unwrap_or_default().to_owned()
-}
-
-impl RegionData {
-    fn new(setup: &Setup, scenario: &Scenario) -> Option<Self> {
-        let step_deg = match &scenario.region {
-            Region::Grid(grid) => Some(grid.step_deg),
-            Region::Points { .. } => None,
-        };
-        let margin = step_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
-        let places = setup
-            .sites
-            .iter()
-            .map(|s| (s.latitude_deg, s.longitude_deg));
-        let bounds = Bounds::around(places, margin)?;
-        let times: Vec<f64> = setup.grid.iter().collect();
-        let starts = times.iter().step_by(interval(times.len()));
-        Some(Self {
-            latitude_deg: setup.sites.iter().map(|s| short(s.latitude_deg)).collect(),
-            longitude_deg: setup.sites.iter().map(|s| short(s.longitude_deg)).collect(),
-            name: match step_deg {
-                Some(_) => Vec::new(),
-                None => setup.sites.iter().map(name_of).collect(),
-            },
-            step_deg,
-            bounds: [
-                bounds.latitude_deg[0],
-                bounds.latitude_deg[1],
-                bounds.longitude_deg[0],
-                bounds.longitude_deg[1],
-            ],
-            coast: hundredths(coastline::within(&bounds)),
-            elapsed_h: Packed::of(starts.map(|t| t / crate::units::SECONDS_PER_HOUR)),
-            availability_pdop: setup.metrics.availability_pdop,
-        })
-    }
-}
-
-/// A UTC date and time with seconds up to 59, since browsers read no 60: chrono keeps a leap second as a
-/// nanosecond count past 1e9.
-fn readable_by_browsers(utc: DateTime<Utc>) -> String {
-    let within_second = utc.with_nanosecond(utc.nanosecond() % 1_000_000_000);
-    let format = "%Y-%m-%dT%H:%M:%S%.3fZ";
-    within_second.unwrap_or(utc).format(format).to_string()
-}
-
-impl World {
-    fn new(setup: &Setup, scenario: &Scenario) -> Self {
-        let grid = setup.grid;
-        Self {
-            coast: hundredths(coastline::world()),
-            epoch: readable_by_browsers(scenario.time.epoch),
-            leap_seconds_s: grid
-                .epoch()
-                .leap_seconds_within(grid.step_s() * grid.len() as f64),
-            gmst_deg: grid.epoch().gmst_rad(0.0).to_degrees(),
-            gmst_rate_deg_s: GMST_RATE_RAD_S.to_degrees(),
-            radius_km: RADIUS_KM,
-            flattening: scenario.earth.surface.flattening(),
-            mask_deg: setup.mask.degrees(),
-            gnss_mask_deg: setup.gnss_mask.degrees(),
-            skyline_deg: setup.skyline.as_ref().map_or_else(Vec::new, |skyline| {
-                skyline.vertices().iter().map(|&(a, e)| [a, e]).collect()
-            }),
         }
     }
 }

@@ -28,24 +28,24 @@ pub(super) struct PositionPacket {
     pub(super) reference_frame: Option<String>,
     pub(super) interpolation_algorithm: Option<String>,
     pub(super) interpolation_degree: Option<u64>,
-    pub(super) cartesian: Option<Samples>,
-    pub(super) cartesian_velocity: Option<Samples>,
-    pub(super) cartographic_degrees: Option<Samples>,
-    pub(super) cartographic_radians: Option<Samples>,
+    pub(super) cartesian: Option<ArraySamples>,
+    pub(super) cartesian_velocity: Option<ArraySamples>,
+    pub(super) cartographic_degrees: Option<ArraySamples>,
+    pub(super) cartographic_radians: Option<ArraySamples>,
     pub(super) reference: Option<String>,
     pub(super) delete: bool,
 }
 
 /// Numbers, and the times among them that are texts.
 #[derive(Debug, Default)]
-pub(super) struct Samples {
+pub(super) struct ArraySamples {
     /// NaN in the place of a text.
     pub(super) numbers: Vec<f64>,
     /// The places of the texts, and the texts.
     pub(super) texts: Vec<(usize, String)>,
 }
 
-impl<'de> Deserialize<'de> for Samples {
+impl<'de> Deserialize<'de> for ArraySamples {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_seq(SamplesVisitor)
     }
@@ -54,18 +54,18 @@ impl<'de> Deserialize<'de> for Samples {
 struct SamplesVisitor;
 
 impl<'de> Visitor<'de> for SamplesVisitor {
-    type Value = Samples;
+    type Value = ArraySamples;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("an array of numbers and times")
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Samples, A::Error> {
-        let mut samples = Samples::default();
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<ArraySamples, A::Error> {
+        let mut samples = ArraySamples::default();
         while let Some(item) = items.next_element()? {
             match item {
-                Item::Number(number) => samples.numbers.push(number),
-                Item::Text(text) => {
+                ArrayItem::Number(number) => samples.numbers.push(number),
+                ArrayItem::Text(text) => {
                     samples.texts.push((samples.numbers.len(), text));
                     samples.numbers.push(f64::NAN);
                 }
@@ -75,12 +75,12 @@ impl<'de> Visitor<'de> for SamplesVisitor {
     }
 }
 
-enum Item {
+enum ArrayItem {
     Number(f64),
     Text(String),
 }
 
-impl<'de> Deserialize<'de> for Item {
+impl<'de> Deserialize<'de> for ArrayItem {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_any(ItemVisitor)
     }
@@ -89,26 +89,26 @@ impl<'de> Deserialize<'de> for Item {
 struct ItemVisitor;
 
 impl Visitor<'_> for ItemVisitor {
-    type Value = Item;
+    type Value = ArrayItem;
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str("a number or a time")
     }
 
-    fn visit_f64<E: Error>(self, number: f64) -> Result<Item, E> {
-        Ok(Item::Number(number))
+    fn visit_f64<E: Error>(self, number: f64) -> Result<ArrayItem, E> {
+        Ok(ArrayItem::Number(number))
     }
 
-    fn visit_i64<E: Error>(self, number: i64) -> Result<Item, E> {
-        Ok(Item::Number(number as f64))
+    fn visit_i64<E: Error>(self, number: i64) -> Result<ArrayItem, E> {
+        Ok(ArrayItem::Number(number as f64))
     }
 
-    fn visit_u64<E: Error>(self, number: u64) -> Result<Item, E> {
-        Ok(Item::Number(number as f64))
+    fn visit_u64<E: Error>(self, number: u64) -> Result<ArrayItem, E> {
+        Ok(ArrayItem::Number(number as f64))
     }
 
-    fn visit_str<E: Error>(self, text: &str) -> Result<Item, E> {
-        Ok(Item::Text(text.to_owned()))
+    fn visit_str<E: Error>(self, text: &str) -> Result<ArrayItem, E> {
+        Ok(ArrayItem::Text(text.to_owned()))
     }
 }
 

@@ -2,7 +2,7 @@
 //! packet or several.
 
 use super::packet::{Packet, PositionPacket};
-use super::value::{Kind, algorithm, frame, interval, nodes, samples};
+use super::value::{PositionKind, algorithm, frame, interval, nodes, samples};
 use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
@@ -92,18 +92,18 @@ struct CzmlObject {
     availability: Vec<(Epoch, Epoch)>,
 }
 
-/// Samples in one interval, or in all.
+/// ArraySamples in one interval, or in all.
 struct Piece {
     interval: Option<(Epoch, Epoch)>,
     frame: Frame,
-    algorithm: Option<Algorithm>,
+    algorithm: Option<CzmlAlgorithm>,
     degree: Option<usize>,
     has_velocities: bool,
     nodes: Vec<(Epoch, State<Frame>)>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Algorithm {
+pub(super) enum CzmlAlgorithm {
     Linear,
     Lagrange,
     Hermite,
@@ -255,7 +255,7 @@ impl CzmlObject {
         let degree = position
             .interpolation_degree
             .map(|degree| degree.clamp(1, 50) as usize);
-        let has_velocities = kind == Kind::CartesianVelocity;
+        let has_velocities = kind == PositionKind::CartesianVelocity;
         let same = self.pieces.iter_mut().find(|piece| {
             (piece.interval, piece.frame, piece.has_velocities) == (interval, frame, has_velocities)
         });
@@ -313,10 +313,10 @@ impl Piece {
         // The nodes of CesiumJS: `LagrangePolynomialApproximation`, `HermitePolynomialApproximation`,
         // the latter without velocities being the former.
         let degree = self.degree.unwrap_or(1);
-        let interpolation = match self.algorithm.unwrap_or(Algorithm::Linear) {
-            Algorithm::Linear => Interpolation::Lagrange(1),
-            Algorithm::Hermite if self.has_velocities => Interpolation::Hermite(degree),
-            Algorithm::Hermite | Algorithm::Lagrange => Interpolation::Lagrange(degree),
+        let interpolation = match self.algorithm.unwrap_or(CzmlAlgorithm::Linear) {
+            CzmlAlgorithm::Linear => Interpolation::Lagrange(1),
+            CzmlAlgorithm::Hermite if self.has_velocities => Interpolation::Hermite(degree),
+            CzmlAlgorithm::Hermite | CzmlAlgorithm::Lagrange => Interpolation::Lagrange(degree),
         };
         let arc = Arc::new(self.frame, interpolation, self.nodes)?;
         match self.interval {

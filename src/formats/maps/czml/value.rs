@@ -1,7 +1,7 @@
 //! The values of a position: samples in their several forms, times, intervals, frame and interpolation.
 
-use super::packet::{PositionPacket, Samples};
-use super::read::{Algorithm, PacketFault};
+use super::packet::{ArraySamples, PositionPacket};
+use super::read::{CzmlAlgorithm, PacketFault};
 use crate::earth::Surface;
 use crate::ephemeris::arc::still;
 use crate::formats::text::timestamp;
@@ -12,14 +12,14 @@ use std::collections::HashMap;
 
 /// What the numbers of a position mean.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum PositionKind {
     Cartesian,
     CartesianVelocity,
     Degrees,
     Radians,
 }
 
-impl Kind {
+impl PositionKind {
     /// Numbers of a sample, without the time.
     pub(super) fn numbers(self) -> usize {
         match self {
@@ -46,35 +46,37 @@ impl Kind {
     }
 }
 
-pub(super) fn samples(position: &PositionPacket) -> Option<(&'static str, &Samples, Kind)> {
+pub(super) fn samples(
+    position: &PositionPacket,
+) -> Option<(&'static str, &ArraySamples, PositionKind)> {
     let given = [
         (
             "cartesianVelocity",
             &position.cartesian_velocity,
-            Kind::CartesianVelocity,
+            PositionKind::CartesianVelocity,
         ),
-        ("cartesian", &position.cartesian, Kind::Cartesian),
+        ("cartesian", &position.cartesian, PositionKind::Cartesian),
         (
             "cartographicDegrees",
             &position.cartographic_degrees,
-            Kind::Degrees,
+            PositionKind::Degrees,
         ),
         (
             "cartographicRadians",
             &position.cartographic_radians,
-            Kind::Radians,
+            PositionKind::Radians,
         ),
     ];
     let mut given = given.into_iter();
     given.find_map(|(key, samples, kind)| Some((key, samples.as_ref()?, kind)))
 }
 
-pub(super) fn algorithm(position: &PositionPacket) -> Result<Option<Algorithm>, PacketFault> {
+pub(super) fn algorithm(position: &PositionPacket) -> Result<Option<CzmlAlgorithm>, PacketFault> {
     match position.interpolation_algorithm.as_deref() {
         None => Ok(None),
-        Some("LINEAR") => Ok(Some(Algorithm::Linear)),
-        Some("LAGRANGE") => Ok(Some(Algorithm::Lagrange)),
-        Some("HERMITE") => Ok(Some(Algorithm::Hermite)),
+        Some("LINEAR") => Ok(Some(CzmlAlgorithm::Linear)),
+        Some("LAGRANGE") => Ok(Some(CzmlAlgorithm::Lagrange)),
+        Some("HERMITE") => Ok(Some(CzmlAlgorithm::Hermite)),
         Some(other) => {
             let message = format!("interpolation {other} is not LINEAR, LAGRANGE or HERMITE");
             Err(("czml-interpolation", "interpolationAlgorithm", message))
@@ -83,9 +85,9 @@ pub(super) fn algorithm(position: &PositionPacket) -> Result<Option<Algorithm>, 
 }
 
 /// Cartographic positions are Earth-fixed whatever the frame.
-pub(super) fn frame(position: &PositionPacket, kind: Kind) -> Result<Frame, PacketFault> {
+pub(super) fn frame(position: &PositionPacket, kind: PositionKind) -> Result<Frame, PacketFault> {
     match position.reference_frame.as_deref() {
-        _ if matches!(kind, Kind::Degrees | Kind::Radians) => Ok(Frame::EarthFixed),
+        _ if matches!(kind, PositionKind::Degrees | PositionKind::Radians) => Ok(Frame::EarthFixed),
         None | Some("FIXED") => Ok(Frame::EarthFixed),
         Some("INERTIAL") => Ok(Frame::Gcrf),
         Some(other) => {
@@ -98,8 +100,8 @@ pub(super) fn frame(position: &PositionPacket, kind: Kind) -> Result<Frame, Pack
 /// The samples, their times being texts or seconds since the epoch.
 pub(super) fn nodes(
     key: &'static str,
-    samples: &Samples,
-    kind: Kind,
+    samples: &ArraySamples,
+    kind: PositionKind,
     epoch: Option<&str>,
 ) -> Result<Vec<(Epoch, State<Frame>)>, PacketFault> {
     let broken = |message: String| ("czml-samples", key, message);
