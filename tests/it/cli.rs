@@ -652,7 +652,7 @@ fn a_constellation_from_files_is_evaluated_like_its_design() {
     assert!(
         uncovered
             .stderr
-            .contains("has no state at 2025-01-01T00:01:00"),
+            .contains("has no state at 2025-01-01T23:41:00"),
         "{}",
         uncovered.stderr
     );

@@ -27,7 +27,7 @@ const SPACINGS_S: [f64; 9] = [
 /// Maximum number of intervals between samples that are checked for the error of a spacing.
 const INTERVALS: usize = 500;
 
-/// ArraySamples beyond each end.
+/// Samples beyond each end.
 const BEYOND: i64 = DEGREE as i64 / 2;
 
 /// Satellites whose packets are made at once.
