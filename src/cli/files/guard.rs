@@ -1,5 +1,6 @@
 //! Inputs are not outputs: what may be written, and what `--force` may replace.
 
+use crate::run::MANIFEST;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs;
@@ -37,10 +38,12 @@ pub(crate) fn refuse_inputs<'a>(
             .iter()
             .any(|own| first.is_some_and(|first| first.as_os_str() == *own));
         if !is_own {
-            bail!(
-                "{shown} lies in the input {named}; choose an output outside it, or in {}",
-                input.join("figures").display()
-            );
+            let in_run = if input.join(MANIFEST).exists() {
+                format!(", or in {}", input.join("figures").display())
+            } else {
+                String::new()
+            };
+            bail!("{shown} lies in the input {named}; choose an output outside it{in_run}");
         }
     }
     Ok(())
