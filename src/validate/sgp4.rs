@@ -258,7 +258,7 @@ struct GateScale {
     label: &'static str,
     causes: Causes,
     days: f64,
-    leftover_per_day: [f64; 2],
+    leftover_per_day: [f64; 3],
     deep_space: bool,
 }
 

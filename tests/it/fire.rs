@@ -255,7 +255,7 @@ fn a_place_is_tried_before_the_work() {
         ),
         (too_long.as_str(), "too long"),
         ("/proc/self/run", "cannot"),
-        ("/proc", "something else than a run"),
+        ("/proc", "something other than a run"),
     ] {
         let optimized = ran(place, &[optimize(&[]), long.to_vec(), vec![out]].concat());
         assert_eq!(optimized.status, 2, "{out}: {}", optimized.stderr);
@@ -465,7 +465,7 @@ fn a_checkpoint_of_other_lengths_is_refused() {
     for pointer in [
         "/nsga2/population/0/genome",
         "/nsga2/population/0/objectives",
-        "/nsga2/history",
+        "/nsga2/history/records",
     ] {
         let mut header: serde_json::Value = serde_json::from_str(header).unwrap();
         let mut state: serde_json::Value = serde_json::from_str(state).unwrap();
@@ -517,7 +517,7 @@ fn a_manifest_stays_in_its_directory() {
         );
         assert_eq!(refused.status, 2, "{}{}", refused.stdout, refused.stderr);
         assert!(
-            refused.stderr.contains("which lies elsewhere"),
+            refused.stderr.contains("which is outside the directory"),
             "{}",
             refused.stderr
         );

@@ -247,7 +247,7 @@ fn numbers_are_rounded_once_and_the_same_everywhere() {
         assert_eq!(text, "1.2344");
     }
     assert!(
-        prose.contains("j-pos 1.2344,") && prose.contains("mean 1.2344,"),
+        prose.contains("j-pos 1.2344,") && prose.contains("mean PDOP is 1.2344,"),
         "{prose}"
     );
     assert!(prose.contains("front, 0.123."), "{prose}");

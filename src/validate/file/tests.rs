@@ -310,6 +310,21 @@ fn a_file_that_breaks_its_format_is_named() {
     assert!(error.starts_with("x.oem: line 1"), "{error}");
 }
 
+/// The segments of a file, each read as a message of its own: Orekit wrote one segment per satellite,
+/// and an OEM is for a single object (502.0-B-3, 5.1.3).
+fn one_message_each(file: &[u8]) -> Vec<Comparand> {
+    let text = std::str::from_utf8(file).unwrap();
+    let (header, segments) = text.split_once("META_START").unwrap();
+    let segments = segments.split("META_START").enumerate();
+    segments
+        .flat_map(|(n, segment)| {
+            let message = format!("{header}META_START{segment}");
+            let name = format!("orekit-{n}.oem");
+            read(&name, message.as_bytes(), None).unwrap().0
+        })
+        .collect()
+}
+
 /// Orekit integrates J2 from the design's elements, which it takes as osculating: the comparison
 /// says so, and what remains is the difference between two integrators.
 #[test]
@@ -317,12 +332,7 @@ fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
     let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
-    let findings = against_file(
-        &subject,
-        "orekit",
-        &read("orekit.oem", OREKIT, None).unwrap().0,
-    )
-    .unwrap();
+    let findings = against_file(&subject, "orekit", &one_message_each(OREKIT)).unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];
     assert_eq!(

@@ -1,8 +1,8 @@
-//! IntegrationBounds on what a model may differ from the integration of its field by, and why.
+//! Bounds on the difference between a model and the integration of its field, and their reasons.
 
 use super::CONSERVED;
-use crate::orbit::Model;
 use crate::orbit::sgp4::ZonalHarmonics;
+use crate::orbit::{MeanElements, Model};
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::Subject;
 use crate::validate::sgp4::causes::Causes;
@@ -47,9 +47,11 @@ impl IntegrationBounds {
         let excess = causes.excess_rad_s(ZonalHarmonics::J2Only)[0] * SECONDS_PER_DAY;
         let (drift_km_per_day, known_node_deg_per_day, node_km) = match model {
             Model::TwoBody => (integrator, 0.0, integrator),
-            // A start off by some J2^2 a drifts by 3/2 n of that.
             Model::J2 | Model::J2Osculating => {
-                (2.0 * second_order, excess.to_degrees(), 0.05 * second_order)
+                // Third order in J2, and what the closed form at e = 0 leaves out.
+                let higher = (causes.eccentric_factor - 1.0 + 0.02) * second_order;
+                let drift = largest_drift_from_start_km_per_day(&orbit) + higher;
+                (drift, excess.to_degrees(), 0.05 * second_order)
             }
             Model::Sgp4 => (2.0 * second_order, 0.0, 0.05 * second_order),
         };
@@ -66,10 +68,10 @@ impl IntegrationBounds {
             Model::J2Osculating => (
                 START,
                 NODE,
-                "first-order terms are good to J2 of their size; the perigee of the O(J2^2) eccentricity turns; long-period terms of order e J2; the node drifts by its terms in J2^2",
+                "the start has an eccentricity of O(J2^2), in closed form at the equator, where it is largest; long-period terms of order e J2; the node drifts by its terms in J2^2",
             ),
             Model::Sgp4 => (
-                START,
+                "the starting semi-major axis is known to O(J2^2), some metres, which drifts by 3/2 n per metre: no error of the rates",
                 "SGP4 has the secular terms of J2^2 and J4: third order and the start are left",
                 "reported only: the periodic terms of second order and of J3 and J4 that SGP4 leaves out",
             ),
@@ -89,7 +91,7 @@ impl IntegrationBounds {
         }
     }
 
-    /// IntegrationBounds on the RMS in-track, after the fit, and cross-track, km.
+    /// Bounds on the RMS in-track, after the fit, and cross-track, km.
     pub(super) fn after_fit_km(&self, days: f64) -> [Option<f64>; 2] {
         let causes = &self.causes;
         let integrator = CONSERVED * self.drift_per_a_per_day * self.a_km * days.powi(2);
@@ -99,7 +101,7 @@ impl IntegrationBounds {
         let [_, along_km, across_km] = causes.short_period_km;
         // e J2 a grows through a turn of the perigee, which takes months.
         let long_period = 3.0 * self.eccentricity * crate::earth::J2 * self.a_km * (1.0 + days);
-        let higher = 0.01 + 0.005 * self.short_km() + long_period;
+        let higher = 0.01 + first_order(self.second_order_in_track_km()) + long_period;
         let whole = |km: f64| FIRST_ORDER_MARGIN * causes.eccentric_factor * km + higher;
         match self.model {
             Model::TwoBody => [Some(integrator), Some(integrator)],
@@ -112,14 +114,46 @@ impl IntegrationBounds {
         }
     }
 
-    /// Sizes of the first-order short-period terms, km.
-    fn short_km(&self) -> f64 {
-        self.causes.short_period_km.iter().sum::<f64>() + self.causes.radius_shift_km.abs()
+    /// Amplitude in-track of the second-order eccentricity of the start, km: 126 ε² a, with ε = J2 R²/(2 p²).
+    ///
+    /// Over the equator the circular orbit of the theory has the radius a (1 - 3 ε) and the rate
+    /// n (1 + 6 ε), and that of the field n (1 + 6 ε + 63/2 ε²) at this radius: started slower by
+    /// 63/2 ε², the satellite is at an apogee of the eccentricity 63 ε². It is the largest over
+    /// inclination.
+    fn second_order_in_track_km(&self) -> f64 {
+        let parameter_km = self.a_km * (1.0 - self.eccentricity * self.eccentricity);
+        126.0 * epsilon(parameter_km).powi(2) * self.a_km
     }
 }
 
+/// ε = J2 R²/(2 p²).
+fn epsilon(parameter_km: f64) -> f64 {
+    0.5 * crate::earth::J2 * (crate::earth::RADIUS_KM / parameter_km).powi(2)
+}
+
+/// Largest in-track drift, over the argument of latitude θ of the start, of an orbit that starts from
+/// the first-order osculating state at e = 0, km/day.
+///
+/// To second order the energy of that state, and the secular rates in J2² of Brouwer (*Astron. J.* 64
+/// (1959) 378), give with ε = J2 R²/(2 a²) and c = cos i
+///
+/// ```text
+/// 9/4 ε² n a {9 - 58 c² + 105 c⁴ - (1 - c²)(1 + 11 c²) cos 2θ - (1 - c²)(1 - 4 c²) cos 4θ}
+/// ```
+fn largest_drift_from_start_km_per_day(orbit: &MeanElements) -> f64 {
+    let a_km = orbit.semi_major_axis_km;
+    let parameter_km = a_km * (1.0 - orbit.eccentricity * orbit.eccentricity);
+    let c2 = orbit.inclination_rad.cos().powi(2);
+    let mean = 9.0 - 58.0 * c2 + 105.0 * c2 * c2;
+    let twice = (1.0 - c2) * (1.0 + 11.0 * c2);
+    let four_times = (1.0 - c2) * (1.0 - 4.0 * c2);
+    let km_per_day = orbit.kepler_mean_motion_rad_s() * a_km * SECONDS_PER_DAY;
+    let scale = 2.25 * epsilon(parameter_km).powi(2) * km_per_day;
+    scale * (mean.abs() + twice + four_times.abs())
+}
+
 /// Why the drift of a J2 theory is bounded.
-const START: &str = "the starting semi-major axis is known to O(J2^2), some metres, which drifts by 3/2 n per metre: no error of the rates";
+const START: &str = "the starting semi-major axis is known to O(J2^2), some metres, which drifts by 3/2 n per metre: no error of the rates, and known in closed form";
 
 /// Why the node of a J2 theory is bounded.
 const NODE: &str = "the terms in J2^2 of the node rate are known in closed form: a twentieth of their largest size is left for third order and the start";

@@ -282,12 +282,12 @@ pub(super) const ERRORS: &[PlantedError] = &[
         related: &["sgp4/frozen-eccentricity/cancelled"],
     },
     PlantedError {
-        error: "mean anomaly of a TLE cut to three decimals",
+        error: "mean motion of a TLE cut to four decimals",
         model: Model::J2,
         parts: || Parts {
             written: |set| {
                 let mut written = tle::as_written(set)?;
-                written.mean_anomaly = (1e3 * written.mean_anomaly).trunc() / 1e3;
+                written.mean_motion = (1e4 * written.mean_motion).trunc() / 1e4;
                 Ok(written)
             },
             ..Parts::default()

@@ -185,7 +185,7 @@ pub(super) const ERRORS: &[PlantedError] = &[
             evaluate: |evaluator, ephemeris| {
                 let mut metrics = evaluator.evaluate_ephemeris(ephemeris)?;
                 let first = ephemeris.state(&ephemeris.satellites()[0], 0.0)?;
-                metrics.mean_visible += 1e-9 * first.position_km.km().z;
+                metrics.mean_visible += 1e-6 * first.position_km.km().z;
                 Ok(metrics)
             },
             ..Parts::default()

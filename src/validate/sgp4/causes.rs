@@ -184,7 +184,7 @@ impl Causes {
     pub(in crate::validate) fn growth_gate_km_per_day(
         &self,
         zonals: ZonalHarmonics,
-        leftover_per_day: [f64; 2],
+        leftover_per_day: [f64; 3],
     ) -> f64 {
         let once = match zonals {
             ZonalHarmonics::Full => 2.0 * self.frozen_km,
@@ -201,18 +201,18 @@ impl Causes {
 /// of the difference of the gravity constants (5 m), km.
 const HIGHER_ORDER_KM: f64 = 0.01;
 
-/// The slope that a difference which goes once or twice around leaves in the mean over a
+/// The slope that a difference which goes once, twice or four times around leaves in the mean over a
 /// constellation, per day and unit of amplitude.
 ///
 /// The least-squares slope of a sine of amplitude A over N of its periods in D days is at most
 /// 12 A/(2π N D), and never above the steepest of the sine, 2π N A/D; satellites that are spread evenly
 /// cancel each other.
-pub(in crate::validate) fn leftover_per_day(satellites: &[Satellite], days: f64) -> [f64; 2] {
+pub(in crate::validate) fn leftover_per_day(satellites: &[Satellite], days: f64) -> [f64; 3] {
     let Some(first) = satellites.first() else {
-        return [0.0; 2];
+        return [0.0; 3];
     };
     let turns = days * SECONDS_PER_DAY * first.elements.kepler_mean_motion_rad_s() / TAU;
-    [1.0, 2.0].map(|harmonic| {
+    [1.0, 2.0, 4.0].map(|harmonic| {
         let (mut sine, mut cosine) = (0.0, 0.0);
         for satellite in satellites {
             let (s, c) = (harmonic * satellite.elements.mean_argument_of_latitude_rad()).sin_cos();

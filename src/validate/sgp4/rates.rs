@@ -102,7 +102,10 @@ pub(super) fn checks(
             }
             _ => 0.0,
         };
-    let rounding_deg = ROUNDING_DEG_PER_DAY + (swing_rad * scale.leftover_per_day[1]).to_degrees();
+    // The square of the swing goes four times around.
+    let [_, twice, four_times] = scale.leftover_per_day;
+    let swing_rad_per_day = swing_rad * twice + swing_rad * swing_rad * four_times;
+    let rounding_deg = ROUNDING_DEG_PER_DAY + swing_rad_per_day.to_degrees();
     let mut checks = Vec::new();
     for (n, name) in ["node", "argument-of-latitude"].into_iter().enumerate() {
         let unit = "deg/day";
@@ -127,7 +130,7 @@ pub(super) fn checks(
                 },
                 ours[n],
                 Some(rounding_deg + if n == 1 { leftover_deg } else { 0.0 }),
-                "states of the model compared with the secular rates of J2 in closed form: rounding, plus the residual of an incomplete revolution",
+                "states of the model compared with the secular rates of J2 in closed form: rounding, plus the swing of r x v with the node, and its square, over an incomplete revolution",
             ));
         }
         checks.push(Check::new(
