@@ -308,36 +308,36 @@ fn inputs_stay() {
     for (command, message) in [
         (
             "report run --out run/front.json".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             "plot run --figure pareto --out run/front.svg".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             "plot run --figure pareto --force --out run/history.svg".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             format!("{export} run"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
-        (format!("{export} run/new"), "lies in the input run"),
+        (format!("{export} run/new"), "is inside the input run"),
         (
             format!("{export} ."),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{export} repository"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{evaluate} fleet"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{evaluate} fleet/of/us"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             "export study.toml --as tle --out study.toml".to_owned(),
