@@ -385,7 +385,7 @@ fn the_table_of_a_figure_replaces_nothing() {
     assert!(
         refused
             .stderr
-            .contains("front.csv, which holds something else"),
+            .contains("front.csv, which contains something else"),
         "{}",
         refused.stderr
     );
@@ -482,7 +482,7 @@ fn a_checkpoint_of_other_lengths_is_refused() {
         fs::write(&path, format!("{header}\n{state}\n")).unwrap();
         let refused = ran(place, &optimize(&["--out", "run", "--resume"]));
         assert_eq!(refused.status, 2, "{pointer}: {}", refused.stderr);
-        let message = "run holds a checkpoint that is not of this search";
+        let message = "run contains a checkpoint of another search";
         assert!(
             refused.stderr.contains(message),
             "{pointer}: {}",
