@@ -94,7 +94,7 @@ pub(crate) enum Command {
 
     /// Check a design's propagation against independent standards, with a gate and a reason for each.
     ///
-    /// On trial is the model that the scenario propagates (`propagation.model`): it is the first of each
+    /// The model under test is the one that the scenario propagates (`propagation.model`): it is the first of each
     /// case. Checks without a gate are for information. The exit status is 1 if a gate fails.
     ///
     /// Example: navwalker validate --design star:86.4:66/6/2@780 --against sgp4

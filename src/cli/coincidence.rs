@@ -1,4 +1,4 @@
-//! The warning about satellites in one place.
+//! The warning about coincident satellites.
 
 use crate::cli::output;
 use crate::constellation::gnss::System;
@@ -6,11 +6,11 @@ use crate::ephemeris::Ephemeris;
 use crate::ephemeris::coincidence::{COINCIDENT_WITHIN_KM, Member, coincident};
 use crate::time::TimeGrid;
 
-/// Groups, and members of a group, that are named.
+/// Maximum number of groups, and of members of a group, to name.
 const NAMED: usize = 3;
 
-/// Says which satellites of the constellation and of the GNSS are in one place. A satellite that
-/// cannot be propagated is left to the command, which says so where it needs it.
+/// Warns of coincident satellites among the constellation and the GNSS. A satellite that cannot be
+/// propagated is ignored here; the command itself reports it.
 pub(crate) fn warn(gnss: &[System], grid: TimeGrid, leo: Option<&Ephemeris>) {
     let systems: Vec<Ephemeris> = gnss
         .iter()
@@ -42,7 +42,7 @@ fn text(all: &[&Ephemeris], groups: &[Vec<Member>]) -> String {
     )
 }
 
-/// The first of some names, and how many there are besides.
+/// The first few names, and how many more there are.
 fn listed(names: &[String], between: &str, rest: &str) -> String {
     let shown = names[..names.len().min(NAMED)].join(between);
     match names.len().saturating_sub(NAMED) {

@@ -20,7 +20,7 @@ use tempfile::{NamedTempFile, PersistError, TempDir};
 /// Maximum bytes of a file that is read into memory at once: a scenario, or a file it names.
 const MOST_BYTES: u64 = 64 << 20;
 
-/// Links behind links that are followed, as by the system.
+/// Maximum number of chained links to follow, as in the system.
 const MOST_LINKS: usize = 40;
 
 /// The bytes of a file that is not too long to be kept.
@@ -41,16 +41,16 @@ pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     StagedFile::new(path)?.commit(bytes)
 }
 
-/// A file that replaces its place when it is complete. A link stays one, and its target is written;
-/// what is not a file, as a device, is written to.
+/// A file that replaces its destination when complete. For a link, the target is replaced; a device
+/// or other special file is written to directly.
 pub(crate) struct StagedFile {
     place: PathBuf,
-    /// `None` for what is not a file.
+    /// `None` if the destination is not a regular file.
     staged: Option<(NamedTempFile, Removed)>,
 }
 
 impl StagedFile {
-    /// An empty file beside `path`; refuses a place that could not be taken.
+    /// An empty file next to `path`; fails if the destination could not be replaced.
     pub(crate) fn new(path: &Path) -> Result<Self> {
         let beside = || -> Result<Self> {
             let place = resolved(path)?;
@@ -68,8 +68,8 @@ impl StagedFile {
         beside().with_context(|| format!("cannot write {}", path.display()))
     }
 
-    /// Puts the file with these contents in its place. Where that cannot be had, it stays beside,
-    /// and the error says so.
+    /// Moves the file with these contents to its destination. If that fails, the staged file is kept
+    /// and the error names it.
     pub(crate) fn commit(self, bytes: &[u8]) -> Result<()> {
         let cannot = format!("cannot write {}", self.place.display());
         let Some((mut file, _removed)) = self.staged else {
@@ -94,7 +94,7 @@ impl StagedFile {
     }
 }
 
-/// Gives what could not be put in its place a name that no later command takes for stale.
+/// Renames a staged result that could not be moved, so that no later command treats it as stale.
 fn kept_beside(staged: &Path) -> PathBuf {
     let name = staged.file_name().unwrap_or_default().to_string_lossy();
     let kept = staged.with_file_name(name.trim_start_matches('.'));
@@ -108,7 +108,7 @@ fn said(kept: &Path) -> String {
     format!("; the result is in {}", kept.display())
 }
 
-/// Where a path leads, whether there is something or not: links at its end are followed.
+/// The target of a path, existing or not, with links at its end followed.
 fn resolved(path: &Path) -> io::Result<PathBuf> {
     let mut path = std::path::absolute(path)?;
     for _ in 0..MOST_LINKS {
@@ -136,14 +136,14 @@ pub(crate) fn write_all(directory: &Path, files: &[(String, Vec<u8>)]) -> Result
 pub(crate) struct StagedDirectory {
     staging: TempDir,
     place: PathBuf,
-    /// Directories above the place that were made for it, the deepest first.
+    /// Parent directories created for the destination, deepest first.
     made: Vec<PathBuf>,
     lock: Option<File>,
     _removed: Removed,
 }
 
 impl StagedDirectory {
-    /// An empty directory beside `place`; refuses a place that could not be taken.
+    /// An empty directory next to `place`; fails if the destination could not be replaced.
     pub(crate) fn new(place: &Path) -> Result<Self> {
         Self::beside(place).with_context(|| format!("cannot write to {}", place.display()))
     }
@@ -182,8 +182,8 @@ impl StagedDirectory {
         self.commit_keeping(&[]).map(drop)
     }
 
-    /// The same, but entries of these names are taken over from what is replaced. Gives the lock of
-    /// the directory. Where it cannot be put in its place it stays beside, and the error says so.
+    /// The same, but keeps the entries with these names from the directory being replaced. Returns the
+    /// lock of the directory. If the move fails, the staged directory is kept and the error names it.
     pub(crate) fn commit_keeping(mut self, kept: &[OsString]) -> Result<Option<File>> {
         let (staging, place) = (self.staging.path(), self.place.as_path());
         let replace = || -> io::Result<()> {
@@ -239,12 +239,12 @@ fn make_directories(path: &Path, made: &mut Vec<PathBuf>) -> Result<()> {
 
 fn unmake(made: &[PathBuf]) {
     for path in made {
-        // One that is in use by now is not empty and stays.
+        // A directory that is in use by now is not empty and is kept.
         let _ = fs::remove_dir(path);
     }
 }
 
-/// Refuses what a directory cannot replace: a file, a mount point, a name that is too long.
+/// Refuses destinations that a directory cannot replace: a file, a mount point, a name that is too long.
 fn check_place(place: &Path, parent: &Path) -> Result<()> {
     match place.symlink_metadata() {
         Ok(found) if !found.is_dir() => bail!("it is a file, and a directory is needed"),
@@ -268,7 +268,7 @@ fn is_mount_point(_: &fs::Metadata, _: &fs::Metadata) -> bool {
     false
 }
 
-/// Puts back a directory that a kill in the middle of its replacement left aside.
+/// Restores a directory if the program was killed while replacing it.
 pub(crate) fn recovered(place: &Path) -> Result<()> {
     let is_recovered =
         replace::recover(place).with_context(|| format!("cannot restore {}", place.display()))?;
@@ -319,8 +319,8 @@ pub(crate) fn require_replaceable(path: &Path, force: bool, own: &BTreeSet<Strin
 mod tests {
     use super::*;
 
-    /// What cannot be put in its place at the end, because something else is there by now, is kept
-    /// under a name that the error gives; what is there stays.
+    /// If the destination is taken by the end, the result is kept under a name that the error gives, and
+    /// the destination is not touched.
     #[test]
     fn a_result_that_cannot_be_placed_is_kept() {
         let directory = TempDir::new().unwrap();
@@ -356,7 +356,7 @@ mod tests {
         assert_eq!(fs::read_dir(directory.path()).unwrap().count(), 0);
     }
 
-    /// What cannot be replaced at the end is refused at the beginning.
+    /// A destination that cannot be replaced at the end is refused at the start.
     #[cfg(target_os = "linux")]
     #[test]
     fn a_mount_point_and_a_file_are_no_places() {

@@ -1,4 +1,4 @@
-//! Ctrl-C: what is half-written goes, and a search stops after its generation.
+//! Ctrl-C: partial output is removed, and a search stops after the current generation.
 
 use crate::cli::{Status, output};
 use std::collections::BTreeSet;
@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Files and directories that are being written beside their places.
+/// Files and directories that are still being staged.
 static STAGED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-/// Whether the command ends by itself when [`SEEN`] is set.
+/// Whether the command stops by itself when [`SEEN`] is set.
 static ENDS_ITSELF: AtomicBool = AtomicBool::new(false);
-/// Whether Ctrl-C came.
+/// Whether Ctrl-C was pressed.
 static SEEN: AtomicBool = AtomicBool::new(false);
 
-/// Cares for Ctrl-C from here on; where that cannot be had, the system ends the program.
+/// Installs the Ctrl-C handler; if that fails, Ctrl-C ends the program as usual.
 pub(crate) fn install() {
     let _ = ctrlc::set_handler(|| {
         if ENDS_ITSELF.load(Ordering::Relaxed) && !SEEN.swap(true, Ordering::Relaxed) {
@@ -23,21 +23,21 @@ pub(crate) fn install() {
         }
         let staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
         for path in staged.iter() {
-            // What cannot be removed is found stale by the next that writes there.
+            // If removal fails, the next process that writes there removes it as stale.
             let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
         }
         std::process::exit(Status::Interrupted as i32);
     });
 }
 
-/// The flag that Ctrl-C sets, for a command that ends by itself then; a second Ctrl-C ends the
+/// The flag that Ctrl-C sets, for a command that then stops by itself; a second Ctrl-C ends the
 /// program at once.
 pub(crate) fn flag() -> &'static AtomicBool {
     ENDS_ITSELF.store(true, Ordering::Relaxed);
     &SEEN
 }
 
-/// A path that is removed on Ctrl-C while this lives.
+/// A guard: while it exists, Ctrl-C removes its path.
 pub(crate) struct Removed(PathBuf);
 
 impl Removed {

@@ -10,10 +10,10 @@ use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
-/// Names that are listed of what a directory holds besides.
+/// Maximum number of other files in a directory to list.
 const MOST_NAMES: usize = 5;
 
-/// The satellites of files and directories, in the order of the names, and the formats that were met.
+/// The satellites of files and directories, in the order of the names, and the formats found.
 pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<Format>, Fleet)> {
     let mut formats = Vec::new();
     let mut whole: Option<Fleet> = None;
@@ -34,8 +34,8 @@ pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<For
     }
 }
 
-/// What each file of a path gives: the file itself, or those of a directory that are constellations. What else is
-/// in a directory is said.
+/// Imports each file of a path: the file itself, or the constellation files in a directory. A warning lists the
+/// other files in the directory.
 pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(PathBuf, Imported)>> {
     if !path.is_dir() {
         return Ok(vec![(path.to_owned(), read_one(path, format)?)]);
@@ -56,12 +56,12 @@ pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(Path
         output::warning(&format!("{}: {}", path.display(), left_out(&others)));
     }
     if found.is_empty() {
-        bail!("{} has no file of a constellation", path.display());
+        bail!("{} contains no constellation file", path.display());
     }
     Ok(found)
 }
 
-/// Says what of a file is not read.
+/// Warns of the parts of a file that are not read.
 pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     if !left_out.is_empty() {
         output::warning(&format!("{}: {left_out}", file.display()));
@@ -85,7 +85,7 @@ fn read_one(file: &Path, format: Option<Format>) -> Result<Imported> {
     Ok(imported)
 }
 
-/// The format of a file; none if it is not of one that is read.
+/// The format of a file; `None` if it is not supported.
 fn format_of(file: &Path) -> Result<Option<Format>> {
     let look = || -> std::io::Result<Option<Format>> {
         let input = BufReader::new(File::open(file)?);

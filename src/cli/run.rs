@@ -16,7 +16,7 @@ use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// The process that works in a run directory, while one does.
+/// File that names the process using a run directory.
 const HOLDER: &str = ".lock";
 
 /// What this program writes in a run directory.
@@ -29,8 +29,7 @@ fn own() -> BTreeSet<String> {
     own
 }
 
-/// The lock of a directory, if there is one that can be locked; refuses one that another process
-/// works in.
+/// The lock of a directory, if it exists and can be locked; fails if another process is using it.
 fn held(directory: &Path) -> Result<Option<File>> {
     match files::lock(directory) {
         Ok(lock) => Ok(Some(lock)),
@@ -50,11 +49,11 @@ fn held(directory: &Path) -> Result<Option<File>> {
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
-    /// What the run begins with: the scenario, copies of its files, the manifest.
+    /// The initial contents of the run: the scenario, copies of its files, the manifest.
     first_files: Vec<(String, Vec<u8>)>,
-    /// Keeps other processes out; `None` where the file system has no locks.
+    /// Keeps other processes out; `None` if the file system has no locks.
     lock: Option<File>,
-    /// Whether the directory says that this process works in it.
+    /// Whether the directory is marked as in use by this process.
     is_holder: bool,
 }
 
@@ -94,7 +93,7 @@ impl RunDirectory {
                 run.what_else(study)
             );
         }
-        // Only those who wait read it.
+        // Only waiting processes read it.
         let holder = fs::write(run.path.join(HOLDER), std::process::id().to_string());
         run.is_holder = holder.is_ok();
         Ok(run)
@@ -113,7 +112,7 @@ impl RunDirectory {
         self.path.display()
     }
 
-    /// What the directory holds, by name.
+    /// The names of the directory's entries.
     fn entries(&self) -> Result<Vec<OsString>> {
         let cannot = || format!("cannot read {}", self.path.display());
         let mut names = Vec::new();
@@ -258,7 +257,7 @@ impl RunDirectory {
 
 impl Drop for RunDirectory {
     fn drop(&mut self) {
-        // A run that is interrupted leaves nothing that is not of the run.
+        // An interrupted run leaves only files that belong to the run.
         if self.is_holder {
             let _ = fs::remove_file(self.path.join(HOLDER));
         }

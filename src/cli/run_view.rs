@@ -37,7 +37,7 @@ impl RunView {
         let mut run = Run::read(&files);
         let evaluator = match evaluator(&args.directory, &run) {
             Ok(evaluator) => evaluator,
-            // Of other inputs than the run's nothing is shown beside its results.
+            // Nothing computed from other inputs is shown with the results of the run.
             Err(error) if error.is::<InputError>() => return Err(error),
             Err(error) => {
                 run.gaps.push(format!("no maps and series: {error:#}"));

@@ -22,13 +22,13 @@ pub(crate) struct Study {
     written: Written,
     /// Directory to which paths in the scenario are relative.
     directory: PathBuf,
-    /// What the run directory says of its files, where the scenario is that of a run.
+    /// The manifest of the run directory, if the scenario is that of a run.
     manifest: Option<RunManifest>,
     /// Contents of the files that the scenario names, once they are read.
     contents: OnceCell<Vec<Vec<u8>>>,
 }
 
-/// A scenario as it was written, in which errors have their places.
+/// A scenario as written, to locate errors in it.
 #[derive(Clone)]
 struct Written {
     label: String,
@@ -95,19 +95,19 @@ impl Study {
         Ok(self.scenario.hash(&contents.collect::<Vec<_>>()))
     }
 
-    /// What a run of this study is a run of.
+    /// The identity of a run of this study.
     pub(crate) fn identity(&self) -> Result<Identity> {
         Ok(Identity::of(&self.scenario, self.hash()?))
     }
 
-    /// The files that a run of this study begins with.
+    /// The initial files of a run of this study.
     pub(crate) fn first_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
         let identity = self.identity()?;
         Ok(first_files(&self.scenario, self.contents()?, &identity)?)
     }
 
-    /// Contents of the files that the scenario names, in its order; read once, so that all that is
-    /// computed and kept is of the same bytes.
+    /// Contents of the files that the scenario names, in its order; read once, so that all results and
+    /// copies are based on the same bytes.
     fn contents(&self) -> Result<&[Vec<u8>]> {
         if let Some(contents) = self.contents.get() {
             return Ok(contents);
@@ -120,7 +120,7 @@ impl Study {
     fn read(&self, file: &str) -> Result<Vec<u8>> {
         let bytes = files::read_whole(&self.directory.join(file))
             .map_err(|source| self.placed(&self.scenario.unreadable(file, source)))?;
-        // A file that --set names may lie elsewhere, and is not one of the run.
+        // A file named by --set may be elsewhere and is not part of the run.
         let is_copy = file.split('/').next() == Some(INPUTS);
         if let Some(manifest) = self.manifest.as_ref().filter(|_| is_copy) {
             manifest
@@ -130,8 +130,8 @@ impl Study {
         Ok(bytes)
     }
 
-    /// Takes the copies that the run in `directory` has of the scenario's files for the files
-    /// themselves, which may have changed since: a run that goes on is the same run.
+    /// Replaces the scenario's files by the copies in the run in `directory`, since the originals may
+    /// have changed: a resumed run must use the same inputs.
     pub(crate) fn take_files_of(&mut self, directory: &Path) -> Result<()> {
         let paths = copy_paths(&self.scenario.files());
         if paths.is_empty() || !directory.join(MANIFEST).exists() {
@@ -146,7 +146,7 @@ impl Study {
             let found = files::read_whole(&self.directory.join(file));
             if !found.is_ok_and(|bytes| bytes == *copy) {
                 output::warning(&format!(
-                    "{file} is gone or has changed since the run began; its copy in {} is used",
+                    "{file} is missing or has changed since the run began; using its copy in {}",
                     directory.display()
                 ));
             }
@@ -155,7 +155,7 @@ impl Study {
         Ok(())
     }
 
-    /// How the scenario of the run in `directory` differs, if that can be told.
+    /// How the scenario of the run in `directory` differs, if that can be determined.
     pub(crate) fn difference_from_run(&self, directory: &Path) -> Option<String> {
         let run = Self::of_run(directory, &[]).ok()?;
         let there_and_here = run.scenario.differences(&self.scenario).into_iter();
@@ -198,7 +198,7 @@ impl Study {
         Ok(setup)
     }
 
-    /// Says which columns of the points file mean nothing here: one of them may be misspelt.
+    /// Warns of ignored columns of the points file, since one of them may be misspelt.
     fn warn_of_columns(&self, contents: &[Vec<u8>]) {
         if let (Region::Points { file }, Some(points)) = (&self.scenario.region, contents.first()) {
             let ignored = ignored_columns(points.as_slice());
@@ -208,7 +208,7 @@ impl Study {
         }
     }
 
-    /// The files that it comes from, or the run directory.
+    /// The input files of the study, or the run directory.
     pub(crate) fn inputs(&self) -> Vec<PathBuf> {
         if self.manifest.is_some() {
             return vec![self.directory.clone()];
@@ -221,7 +221,7 @@ impl Study {
         inputs
     }
 
-    /// The design that is taken when none is named.
+    /// The default design.
     pub(crate) fn reference_design(&self) -> Result<Design> {
         let design = self.scenario.reference_design();
         design.map_err(|error| self.placed(&error))
@@ -253,7 +253,7 @@ impl Written {
     }
 }
 
-/// What a run directory says of itself, if anything.
+/// The manifest of a run directory, if there is one.
 pub(crate) fn read_manifest(directory: &Path) -> Result<Option<RunManifest>> {
     let path = directory.join(MANIFEST);
     match files::read_whole(&path) {

@@ -1,12 +1,12 @@
-//! Which object a file speaks of: the one rule inside a file and across files, in every format.
+//! Object identity: one rule within a file and across files, for every format.
 //!
-//! Two descriptions are of the same object if they agree in the first of these that both have: the catalogue
-//! number, the international designator, the name. Placeholders count as nothing given. The rule is described
+//! Two descriptions refer to the same object if they agree in the first of these that both give: the catalogue
+//! number, the international designator, the name. Placeholders count as not given. The rule is described
 //! for users in `docs/formats.md`.
 
 use std::collections::HashMap;
 
-/// Words that stand where there is no identifier (CCSDS 502.0-B-3 asks for `UNKNOWN`).
+/// Placeholders for a missing identifier (CCSDS 502.0-B-3 asks for `UNKNOWN`).
 const PLACEHOLDERS: [&str; 9] = [
     "",
     "UNKNOWN",
@@ -19,19 +19,19 @@ const PLACEHOLDERS: [&str; 9] = [
     "-",
 ];
 
-/// What a file gives of the identity of an object.
+/// The identifiers of an object in a file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ObjectIdentity {
-    /// Catalogue number; 0 is none.
+    /// Catalogue number; 0 if not given.
     catalogue_number: Option<u64>,
-    /// International designator, or another identifier that holds beyond its file.
+    /// International designator, or another identifier that is valid outside its file.
     designator: Option<String>,
     /// Name.
     name: Option<String>,
 }
 
 impl ObjectIdentity {
-    /// The identity of an object with these identifiers, of which placeholders are dropped.
+    /// The identity of an object with these identifiers; placeholders are dropped.
     #[must_use]
     pub fn new(catalogue_number: u64, designator: &str, name: &str) -> Self {
         Self {
@@ -52,7 +52,7 @@ impl ObjectIdentity {
         )
     }
 
-    /// Whether both are of one object.
+    /// Whether both refer to the same object.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         if let (Some(a), Some(b)) = (self.catalogue_number, other.catalogue_number) {
@@ -68,14 +68,14 @@ impl ObjectIdentity {
         known.is_some_and(|(a, b)| a.eq_ignore_ascii_case(b))
     }
 
-    /// Whether both have names, and these differ.
+    /// Whether both have names and the names differ.
     #[must_use]
     pub fn is_named_otherwise(&self, other: &Self) -> bool {
         let names = self.name.as_ref().zip(other.name.as_ref());
         names.is_some_and(|(a, b)| !a.eq_ignore_ascii_case(b))
     }
 
-    /// What the object is called: its name, or else its number, or else its designator.
+    /// The label of the object: its name, or else its number, or else its designator.
     #[must_use]
     pub fn label(&self) -> Option<String> {
         self.name.clone().or_else(|| self.identifier())
@@ -87,7 +87,7 @@ impl ObjectIdentity {
         number.or_else(|| self.designator.clone())
     }
 
-    /// Every text that the object may be asked for by.
+    /// Every text that selects the object.
     pub fn texts(&self) -> impl Iterator<Item = String> {
         let number = self.catalogue_number.map(|number| number.to_string());
         let texts = [self.name.clone(), self.designator.clone(), number];
@@ -95,7 +95,7 @@ impl ObjectIdentity {
     }
 }
 
-/// A text that is no placeholder.
+/// The text, unless it is a placeholder.
 fn given(text: &str) -> Option<String> {
     let text = text.trim();
     let is_placeholder = PLACEHOLDERS
@@ -104,8 +104,8 @@ fn given(text: &str) -> Option<String> {
     (!is_placeholder).then(|| text.to_owned())
 }
 
-/// Labels of objects, unique among them: objects that share a name have their number or designator behind it, and
-/// those without any identifier are numbered by their place, from 1.
+/// Unique labels of objects: objects that share a name have their number or designator appended, and
+/// those without any identifier are numbered by position, from 1.
 #[must_use]
 pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
     let label = |(place, identity): (usize, &ObjectIdentity)| {
@@ -126,7 +126,7 @@ pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
     labels.iter().zip(identities).map(unique).collect()
 }
 
-/// Objects that have been met, to be looked up by identity.
+/// The objects found so far, indexed by identity.
 #[derive(Debug, Default)]
 pub struct KnownObjects {
     identities: Vec<ObjectIdentity>,
@@ -135,7 +135,7 @@ pub struct KnownObjects {
 }
 
 impl KnownObjects {
-    /// The place of the first object that is the same as this one; the object is remembered.
+    /// The position of the first object with this identity; records the object.
     pub fn meet(&mut self, identity: &ObjectIdentity) -> Option<usize> {
         let texts = [&identity.designator, &identity.name];
         let texts = || {
@@ -163,7 +163,7 @@ impl KnownObjects {
     }
 }
 
-/// The first two places that hold one object.
+/// The positions of the first two entries for the same object.
 #[must_use]
 pub fn first_repeated(identities: &[ObjectIdentity]) -> Option<(usize, usize)> {
     let mut known = KnownObjects::default();

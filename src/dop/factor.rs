@@ -1,23 +1,23 @@
-//! The triangular factor of the normal matrix of a position, from which every dilution of
-//! precision is taken.
+//! The triangular factor of the position normal matrix, from which every dilution of precision is
+//! computed.
 
 use super::Symmetric3;
 use nalgebra::Vector3;
 
-/// What rounding may leave of a pivot that is zero, as a multiple of the weight of all
+/// Rounding error of a pivot that should be zero, as a multiple of the total weight of the
 /// observations: sixteen units of 2⁻⁵³ ([M-26](crate::models#m-26)).
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// δ: a pivot up to this is rounding. `weight` is the sum of the weights of all satellites used.
+/// δ: a pivot up to this is indistinguishable from rounding. `weight` is the sum of the weights of all satellites used.
 #[inline(always)]
 pub(crate) fn pivot_floor(weight: f64) -> f64 {
     ROUNDING * weight
 }
 
-/// A symmetric 3x3 matrix as L D Lᵀ, each pivot the largest that is left on the diagonal.
+/// A symmetric 3x3 matrix as L D Lᵀ, each pivot the largest remaining on the diagonal.
 ///
-/// Made without a branch, so that the lanes of the evaluator can make it side by side. A matrix
-/// that is singular or not definite gives pivots that are zero, negative or NaN.
+/// Free of branches, so that the evaluator can compute it in vector lanes. A matrix that is
+/// singular or not positive definite gives pivots that are zero, negative or NaN.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Factor {
     /// The axes in the order in which they were eliminated.
@@ -77,8 +77,7 @@ impl Factor {
         (first > floor) & (second > floor) & (third > floor)
     }
 
-    /// The trace of the inverse, a sum of terms of which none is negative where the pivots are
-    /// positive.
+    /// The trace of the inverse, a sum whose terms are all non-negative if the pivots are positive.
     #[inline(always)]
     pub(crate) fn trace_of_inverse(&self) -> f64 {
         let [first, second, third] = self.pivots;
@@ -89,7 +88,7 @@ impl Factor {
             + (1.0 + lower_21 * lower_21 + corner * corner) / third
     }
 
-    /// vᵀ A⁻¹ v as Σ y²/d with L y = v, of which no term is negative where the pivots are positive.
+    /// vᵀ A⁻¹ v as Σ y²/d with L y = v; all terms are non-negative if the pivots are positive.
     pub(crate) fn inverse_form(&self, v: Vector3<f64>) -> f64 {
         let [lower_1, lower_2, lower_21] = self.lower;
         let [first, second, third] = self.axes.map(|axis| v[axis]);

@@ -197,7 +197,7 @@ proptest! {
         }
     }
 
-    /// Teng and Wang (2015): the clock of a lone satellite of a new system eats its measurement.
+    /// Teng and Wang (2015): the clock of a single satellite of a new system takes up its measurement.
     #[test]
     fn validate_a_lone_satellite_with_its_own_clock_changes_nothing(a in sky(5..12), b in sky(1..2)) {
         let without = geometry(std::slice::from_ref(&a)).pdop(100.0);

@@ -1,6 +1,6 @@
-//! States between the samples of a file, as the file says that they follow from them.
+//! Interpolation between the samples of a file, by the method that the file gives.
 //!
-//! An arc is a run of samples that polynomials may join: the segment of a message, the stretch between two gaps.
+//! An arc is a run of samples that may be interpolated: a segment of a message, or the samples between two gaps.
 //! Nothing is interpolated across its ends, and nothing is extrapolated.
 
 use crate::ephemeris::hermite::hermite_state;
@@ -8,14 +8,14 @@ use crate::frames::{Frame, Position, State};
 use crate::time::Epoch;
 use nalgebra::Vector3;
 
-/// Time within which a sample is that of an instant, s: 7 mm along a low orbit, and above the
-/// 10 ns of SP3 and the microseconds of some writers.
+/// Tolerance within which a sample is taken to be at an instant, s: 7 mm along a low orbit, and coarser than
+/// the 10 ns of SP3 and the microseconds of some programs.
 pub const SAME_INSTANT_S: f64 = 1e-6;
 
-/// Most nodes of a polynomial: beyond, equidistant nodes lose more by rounding than they win.
+/// Maximum number of nodes of a polynomial: with more equidistant nodes, rounding costs more than they gain.
 const MOST_NODES: usize = 24;
 
-/// Places at which the error of an arc is estimated.
+/// Number of points at which the error of an arc is estimated.
 const PLACES: usize = 200;
 
 /// The polynomial between samples.
@@ -28,10 +28,10 @@ pub enum Interpolation {
 }
 
 impl Interpolation {
-    /// Where a file with velocities says nothing: four samples.
+    /// The default for a file with velocities: four samples.
     pub const OF_STATES: Self = Self::Hermite(7);
 
-    /// Samples that the polynomial passes through.
+    /// Number of samples that the polynomial passes through.
     #[must_use]
     pub fn nodes(self) -> usize {
         let nodes = match self {
@@ -51,7 +51,7 @@ impl Interpolation {
         }
     }
 
-    /// Power of the spacing that its error falls with.
+    /// Order of convergence: the power of the spacing in its error.
     #[must_use]
     pub fn order(self) -> u32 {
         match self {
@@ -71,24 +71,24 @@ impl Interpolation {
     }
 }
 
-/// Samples that polynomials may join.
+/// Samples that may be interpolated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arc {
     /// Frame of the states, and of the interpolation.
     pub frame: Frame,
-    /// How states follow between them.
+    /// The interpolation between them.
     pub interpolation: Interpolation,
-    /// The first and the last instant for which the arc holds, both included; the samples beyond are there to
-    /// interpolate.
+    /// The first and last valid instants of the arc, both included; samples outside only support the
+    /// interpolation.
     pub useable: (Epoch, Epoch),
-    /// Whether an arc that follows at its spacing continues it, as the next day of SP3 does.
+    /// Whether an arc that begins one sample interval later continues this one, as in daily SP3 files.
     pub is_open: bool,
-    /// The samples, in the order of time, each instant once.
+    /// The samples in time order, without repeated instants.
     pub nodes: Vec<(Epoch, State<Frame>)>,
 }
 
 impl Arc {
-    /// An arc that holds from its first sample to its last; none without a sample.
+    /// An arc valid from its first sample to its last; `None` without samples.
     #[must_use]
     pub fn new(
         frame: Frame,
@@ -105,14 +105,14 @@ impl Arc {
         })
     }
 
-    /// The part that lies in an interval, with its nodes; none outside it.
+    /// The part within an interval, with its nodes; `None` if there is none.
     #[must_use]
     pub fn within(mut self, (first, last): (Epoch, Epoch)) -> Option<Self> {
         self.useable = (self.useable.0.max(first), self.useable.1.min(last));
         (self.useable.0 <= self.useable.1).then_some(self)
     }
 
-    /// Takes the samples of an arc that continues this one, or gives it back.
+    /// Appends the samples of an arc that continues this one, or returns that arc.
     ///
     /// # Errors
     /// The other arc, if it does not follow at the spacing of this one.
@@ -141,19 +141,19 @@ impl Arc {
         Ok(())
     }
 
-    /// Whether the arc holds at an instant.
+    /// Whether the arc is valid at an instant.
     #[must_use]
     pub fn covers(&self, at: Epoch) -> bool {
         let (first, last) = self.useable;
         at.seconds_since(first) >= -SAME_INSTANT_S && last.seconds_since(at) >= -SAME_INSTANT_S
     }
 
-    /// The samples for which the arc holds.
+    /// The samples within the valid span.
     pub fn samples(&self) -> impl Iterator<Item = &(Epoch, State<Frame>)> {
         self.nodes.iter().filter(|(at, _)| self.covers(*at))
     }
 
-    /// The state at an instant, and whether it is interpolated; none outside the span.
+    /// The state at an instant, and whether it is interpolated; `None` outside the span.
     #[must_use]
     pub fn state(&self, at: Epoch) -> Option<(State<Frame>, bool)> {
         if !self.covers(at) {
@@ -177,7 +177,7 @@ impl Arc {
         Some((self.interpolation.state(&table, 0.0), true))
     }
 
-    /// Whether the state at an instant is interpolated; none outside the span.
+    /// Whether the state at an instant is interpolated; `None` outside the span.
     #[must_use]
     pub fn is_interpolated(&self, at: Epoch) -> Option<bool> {
         let since = |node: &(Epoch, State<Frame>)| node.0.seconds_since(at);
@@ -190,13 +190,13 @@ impl Arc {
         holds.then_some(interpolated)
     }
 
-    /// Whether there are nodes for the polynomial: of a run between gaps, whose file names none, all of them.
+    /// Whether there are enough nodes for the polynomial. Between gaps, if the file gives no method, all are needed.
     fn carries_interpolation(&self) -> bool {
         !self.is_open || self.nodes.len() >= self.interpolation.nodes()
     }
 
-    /// Largest distance, km, between samples and what the others give when every other one is left out: that of
-    /// twice the spacing, and so above the error of the interpolation itself. None where there are too few.
+    /// Largest distance, km, between every other sample and the interpolation through the rest: the error at twice
+    /// the spacing, and so an upper estimate of the actual error. `None` if there are too few samples.
     #[must_use]
     pub fn left_out_error_km(&self) -> Option<f64> {
         let kept: Vec<_> = self.nodes.iter().step_by(2).copied().collect();
@@ -220,7 +220,7 @@ impl Arc {
     }
 }
 
-/// The `count` nodes around the gap before `next`: as many on both sides, shifted at the ends.
+/// The `count` nodes around the interval before `next`, the same number on each side, shifted at the ends.
 fn window<T>(nodes: &[T], next: usize, count: usize) -> &[T] {
     let count = count.min(nodes.len());
     let first = next
@@ -229,11 +229,11 @@ fn window<T>(nodes: &[T], next: usize, count: usize) -> &[T] {
     &nodes[first..first + count]
 }
 
-/// Value and derivative by time of the Lagrange polynomial through the positions.
+/// Value and time derivative of the Lagrange polynomial through the positions.
 pub(crate) fn lagrange<F>(nodes: &[(f64, State<F>)], t: f64) -> (Vector3<f64>, Vector3<f64>) {
     let (mut value, mut slope) = (Vector3::zeros(), Vector3::zeros());
     for (j, (tj, state)) in nodes.iter().enumerate() {
-        // The product of the factors and its derivative, one factor after the other.
+        // The product of the factors and its derivative, factor by factor.
         let (mut weight, mut change) = (1.0, 0.0);
         for (m, (tm, _)) in nodes.iter().enumerate() {
             if m != j {
@@ -248,7 +248,7 @@ pub(crate) fn lagrange<F>(nodes: &[(f64, State<F>)], t: f64) -> (Vector3<f64>, V
     (value, slope)
 }
 
-/// A state without a velocity of its own.
+/// A state without a velocity in the file.
 pub(crate) fn still<F>(position_km: Vector3<f64>) -> State<F> {
     State {
         position_km: Position::new(position_km),

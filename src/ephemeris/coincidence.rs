@@ -1,27 +1,26 @@
-//! Satellites that are in one place all the time: docked, listed twice, or a pattern that puts
-//! several into one slot.
+//! Coincident satellites: docked, listed twice, or placed in the same slot by the pattern.
 //!
-//! They are one direction to a receiver, however many are counted in view.
+//! A receiver sees them in a single direction, however many count as visible.
 
 use super::{Ephemeris, EphemerisError, EphemerisSatellite};
 use nalgebra::Vector3;
 
-/// Satellites within this distance of each other at every instant looked at are in one place, km.
+/// Satellites within this distance of each other at every instant tested are coincident, km.
 ///
-/// Seen from 500 km or farther away they are 4 seconds of arc apart at most, so a solution that
-/// rests on the difference has a PDOP above 10 000. It is more than an element set is rounded by.
+/// At a range of 500 km or more they are at most 4 arcseconds apart, so a solution that depends on
+/// the difference has a PDOP above 10 000. The rounding of element sets is smaller.
 pub const COINCIDENT_WITHIN_KM: f64 = 0.01;
 
-/// A satellite by the number of its ephemeris and its place there.
+/// A satellite by the index of its ephemeris and its index in it.
 pub type Member = (usize, usize);
 
-/// The groups of two satellites or more that are in one place, each in the order of the satellites.
+/// The groups of two or more coincident satellites, each in the order of the satellites.
 ///
-/// Looks at three instants of the grid, not evenly spread: orbits that cross meet at one and not at
-/// all of them. All ephemerides are looked at on the grid of the first.
+/// Tests three unevenly spaced instants of the grid: satellites on crossing orbits may meet at one
+/// of them but not at all. All ephemerides are tested on the grid of the first.
 ///
 /// # Errors
-/// When a satellite cannot be propagated.
+/// If a satellite cannot be propagated.
 pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, EphemerisError> {
     let Some(first) = ephemerides.first() else {
         return Ok(Vec::new());
@@ -40,7 +39,7 @@ pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, Epheme
     Ok(groups(&tracks))
 }
 
-/// The positions of a satellite, km; `None` where its file has a gap at one of the instants.
+/// The positions of a satellite, km; `None` if its file has a gap at one of the instants.
 fn track(
     ephemeris: &Ephemeris,
     satellite: &EphemerisSatellite,
@@ -59,9 +58,9 @@ fn track(
 /// A satellite and its positions at the three instants, km.
 type Located = (Member, [Vector3<f64>; 3]);
 
-/// Groups of tracks that run together, of tracks in the order of x at the first instant.
+/// Groups of coincident tracks; the tracks are sorted by x at the first instant.
 fn groups(tracks: &[Located]) -> Vec<Vec<Member>> {
-    // The group that each belongs to, by the first of its tracks.
+    // The group of each track, identified by its first track.
     let mut leaders: Vec<usize> = (0..tracks.len()).collect();
     for (n, (_, track)) in tracks.iter().enumerate() {
         let near = |(_, other): &&Located| other[0].x - track[0].x <= COINCIDENT_WITHIN_KM;

@@ -1,9 +1,8 @@
-//! What a file is, told by its content over whatever comes before it; gzip is read through.
+//! Format detection by content, past any preamble and through gzip.
 //!
-//! A format that is read is recognised by what its standard puts first: comments, blank lines, a byte order mark and
-//! the prologue of XML are looked over, however long. Formats that are met often and are not read are named, so that
-//! nobody has to guess from an error about something else. The name of a file helps only where its content says
-//! nothing.
+//! A supported format is recognised by what its standard puts first; comments, blank lines, a byte order mark and an
+//! XML prologue are skipped, however long. Common formats that are not supported are identified, so that the error
+//! names the actual problem. The file name counts only if the content is inconclusive.
 
 mod gzip;
 mod json;
@@ -14,18 +13,18 @@ use crate::exchange::lint::Format;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use thiserror::Error;
 
-/// Bytes that are looked at first; as many again as long as they do not tell.
+/// Bytes examined first; more are read in steps of this size while the format is unclear.
 const PROBE: usize = 4096;
 
-/// Most bytes that are looked at.
+/// Maximum number of bytes to examine.
 const MOST: usize = 1 << 24;
 
-/// Characters of an unknown file that are shown.
+/// Number of characters of an unknown file to show.
 const SHOWN: usize = 40;
 
-/// A file that is not read.
+/// A file in an unsupported format.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("not a format that is read: {0}")]
+#[error("not a supported format: {0}")]
 pub struct Unread(pub(crate) String);
 
 impl Unread {
@@ -34,15 +33,15 @@ impl Unread {
     }
 }
 
-/// A file whose content has been looked at.
+/// A file whose content has been examined.
 pub struct Recognised<'a> {
-    /// Its format, or what it is instead.
+    /// Its format, or why it is not supported.
     pub content: Result<Format, Unread>,
-    /// All of it, unpacked.
+    /// The complete contents, decompressed.
     pub input: Box<dyn BufRead + 'a>,
 }
 
-/// Looks at a file; `file_name` helps if the content does not tell.
+/// Detects the format of a file; `file_name` is used if the content is inconclusive.
 ///
 /// # Errors
 /// A failure of the input, or gzip data that are damaged.
@@ -72,7 +71,7 @@ pub fn recognise<'a>(
     Ok(Recognised { content, input })
 }
 
-/// The bytes of a file, unpacked if they are gzip.
+/// The bytes of a file, decompressed if they are gzip.
 ///
 /// # Errors
 /// A failure of the input.
@@ -84,11 +83,11 @@ pub fn unpacked<'a>(mut input: impl BufRead + 'a) -> io::Result<Box<dyn BufRead 
     })
 }
 
-/// What the beginning of a file shows.
+/// The format indicated by the beginning of a file.
 #[derive(Debug, Clone, PartialEq)]
 enum Content {
     Format(Format),
-    /// Something else that is known.
+    /// A known format that is not supported.
     Other(Unread),
     Unknown,
 }
@@ -99,9 +98,9 @@ impl Content {
     }
 }
 
-/// Beginnings of files that are no text.
+/// Signatures of binary files.
 const BINARY: [(&[u8], &str); 12] = [
-    (b"\x1f\x9d", "a file of Unix compress (.Z); unpack it first"),
+    (b"\x1f\x9d", "a Unix compress file (.Z); unpack it first"),
     (b"PK\x03\x04", "a zip archive; unpack it first"),
     (b"\xfd7zXZ\0", "an xz file; unpack it first"),
     (b"BZh", "a bzip2 file; unpack it first"),
@@ -112,12 +111,12 @@ const BINARY: [(&[u8], &str); 12] = [
     (b"DAF/", "a SPICE kernel"),
     (b"NAIF/DAF", "a SPICE kernel"),
     (b"%PDF", "a PDF"),
-    (b"\x89PNG", "a picture"),
+    (b"\x89PNG", "a PNG image"),
 ];
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// What the beginning of a file shows; none if more of it is needed.
+/// The format indicated by the beginning of a file; `None` if more of it is needed.
 fn content(seen: &[u8], complete: bool) -> Option<Content> {
     let mut binary = BINARY.iter();
     if let Some((_, what)) = binary.find(|(magic, _)| seen.starts_with(magic)) {

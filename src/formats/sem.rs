@@ -1,8 +1,8 @@
-//! SEM almanacs of GPS, read.
+//! A reader of SEM almanacs for GPS.
 //!
 //! Source: U.S. Coast Guard Navigation Center, *GPS NANUS, Almanacs*: "Definition of a SEM Almanac", and ICD-GPS-870,
 //! table 30-II. A line with the number of records and a title, one with the week and the time of applicability, and then
-//! fourteen numbers a satellite in nine lines. Angles are in semicircles, the inclination as its offset from 0.30.
+//! fourteen numbers per satellite in nine lines. Angles are in semicircles, the inclination as its offset from 0.30.
 
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
@@ -13,14 +13,14 @@ use crate::formats::yuma::Almanac;
 use std::f64::consts::PI;
 use std::io::{self, BufRead};
 
-/// Inclination that the offsets are counted from, semicircles.
+/// Reference inclination of the offsets, semicircles.
 const INCLINATION: f64 = 0.30;
 
 /// Numbers of a record: number, vehicle, accuracy, eccentricity, offset of the inclination, rate of the node, root of the
 /// axis, node, perigee, mean anomaly, clock offset and drift, health, configuration.
 const FIELDS: usize = 14;
 
-/// Reads the satellites, those that are unhealthy among them; the first broken rule ends it.
+/// Reads the satellites, including unhealthy ones; stops at the first error.
 ///
 /// # Errors
 /// The first finding, or a failure of the input.
@@ -30,7 +30,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<Almanac>, ReadError> {
     findings.unless_error(almanacs)
 }
 
-/// Reads the satellites; what the file breaks goes to the list of findings.
+/// Reads the satellites; errors are added to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.
@@ -63,7 +63,8 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
                 first = line.number;
             }
             if almanacs.len() >= announced {
-                let message = format!("{announced} records are announced; there are more");
+                let message =
+                    format!("the first line announces {announced} records; there are more");
                 findings.error((line.number, column), "sem-count", message);
                 return Ok(almanacs);
             }
@@ -91,7 +92,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
     let place = (lines.number().max(1), 1);
     if !record.is_empty() {
         let message = format!(
-            "the record of line {first} has {} numbers; it needs {FIELDS}",
+            "the record at line {first} has {} numbers; expected {FIELDS}",
             record.len()
         );
         findings.error(place, "sem-truncated", message);
@@ -100,7 +101,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
         None => findings.error(place, "sem-first-line", "the file is empty"),
         Some(count) if count != almanacs.len() || count == 0 => {
             let message = format!(
-                "{count} records are announced; there are {}",
+                "the first line announces {count} records; there are {}",
                 almanacs.len()
             );
             findings.error(place, "sem-count", message);

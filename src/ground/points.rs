@@ -5,15 +5,15 @@ use crate::earth::Surface;
 use csv::{Reader, ReaderBuilder, StringRecord, Trim};
 use std::io::Read;
 
-/// Columns that a table of points needs.
+/// Required columns of a table of points.
 const NEEDED: [&str; 2] = ["latitude_deg", "longitude_deg"];
-/// Columns that it may have.
+/// Optional columns.
 const OPTIONAL: [&str; 2] = ["weight", "name"];
 
-/// What spreadsheets put in front of UTF-8.
+/// The mark that spreadsheets put before UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// Where the columns stand in a row.
+/// The positions of the columns in a row.
 struct Columns {
     latitude: usize,
     longitude: usize,
@@ -21,8 +21,8 @@ struct Columns {
     name: Option<usize>,
 }
 
-/// Points from CSV with the columns `latitude_deg`, `longitude_deg` and, if wanted, `weight` (1
-/// where it is empty) and `name`, in any order; others are ignored.
+/// Points from CSV with the columns `latitude_deg` and `longitude_deg` and optionally `weight` (1
+/// if empty) and `name`, in any order; others are ignored.
 ///
 /// # Errors
 /// If a column is missing, a line cannot be read, with its number, or there is no point.
@@ -60,7 +60,7 @@ pub fn sites_from_csv(mut source: impl Read, surface: Surface) -> Result<Vec<Sit
     }
 }
 
-/// The columns of a table of points that mean nothing here.
+/// The columns of a table of points that are ignored.
 #[must_use]
 pub fn ignored_columns(source: impl Read) -> Vec<String> {
     let known = |name: &str| NEEDED.contains(&name) || OPTIONAL.contains(&name);
@@ -73,7 +73,7 @@ pub fn ignored_columns(source: impl Read) -> Vec<String> {
     }
 }
 
-/// The line of a record; its position is that of the blank lines before it.
+/// The line of a record; the reader gives the position of the blank lines before it.
 fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
@@ -148,7 +148,7 @@ impl Columns {
     }
 }
 
-/// What is said of a column that is missing, and which may be meant for it.
+/// The error for a missing column, with a column that may be meant instead.
 fn missing(column: &str, header: &StringRecord) -> String {
     let found: Vec<&str> = header.iter().collect();
     let alike = |name: &&&str| name.to_lowercase().starts_with(&column[..3]);

@@ -1,4 +1,4 @@
-//! The records of a search, and the hypervolume reference that it chooses for itself.
+//! The records of a search, and the hypervolume reference point that it chooses.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,10 +6,10 @@ use super::error::OptimizeError;
 use super::problem::{Individual, Problem};
 use super::strategy::{Progress, Record, check_equal, check_objectives};
 
-/// How far a chosen reference lies beyond the worst values, as a share of their range.
+/// Margin of a chosen reference point beyond the worst values, as a fraction of their range.
 const MARGIN: f64 = 0.1;
 
-/// What every strategy remembers of its steps.
+/// The step records common to all strategies.
 ///
 /// The reference point is chosen once, from the first step that evaluates anything feasible: per
 /// objective the worst feasible value plus 10 % of the range of the feasible values. Later steps do
@@ -29,20 +29,20 @@ impl History {
         self.chosen_reference.as_deref()
     }
 
-    /// A history can come from a file: one record for each step, and a reference that fits.
+    /// Checks a history read from a file: one record per step, and a reference point of the right size.
     pub(super) fn check(&self, problem: &dyn Problem, steps: u64) -> Result<(), OptimizeError> {
         check_equal("history", self.records.len() as u64, steps)?;
         check_objectives(problem, self.chosen_reference())
     }
 
-    /// Learns from the designs that a step evaluated; before the step is recorded.
+    /// Chooses the reference point from the designs that a step evaluated, before the step is recorded.
     pub(super) fn learn(&mut self, evaluated: &[Individual]) {
         if self.chosen_reference.is_none() {
             self.chosen_reference = choose_reference(evaluated);
         }
     }
 
-    /// Records what a strategy holds after a step: its feasible front, and how many feasible
+    /// Records the state of a strategy after a step: its feasible front and the number of feasible
     /// individuals.
     pub(super) fn record(
         &mut self,
@@ -60,7 +60,7 @@ impl History {
         self.records.push(record);
     }
 
-    /// Records a strategy that holds an archive: all of it is the front, unless nothing feasible
+    /// Records a strategy with an archive: the whole archive is the front, unless nothing feasible
     /// is known.
     pub(super) fn record_archive(
         &mut self,
@@ -75,7 +75,7 @@ impl History {
 }
 
 /// Per objective the worst feasible value plus 10 % of the range of the feasible values; where all
-/// are the same, plus 10 % of the value's size, or 1 beyond 0. `None` where nothing is feasible.
+/// are equal, plus 10 % of the magnitude, or 1 if it is 0. `None` if nothing is feasible.
 fn choose_reference(evaluated: &[Individual]) -> Option<Vec<f64>> {
     let feasible = || evaluated.iter().filter(|a| a.is_feasible());
     let coordinate = |n: usize| {

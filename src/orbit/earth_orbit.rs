@@ -1,7 +1,7 @@
-//! Whether a state can be one of an Earth orbit: the one rule for files and theories alike.
+//! Plausibility of a state as an Earth orbit: one rule for files and propagators alike.
 //!
-//! A unit mistaken by a factor of 1000, a frame of another body and a theory that has diverged all give finite
-//! numbers. Only their size shows that they mean nothing.
+//! A unit wrong by a factor of 1000, a frame of another body and a diverged theory all give finite numbers; only
+//! their magnitude shows that they are meaningless.
 
 use crate::earth::MU_KM3_S2;
 use crate::frames::{EarthRotation, Frame, State};
@@ -14,10 +14,10 @@ pub const LEAST_DISTANCE_KM: f64 = 6_300.0;
 /// Greatest distance from the centre of the Earth, km: beyond the Moon at its apogee.
 pub const MOST_DISTANCE_KM: f64 = 500_000.0;
 
-/// Greatest speed as a multiple of the local escape speed: room for rounding and for a departure.
+/// Greatest speed as a multiple of the local escape speed, with a margin for rounding and departure orbits.
 pub const MOST_OF_ESCAPE: f64 = 1.1;
 
-/// Why a state is not one of an Earth orbit.
+/// The reason why a state is not an Earth orbit.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum ImplausibleState {
     /// Inside the Earth.
@@ -28,7 +28,7 @@ pub enum ImplausibleState {
         /// Distance from the centre, km.
         distance_km: f64,
     },
-    /// Beyond the Moon, or nowhere.
+    /// Beyond the Moon, or not a number.
     #[error(
         "it is {distance_km:.0} km from the centre of the Earth, beyond {MOST_DISTANCE_KM} km: not an Earth orbit"
     )]
@@ -48,16 +48,16 @@ pub enum ImplausibleState {
     },
 }
 
-/// Checks the distance from the centre of the Earth alone.
+/// Checks only the distance from the centre of the Earth.
 ///
 /// # Errors
-/// If the position is not one of an Earth orbit.
+/// If the position is not plausible for an Earth orbit.
 pub fn check_position(position_km: &Vector3<f64>) -> Result<(), ImplausibleState> {
     let distance_km = position_km.norm();
     if distance_km < LEAST_DISTANCE_KM {
         return Err(ImplausibleState::TooLow { distance_km });
     }
-    // What is not a number is nowhere.
+    // NaN counts as infinitely far.
     if distance_km <= MOST_DISTANCE_KM {
         Ok(())
     } else {
@@ -68,7 +68,7 @@ pub fn check_position(position_km: &Vector3<f64>) -> Result<(), ImplausibleState
 /// Checks the distance and the speed of an inertial state.
 ///
 /// # Errors
-/// If the state is not one of an Earth orbit.
+/// If the state is not plausible for an Earth orbit.
 pub fn check_inertial(
     position_km: &Vector3<f64>,
     velocity_km_s: &Vector3<f64>,
@@ -86,10 +86,10 @@ pub fn check_inertial(
     }
 }
 
-/// Checks a state in any frame; a velocity in the Earth-fixed frame is made inertial first.
+/// Checks a state in any frame; an Earth-fixed velocity is converted to inertial first.
 ///
 /// # Errors
-/// If the state is not one of an Earth orbit.
+/// If the state is not plausible for an Earth orbit.
 pub fn check_state(frame: Frame, state: &State<Frame>) -> Result<(), ImplausibleState> {
     let position_km = &state.position_km.km();
     match frame {
@@ -97,7 +97,7 @@ pub fn check_state(frame: Frame, state: &State<Frame>) -> Result<(), Implausible
             check_inertial(position_km, &state.velocity_km_s)
         }
         Frame::EarthFixed => {
-            // Any sidereal time will do: it turns the axes and leaves the speed.
+            // Any sidereal time will do: it rotates the axes and does not change the speed.
             let fixed = State::new(*position_km, state.velocity_km_s);
             let inertial = EarthRotation::from_gmst(0.0).state_to_teme(fixed);
             check_inertial(&inertial.position_km.km(), &inertial.velocity_km_s)

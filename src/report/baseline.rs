@@ -1,27 +1,27 @@
-//! A design that is shown beside a front.
+//! A design shown with a front for comparison.
 
 use crate::constellation::Design;
 use crate::optimize::dominates;
 use crate::run::{Diagnostic, FrontMember};
 use crate::search::{DesignProblem, Quantity};
 
-/// A design that is shown beside the front.
+/// A design shown with the front for comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
-    /// What it is called.
+    /// Name.
     pub name: String,
     /// Walker notation.
     pub notation: String,
-    /// The objectives of the run, in their own directions; `None` for one without a value.
+    /// The objectives of the run with their original signs; `None` for one without a value.
     pub objectives: Vec<Option<f64>>,
-    /// The quantities under constraints that are no objectives; `None` for one without a value.
+    /// Constrained quantities that are not objectives; `None` for one without a value.
     pub constraints: Vec<Option<f64>>,
-    /// The objectives as they are minimised, of a design that meets the constraints.
+    /// The objectives as minimised; `None` if the design violates a constraint.
     feasible: Option<Vec<f64>>,
 }
 
 impl Baseline {
-    /// A design with its objectives; `None` when it cannot be propagated.
+    /// Evaluates a design; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
         let (metrics, evaluation) = problem.judged(design)?;
@@ -36,7 +36,7 @@ impl Baseline {
         })
     }
 
-    /// Its name and notation in a sentence; one that is named by its notation has it once.
+    /// Name and notation for use in a sentence; the notation alone if it is also the name.
     #[must_use]
     pub fn label(&self) -> String {
         if self.name == self.notation {
@@ -53,7 +53,7 @@ impl Baseline {
         own.is_some_and(|own| dominates(own, &member.minimised()))
     }
 
-    /// Says so if it dominates the pick.
+    /// The diagnostic if it dominates the pick.
     #[must_use]
     pub fn diagnose(&self, pick: &FrontMember) -> Option<Diagnostic> {
         self.outdoes(pick).then(|| {
@@ -73,7 +73,7 @@ impl Baseline {
         })
     }
 
-    /// Code of the diagnostic of a pick that a design beside it dominates.
+    /// Code of the diagnostic for a pick dominated by a comparison design.
     pub const DOMINATES: &'static str = "pick-dominated";
 }
 

@@ -14,8 +14,8 @@ const ALWAYS: [&str; 7] = [
     "j-cost",
 ];
 
-/// Members, each with what stands in its first columns: `heading` names it. Objectives and quantities
-/// under constraints without a column of their own get one.
+/// One row per member, with its label under `heading`. Objectives and constrained quantities outside
+/// [`ALWAYS`] get extra columns.
 #[must_use]
 pub(crate) fn front_table<'a>(
     heading: &str,
@@ -33,7 +33,7 @@ pub(crate) fn front_table<'a>(
         ("h (km)", right),
         ("mean visible", right),
         ("mean PDOP", right),
-        ("CVaR", right),
+        ("CVaR of PDOP", right),
         ("maximum PDOP", right),
         ("J_pos", right),
         ("J_cost", right),
@@ -47,7 +47,7 @@ pub(crate) fn front_table<'a>(
     table
 }
 
-/// Objectives and quantities under constraints that are not always shown.
+/// Objectives and constrained quantities that are not always shown.
 fn further(member: &FrontMember) -> Vec<String> {
     let objectives = member.objectives.iter().map(|(name, _)| name);
     let names = objectives.chain(member.constraints.iter().map(|(name, _)| name));
@@ -107,7 +107,7 @@ mod tests {
             heading.ends_with("J_cost  planes  launch-cost  availability  membership"),
             "{heading}"
         );
-        assert_eq!(heading.matches("PDOP").count(), 2, "{heading}");
+        assert_eq!(heading.matches("PDOP").count(), 3, "{heading}");
         assert!(text.contains("15       345.68       0.99999"), "{text}");
     }
 }

@@ -4,17 +4,17 @@
 use crate::run::{Diagnostic, FrontMember, Hypervolume, VolumeAt};
 use crate::search::Quantity;
 
-/// What stands for a number that there is not.
+/// Text for a missing value.
 pub(crate) const NONE: &str = "none";
 
-/// Code of the diagnostic of a reference point that measures nothing.
+/// Code of the diagnostic for a reference point that no member dominates.
 pub(crate) const UNUSED_REFERENCE: &str = "reference-not-dominated";
 
-/// Significant digits of what has no natural number of decimals.
+/// Significant digits of values without a natural number of decimals.
 const SIGNIFICANT: i32 = 5;
 
-/// A quantity: four decimals of what is made of PDOP or counted in the mean, five of a share, none
-/// of what is counted.
+/// Decimals of a quantity: four for PDOP values and mean counts, five for fractions, none for
+/// counts.
 #[must_use]
 pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
     match quantity {
@@ -25,7 +25,7 @@ pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
     }
 }
 
-/// A quantity by its name; one of another version like a PDOP.
+/// A quantity by its name; an unknown one, from another version, is shown like a PDOP.
 #[must_use]
 pub(crate) fn named(name: &str, value: Option<f64>) -> String {
     use crate::keyword::Keyword;
@@ -41,7 +41,7 @@ pub(crate) fn pdop(value: Option<f64>) -> String {
     decimals(value, 4)
 }
 
-/// A share from 0 to 1, such as availability.
+/// A fraction from 0 to 1, such as availability.
 #[must_use]
 pub(crate) fn share(value: Option<f64>) -> String {
     decimals(value, 5)
@@ -57,7 +57,7 @@ fn decimals(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| NONE.to_owned(), |value| format!("{value:.digits$}"))
 }
 
-/// Five significant digits, and no fewer of a whole part: `0.61097`, `12.346`, `146`, `123457`.
+/// Five significant digits, and all digits of the integer part: `0.61097`, `12.346`, `146`, `123457`.
 #[must_use]
 pub(crate) fn significant(value: f64) -> String {
     if value == 0.0 {
@@ -94,7 +94,7 @@ pub(crate) fn point(coordinates: &[f64]) -> String {
     format!("({})", cells.join(", "))
 }
 
-/// The hypervolume in a sentence without its full stop; `None` where there is none.
+/// The hypervolume as a sentence without its full stop; `None` if there is none.
 #[must_use]
 pub(crate) fn hypervolume(hypervolume: &Hypervolume) -> Option<String> {
     let at = |volume: &VolumeAt| {
@@ -106,7 +106,7 @@ pub(crate) fn hypervolume(hypervolume: &Hypervolume) -> Option<String> {
         (Some(_), _) => {
             let written = hypervolume.reference.as_deref().unwrap_or_default();
             format!(
-                "{}, chosen from the run in place of the scenario's reference point {}",
+                "{}, chosen from the run instead of the scenario's reference point {}",
                 at(&measured),
                 point(written)
             )

@@ -1,4 +1,4 @@
-//! What makes a run stand alone: copies of the files that its scenario names, with checksums.
+//! The inputs of a self-contained run: copies of the files that its scenario names, with checksums.
 
 use super::checkpoint::{Identity, hex_sha256};
 use super::{INPUTS, MANIFEST, SCENARIO};
@@ -6,10 +6,10 @@ use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// What a run directory says of itself from its beginning, in `run.json`.
+/// The manifest `run.json`, written when a run starts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RunManifest {
-    /// What it is a run of.
+    /// The study of the run.
     #[serde(flatten)]
     pub identity: Identity,
     /// The copies of the scenario's files, in the order of [`Scenario::files`].
@@ -25,19 +25,19 @@ pub struct InputCopy {
     pub sha256: String,
 }
 
-/// Why a file of a run is not used.
+/// The reason why a file of a run is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum InputError {
-    /// Not the bytes that the run was made with.
+    /// The contents differ from those used by the run.
     #[error("{path}: checksum mismatch: the file has changed since the run was made")]
     Changed {
         /// Path from the run directory.
         path: String,
     },
-    /// A file that the manifest does not list.
+    /// A file missing from the manifest.
     #[error("{path}: {MANIFEST} does not list it, so it is not a file of this run")]
     Unlisted {
-        /// Path as the scenario has it.
+        /// Path as given in the scenario.
         path: String,
     },
 }
@@ -46,7 +46,7 @@ impl RunManifest {
     /// Reads `run.json`.
     ///
     /// # Errors
-    /// If the bytes are not the manifest of a run.
+    /// If the bytes are not a run manifest.
     pub fn read(bytes: &[u8]) -> serde_json::Result<Self> {
         serde_json::from_slice(bytes)
     }
@@ -54,7 +54,7 @@ impl RunManifest {
     /// Checks the contents of a file that the run's scenario names.
     ///
     /// # Errors
-    /// If the run has no such file, or not with these contents.
+    /// If the run has no such file, or its contents differ.
     pub fn check(&self, path: &str, contents: &[u8]) -> Result<(), InputError> {
         let path = path.to_owned();
         match self.inputs.iter().find(|input| input.path == path) {
@@ -66,15 +66,15 @@ impl RunManifest {
 }
 
 impl InputCopy {
-    /// Whether it is a copy of these contents.
+    /// Whether the copy has these contents.
     #[must_use]
     pub fn is_of(&self, contents: &[u8]) -> bool {
         self.sha256 == hex_sha256(contents)
     }
 }
 
-/// Where a run keeps the copies of `files`, from its directory: a folder for each, so that every
-/// file keeps its name, by which a GNSS is called.
+/// Relative paths of the copies of `files` in a run: a folder for each, so that every file keeps its
+/// name, which also names its GNSS.
 #[must_use]
 pub fn copy_paths(files: &[&str]) -> Vec<String> {
     let numbered = (1..).zip(files);
@@ -83,7 +83,7 @@ pub fn copy_paths(files: &[&str]) -> Vec<String> {
         .collect()
 }
 
-/// The last part of a path, without what some file system refuses in a name.
+/// The last part of a path, with characters that some file systems refuse replaced.
 fn safe_name(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or_default();
     let refused = |c: char| c.is_control() || "\\:*?\"<>|".contains(c);
@@ -148,7 +148,7 @@ mod tests {
             "inputs/6/é x.csv",
         ];
         assert_eq!(copy_paths(&files), expected);
-        // The copies of copies lie where they lay.
+        // Copies of copies keep their paths.
         assert_eq!(copy_paths(&expected), expected);
     }
 

@@ -13,19 +13,19 @@ use crate::orbit::Model;
 use crate::time::TimeGrid;
 use std::sync::Arc;
 
-/// The systems of a file, and what is to be said of them.
+/// The systems of the files, with notes for the user.
 #[derive(Default)]
 pub(super) struct GnssFile {
     pub(super) systems: Vec<System>,
     pub(super) notes: Vec<String>,
 }
 
-/// Files of a scenario that have been read and not yet been made systems: states of one satellite may go on in the
-/// next file.
+/// Files of a scenario read so far but not yet split into systems, since the states of a satellite may continue in
+/// the next file.
 #[derive(Default)]
 pub(super) struct GnssFiles {
     found: GnssFile,
-    /// Name of the first file of states, and the states of all.
+    /// Name of the first file of states, and the states from all files.
     sampled: Option<(String, Fleet)>,
 }
 
@@ -87,7 +87,7 @@ impl GnssFiles {
         self.found
             .notes
             .extend(notes.iter().map(|note| format!("gnss.files: {note}")));
-        // No file that comes here has mean elements, which alone ask for a model.
+        // These files have no mean elements, which are the only input that needs a model.
         let ephemeris = fleet.propagate(grid, Model::J2)?;
         let groups = by_system(name, ephemeris.into_satellites(), |one| &one.name);
         for (name, satellites) in groups {
@@ -102,7 +102,7 @@ impl GnssFiles {
     }
 }
 
-/// Satellites by system, in the order in which the systems are met; named by the file if there is one system.
+/// Satellites by system, in order of first appearance; a single system is named after the file.
 fn by_system<T>(
     file: &str,
     satellites: Vec<T>,

@@ -9,10 +9,10 @@ pub const LEAP_SECONDS_END: NaiveDate = NaiveDate::from_ymd_opt(2027, 6, 28).unw
 /// The year in which UTC began to differ from TAI by whole seconds.
 pub const FIRST_YEAR: i32 = 1972;
 
-/// TAI - UTC on a date of UTC, s, up to the end of a leap second that the date ends with.
+/// TAI - UTC on a UTC date, s, including any leap second at its end.
 ///
-/// The table is that of SOFA. Before 1972 the 10 s of that year's beginning stand, since the seconds of
-/// UTC were of another length then.
+/// The table is that of SOFA. Before 1972 the initial value of 10 s is used, since UTC seconds had a
+/// different length then.
 pub(super) fn tai_minus_utc_s(date: NaiveDate) -> i64 {
     let year = date.year();
     if year < FIRST_YEAR {
@@ -30,7 +30,7 @@ pub fn ends_with_leap_second(date: NaiveDate) -> bool {
     next(date).is_some_and(|next| tai_minus_utc_s(next) > tai_minus_utc_s(date))
 }
 
-/// What results say of the table.
+/// The note on the table in results.
 #[must_use]
 pub fn leap_seconds_note() -> String {
     format!(

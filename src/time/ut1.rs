@@ -7,10 +7,10 @@ use chrono::{Datelike, NaiveDate};
 /// UT1 - TAI on the first of each month, a year a line; see `data/MANIFEST.toml`.
 const UT1_MINUS_TAI: &str = include_str!("../../data/earth-rotation/ut1-tai.txt");
 
-/// Most that UT1 is from UTC, s: what leap seconds keep to (ITU-R TF.460-6).
+/// Largest difference of UT1 from UTC, s, as maintained by leap seconds (ITU-R TF.460-6).
 pub const MOST_UT1_MINUS_UTC_S: f64 = 0.9;
 
-/// UT1 - UTC at an instant, s, to 0.01 s; none outside the series of the IERS, which begins in 1972 here.
+/// UT1 - UTC at an instant, s, accurate to 0.01 s; `None` outside the IERS series, which begins in 1972 here.
 #[must_use]
 pub fn ut1_minus_utc_s(at: Epoch) -> Option<f64> {
     let date = at.utc().date_naive();

@@ -308,36 +308,36 @@ fn inputs_stay() {
     for (command, message) in [
         (
             "report run --out run/front.json".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             "plot run --figure pareto --out run/front.svg".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             "plot run --figure pareto --force --out run/history.svg".to_owned(),
-            "lies in the input run",
+            "is inside the input run",
         ),
         (
             format!("{export} run"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
-        (format!("{export} run/new"), "lies in the input run"),
+        (format!("{export} run/new"), "is inside the input run"),
         (
             format!("{export} ."),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{export} repository"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{evaluate} fleet"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             format!("{evaluate} fleet/of/us"),
-            "holds what this program did not write",
+            "contains files that this program did not write",
         ),
         (
             "export study.toml --as tle --out study.toml".to_owned(),
@@ -385,7 +385,7 @@ fn the_table_of_a_figure_replaces_nothing() {
     assert!(
         refused
             .stderr
-            .contains("front.csv, which holds something else"),
+            .contains("front.csv, which contains something else"),
         "{}",
         refused.stderr
     );
@@ -482,7 +482,7 @@ fn a_checkpoint_of_other_lengths_is_refused() {
         fs::write(&path, format!("{header}\n{state}\n")).unwrap();
         let refused = ran(place, &optimize(&["--out", "run", "--resume"]));
         assert_eq!(refused.status, 2, "{pointer}: {}", refused.stderr);
-        let message = "run holds a checkpoint that is not of this search";
+        let message = "run contains a checkpoint of another search";
         assert!(
             refused.stderr.contains(message),
             "{pointer}: {}",

@@ -162,7 +162,7 @@ fn a_run_goes_on_with_its_own_files() {
     );
     let longer = "optimize study/study.toml --resume --out run --set optimizer.generations=5";
     let resumed = done(place, longer);
-    let warning = "points.csv is gone or has changed since the run began; its copy in run is used";
+    let warning = "points.csv is missing or has changed since the run began; using its copy in run";
     assert!(resumed.stderr.contains(warning), "{}", resumed.stderr);
     assert!(contents(&place.join("run")) == contents(&place.join("whole")));
 }

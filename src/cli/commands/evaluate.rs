@@ -240,7 +240,7 @@ fn text(study: &Study, title: &str, metrics: &Metrics, dops: Option<&DopStatisti
     )
 }
 
-/// The constraints of the scenario, one a line: the value, and whether it keeps the bound.
+/// The constraints of the scenario, one per line: the value, and whether the bound is met.
 fn constraint_lines(checks: &[ConstraintCheck]) -> String {
     if checks.is_empty() {
         return String::new();

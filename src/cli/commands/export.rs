@@ -97,7 +97,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
-/// What the export before wrote, as its manifest says.
+/// The files of the previous export, from its manifest.
 fn own(directory: &Path) -> BTreeSet<String> {
     let manifest = File::open(directory.join(FILE_NAME)).ok();
     let manifest = manifest.and_then(|file| Manifest::read(BufReader::new(file)).ok());

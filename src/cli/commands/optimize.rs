@@ -36,8 +36,8 @@ fn overrides_of_seed(args: &OptimizeArgs) -> Vec<String> {
     seed.into_iter().collect()
 }
 
-/// With --resume, the study as the run in `directory` goes on with it: with its copies of the
-/// files, and where no scenario is named, with its scenario if the default is another.
+/// With --resume, the study of the run in `directory`: with its copies of the files and, if no
+/// scenario is named and the default differs, its scenario.
 pub(super) fn resumed(args: &OptimizeArgs, mut study: Study, directory: &Path) -> Result<Study> {
     let manifest = read_manifest(directory).ok().flatten();
     let Some(manifest) = manifest.filter(|_| args.resume) else {
@@ -221,7 +221,7 @@ fn start(
     if let Some(mut search) = resumed {
         search.check(problem).with_context(|| {
             format!(
-                "{} holds a checkpoint that is not of this search",
+                "{} contains a checkpoint of another search",
                 directory.display()
             )
         })?;

@@ -59,12 +59,12 @@ fn table_of(args: &PlotArgs, form: Form) -> Result<Option<PathBuf>> {
     Ok(Some(table))
 }
 
-/// Refuses a table that is there with other data, which may be anything.
+/// Refuses to overwrite an existing table with other data, whatever it is.
 fn require_same(table: &Path, data: &[u8]) -> Result<()> {
     let is_other = table.exists() && files::read_whole(table).is_ok_and(|found| found != data);
     if is_other {
         bail!(
-            "the data of the figure goes to {}, which holds something else; choose another --out, \
+            "the data of the figure goes to {}, which contains something else; choose another --out, \
              or replace it with --force",
             table.display()
         );

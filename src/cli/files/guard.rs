@@ -1,4 +1,4 @@
-//! Inputs are not outputs: what may be written, and what `--force` may replace.
+//! Protection of inputs and foreign files: what may be written, and what `--force` may replace.
 
 use crate::run::MANIFEST;
 use anyhow::{Context, Result, bail};
@@ -7,13 +7,13 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// What this program writes into a run directory that it reads.
+/// The entries that this program may write to a run directory used as input.
 const OWN_PLACES: [&str; 4] = ["report.html", "validation", "checkpoints", "figures"];
-/// Foreign files that are named.
+/// Maximum number of foreign files to name.
 const MOST_NAMED: usize = 5;
 
-/// Refuses an output that is or holds an input, or that lies in one: in a run directory save this
-/// program's own places there.
+/// Refuses an output that is an input, contains one, or is inside one; in a run directory, this
+/// program's own entries are allowed.
 pub(crate) fn refuse_inputs<'a>(
     out: &Path,
     inputs: impl IntoIterator<Item = &'a Path>,
@@ -28,7 +28,7 @@ pub(crate) fn refuse_inputs<'a>(
             bail!("{shown} is an input; choose another output");
         }
         if input_place.starts_with(&place) {
-            bail!("{shown} holds the input {named}; choose another output");
+            bail!("{shown} contains the input {named}; choose another output");
         }
         let Ok(rest) = place.strip_prefix(&input_place) else {
             continue;
@@ -43,14 +43,14 @@ pub(crate) fn refuse_inputs<'a>(
             } else {
                 String::new()
             };
-            bail!("{shown} lies in the input {named}; choose an output outside it{in_run}");
+            bail!("{shown} is inside the input {named}; choose an output outside it{in_run}");
         }
     }
     Ok(())
 }
 
-/// Refuses to replace a directory that others than this program stand on: the working directory or
-/// what it lies in, a home, the root, a repository.
+/// Refuses to replace a directory that matters beyond this program: the working directory or one
+/// above it, a home directory, the root, a repository.
 pub(super) fn refuse_ground(place: &Path) -> Result<()> {
     let place = canonical(place)?;
     let holds = |path: io::Result<PathBuf>| path.is_ok_and(|path| path.starts_with(&place));
@@ -58,20 +58,20 @@ pub(super) fn refuse_ground(place: &Path) -> Result<()> {
         bail!("it is the root of the file system");
     }
     if holds(std::env::current_dir().and_then(|path| path.canonicalize())) {
-        bail!("it is or holds the working directory; choose a directory in it");
+        bail!("it is or contains the working directory; choose a directory inside it");
     }
     let home = std::env::var_os("HOME").filter(|home| !home.is_empty());
     if home.is_some_and(|home| holds(Path::new(&home).canonicalize())) {
-        bail!("it is or holds a home directory; choose a directory in it");
+        bail!("it is or contains a home directory; choose a directory inside it");
     }
     if place.join(".git").exists() {
-        bail!("it is a repository; choose a directory in it");
+        bail!("it is a repository; choose a directory inside it");
     }
     Ok(())
 }
 
-/// Refuses to replace a directory that holds files other than `own`, paths from it with `/`; below a
-/// path that ends in `/` everything is own.
+/// Refuses to replace a directory that contains files not in `own`, a list of relative paths with `/`;
+/// a path that ends in `/` covers everything below it.
 pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result<()> {
     let is_own = |path: &str| {
         own.contains(path)
@@ -95,14 +95,14 @@ pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result
         String::new()
     };
     bail!(
-        "{} holds what this program did not write, and --force would delete it: {}{more}; choose \
+        "{} contains files that this program did not write, and --force would delete them: {}{more}; choose \
          another directory, or move them",
         directory.display(),
         named.join(", ")
     );
 }
 
-/// The files below a directory, and its empty directories, by their paths from it.
+/// The files and empty directories below a directory, by relative path.
 fn files_below(directory: &Path) -> io::Result<Vec<String>> {
     let mut found = Vec::new();
     let mut waiting = vec![(directory.to_owned(), String::new())];
@@ -130,7 +130,7 @@ fn files_below(directory: &Path) -> io::Result<Vec<String>> {
     Ok(found)
 }
 
-/// Where a path leads, links followed as far as there is something.
+/// The absolute path, with links resolved as far as the path exists.
 fn canonical(path: &Path) -> Result<PathBuf> {
     let path = super::resolved(path)?;
     let mut missing = Vec::new();
@@ -145,7 +145,7 @@ fn canonical(path: &Path) -> Result<PathBuf> {
                 missing.push(name.to_owned());
                 there = parent;
             }
-            _ => bail!("{} has no place in the file system", path.display()),
+            _ => bail!("{} is not a path in the file system", path.display()),
         }
     }
 }

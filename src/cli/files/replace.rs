@@ -1,10 +1,10 @@
-//! One directory in the place of another, so that a kill at any moment leaves one of them there.
+//! Replaces one directory with another, so that one of them exists even if the process is killed.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Puts `new` where `place` is, and what was there where `new` was.
+/// Swaps the directories at `new` and `place`.
 pub(super) fn exchange(new: &Path, place: &Path) -> io::Result<()> {
     match at_once(new, place) {
         Err(error) if is_unable(&error) => one_after_the_other(new, place),
@@ -23,13 +23,13 @@ fn at_once(_: &Path, _: &Path) -> io::Result<()> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Whether the system or the file system has no such call, or not for these directories.
+/// Whether the system or the file system does not support the call for these directories.
 fn is_unable(error: &io::Error) -> bool {
     use io::ErrorKind::{CrossesDevices, InvalidInput, Unsupported};
     matches!(error.kind(), CrossesDevices | InvalidInput | Unsupported)
 }
 
-/// Between the two renames a kill leaves the old directory aside, from where [`recover`] takes it.
+/// If the process is killed between the two renames, [`recover`] restores the old directory.
 fn one_after_the_other(new: &Path, place: &Path) -> io::Result<()> {
     let aside = aside(place);
     if aside.exists() {
@@ -43,7 +43,7 @@ fn one_after_the_other(new: &Path, place: &Path) -> io::Result<()> {
     fs::rename(&aside, new)
 }
 
-/// Where a directory waits while another takes its place.
+/// The temporary path of a directory while it is being replaced.
 fn aside(place: &Path) -> PathBuf {
     let mut name = std::ffi::OsString::from(".");
     name.push(place.file_name().unwrap_or_default());
@@ -51,7 +51,7 @@ fn aside(place: &Path) -> PathBuf {
     place.with_file_name(name)
 }
 
-/// Puts back what a kill in the middle of a replacement left aside; whether there was something.
+/// Restores a directory if the process was killed while replacing it; returns whether it did.
 pub(super) fn recover(place: &Path) -> io::Result<bool> {
     let aside = aside(place);
     let is_lost = place.symlink_metadata().is_err() && aside.is_dir() && !aside.is_symlink();
@@ -61,8 +61,7 @@ pub(super) fn recover(place: &Path) -> io::Result<bool> {
     Ok(is_lost)
 }
 
-/// Puts the entry at `from` at `to` too: files by a second link where that can be had, or else as
-/// copies.
+/// Duplicates the entry at `from` to `to`: files as hard links if possible, otherwise as copies.
 pub(super) fn carry_over(from: &Path, to: &Path) -> io::Result<()> {
     let kind = from.symlink_metadata()?.file_type();
     if kind.is_dir() {

@@ -1,7 +1,7 @@
-//! Files and directories written beside their places, under names that nobody foresees.
+//! Staging: files and directories are written next to their destination, under unpredictable names.
 //!
 //! Each is created exclusively and locked while it is written. One that is not locked was left by a
-//! process that was killed; the next that writes to the same place removes it.
+//! process that was killed; the next process that writes to the same destination removes it.
 
 use crate::cli::interrupt::Removed;
 use std::ffi::OsStr;
@@ -11,16 +11,16 @@ use std::path::Path;
 use std::time::Duration;
 use tempfile::{Builder, NamedTempFile, TempDir};
 
-/// What the name of everything that is staged contains.
+/// Part of every staging name.
 const MARK: &str = ".navwalker-";
 /// Random characters at the end of a name.
 const RANDOM: usize = 12;
-/// Bytes of the name of a place that go into the name of what is staged for it.
+/// Maximum bytes of the destination's name in a staging name.
 const SHOWN: usize = 64;
-/// What passes at most between the creation of something staged and its lock.
+/// Maximum time between the creation of a staging entry and its lock.
 const UNTIL_LOCKED: Duration = Duration::from_millis(100);
 
-/// What the names of all that is staged for a place begin with.
+/// Prefix of all staging names for a destination.
 pub(super) fn prefix(place: &Path) -> String {
     let name = place.file_name().unwrap_or_default().to_string_lossy();
     let shown: String = name
@@ -31,7 +31,7 @@ pub(super) fn prefix(place: &Path) -> String {
     format!(".{shown}{MARK}")
 }
 
-/// Whether a name is that of something staged, rather than of a user's file.
+/// Whether a name is a staging name rather than that of a user's file.
 pub(crate) fn is_staged(name: &OsStr) -> bool {
     let name = name.to_string_lossy();
     name.starts_with('.')
@@ -40,7 +40,7 @@ pub(crate) fn is_staged(name: &OsStr) -> bool {
         })
 }
 
-/// A file beside `place`, open and locked.
+/// A staging file next to `place`, open and locked.
 pub(super) fn file(place: &Path) -> io::Result<(NamedTempFile, Removed)> {
     let parent = place.parent().unwrap_or(place);
     remove_stale(parent, place);
@@ -49,13 +49,13 @@ pub(super) fn file(place: &Path) -> io::Result<(NamedTempFile, Removed)> {
     builder.prefix(&prefix).rand_bytes(RANDOM);
     permit(&mut builder, 0o666);
     let file = builder.tempfile_in(parent)?;
-    // Where locks are not to be had nothing is taken for stale either.
+    // Without locks, nothing is considered stale either.
     let _ = file.as_file().lock();
     let removed = Removed::new(file.path());
     Ok((file, removed))
 }
 
-/// A directory beside `place`, and its lock where there is one.
+/// A staging directory next to `place`, and its lock if locks are supported.
 pub(super) fn directory(place: &Path) -> io::Result<(TempDir, Option<File>, Removed)> {
     let parent = place.parent().unwrap_or(place);
     remove_stale(parent, place);
@@ -70,7 +70,7 @@ pub(super) fn directory(place: &Path) -> io::Result<(TempDir, Option<File>, Remo
     Ok((directory, lock, removed))
 }
 
-/// The permissions that any program gives; the user's mask takes from them.
+/// The usual permissions, before the umask is applied.
 fn permit(builder: &mut Builder<'_, '_>, mode: u32) {
     #[cfg(unix)]
     {
@@ -88,7 +88,7 @@ pub(crate) fn lock(path: &Path) -> Result<File, TryLockError> {
     Ok(file)
 }
 
-/// Removes what a killed process left beside `place`. What cannot be removed stays.
+/// Removes what a killed process left next to `place`, as far as possible.
 fn remove_stale(parent: &Path, place: &Path) {
     let prefix = prefix(place);
     let Ok(entries) = fs::read_dir(parent) else {
@@ -98,7 +98,7 @@ fn remove_stale(parent: &Path, place: &Path) {
         let name = entry.file_name();
         let path = entry.path();
         let is_ours = is_staged(&name) && name.to_string_lossy().starts_with(&prefix);
-        // A link is nothing that this program makes.
+        // This program never creates links.
         if is_ours && !path.is_symlink() && is_abandoned(&path) {
             let _ = if path.is_dir() {
                 fs::remove_dir_all(&path)
@@ -109,7 +109,7 @@ fn remove_stale(parent: &Path, place: &Path) {
     }
 }
 
-/// Whether nobody writes to something staged: it is not locked, and not just being created.
+/// Whether a staging entry is stale: it is not locked and was not created just now.
 fn is_abandoned(path: &Path) -> bool {
     let is_free = || lock(path).is_ok();
     is_free() && {

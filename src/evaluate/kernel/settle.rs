@@ -1,5 +1,5 @@
-//! Samples that the lanes do not decide, because a satellite is too close to the mask or the
-//! geometry to a limit: once more by the definitions.
+//! Samples that the lanes leave undecided, because a satellite is too close to the mask or the
+//! geometry too close to a limit: recomputed by the definitions.
 
 use super::super::fixed::{self, PlainGnssSample, PlainPositions};
 use super::super::{Setup, plain};
@@ -12,17 +12,17 @@ use crate::frames::{EarthFixed, LocalFrame, Position, State, Teme};
 use nalgebra::Vector3;
 use std::cell::OnceCell;
 
-/// What all doubts of one instant are settled with.
+/// The data needed to settle the doubtful samples of one instant.
 pub(super) struct Settling<'a> {
     setup: &'a Setup,
     scene: &'a SampleContext,
     instant: SampleInstant,
     fixed: FixedSample<'a>,
-    /// The GNSS, where it is asked for.
+    /// The GNSS, if needed.
     gnss: OnceCell<Vec<PlainPositions>>,
 }
 
-/// What a sample is, when all is said.
+/// The final result of a sample.
 struct Settled {
     visible: u32,
     pdop: Option<f64>,
@@ -44,7 +44,7 @@ impl<'a> Settling<'a> {
         }
     }
 
-    /// Settles all doubts of an outcome.
+    /// Settles all doubtful samples of an outcome.
     pub(super) fn settle(
         &self,
         leo: &Ephemeris,
@@ -67,7 +67,7 @@ impl<'a> Settling<'a> {
             let available = settled
                 .pdop
                 .is_some_and(|pdop| pdop <= self.setup.metrics.availability_pdop);
-            // In the lanes the satellites of a doubtful mask are not counted yet.
+            // The lanes have not counted the satellites close to the mask yet.
             if undecided.doubt == Doubt::Mask {
                 outcome.visible += u64::from(settled.visible);
             }
@@ -77,7 +77,7 @@ impl<'a> Settling<'a> {
         Ok(())
     }
 
-    /// The positions of the plain path, of the satellites that a point may see.
+    /// The positions, by the plain path, of the satellites that a point may see.
     fn candidates(
         &self,
         leo: &Ephemeris,
@@ -93,7 +93,7 @@ impl<'a> Settling<'a> {
         undecided.satellites.iter().filter_map(position).collect()
     }
 
-    /// The sample of the plain path, to the bit.
+    /// The sample by the plain path, bit for bit.
     fn by_plain_sums(
         &self,
         local: &LocalFrame,
@@ -118,8 +118,8 @@ impl<'a> Settling<'a> {
         Ok(Settled { visible, pdop })
     }
 
-    /// The sample with the decisions of the plain path about the mask and the GNSS part of the
-    /// lanes; `None` where that does not decide whether it is solved.
+    /// The sample with the mask decided by the plain path and the GNSS part from the lanes; `None` if
+    /// that leaves open whether it is solved.
     fn with_gnss_of_lanes(
         &self,
         local: &LocalFrame,
@@ -160,8 +160,8 @@ impl<'a> Settling<'a> {
     }
 }
 
-/// Normal matrix of the GNSS at a point of a tile, and Σ v and number of those that share their
-/// clock with the design: their elimination is undone, since the clock becomes that of the design.
+/// Normal matrix of the GNSS at a point of a tile, and Σ v and the number of satellites that share
+/// their clock with the design. The elimination of that clock is undone, since the design shares it.
 fn gnss_part(fixed: &FixedTile<'_>, lane: usize) -> (Symmetric3, Vector3<f64>, u32) {
     let [xx, yy, zz, xy, xz, yz] =
         std::array::from_fn(|element| fixed.normal::<f64>(element, lane));

@@ -1,4 +1,4 @@
-//! Which satellites a fleet holds: their identities, the joining of their states, and the choice among them.
+//! The satellites of a fleet: their identities, the joining of their states, and their selection.
 
 use super::Fleet;
 use crate::constellation::identity::{ObjectIdentity, unique_labels};
@@ -7,15 +7,15 @@ use crate::formats::trajectory::Trajectory;
 use crate::keyword::nearest;
 use thiserror::Error;
 
-/// The identity of a satellite with states; an id that is not its name holds beyond its file.
+/// The identity of a satellite with states; an id that differs from its name is valid outside its file.
 pub(super) fn identity(trajectory: &Trajectory) -> ObjectIdentity {
     let is_own = trajectory.id != trajectory.name;
     let designator = if is_own { trajectory.id.as_str() } else { "" };
     ObjectIdentity::new(0, designator, &trajectory.name)
 }
 
-/// Adds states: to those of the same satellite, if they come before or after them, or else as a satellite of
-/// their own.
+/// Adds states: to those of the same satellite if the spans do not overlap, otherwise as a separate
+/// satellite.
 pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
     let of_next = identity(&next);
     let continued = known.iter_mut().find(|before| {
@@ -30,7 +30,7 @@ pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
     }
 }
 
-/// Whether the arcs of two have more in common than an instant.
+/// Whether the arcs of two satellites overlap by more than an instant.
 fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
     let both =
         |arc: &Arc, next: &Arc| arc.useable.1 > next.useable.0 && next.useable.1 > arc.useable.0;
@@ -38,7 +38,7 @@ fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
     arcs.any(|arc| other.arcs.iter().any(|next| both(arc, next)))
 }
 
-/// Puts arcs among those of the same satellite; at an instant that two have, the earlier one's state stands.
+/// Merges arcs into those of the same satellite; at an instant that two share, the earlier arc's state is used.
 fn join(before: &mut Trajectory, next: Trajectory) {
     let mut arcs = std::mem::take(&mut before.arcs);
     arcs.extend(next.arcs);
@@ -54,7 +54,7 @@ fn join(before: &mut Trajectory, next: Trajectory) {
 }
 
 impl Fleet {
-    /// The identities of the satellites, in their order.
+    /// The identities of the satellites, in order.
     #[must_use]
     pub fn identities(&self) -> Vec<ObjectIdentity> {
         let named = |name: &String| ObjectIdentity::new(0, "", name);
@@ -67,13 +67,13 @@ impl Fleet {
         }
     }
 
-    /// The names of the satellites, unique among them, in their order.
+    /// The unique names of the satellites, in order.
     #[must_use]
     pub fn labels(&self) -> Vec<String> {
         unique_labels(&self.identities())
     }
 
-    /// Keeps the satellites that `filter` chooses.
+    /// Keeps the satellites that `filter` selects.
     ///
     /// # Errors
     /// If a pattern matches none, or no satellite is left.
@@ -99,29 +99,29 @@ impl Fleet {
     }
 }
 
-/// Satellites chosen by patterns: names, designators or catalogue numbers, in which `*` stands for any characters
+/// A selection of satellites by patterns: names, designators or catalogue numbers, in which `*` stands for any characters
 /// and `?` for one; case does not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SatelliteFilter {
     /// Patterns of the satellites to keep; none keeps all.
     pub only: Vec<String>,
-    /// Patterns of the satellites to leave out.
+    /// Patterns of the satellites to exclude.
     pub exclude: Vec<String>,
 }
 
-/// A choice that leaves nothing, or names what is not there.
+/// An invalid selection.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoSuchSatellite {
-    /// A pattern without a match.
+    /// A pattern that matches nothing.
     #[error("no satellite matches '{pattern}'{}", did_you_mean(nearest.as_deref()))]
     Pattern {
         /// The pattern.
         pattern: String,
-        /// The satellite that was most likely meant.
+        /// The most similar satellite name.
         nearest: Option<String>,
     },
-    /// Everything is left out.
-    #[error("the choice leaves none of the {0} satellites")]
+    /// Nothing is selected.
+    #[error("the selection excludes all {0} satellites")]
     Nothing(usize),
 }
 
@@ -130,7 +130,7 @@ fn did_you_mean(nearest: Option<&str>) -> String {
 }
 
 impl SatelliteFilter {
-    /// Whether it keeps everything.
+    /// Whether it selects everything.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.only.is_empty() && self.exclude.is_empty()
@@ -176,7 +176,7 @@ impl SatelliteFilter {
     }
 }
 
-/// The text that is most like a pattern.
+/// The text most similar to a pattern.
 fn nearest_text(pattern: &str, texts: &[&str]) -> Option<String> {
     let lower: Vec<String> = texts
         .iter()
@@ -188,12 +188,12 @@ fn nearest_text(pattern: &str, texts: &[&str]) -> Option<String> {
     Some(texts[at].to_owned())
 }
 
-/// Whether a text fits a pattern with `*` and `?`, whatever the case.
+/// Whether a text matches a pattern with `*` and `?`, ignoring case.
 fn matches(pattern: &str, text: &str) -> bool {
     let lower = |text: &str| text.to_lowercase().chars().collect::<Vec<char>>();
     let (pattern, text) = (lower(pattern), lower(text));
     let (mut p, mut t) = (0, 0);
-    // The last star, and how much of the text it has taken.
+    // The last star, and how much of the text it has matched.
     let mut star: Option<(usize, usize)> = None;
     while t < text.len() {
         match pattern.get(p) {

@@ -1,4 +1,4 @@
-//! What the states of files leave to say about a study: where there are none, and what lies between them.
+//! Warnings about sampled states in a study: gaps, and the error of interpolation.
 
 use super::Fleet;
 use crate::ephemeris::arc::{Arc, Interpolation};
@@ -6,34 +6,34 @@ use crate::formats::trajectory::Trajectory;
 use crate::time::{Epoch, TimeGrid};
 use std::fmt;
 
-/// Satellites whose interpolation is estimated: of a large constellation the first.
+/// Maximum number of satellites, the first ones, whose interpolation error is estimated.
 const ESTIMATED: usize = 100;
 
-/// What is said of sampled satellites on a grid.
+/// A note on sampled satellites on a grid.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SamplingNote {
-    /// Instants at which a satellite has no state, and counts as in view of nobody.
+    /// Instants at which a satellite has no state and counts as not visible.
     Gaps {
         /// The satellite.
         name: String,
-        /// Number of the instants.
+        /// Number of instants without a state.
         missing: usize,
-        /// Instants of the grid.
+        /// Number of instants of the grid.
         of: usize,
-        /// The first without a state.
+        /// The first instant without a state.
         first: Epoch,
-        /// The last.
+        /// The last instant without a state.
         last: Epoch,
     },
     /// States that are interpolated.
     Interpolated {
-        /// Satellites that are.
+        /// Number of satellites with interpolated states.
         satellites: usize,
-        /// How, for the one with the largest error.
+        /// The interpolation of the satellite with the largest error.
         interpolation: Interpolation,
         /// That satellite.
         worst: String,
-        /// Its largest error when every other state is left out, km; none if there are too few to tell.
+        /// Its largest error with every other state omitted, km; `None` if there are too few states.
         left_out_error_km: Option<f64>,
     },
 }
@@ -49,7 +49,7 @@ impl fmt::Display for SamplingNote {
                 last,
             } => write!(
                 f,
-                "{name} has no state at {missing} of {of} instants, from {first} to {last}: not in view there"
+                "{name} has no state at {missing} of {of} instants, from {first} to {last}: it counts as not visible then"
             ),
             Self::Interpolated {
                 satellites,
@@ -65,7 +65,7 @@ impl fmt::Display for SamplingNote {
                 match left_out_error_km {
                     Some(km) => write!(
                         f,
-                        "with every other state left out the error is up to {} ({worst}), with all of them \
+                        "with every other state omitted the error is up to {} ({worst}), with all states \
                          about {} times less",
                         length(*km),
                         2_u64.saturating_pow(interpolation.order())
@@ -77,7 +77,7 @@ impl fmt::Display for SamplingNote {
     }
 }
 
-/// A length in the unit that suits it, to two digits.
+/// A length in a suitable unit, to two digits.
 fn length(km: f64) -> String {
     match km {
         km if km >= 10.0 => format!("{km:.0} km"),
@@ -90,7 +90,7 @@ fn length(km: f64) -> String {
 }
 
 impl Fleet {
-    /// What is to be said of sampled satellites on a grid: gaps, once for each satellite, and the interpolation.
+    /// Notes on sampled satellites on a grid: gaps, once per satellite, and the interpolation.
     #[must_use]
     pub fn sampling_notes(&self, grid: TimeGrid) -> Vec<SamplingNote> {
         let labels = self.labels();
@@ -128,7 +128,7 @@ impl Fleet {
     }
 }
 
-/// The instants of a grid that a satellite has states for.
+/// The instants of a grid at which a satellite has states.
 struct Coverage {
     missing: usize,
     ends: Option<(Epoch, Epoch)>,

@@ -1,19 +1,19 @@
-//! Gzip data, read through: bounded, and with words for what is damaged.
+//! Gzip decompression with a size limit and clear errors for damaged data.
 
 use flate2::bufread::MultiGzDecoder;
 use std::io::{self, BufRead, Read};
 
-/// How gzip data begin (RFC 1952, 2.3.1).
+/// Signature of gzip data (RFC 1952, 2.3.1).
 pub(super) const MAGIC: [u8; 2] = [0x1f, 0x8b];
 
-/// Bytes that any file may unpack to.
+/// Decompressed size that is always allowed, bytes.
 const FREE: u64 = 1 << 26;
 
-/// Most bytes beyond them for each that is packed: orbits shrink to a fifth or a tenth, and only what is made to
-/// fill the memory to a thousandth.
+/// Maximum compression ratio beyond that size: orbit files compress by a factor of 5 to 10, and only files made to
+/// exhaust memory by a factor of 1000.
 const MOST_FOLD: u64 = 200;
 
-/// The bytes that gzip data unpack to.
+/// The decompressed bytes of gzip data.
 pub(super) struct Unpacked<R> {
     decoder: MultiGzDecoder<Counted<R>>,
     unpacked: u64,
@@ -37,7 +37,7 @@ impl<R: BufRead> Read for Unpacked<R> {
             .decoder
             .read(buffer)
             .map_err(|error| match error.kind() {
-                io::ErrorKind::UnexpectedEof => damaged("the gzip data are cut short"),
+                io::ErrorKind::UnexpectedEof => damaged("the gzip data are truncated"),
                 io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
                     damaged("the gzip data are damaged")
                 }
@@ -46,7 +46,7 @@ impl<R: BufRead> Read for Unpacked<R> {
         self.unpacked += count as u64;
         if self.unpacked > FREE + MOST_FOLD * self.decoder.get_ref().taken {
             let message = format!(
-                "the gzip data unpack to more than {MOST_FOLD} times their size: no constellation does"
+                "the gzip data decompress to more than {MOST_FOLD} times their size, which no constellation file does"
             );
             return Err(damaged(&message));
         }
@@ -54,7 +54,7 @@ impl<R: BufRead> Read for Unpacked<R> {
     }
 }
 
-/// An input that counts what is taken from it.
+/// An input that counts the bytes read from it.
 struct Counted<R> {
     input: R,
     taken: u64,

@@ -1,9 +1,9 @@
-//! JSON by the keys of its first object.
+//! Detection of JSON formats by the keys of the first object.
 
 use super::Content;
 use crate::exchange::lint::Format;
 
-/// Keys that an element set has and nothing else.
+/// Keys that occur only in element sets.
 const OF_OMM: [&[u8]; 6] = [
     b"CCSDS_OMM_VERS",
     b"OBJECT_NAME",
@@ -13,7 +13,7 @@ const OF_OMM: [&[u8]; 6] = [
     b"MEAN_ELEMENT_THEORY",
 ];
 
-/// What the first object shows.
+/// The format indicated by the first object.
 pub(super) fn content(json: &[u8], complete: bool) -> Option<Content> {
     let mut scanner = Scanner::default();
     let mut key: &[u8] = b"";
@@ -36,7 +36,7 @@ pub(super) fn content(json: &[u8], complete: bool) -> Option<Content> {
                     return Some(Content::Format(Format::OmmJson));
                 }
                 if matches!(key, b"tle0" | b"tle1" | b"tle2") {
-                    let message = "JSON with TLEs, as SatNOGS gives them; write its tle0, tle1 and tle2 as lines";
+                    let message = "JSON with TLEs in the style of SatNOGS; write tle0, tle1 and tle2 as the lines of a TLE file";
                     return Some(Content::other(message));
                 }
             }
@@ -51,11 +51,11 @@ fn neither() -> Content {
     Content::other("JSON, but neither CZML nor OMM")
 }
 
-/// Follows strings and the depth of objects.
+/// A scanner that tracks strings and the nesting of objects.
 #[derive(Default)]
 struct Scanner {
     depth: usize,
-    /// Where the string began that is being read.
+    /// Start of the current string.
     string: Option<usize>,
     escaped: bool,
     /// Whether a colon came after the last key.
@@ -63,9 +63,9 @@ struct Scanner {
 }
 
 enum Step {
-    /// A string has ended that began there.
+    /// The end of a string that began at this position.
     Text(usize),
-    /// The first object has ended.
+    /// The end of the first object.
     ObjectEnd,
     Other,
 }

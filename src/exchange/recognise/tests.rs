@@ -83,7 +83,7 @@ fn roots_are_recognised_whatever_their_prefix() {
     ] {
         let found = of(text.as_bytes(), Some("a.oem"));
         let expected =
-            expected.map_err(|what| format!("not a format that is read: it looks like {what}"));
+            expected.map_err(|what| format!("not a supported format: it looks like {what}"));
         assert_eq!(found, expected, "{text}");
     }
 }
@@ -171,7 +171,7 @@ fn damaged_gzip_is_told() {
         |bytes: &[u8]| Fleet::read(bytes, None, Some("a.sp3.gz")).map(|read| read.fleet.len());
     assert_eq!(read(&whole).unwrap(), 4);
     let error = read(&whole[..whole.len() * 2 / 3]).unwrap_err().to_string();
-    assert_eq!(error, "the gzip data are cut short");
+    assert_eq!(error, "the gzip data are truncated");
     let mut damaged = whole.clone();
     let middle = damaged.len() / 2;
     damaged[middle..middle + 8].fill(0xff);

@@ -1,9 +1,9 @@
-//! Plain text by its first lines that say something.
+//! Detection of text formats by the first significant lines.
 
 use super::Content;
 use crate::exchange::lint::Format;
 
-/// Labels of the first line of formats of satellite geodesy.
+/// Labels in the first line of formats used in satellite geodesy.
 const LABELS: [(&str, &str); 5] = [
     ("RINEX VERSION / TYPE", "a RINEX file"),
     ("CRINEX VERS", "a compressed RINEX file"),
@@ -12,15 +12,15 @@ const LABELS: [(&str, &str); 5] = [
     ("%=SNX", "a SINEX file"),
 ];
 
-/// Bytes of text without any sign after which nothing is expected any more.
+/// Bytes of text without a recognisable line after which detection gives up.
 const ENOUGH: usize = 1 << 16;
 
-/// What the lines show.
+/// The format indicated by the lines.
 pub(super) fn content(seen: &[u8], complete: bool) -> Option<Content> {
     let text = String::from_utf8_lossy(seen);
     let mut lines: Vec<&str> = text.split(['\n', '\r']).collect();
     if !complete {
-        // The last line may be cut.
+        // The last line may be incomplete.
         lines.pop();
     }
     let mut said = lines
@@ -40,7 +40,7 @@ pub(super) fn content(seen: &[u8], complete: bool) -> Option<Content> {
             (Content::Format(Format::Stk), Some(block))
                 if !block.eq_ignore_ascii_case("Ephemeris") =>
             {
-                Content::other(format_args!("an STK file of another kind, {block}"))
+                Content::other(format_args!("an STK file of another type, {block}"))
             }
             _ => content,
         });
@@ -94,7 +94,7 @@ fn by_line(line: &str) -> Option<Content> {
     None
 }
 
-/// `OEM` of `CCSDS_OEM_VERS`.
+/// The message type, `OEM` in `CCSDS_OEM_VERS`.
 fn ccsds_kind(line: &str) -> Option<&str> {
     let (kind, rest) = line.strip_prefix("CCSDS_")?.split_at_checked(3)?;
     rest.starts_with("_VERS").then_some(kind)
@@ -114,7 +114,7 @@ fn table(header: &str) -> Option<Content> {
     Some(Content::Format(format))
 }
 
-/// The version in the first columns, the kind in column 21 (RINEX 3.05, table A1).
+/// The version in the first columns, the file type in column 21 (RINEX 3.05, table A1).
 fn rinex(line: &str) -> Content {
     let version = line.get(..20).unwrap_or_default().trim();
     let kind = match line.as_bytes().get(20) {
@@ -147,7 +147,7 @@ fn almanac<'a>(first: &str, mut rest: impl Iterator<Item = &'a str>) -> Option<C
     is_sem.then_some(Content::Format(Format::Sem))
 }
 
-/// A first line of an element set, with a second one behind it or at the very beginning.
+/// Line 1 of an element set, followed by line 2 or at the very beginning.
 fn is_element_sets<'a>(lines: &mut impl Iterator<Item = &'a str>) -> bool {
     let is_line = |line: &str, number: &str| line.starts_with(number) && line.len() >= 40;
     let mut before: Option<&str> = None;

@@ -1,9 +1,9 @@
-//! XML by its root element, whatever its prefix.
+//! Detection of XML formats by the root element, ignoring its prefix.
 
 use super::Content;
 use crate::exchange::lint::Format;
 
-/// What the root of a document shows.
+/// The format indicated by the root element.
 pub(super) fn content(xml: &[u8], complete: bool) -> Option<Content> {
     let mut rest = xml;
     let cut = || complete.then(|| Content::other("XML that ends before its first element"));
@@ -63,8 +63,7 @@ fn messages(mut rest: &[u8], complete: bool) -> Option<Content> {
             _ => {}
         }
     }
-    complete
-        .then(|| Content::other("a CCSDS NDM with no message of a kind that is read (oem, omm)"))
+    complete.then(|| Content::other("a CCSDS NDM without a supported message (oem, omm)"))
 }
 
 fn is_name(byte: u8) -> bool {

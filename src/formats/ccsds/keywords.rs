@@ -1,26 +1,26 @@
-//! The keyword tables of the CCSDS Orbit Data Messages: what belongs where, must be there, and in which unit.
+//! The keyword tables of the CCSDS Orbit Data Messages: where each keyword belongs, whether it is mandatory, its unit.
 
-/// Whether a keyword must be there.
+/// Whether a keyword is mandatory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Need {
     Mandatory,
-    /// Mandatory, but catalogues leave its value out.
+    /// Mandatory, but catalogues leave its value empty.
     Named,
-    /// Mandatory in the standard, but so often missing that a reader goes on.
+    /// Mandatory in the standard, but missing so often that its absence is tolerated.
     Expected,
     Optional,
 }
 
-/// What the value of a keyword is.
+/// The type of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ValueKind {
     /// A text, a time or a count.
     Text,
-    /// A number, and the unit that may stand behind it (7.7).
+    /// A number, and the unit that may follow it (7.7).
     Number(Option<&'static str>),
 }
 
-/// A keyword of a table, whether it must be there, and what its value is.
+/// A keyword of a table: whether it is mandatory, and the type of its value.
 pub(crate) struct KvnKeyword {
     pub(super) name: &'static str,
     pub(super) need: Need,
@@ -46,22 +46,22 @@ impl KvnKeyword {
     }
 }
 
-/// A keyword that must be there.
+/// A mandatory keyword.
 pub(crate) const fn must(name: &'static str) -> KvnKeyword {
     KvnKeyword::new(name, Need::Mandatory)
 }
 
-/// A keyword that must be there, and whose value catalogues leave out.
+/// A mandatory keyword whose value catalogues leave empty.
 pub(crate) const fn named(name: &'static str) -> KvnKeyword {
     KvnKeyword::new(name, Need::Named)
 }
 
-/// A keyword that must be there by the standard, without which a reader goes on.
+/// A keyword that is mandatory in the standard but whose absence is tolerated.
 pub(crate) const fn should(name: &'static str) -> KvnKeyword {
     KvnKeyword::new(name, Need::Expected)
 }
 
-/// A keyword that may be there.
+/// An optional keyword.
 pub(crate) const fn may(name: &'static str) -> KvnKeyword {
     KvnKeyword::new(name, Need::Optional)
 }
@@ -80,8 +80,8 @@ const PP: &str = "km**2";
 const PV: &str = "km**2/s";
 const VV: &str = "km**2/s**2";
 
-/// The frame and the elements of a covariance matrix, as they end an OPM and an OMM (tables 3-3 and
-/// 4-3).
+/// The frame and the elements of a covariance matrix, at the end of an OPM or an OMM (tables
+/// 3-3 and 4-3).
 pub(crate) const COVARIANCE: &[KvnKeyword] = &[
     may("COV_REF_FRAME"),
     may("CX_X").unit(PP),

@@ -1,5 +1,5 @@
-//! Files of Navigation Data Messages in XML (CCSDS 505.0-B-2): one message, or a combined instantiation of
-//! messages of any kinds.
+//! Navigation Data Messages in XML (CCSDS 505.0-B-2): a single message, or a combined instantiation of
+//! messages of any type.
 
 use super::oem::{self, Oem};
 use super::omm::{self, Omm};
@@ -7,15 +7,15 @@ use super::xml::{Nodes, XmlNode};
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Kinds of messages (505.0-B-2 and its successors).
+/// Message types (505.0-B-2 and its successors).
 const KINDS: [&str; 10] = [
     "acm", "aem", "apm", "cdm", "ocm", "oem", "omm", "opm", "rdm", "tdm",
 ];
 
-/// Kinds that are read.
+/// Supported message types.
 pub const READ: &[&str] = &["oem", "omm"];
 
-/// A message of a kind that is read.
+/// A message of a supported type.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NdmMessage {
     /// Ephemeris.
@@ -24,16 +24,16 @@ pub enum NdmMessage {
     Omm(Omm),
 }
 
-/// A message as it comes in.
+/// A message being read.
 enum OpenMessage {
     Oem(Box<oem::OemXmlMessage>),
     Omm(Box<omm::OmmXmlMessage>),
-    /// A kind that is not read, at this depth.
+    /// A message of an unsupported type, at this depth.
     Other(usize),
 }
 
-/// Passes the messages of a file to `take`, until the list of findings is full; those of kinds that are not read
-/// are left out by name. `wanted` says which kinds are read, and the file must have one of them.
+/// Passes the messages of a file to `take`, until the list of findings is full. `wanted` lists the types to read, of
+/// which the file must contain at least one; messages of other types are skipped and listed.
 ///
 /// # Errors
 /// A failure of the input.
@@ -64,7 +64,7 @@ pub fn parse(
                         )))
                     }
                     name => {
-                        // A root of no kind at all is no message.
+                        // A root of an unknown type is not a message.
                         if depth > 0 || KINDS.contains(&name) {
                             findings.leave_out(place, "message", name);
                         }
@@ -103,7 +103,7 @@ pub fn parse(
     }
     if !any {
         let message = format!(
-            "there is no message of a kind that is read ({})",
+            "the file contains no supported message ({})",
             wanted.join(", ")
         );
         findings.error(nodes.place(), "ndm-empty", message);

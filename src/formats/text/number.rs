@@ -1,8 +1,8 @@
-//! Decimal numbers of formats that leave their form open.
+//! Decimal numbers in formats that do not define their notation.
 
 use crate::formats::text::finding::FindingList;
 
-/// A finite number in decimal digits, with the exponent of C or of Fortran; a finding under `rule` if it is none.
+/// A finite decimal number with a C or Fortran exponent; a finding under `rule` if the text is not one.
 pub(crate) fn read(
     text: &str,
     place: (usize, usize),
@@ -12,7 +12,7 @@ pub(crate) fn read(
     let is_of_number = |byte: u8| {
         byte.is_ascii_digit() || matches!(byte, b'+' | b'-' | b'.' | b'e' | b'E' | b'd' | b'D')
     };
-    // Rust would also take "inf" and "nan".
+    // Rust would also accept "inf" and "nan".
     let value = match text.bytes().all(is_of_number) {
         true => text.replace(['d', 'D'], "e").parse::<f64>().ok(),
         false => None,

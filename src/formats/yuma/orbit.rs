@@ -1,4 +1,4 @@
-//! The orbit of an almanac: the user's algorithm of IS-GPS-200, table 20-IV, with the almanac's subset of it.
+//! The orbit of an almanac: the user algorithm of IS-GPS-200, table 20-IV, with the almanac's subset of parameters.
 
 use super::{Almanac, Applicability, WEEKS};
 use crate::earth::{GPS_EARTH_RATE_RAD_S, GPS_MU_M3_S2};
@@ -12,7 +12,7 @@ use crate::units::wrap_two_pi;
 use nalgebra::Vector3;
 
 impl Almanac {
-    /// What the satellite is called: `PRN-01`, as in the head of its block.
+    /// The name of the satellite: `PRN-01`, as in the header of its block.
     #[must_use]
     pub fn name(&self) -> String {
         format!("PRN-{:02}", self.prn)
@@ -24,7 +24,7 @@ impl Almanac {
         self.health == 0
     }
 
-    /// The instant of the elements: weeks of ten bits are those next to `near`, larger ones stand as they are.
+    /// The instant of the elements: ten-bit weeks are resolved to the nearest `near`, larger ones are used unchanged.
     #[must_use]
     pub fn applicability(&self, near: Epoch) -> Epoch {
         let of = |week: i64| {
@@ -41,7 +41,7 @@ impl Almanac {
         nearest.unwrap_or_else(|| of(week))
     }
 
-    /// Finds values that no almanac has, and a satellite that is there before.
+    /// Reports values out of range, and repeated satellites.
     pub(crate) fn check(&self, place: (usize, usize), before: &[Self], findings: &mut FindingList) {
         let name = self.name();
         if before.iter().any(|other| other.prn == self.prn) {
@@ -83,7 +83,7 @@ impl Almanac {
         let a_km = self.sqrt_a * self.sqrt_a / 1000.0;
         for radius_km in [1.0 - self.eccentricity, 1.0 + self.eccentricity].map(|x| x * a_km) {
             if let Err(fault) = check_position(&Vector3::new(radius_km, 0.0, 0.0)) {
-                let message = format!("{name}: by its SQRT(A) {fault}");
+                let message = format!("{name}: by SQRT(A), {fault}");
                 findings.error(place, "implausible-state", message);
                 break;
             }
@@ -93,13 +93,13 @@ impl Almanac {
         }
     }
 
-    /// Position a time after the time of applicability.
+    /// The position at a time after the time of applicability.
     #[must_use]
     pub fn position_km(&self, since_toa_s: f64) -> Position<EarthFixed> {
         self.state(since_toa_s).position_km
     }
 
-    /// State a time after the time of applicability, in the axes of the rotating Earth.
+    /// The Earth-fixed state at a time after the time of applicability.
     #[must_use]
     pub fn state(&self, since_toa_s: f64) -> State<EarthFixed> {
         let e = self.eccentricity;
@@ -130,7 +130,7 @@ impl Almanac {
     }
 }
 
-/// The orbit of an almanac, with time from the epoch of a study.
+/// The orbit of an almanac, with time counted from the epoch of a study.
 #[derive(Debug, Clone)]
 pub struct AlmanacOrbit {
     almanac: Almanac,

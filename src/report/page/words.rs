@@ -78,7 +78,7 @@ impl PageSummary {
         paragraphs.push(found(run));
         paragraphs.extend(choice(page));
         let notes = run.search.iter().flat_map(|search| &search.diagnostics);
-        // Those of designs beside the front are told anew, of all that the page shows.
+        // The diagnostics of comparison designs are recomputed for all designs on the page.
         let beside = !page.baselines.is_empty();
         let notes = notes.filter(|d| !beside || d.code != Baseline::DOMINATES);
         let mut notes: Vec<String> = notes.map(|d| d.message.clone()).collect();

@@ -39,13 +39,13 @@ pub struct Measured {
     pub values: Vec<RowValue>,
 }
 
-/// Table II under a setup and everything that differs from it in one assumption.
+/// Table II under a setup, and under each setup that differs in one assumption.
 pub(super) struct Measurements {
     /// The table.
     pub(super) rows: Vec<TableRow>,
     /// As printed.
     pub(super) printed: Measured,
-    /// Inclination that fits each row, where the printed one does not, degrees.
+    /// Inclination that fits each row if the printed one does not, degrees.
     pub(super) fitted: Vec<Option<f64>>,
     /// The designs at these inclinations, or as printed.
     pub(super) moved: Vec<Design>,

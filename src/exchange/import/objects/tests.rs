@@ -45,7 +45,7 @@ fn satellites_are_chosen_by_name_id_and_pattern() {
     let error = chosen(&[], &["GALILEO*"]).unwrap_err();
     assert_eq!(error, "no satellite matches 'GALILEO*'");
     let error = chosen(&["NW-P01-S01"], &["NW-*"]).unwrap_err();
-    assert_eq!(error, "the choice leaves none of the 3 satellites");
+    assert_eq!(error, "the selection excludes all 3 satellites");
 }
 
 #[test]

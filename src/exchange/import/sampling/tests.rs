@@ -112,7 +112,7 @@ fn a_gap_is_no_view_and_is_told_once() {
         .collect();
     assert_eq!(notes.len(), 1, "{notes:?}");
     assert!(
-        notes[0].ends_with("has no state at 1 of 60 instants, from 2025-01-01T00:09:00Z to 2025-01-01T00:09:00Z: not in view there"),
+        notes[0].ends_with("has no state at 1 of 60 instants, from 2025-01-01T00:09:00Z to 2025-01-01T00:09:00Z: it counts as not visible then"),
         "{notes:?}"
     );
     let site = |n: u32| {

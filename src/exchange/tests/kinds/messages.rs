@@ -209,15 +209,12 @@ fn messages_of_several_kinds_are_read_or_named() {
     assert_eq!(read.fleet.content(), "sampled states, SGP4 element sets");
     let propagated = read.fleet.propagate(grid(), Model::J2).unwrap();
     assert_eq!(propagated.satellites().len(), 2);
-    // Nothing of a kind that is read.
+    // No supported message.
     let alone = format!("<ndm>\n{opm}\n</ndm>\n");
     let error = Fleet::read(alone.as_bytes(), None, None)
         .unwrap_err()
         .to_string();
-    assert!(
-        error.contains("no message of a kind that is read (oem, omm)"),
-        "{error}"
-    );
+    assert!(error.contains("supported message (oem, omm)"), "{error}");
 }
 
 /// Catalogues give empty identifiers: a warning, alike in every syntax.

@@ -1,4 +1,4 @@
-//! What must hold across the segments and lines of a message, in both notations, and what of it is read here.
+//! Rules across the segments and lines of a message, in both notations, and the limits of this reader.
 
 use super::{Segment, SegmentMetadata, StateLine};
 use crate::constellation::identity::ObjectIdentity;
@@ -10,18 +10,18 @@ use crate::orbit::earth_orbit::check_state;
 use chrono::NaiveDateTime;
 use std::collections::BTreeMap;
 
-/// What the segments so far have said.
+/// The state of the checks after the segments so far.
 #[derive(Default)]
 pub(super) struct MessageRules {
     /// Name and identifier of the object of the first segment (5.1.3).
     object: Option<(String, String)>,
-    /// Time system of the first segment, which all share (5.2.4.5).
+    /// Time system of the first segment, which the others must share (5.2.4.5).
     time_system: Option<String>,
-    /// Usable spans, by their beginnings.
+    /// Usable spans, by start time.
     spans: BTreeMap<NaiveDateTime, NaiveDateTime>,
-    /// Frame of the present segment.
+    /// Frame of the current segment.
     frame: Option<Frame>,
-    /// Whether the present segment has an implausible state or a line with too few fields already.
+    /// Whether the current segment already has an implausible state or a line with too few fields.
     is_told: bool,
 }
 
@@ -61,7 +61,7 @@ impl MessageRules {
                 "OBJECT_NAME"
             };
             let message = format!(
-                "an OEM is for a single object (5.1.3): {first_name} ({first_id}) before, {name} ({id}) here"
+                "an OEM describes a single object (5.1.3): {first_name} ({first_id}) in the first segment, {name} ({id}) here"
             );
             findings.error(block.place(key), "oem-objects", message);
         }
@@ -77,14 +77,15 @@ impl MessageRules {
         let system = &metadata.time_system;
         let first = self.time_system.get_or_insert_with(|| system.clone());
         if first != system {
-            let message = format!("TIME_SYSTEM was {first} before; it must not change");
+            let message =
+                format!("TIME_SYSTEM is {first} in the first segment; it must not change");
             findings.error(place, "oem-time-system", message);
         } else if let Err(unknown) = time_system_of_name(system) {
             findings.error(place, "oem-time-system", format!("TIME_SYSTEM: {unknown}"));
         }
     }
 
-    /// The frame of an Earth orbit must be one that states can be taken from.
+    /// Checks that the frame of an Earth orbit is supported.
     fn check_frame(
         &mut self,
         metadata: &SegmentMetadata,
@@ -93,7 +94,7 @@ impl MessageRules {
     ) {
         self.frame = None;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
-            // A sound message, which no Earth orbit comes from: `Segment::trajectory` refuses it.
+            // A valid message, but not an Earth orbit: `Segment::trajectory` refuses it.
             return;
         }
         let frame = match frame_of_name(&metadata.ref_frame) {
@@ -107,7 +108,7 @@ impl MessageRules {
         let moves = matches!(frame, Frame::Teme | Frame::EarthFixed);
         if moves && metadata.ref_frame_epoch.is_some() {
             let message = format!(
-                "{} held still at an epoch is not read; only of date",
+                "{} of epoch is not supported; only {0} of date is",
                 metadata.ref_frame
             );
             findings.error(block.place("REF_FRAME_EPOCH"), "oem-frame", message);
@@ -115,7 +116,7 @@ impl MessageRules {
         self.frame = Some(frame);
     }
 
-    /// The usable span must be a part of the whole one, and have at most an instant in common with any other.
+    /// Checks that the usable span is within the full span and shares at most an instant with any other.
     fn check_span(
         &mut self,
         metadata: &SegmentMetadata,
@@ -132,7 +133,7 @@ impl MessageRules {
             findings.error(block.place(key), "oem-span", message);
         };
         if metadata.start_time > metadata.stop_time {
-            // This has a finding of its own.
+            // Reported separately.
             return;
         }
         if stop < start {
@@ -159,8 +160,8 @@ impl MessageRules {
         self.spans.insert(start, stop);
     }
 
-    /// Whether a line comes after the one before it, is inside the span of its segment, has the fields of its
-    /// first line, and is a state of an Earth orbit.
+    /// Checks that a line is later than the one before it, is within the span of its segment, has the same fields as
+    /// the first line, and is a plausible state of an Earth orbit.
     pub(super) fn admit(
         &mut self,
         segment: &Segment,
@@ -171,7 +172,7 @@ impl MessageRules {
         let place = (number, 1);
         let previous = segment.states.last().map(|last| last.epoch);
         if previous.is_some_and(|previous| line.epoch <= previous) {
-            let message = "the time is not after that of the line before";
+            let message = "the time is not after that of the previous line";
             findings.error(place, "oem-time-order", message);
             return false;
         }
@@ -189,7 +190,7 @@ impl MessageRules {
         true
     }
 
-    /// What is wrong with a line, once in a segment: it would be wrong with all that follow.
+    /// The problem of a line, once per segment, since the lines that follow would have it too.
     fn first_problem(&self, segment: &Segment, line: &StateLine) -> Option<(&'static str, String)> {
         if self.is_told {
             return None;
@@ -198,8 +199,7 @@ impl MessageRules {
         if let Some(first) = segment.states.first()
             && has_acceleration(first) != has_acceleration(line)
         {
-            let message =
-                "accelerations stand in some lines only; all lines of a segment have them or none";
+            let message = "only some lines have accelerations; either all lines of a segment must have them or none";
             return Some(("oem-accelerations", message.to_owned()));
         }
         let problem = check_state(self.frame?, &line.state).err()?;

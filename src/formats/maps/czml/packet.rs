@@ -1,11 +1,11 @@
-//! The parts of a packet that say where a satellite is.
+//! The parts of a packet that give the position of a satellite.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor, value::MapAccessDeserializer};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// A packet, as far as it is read.
+/// The parts of a packet that are read.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct Packet {
@@ -36,12 +36,12 @@ pub(super) struct PositionPacket {
     pub(super) delete: bool,
 }
 
-/// Numbers, and the times among them that are texts.
+/// Numbers, with any times given as text.
 #[derive(Debug, Default)]
 pub(super) struct ArraySamples {
-    /// NaN in the place of a text.
+    /// The numbers, with NaN for each text.
     pub(super) numbers: Vec<f64>,
-    /// The places of the texts, and the texts.
+    /// The texts and their positions.
     pub(super) texts: Vec<(usize, String)>,
 }
 
@@ -112,7 +112,7 @@ impl Visitor<'_> for ItemVisitor {
     }
 }
 
-/// Takes what stands alone for a list of one.
+/// Accepts a single value as a list of one.
 fn one_or_many<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<Vec<T>, D::Error> {

@@ -1,4 +1,4 @@
-//! The values of a position: samples in their several forms, times, intervals, frame and interpolation.
+//! The values of a position: samples in their various forms, times, intervals, frame and interpolation.
 
 use super::packet::{ArraySamples, PositionPacket};
 use super::read::{CzmlAlgorithm, PacketFault};
@@ -10,7 +10,7 @@ use crate::time::Epoch;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 
-/// What the numbers of a position mean.
+/// The meaning of the numbers of a position.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum PositionKind {
     Cartesian,
@@ -20,7 +20,7 @@ pub(super) enum PositionKind {
 }
 
 impl PositionKind {
-    /// Numbers of a sample, without the time.
+    /// Number of values per sample, without the time.
     pub(super) fn numbers(self) -> usize {
         match self {
             Self::CartesianVelocity => 6,
@@ -84,7 +84,7 @@ pub(super) fn algorithm(position: &PositionPacket) -> Result<Option<CzmlAlgorith
     }
 }
 
-/// Cartographic positions are Earth-fixed whatever the frame.
+/// The frame of a position; cartographic positions are always Earth-fixed.
 pub(super) fn frame(position: &PositionPacket, kind: PositionKind) -> Result<Frame, PacketFault> {
     match position.reference_frame.as_deref() {
         _ if matches!(kind, PositionKind::Degrees | PositionKind::Radians) => Ok(Frame::EarthFixed),
@@ -97,7 +97,7 @@ pub(super) fn frame(position: &PositionPacket, kind: PositionKind) -> Result<Fra
     }
 }
 
-/// The samples, their times being texts or seconds since the epoch.
+/// The samples, with times as text or in seconds since the epoch.
 pub(super) fn nodes(
     key: &'static str,
     samples: &ArraySamples,
@@ -107,7 +107,7 @@ pub(super) fn nodes(
     let broken = |message: String| ("czml-samples", key, message);
     let length = kind.numbers() + 1;
     if !samples.numbers.len().is_multiple_of(length) || samples.numbers.is_empty() {
-        let message = format!("samples are a time and {} numbers each", length - 1);
+        let message = format!("each sample must be a time and {} numbers", length - 1);
         return Err(broken(message));
     }
     if samples
@@ -115,7 +115,9 @@ pub(super) fn nodes(
         .iter()
         .any(|(place, _)| !place.is_multiple_of(length))
     {
-        return Err(broken("a sample is not of numbers".to_owned()));
+        return Err(broken(
+            "a sample contains something other than numbers".to_owned(),
+        ));
     }
     let texts: HashMap<usize, &String> = samples
         .texts
