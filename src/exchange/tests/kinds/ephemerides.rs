@@ -92,7 +92,7 @@ fn an_oem_of_two_objects_is_refused() {
     two.segments.remove(0);
     let error = refused(&written(&two), "oem-objects", "OBJECT_NAME = SAT B");
     assert!(
-        error.contains("SAT A (0000-000A) before, SAT B (0000-000A) here"),
+        error.contains("SAT A (0000-000A) in the first segment, SAT B (0000-000A) here"),
         "{error}"
     );
     let mut xml = Vec::new();

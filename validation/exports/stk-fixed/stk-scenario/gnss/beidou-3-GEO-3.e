@@ -5,7 +5,8 @@ stk.v.12.0
 # GNSS satellite of the scenario
 # Theory: j2
 # Design constants: mu = 398600.4418 km3/s2, Re = 6378.137 km, J2 = 1.08262668e-3; WGS-72 in SGP4 alone
-# Frame: pseudo-Earth-fixed, TEME turned by GMST (IAU 1982), UT1 = UTC, no polar motion; within 30 m of an ITRF in LEO
+# Frame: pseudo-Earth-fixed, TEME rotated by GMST (IAU 1982), UT1 = UTC at the epoch, no polar motion
+# Off an ITRF with Earth-orientation data by about 20 m at r = 7303 km, as |UT1 - UTC| is 0.05 s at the epoch (IERS EOP C04), and by polar motion, at most 20 m
 # Simulated objects: OBJECT_ID and catalogue numbers are synthetic
 BEGIN Ephemeris
 NumberOfEphemerisPoints 10
