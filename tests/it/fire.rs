@@ -413,7 +413,7 @@ fn force_replaces_only_what_was_written() {
     assert!(
         refused
             .stderr
-            .contains("--force would delete it: oem/notes.txt;"),
+            .contains("--force would delete them: oem/notes.txt;"),
         "{}",
         refused.stderr
     );
@@ -426,7 +426,7 @@ fn force_replaces_only_what_was_written() {
     );
     assert_eq!(refused.status, 2);
     assert!(
-        refused.stderr.contains("would delete it: notes.txt;"),
+        refused.stderr.contains("would delete them: notes.txt;"),
         "{}",
         refused.stderr
     );
