@@ -1,7 +1,7 @@
 //! Numbers as people read them: one function for each kind, so that a number has the same digits
 //! in a table, in prose and on the page, rounded once and from its full value.
 
-use crate::run::{Diagnostic, FrontMember, Hypervolume, VolumeAt};
+use crate::run::{Diagnostic, FrontMember, Hypervolume};
 use crate::search::Quantity;
 
 /// Text for a missing value.
@@ -95,9 +95,10 @@ pub(crate) fn point(coordinates: &[f64]) -> String {
 }
 
 /// The hypervolume as a sentence without its full stop; `None` if there is none.
+#[cfg(any(feature = "cli", feature = "figures"))]
 #[must_use]
 pub(crate) fn hypervolume(hypervolume: &Hypervolume) -> Option<String> {
-    let at = |volume: &VolumeAt| {
+    let at = |volume: &crate::run::VolumeAt| {
         let (value, at) = (significant(volume.value), point(&volume.reference));
         format!("hypervolume {value} at {at}")
     };
@@ -183,7 +184,7 @@ mod tests {
             value: None,
             reference: Some(vec![1.0, 10.0]),
             chosen: false,
-            at_chosen: Some(VolumeAt {
+            at_chosen: Some(crate::run::VolumeAt {
                 value: 0.5,
                 reference: vec![2.0, 30.0],
             }),

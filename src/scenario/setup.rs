@@ -30,8 +30,8 @@ pub enum SetupError {
     GnssFile {
         /// The path as written.
         file: String,
-        /// What is wrong with it.
-        source: GnssFileError,
+        /// What is wrong with it; boxed, since it is much larger than the others.
+        source: Box<GnssFileError>,
     },
     /// The points file cannot be read.
     #[error("region.points: cannot read {file}: {source}")]
@@ -203,7 +203,7 @@ impl Scenario {
         if is_points {
             SetupError::PointsFile { file, source }
         } else {
-            let source = GnssFileError::Io(source);
+            let source = Box::new(GnssFileError::Io(source));
             SetupError::GnssFile { file, source }
         }
     }
@@ -226,14 +226,14 @@ impl Scenario {
         for file in &self.gnss.files {
             let error = |source| SetupError::GnssFile {
                 file: file.clone(),
-                source,
+                source: Box::new(source),
             };
             let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
             files.add(file, &bytes, grid).map_err(error)?;
         }
         let found = files.finish(grid).map_err(|source| SetupError::GnssFile {
             file: self.gnss.files.join(", "),
-            source,
+            source: Box::new(source),
         })?;
         systems.extend(found.systems);
         Ok((systems, found.notes))
