@@ -132,12 +132,20 @@ fn read_omm(bytes: &[u8], notation: OmmSyntax) -> Result<Vec<Message>, ReadError
         .collect())
 }
 
+/// The format that the bytes show.
+fn format_of(bytes: &[u8]) -> Option<Format> {
+    navwalker::exchange::recognise::recognise(bytes, None)
+        .ok()?
+        .content
+        .ok()
+}
+
 /// Mean-elements messages in the notation that the bytes show.
 pub fn omm(bytes: &[u8]) {
-    let notation = match Format::of(bytes, Some(".omm")) {
-        Format::OmmXml => OmmSyntax::Xml,
-        Format::OmmJson => OmmSyntax::Json,
-        Format::OmmCsv => OmmSyntax::Csv,
+    let notation = match format_of(bytes) {
+        Some(Format::OmmXml) => OmmSyntax::Xml,
+        Some(Format::OmmJson) => OmmSyntax::Json,
+        Some(Format::OmmCsv) => OmmSyntax::Csv,
         _ => OmmSyntax::Kvn,
     };
     let Ok(messages) = read_omm(bytes, notation) else {
@@ -156,7 +164,7 @@ pub fn omm(bytes: &[u8]) {
 
 /// Ephemeris messages, keyword = value or XML.
 pub fn oem(bytes: &[u8]) {
-    if Format::of(bytes, Some(".oem")) == Format::OemXml {
+    if format_of(bytes) == Some(Format::OemXml) {
         let Ok(messages) = oem::read_xml(bytes) else {
             return;
         };
@@ -305,8 +313,7 @@ pub fn lint(bytes: &[u8]) {
         assert!(Fleet::read(bytes, None, None).is_err());
         return;
     };
-    let all =
-        lint::lint(bytes, Some(format), None, usize::MAX).expect("memory does not fail");
+    let all = lint::lint(bytes, Some(format), None, usize::MAX).expect("memory does not fail");
     let first = all
         .findings
         .iter()

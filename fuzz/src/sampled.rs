@@ -15,10 +15,10 @@ use navwalker::time::TimeGrid;
 
 /// The grid that the samples of the first satellite show, if the others have no more.
 fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
-    let states = &trajectories.first()?.states;
+    let states = trajectories.first()?.samples();
     let (first, last) = (states.first()?.0, states.last()?.0);
     let step_s = match states.get(1) {
-        Some((second, _)) => second.seconds_since(first),
+        Some((second, ..)) => second.seconds_since(first),
         None => 1.0,
     };
     let span_s = last.seconds_since(first) + 0.5 * step_s;
@@ -30,7 +30,7 @@ fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
     // Samples between the instants of the grid would not be written.
     if trajectories
         .iter()
-        .any(|one| one.states.len() != grid.len())
+        .any(|one| one.samples().len() != grid.len())
     {
         return None;
     }
@@ -42,7 +42,7 @@ fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
 fn same(one: &[Trajectory], other: &[Trajectory], (km, km_s): (f64, f64)) {
     assert_eq!(one.len(), other.len());
     for (one, other) in one.iter().zip(other) {
-        for ((at, one), (expected, other)) in one.states.iter().zip(&other.states) {
+        for ((at, _, one), (expected, _, other)) in one.samples().iter().zip(&other.samples()) {
             // The microsecond within which a sample is that of an instant.
             assert!(at.seconds_since(*expected).abs() <= 1.1e-6);
             // Turned to TEME and back: a few roundings of the numbers' own size.
@@ -52,6 +52,11 @@ fn same(one: &[Trajectory], other: &[Trajectory], (km, km_s): (f64, f64)) {
             assert!((one.velocity_km_s - other.velocity_km_s).norm() <= km_s + size);
         }
     }
+}
+
+/// Whether all states are in one frame.
+fn is_in(trajectory: &Trajectory, frame: Frame) -> bool {
+    trajectory.arcs.iter().all(|arc| arc.frame == frame)
 }
 
 /// A table of states.
@@ -64,7 +69,7 @@ pub(crate) fn states(trajectories: &[Trajectory]) {
     let again = csv::read_states(out.as_slice()).expect("our own file is read");
     let names = |of: &[Trajectory]| of.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
     assert_eq!(names(&again), names(trajectories));
-    if trajectories.iter().all(|one| one.frame == Frame::Teme) {
+    if trajectories.iter().all(|one| is_in(one, Frame::Teme)) {
         same(&again, trajectories, (1e-9, 1e-12));
     }
 }
@@ -92,6 +97,7 @@ pub fn sp3(bytes: &[u8]) {
         creation: epoch,
         frame: Frame::EarthFixed,
         time_system: TimeSystem::Gps,
+        frame_note: None,
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: Vec::new(),
     };
@@ -105,9 +111,7 @@ pub fn sp3(bytes: &[u8]) {
     }
     let again = Fleet::read(out.as_slice(), Some(Format::Sp3), None).expect("our own file is read");
     if let Fleet::Sampled(again) = again.fleet
-        && trajectories
-            .iter()
-            .all(|one| one.frame == Frame::EarthFixed)
+        && trajectories.iter().all(|one| is_in(one, Frame::EarthFixed))
     {
         // Six decimals of a kilometre and of a decimetre a second in three components.
         same(&again, &trajectories, (1e-6, 1e-10));
