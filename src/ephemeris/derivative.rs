@@ -28,14 +28,14 @@ pub(crate) fn velocities<F>(positions: &[(Epoch, Position<F>)]) -> Option<Vec<Ve
 /// rounding of any format, below every mistaken unit and the speed of the Earth's axes at any orbit.
 const LEAST_FAULT_KM_S: f64 = 1e-3;
 
-/// Share of the speed that is allowed besides.
+/// Additional tolerance, as a fraction of the speed.
 const SHARE: f64 = 0.01;
 
 /// Samples of a satellite whose velocities are compared.
 const COMPARED: usize = 50;
 
 /// Says how velocities differ from the derivative of the positions, if they do wherever the positions stand
-/// close enough to tell; by the median, so that a manoeuvre is none.
+/// close enough to tell; by the median, so that a manoeuvre does not count.
 pub(crate) fn velocity_fault<F>(samples: &[(Epoch, Position<F>, Vector3<f64>)]) -> Option<String> {
     let positions: Vec<_> = samples
         .iter()

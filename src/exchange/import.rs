@@ -55,14 +55,14 @@ pub enum Fleet {
     Mixed(Vec<Fleet>),
 }
 
-/// What a file gives.
+/// The contents of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// Its format.
     pub format: Format,
     /// Its satellites.
     pub fleet: Fleet,
-    /// What is in it and is not read.
+    /// The parts that are not read.
     pub left_out: LeftOut,
 }
 

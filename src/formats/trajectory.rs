@@ -14,7 +14,7 @@ pub struct Trajectory {
     pub name: String,
     /// Its identifier.
     pub id: String,
-    /// Its arcs, in the order of their beginnings; where two hold, the earlier one does.
+    /// Its arcs, by start time; at an instant that two share, the earlier one is used.
     pub arcs: Vec<Arc>,
 }
 
@@ -34,7 +34,7 @@ impl Trajectory {
         }
     }
 
-    /// The samples for which the arcs hold, in the order of time, each instant once.
+    /// The samples within the valid spans, in time order, without repeated instants.
     #[must_use]
     pub fn samples(&self) -> Vec<(Epoch, Frame, State<Frame>)> {
         let mut samples: Vec<(Epoch, Frame, State<Frame>)> = Vec::new();
@@ -49,13 +49,13 @@ impl Trajectory {
         samples
     }
 
-    /// The arc that holds at an instant.
+    /// The arc that is valid at an instant.
     #[must_use]
     pub fn arc_at(&self, at: Epoch) -> Option<&Arc> {
         self.arcs.iter().find(|arc| arc.covers(at))
     }
 
-    /// The first and the last instant for which an arc holds.
+    /// The first and last instants at which an arc is valid.
     #[must_use]
     pub fn span(&self) -> Option<(Epoch, Epoch)> {
         let first = self.arcs.iter().map(|arc| arc.useable.0).min()?;
@@ -81,7 +81,7 @@ pub enum TrajectoryError {
     Name(#[from] UnknownKeyword),
 }
 
-/// What the names of Earth-fixed frames begin with: realisations of the ITRF (`ITRF2000`, `ITR08`), those of
+/// Prefixes of the names of Earth-fixed frames: realisations of the ITRF (`ITRF2000`, `ITR08`), those of
 /// navigation systems and of services (`IGS20`, `IGb14`, `SLR20`), and `ECEF` as such.
 const EARTH_FIXED: [&str; 10] = [
     "ITR", "IGS", "IGB", "WGS84", "WGS-84", "SLR", "GTRF", "BTRF", "CGCS", "PZ",

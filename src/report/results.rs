@@ -32,21 +32,21 @@ pub struct EvaluateResult {
     pub version: &'static str,
 }
 
-/// A constraint of the scenario, held against a design.
+/// A constraint of the scenario, checked for a design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ConstraintCheck {
     /// The constraint as it is written: `max-pdop <= 2.5`.
     pub constraint: String,
     /// The quantity under it.
     pub quantity: String,
-    /// Its value; `None` where it has none.
+    /// Its value; `None` if it has none.
     pub value: Option<f64>,
     /// Whether the design keeps it.
     pub met: bool,
 }
 
 impl ConstraintCheck {
-    /// The constraints of `goals` held against a design.
+    /// The constraints of `goals`, checked for a design.
     #[must_use]
     pub fn of(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<Self> {
         let check = |constraint: &Constraint| {

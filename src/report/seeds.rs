@@ -99,7 +99,7 @@ pub struct SeedsResult {
     pub first: OptimizeResult,
     /// Seed by seed.
     pub seeds: Vec<SeedRun>,
-    /// The hypervolume over the seeds; `None` where a seed has none.
+    /// The hypervolume over the seeds; `None` if a seed has none.
     pub hypervolume_spread: Option<Spread>,
     /// The best value of a single objective over the seeds; `None` with several.
     pub best_spread: Option<Spread>,

@@ -159,7 +159,7 @@ fn did_you_mean(nearest: Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(", did you mean `{name}`?"))
 }
 
-/// Maximum number of problems: nobody reads more, and a file of nonsense has millions.
+/// Maximum number of problems to report, since a file of nonsense has millions.
 const MAX_PROBLEMS: usize = 1000;
 
 /// The problems found so far.

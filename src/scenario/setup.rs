@@ -94,7 +94,7 @@ impl SetupError {
         }
     }
 
-    /// What is wrong, without the key.
+    /// The problem, without the key.
     pub(super) fn reason(&self) -> String {
         match self {
             Self::GnssFile { file, source } => format!("{file}: {source}"),
@@ -120,7 +120,7 @@ pub enum GnssFileError {
     #[error(transparent)]
     Format(#[from] ReadFleetError),
     /// It holds nothing that moves by itself.
-    #[error("the file holds {content}; element sets, almanacs or states are needed")]
+    #[error("the file contains {content}; element sets, almanacs or states are needed")]
     NoSets {
         /// Its content.
         content: String,
@@ -164,7 +164,7 @@ impl Scenario {
         Ok(self.setup_with_notes(read)?.0)
     }
 
-    /// The same, with what is to be said of the GNSS files: age, gaps, interpolation, what is left out.
+    /// The same, with notes on the GNSS files: age, gaps, interpolation, skipped parts.
     ///
     /// # Errors
     /// When a file cannot be read, or the values together leave no point or sample.

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 /// The files of a product, or why one is not written.
 pub(super) type ProductFiles = Result<Vec<FileEntry>, WriteError>;
 
-/// What is said of CCSDS messages in a time system that the standard does not have.
+/// The warning for CCSDS messages in a time system that the standard does not define.
 fn bdt_note(time_system: TimeSystem) -> Option<&'static str> {
     (time_system == TimeSystem::Bdt).then_some(oem::BDT_NOTE)
 }

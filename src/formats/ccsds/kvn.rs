@@ -419,7 +419,7 @@ pub(crate) fn read_number(
     place: (usize, usize),
     findings: &mut FindingList,
 ) -> Option<f64> {
-    // A number of Fortran is none here.
+    // Fortran notation is not allowed here.
     if text.contains(['d', 'D']) {
         findings.error(place, "ccsds-number", format!("'{text}' is not a number"));
         return None;

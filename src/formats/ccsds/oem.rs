@@ -32,7 +32,7 @@ use std::io::{self, Write};
 pub(crate) const TEME_NOTE: &str =
     "CCSDS 502.0-B-3 (4.2.4.9) reserves TEME for OMMs made from TLEs; some readers reject it here";
 
-/// What is said of a message in BeiDou time.
+/// The warning for a message in BeiDou time.
 pub(crate) const BDT_NOTE: &str = "BDT is not a time system of CCSDS 502.0-B-3 (SANA registry): agree on it with who reads the message";
 
 keywords! {
@@ -242,7 +242,7 @@ fn write_metadata(
 }
 
 impl SegmentMetadata {
-    /// The first and the last instant for which the segment holds.
+    /// The first and last valid instants of the segment.
     #[must_use]
     pub fn useable_span(&self) -> (NaiveDateTime, NaiveDateTime) {
         (

@@ -68,7 +68,7 @@ enum StkSection {
     After,
 }
 
-/// What stands in a row behind the time.
+/// The fields of a row after the time.
 #[derive(Clone, Copy, PartialEq, Default)]
 enum StkColumns {
     #[default]

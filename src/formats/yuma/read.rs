@@ -34,7 +34,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<Almanac>, ReadError> {
     findings.unless_error(almanacs)
 }
 
-/// Reads the satellites; what the file breaks goes to the list of findings.
+/// Reads the satellites; errors are added to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.

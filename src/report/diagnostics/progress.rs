@@ -15,7 +15,7 @@ const IDLE_SHARE: f64 = 1.0 / 3.0;
 const LAST_SHARE: f64 = 0.2;
 const LAST_RISE: f64 = 1e-3;
 
-/// Fewer generations than this are not judged.
+/// Minimum number of generations for these diagnostics.
 const FEWEST_GENERATIONS: usize = 5;
 
 /// The measure of progress in a history; it rises.

@@ -417,7 +417,7 @@ fn is_not_sgp4_xp(block: &KvnBlock, place: (usize, usize), findings: &mut Findin
     for key in ["BTERM", "AGOM"] {
         if block.text(key).is_some() {
             let beside = match block.text("BSTAR") {
-                Some(_) if key == "BTERM" => "; it stands in place of BSTAR, not beside it",
+                Some(_) if key == "BTERM" => "; it replaces BSTAR and cannot be given with it",
                 _ => "",
             };
             refuse(

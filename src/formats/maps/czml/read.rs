@@ -18,7 +18,7 @@ use std::io::{self, BufRead};
 /// Longest packet, bytes: a year of one satellite has some tens of MB.
 const MAX_PACKET: usize = 1 << 30;
 
-/// Most references from one position to the next.
+/// Maximum length of a chain of position references.
 const MOST_REFERENCES: usize = 8;
 
 /// Reads the satellites; those of a GNSS that `navwalker` wrote in addition to a design are skipped.
@@ -31,7 +31,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
     findings.unless_error(trajectories)
 }
 
-/// Reads the satellites; what the document breaks goes to the list of findings.
+/// Reads the satellites; errors are added to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.
@@ -236,7 +236,7 @@ impl CzmlObject {
         let text = position.interval.as_deref();
         let interval = text.map(|text| interval("interval", text)).transpose()?;
         let Some((key, samples, kind)) = samples(position) else {
-            let message = format!("{}: the position has no value that is read", self.name);
+            let message = format!("{}: the position has no supported value", self.name);
             return Err(("czml-position", "position", message));
         };
         if samples.numbers.len() == kind.numbers() {
@@ -326,7 +326,7 @@ impl Piece {
     }
 }
 
-/// The arcs where the object is available; everywhere if nothing is said.
+/// The arcs where the object is available; everywhere if no availability is given.
 fn within(arcs: Vec<Arc>, availability: &[(Epoch, Epoch)]) -> Vec<Arc> {
     match availability {
         [] => arcs,
