@@ -1,4 +1,4 @@
-//! Angle and time units, and decimal rounding.
+//! Angle and time units, decimal rounding and counts.
 
 use std::f64::consts::{PI, TAU};
 
@@ -41,6 +41,13 @@ pub fn round_decimal(value: f64, digits: usize) -> f64 {
     let text = format!("{value:.digits$}");
     // A formatted finite number always parses; anything else is returned unchanged.
     text.parse().map_or(value, |rounded: f64| rounded + 0.0)
+}
+
+/// A count with its noun: `1 satellite`, `2 satellites`.
+#[must_use]
+pub fn counted(count: usize, noun: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {noun}{plural}")
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub(crate) struct RunView {
 }
 
 impl RunView {
-    /// Reads whatever is there; fails only if there is no run at all.
+    /// Reads the files that exist; an error only if there is no run at all.
     pub(crate) fn at(args: &RunArgs) -> Result<Self> {
         let files = read(args)?;
         let mut run = Run::read(&files);

@@ -4,7 +4,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::frames::{FromTeme, ReferenceFrame, State, Teme};
 use crate::time::{Epoch, TimeGrid};
 
-/// Most rotations that are kept, which all satellites share; beyond, they are computed again.
+/// Maximum number of cached rotations, shared by all satellites; further ones are recomputed.
 const KEPT: usize = 100_000;
 
 /// An ephemeris seen in the frame `F`.

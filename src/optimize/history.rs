@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::OptimizeError;
 use super::problem::{Individual, Problem};
-use super::strategy::{Progress, Record, check_equal, check_objectives};
+use super::strategy::{Progress, Record, check_equal, check_objectives, check_setting};
 
 /// Margin of a chosen reference point beyond the worst values, as a fraction of their range.
 const MARGIN: f64 = 0.1;
@@ -29,9 +29,20 @@ impl History {
         self.chosen_reference.as_deref()
     }
 
-    /// Checks a history read from a file: one record per step, and a reference point of the right size.
+    /// Checks a history read from a file: one record for each step, in order, with a finite value for
+    /// each objective, and a reference of as many.
     pub(super) fn check(&self, problem: &dyn Problem, steps: u64) -> Result<(), OptimizeError> {
-        check_equal("history", self.records.len() as u64, steps)?;
+        check_equal("records", self.records.len() as u64, steps)?;
+        let objectives = problem.objective_names().len() as u64;
+        for (step, record) in (1..).zip(&self.records) {
+            check_equal("step of a record", record.generation, step)?;
+            for point in record.ideal.iter().chain(&record.front) {
+                check_equal("objectives of a record", point.len() as u64, objectives)?;
+                for &value in point {
+                    check_setting(value.is_finite(), "objective of a record", value, "finite")?;
+                }
+            }
+        }
         check_objectives(problem, self.chosen_reference())
     }
 

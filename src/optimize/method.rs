@@ -8,7 +8,7 @@ use super::mopso::{Mopso, MopsoConfig};
 use super::nsga2::{Nsga2, Nsga2Config};
 use super::problem::{Individual, Problem};
 use super::random::{RandomConfig, RandomSearch};
-use super::strategy::{Progress, Record, Strategy, check_history};
+use super::strategy::{Progress, Record, Strategy};
 
 /// A strategy and its settings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -87,8 +87,7 @@ impl Search {
             Self::Mopso(search) => search.check(problem),
             Self::Random(search) => search.check(problem),
             Self::Exhaustive(search) => search.check(problem),
-        }?;
-        check_history(self.history(), self.progress(), problem)
+        }
     }
 
     fn strategy(&self) -> &dyn Strategy {

@@ -195,27 +195,6 @@ pub(super) fn check_objectives(
     reference.iter().try_for_each(check)
 }
 
-/// Checks the records of a search that was read: one for each step, in order, with a value for each
-/// objective.
-pub(super) fn check_history(
-    history: &[Record],
-    progress: Progress,
-    problem: &dyn Problem,
-) -> Result<(), OptimizeError> {
-    check_equal("records", history.len() as u64, progress.step)?;
-    let objectives = problem.objective_names().len() as u64;
-    for (step, record) in (1..).zip(history) {
-        check_equal("step of a record", record.generation, step)?;
-        for point in record.ideal.iter().chain(&record.front) {
-            check_equal("objectives of a record", point.len() as u64, objectives)?;
-            for &value in point {
-                check_setting(value.is_finite(), "objective of a record", value, "finite")?;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// Checks that a count read from a checkpoint does not exceed what fits.
 pub(super) fn check_at_most(
     quantity: &'static str,

@@ -9,6 +9,7 @@ use crate::run::{
     Certificate, Diagnostic, FrontMember, Hypervolume, OptimizeResult, VolumeAt, front_csv,
 };
 use crate::search::Quantity;
+use crate::units::counted;
 use ::csv::Writer;
 use serde::{Deserialize, Serialize};
 use std::io;
@@ -204,7 +205,7 @@ impl SeedsResult {
             text += &format!(
                 "\njoint front of {} seeds: {}\n\n{}",
                 self.seeds.len(),
-                shown::counted(self.joint_front.len(), "design"),
+                counted(self.joint_front.len(), "design"),
                 front_table("seed/#", members).to_text()
             );
         }

@@ -72,13 +72,6 @@ pub(crate) fn significant(value: f64) -> String {
     text
 }
 
-/// `1 design`, `12 designs`.
-#[must_use]
-pub(crate) fn counted(count: usize, noun: &str) -> String {
-    let plural = if count == 1 { "" } else { "s" };
-    format!("{count} {noun}{plural}")
-}
-
 /// A reference point: `(2, 22)`.
 #[must_use]
 pub(crate) fn point(coordinates: &[f64]) -> String {

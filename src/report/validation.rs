@@ -3,7 +3,7 @@
 use super::{Align, Table};
 use crate::keyword::Keyword;
 use crate::run::{Basis, ValidateResult};
-use crate::units::round_decimal;
+use crate::units::{counted, round_decimal};
 use crate::validate::distribution::Distribution;
 use crate::validate::file::FileComparison;
 use crate::validate::residuals::{BudgetLine, Ric};
@@ -171,8 +171,8 @@ fn satellite_table(comparison: &FileComparison) -> Table {
 /// The outcome of a comparison, in sentences.
 fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
     let mut lines = vec![format!(
-        "{} satellites matched by {}{}",
-        comparison.satellites.len(),
+        "{} matched by {}{}",
+        counted(comparison.satellites.len(), "satellite"),
         comparison.matched_by,
         if comparison.satellites.len() > LISTED {
             format!("; the {LISTED} with the largest differences are listed, JSON has all")

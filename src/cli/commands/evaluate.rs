@@ -13,6 +13,7 @@ use crate::report::{
     constellation_csv, dops_csv, metrics_csv, records_csv, shown,
 };
 use crate::run::VERSION;
+use crate::units::counted;
 use anyhow::Result;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -127,8 +128,10 @@ fn run_constellation(
         version: VERSION,
     };
     let title = format!(
-        "{} ({} satellites, {})",
-        result.constellation.name, result.constellation.satellites, result.constellation.content
+        "{} ({}, {})",
+        result.constellation.name,
+        counted(result.constellation.satellites, "satellite"),
+        result.constellation.content
     );
     let dops = result.dops.as_ref();
     let text = text(study, &title, &result.metrics, dops);

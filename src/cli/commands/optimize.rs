@@ -15,6 +15,7 @@ use crate::run::inputs::InputError;
 use crate::run::{FrontMember, OptimizeResult, front_csv};
 use crate::scenario::Algorithm;
 use crate::search::DesignProblem;
+use crate::units::counted;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -255,7 +256,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
     let [done, of] = result.search.generations;
     let mut text = format!(
         "Pareto set of scenario {scenario}: {}, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
-        shown::counted(result.front.len(), "design"),
+        counted(result.front.len(), "design"),
         result.search.evaluations,
         result.search.algorithm,
         result.search.seed,

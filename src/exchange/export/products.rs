@@ -36,6 +36,15 @@ fn joined<const N: usize>(notes: [Option<&'static str>; N]) -> Option<String> {
     (!notes.is_empty()).then(|| notes.join("; "))
 }
 
+/// The contents of one SP3 file.
+struct Sp3Part<'a> {
+    letter: char,
+    metadata: &'a Metadata,
+    sampled: &'a Sampled<'a, EarthFixed>,
+    satellites: &'a [(&'a EphemerisSatellite, &'a Object)],
+    note: Option<String>,
+}
+
 impl ExportSource<'_> {
     fn sgp4_metadata(&self) -> Metadata {
         self.metadata(Frame::Teme, Theory::Sgp4Elements(self.choices.elements))
@@ -331,23 +340,15 @@ impl ExportSource<'_> {
         };
         let one = |(index, part): (usize, &[(&EphemerisSatellite, &Object)])| {
             let path = format!("sp3/part-{:02}.sp3", index + 1);
-            let contents = Contents {
-                objects: part.len(),
-                metadata: &metadata,
-            };
-            files.add(
+            self.sp3_file(
+                files,
                 &path,
-                ProductVersion {
-                    product: Product::Sp3,
-                    version: version.keyword(),
-                },
-                contents,
-                |out| {
-                    sp3::write(out, version, letter, &metadata, &sampled, part)?;
-                    Ok(Loss {
-                        note: note(part),
-                        ..Loss::default()
-                    })
+                Sp3Part {
+                    letter,
+                    metadata: &metadata,
+                    sampled: &sampled,
+                    satellites: part,
+                    note: note(part),
                 },
             )
         };
@@ -366,7 +367,7 @@ impl ExportSource<'_> {
     /// A nominal constellation under the letter of its system, in a separate file, since readers that
     /// accept several files merge them.
     fn sp3_of_gnss(&self, files: &Files<'_>, preset: Preset) -> Result<FileEntry, WriteError> {
-        let (version, letter) = (self.choices.sp3_version, sp3::letter_of(preset));
+        let letter = sp3::letter_of(preset);
         if letter == self.choices.sp3_letter {
             return Err(Sp3Error::LetterOfGnss { letter, preset }.into());
         }
@@ -385,21 +386,47 @@ impl ExportSource<'_> {
         }
         metadata.frame_note = Some(distance_from_itrf(grid.epoch(), radius_km));
         let path = format!("{GNSS_DIRECTORY}{preset}.sp3");
-        let contents = Contents {
-            objects: satellites.len(),
-            metadata: &metadata,
-        };
-        files.add(
+        self.sp3_file(
+            files,
             &path,
+            Sp3Part {
+                letter,
+                metadata: &metadata,
+                sampled: &sampled,
+                satellites: &satellites,
+                note: Some(note),
+            },
+        )
+    }
+
+    fn sp3_file(
+        &self,
+        files: &Files<'_>,
+        path: &str,
+        part: Sp3Part<'_>,
+    ) -> Result<FileEntry, WriteError> {
+        let version = self.choices.sp3_version;
+        let Sp3Part {
+            letter,
+            metadata,
+            sampled,
+            satellites,
+            note,
+        } = part;
+        files.add(
+            path,
             ProductVersion {
                 product: Product::Sp3,
                 version: version.keyword(),
             },
-            contents,
+            Contents {
+                objects: satellites.len(),
+                metadata,
+            },
             |out| {
-                sp3::write(out, version, letter, &metadata, &sampled, &satellites)?;
+                sp3::write(out, version, letter, metadata, sampled, satellites)?;
                 Ok(Loss {
-                    note: Some(note),
+                    note,
                     ..Loss::default()
                 })
             },

@@ -136,7 +136,7 @@ impl SatelliteFilter {
         self.only.is_empty() && self.exclude.is_empty()
     }
 
-    /// Which satellites are kept.
+    /// Whether each satellite is selected.
     ///
     /// # Errors
     /// If a pattern matches none, or none is left.

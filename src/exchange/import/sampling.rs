@@ -4,6 +4,7 @@ use super::Fleet;
 use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::formats::trajectory::Trajectory;
 use crate::time::{Epoch, TimeGrid};
+use crate::units::counted;
 use std::fmt;
 
 /// Maximum number of satellites, the first ones, whose interpolation error is estimated.
@@ -60,13 +61,18 @@ impl fmt::Display for SamplingNote {
                 let how = interpolation.describe();
                 write!(
                     f,
-                    "states of {satellites} satellites are interpolated ({how}); "
+                    "states of {} are interpolated ({how}); ",
+                    counted(*satellites, "satellite")
                 )?;
+                let among = match *satellites > ESTIMATED {
+                    true => format!(", among the first {ESTIMATED} satellites"),
+                    false => String::new(),
+                };
                 match left_out_error_km {
                     Some(km) => write!(
                         f,
-                        "with every other state omitted the error is up to {} ({worst}), with all states \
-                         about {} times less",
+                        "largest error with every other state omitted: {} ({worst}{among}); with all \
+                         states about {} times less",
                         length(*km),
                         2_u64.saturating_pow(interpolation.order())
                     ),

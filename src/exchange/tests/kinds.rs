@@ -50,7 +50,7 @@ fn refused(text: &str, rule: &str, at: &str) -> String {
     error
 }
 
-/// Lint warns of these rules alone, and the reader goes on.
+/// Lint reports only these rules, as warnings, and the reader accepts the file.
 #[track_caller]
 fn warned(text: &str, rules: &[&str]) -> Fleet {
     let found = findings(text);

@@ -45,7 +45,7 @@ fn first_words(text: &str) -> Vec<&str> {
 }
 
 /// IERS Bulletin C 52: the leap second of 2016-12-31 has a label in UTC, and in the other systems, which are
-/// TAI - 19 s, TAI, TAI + 32.184 s and TAI - 33 s, the labels go on evenly.
+/// TAI - 19 s, TAI, TAI + 32.184 s and TAI - 33 s, the labels continue evenly.
 #[test]
 fn validate_labels_of_products_over_a_leap_second() {
     let grid = grid("2016-12-31T23:59:00Z");
@@ -312,4 +312,35 @@ fn validate_an_sp3_of_gps_time_over_a_leap_second() {
         // Rotations forth and back in doubles.
         assert!((fixed.position_km.km() - expected_km).norm() < 1e-10, "{k}");
     }
+}
+
+/// Second 60 exists in UTC only; a file of another system that has one is refused where it stands.
+#[test]
+fn second_60_is_refused_in_other_systems() {
+    let oem = |system: &str| {
+        format!(
+            "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 2016-12-01T00:00:00\nORIGINATOR = X\nMETA_START\n\
+             OBJECT_NAME = A\nOBJECT_ID = 2016-001A\nCENTER_NAME = EARTH\nREF_FRAME = EME2000\n\
+             TIME_SYSTEM = {system}\nSTART_TIME = 2016-12-31T23:59:59\nSTOP_TIME = 2017-01-01T00:00:01\n\
+             META_STOP\n2016-12-31T23:59:59 7303 0 0 0 7.38 0\n2016-12-31T23:59:60 7302.9 7.38 0 0 7.38 0\n\
+             2017-01-01T00:00:01 7302.9 14.8 0 0 7.38 0\n"
+        )
+    };
+    let read = |text: &str| Fleet::read(text.as_bytes(), None, None).map(|read| read.fleet.len());
+    assert_eq!(read(&oem("UTC")).unwrap(), 1);
+    let error = read(&oem("TAI")).unwrap_err().to_string();
+    assert!(error.starts_with("line 14, "), "{error}");
+    assert!(error.contains("TAI has no second 60"), "{error}");
+    let sp3 = |system: &str| {
+        format!(
+            "#dP2016 12 31 23 59 60.00000000       1 ORBIT IGS20 FIT  XXX\n\
+             ## 1929 604816.00000000    15.00000000 57753 0.9999999999999\n\
+             +    1   G01  0  0  0  0  0  0  0  0  0  0  0  0  0  0  0  0\n\
+             %c G  cc {system} ccc cccc cccc cccc cccc ccccc ccccc ccccc ccccc\n\
+             *  2016 12 31 23 59 60.00000000\n\
+             PG01  26560.000000      0.000000  -1000.000000 999999.999999\nEOF\n"
+        )
+    };
+    let error = read(&sp3("GPS")).unwrap_err().to_string();
+    assert!(error.contains("GPS has no second 60"), "{error}");
 }

@@ -204,7 +204,14 @@ impl Sp3Parser {
             self.at = None;
             return;
         };
-        let at = self.file.time_system.epoch(stamp);
+        let system = self.file.time_system;
+        if !system.has(stamp) {
+            let message = format!("{system} has no second 60; only UTC has");
+            findings.error((line.number, 4), "sp3-time", message);
+            self.at = None;
+            return;
+        }
+        let at = system.epoch(stamp);
         self.missing.clear();
         self.records = 0;
         if let Some(before) = self.at {

@@ -27,9 +27,14 @@ keywords! {
 }
 
 impl TimeSystem {
-    /// The instant that a stamp of this system means.
-    ///
-    /// A stamp of 23:59:60, which only UTC has, is the second after it in the other systems.
+    /// Whether the system has such a stamp: second 60 exists in UTC only.
+    #[must_use]
+    pub fn has(self, stamp: NaiveDateTime) -> bool {
+        // chrono keeps a leap second as a nanosecond count past 1e9.
+        self == Self::Utc || stamp.nanosecond() < 1_000_000_000
+    }
+
+    /// The instant that a stamp of this system means, which must be one that it [has](Self::has).
     #[must_use]
     pub fn epoch(self, stamp: NaiveDateTime) -> Epoch {
         match self.ahead_of_tai_s() {

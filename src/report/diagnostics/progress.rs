@@ -72,6 +72,16 @@ pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<
         .rev()
         .take_while(|value| last - **value <= RISE * scale)
         .count();
+    if idle == count {
+        return Some(Diagnostic::new(
+            "no-progress",
+            format!(
+                "the {what} has been that of the first generation, within {} %, for all {count} \
+                 generations",
+                100.0 * RISE
+            ),
+        ));
+    }
     if idle as f64 > IDLE_SHARE * count as f64 {
         return Some(Diagnostic::new(
             "no-progress",

@@ -114,12 +114,7 @@ impl IntegrationBounds {
         }
     }
 
-    /// Amplitude in-track of the second-order eccentricity of the start, km: 126 ε² a, with ε = J2 R²/(2 p²).
-    ///
-    /// Over the equator the circular orbit of the theory has the radius a (1 - 3 ε) and the rate
-    /// n (1 + 6 ε), and that of the field n (1 + 6 ε + 63/2 ε²) at this radius: started slower by
-    /// 63/2 ε², the satellite is at an apogee of the eccentricity 63 ε². It is the largest over
-    /// inclination.
+    /// In-track amplitude of the second-order eccentricity of the start, km, by [M-48](crate::models#m-48).
     fn second_order_in_track_km(&self) -> f64 {
         let parameter_km = self.a_km * (1.0 - self.eccentricity * self.eccentricity);
         126.0 * epsilon(parameter_km).powi(2) * self.a_km
@@ -134,12 +129,7 @@ fn epsilon(parameter_km: f64) -> f64 {
 /// Largest in-track drift, over the argument of latitude θ of the start, of an orbit that starts from
 /// the first-order osculating state at e = 0, km/day.
 ///
-/// To second order the energy of that state, and the secular rates in J2² of Brouwer (*Astron. J.* 64
-/// (1959) 378), give with ε = J2 R²/(2 a²) and c = cos i
-///
-/// ```text
-/// 9/4 ε² n a {9 - 58 c² + 105 c⁴ - (1 - c²)(1 + 11 c²) cos 2θ - (1 - c²)(1 - 4 c²) cos 4θ}
-/// ```
+/// Equation [M-47](crate::models#m-47).
 fn largest_drift_from_start_km_per_day(orbit: &MeanElements) -> f64 {
     let a_km = orbit.semi_major_axis_km;
     let parameter_km = a_km * (1.0 - orbit.eccentricity * orbit.eccentricity);

@@ -177,6 +177,12 @@ impl MessageRules {
             return false;
         }
         let metadata = &segment.metadata;
+        let system = time_system_of_name(&metadata.time_system);
+        if system.is_ok_and(|system| !system.has(line.epoch)) {
+            let message = format!("{} has no second 60; only UTC has", metadata.time_system);
+            findings.error(place, "oem-leap-second", message);
+            return false;
+        }
         if line.epoch < metadata.start_time || line.epoch > metadata.stop_time {
             let message = "the time is outside START_TIME to STOP_TIME";
             findings.error(place, "oem-span", message);

@@ -146,7 +146,7 @@ pub fn parse_xml(
     })
 }
 
-/// A message in XML as it comes in.
+/// A message in XML while it is read.
 pub(in crate::formats::ccsds) struct OmmXmlMessage {
     begin: usize,
     block: KvnBlock,

@@ -52,7 +52,7 @@ const MANOEUVRE: &[KvnKeyword] = &[
     must("MAN_DV_3").unit("km/s"),
 ];
 
-/// Parameters of users that are kept.
+/// Maximum number of user-defined parameters.
 const MOST_USER_DEFINED: usize = 1000;
 
 /// Reads a message; the first broken rule ends it.
