@@ -17,7 +17,7 @@ mod seeds;
 pub(crate) mod shown;
 mod table;
 #[cfg(feature = "validate")]
-mod validation;
+pub(crate) mod validation;
 
 pub use baseline::Baseline;
 pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};

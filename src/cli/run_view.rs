@@ -7,6 +7,7 @@ use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
+use crate::report::shown;
 use crate::run::inputs::InputError;
 use crate::run::{
     FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
@@ -169,7 +170,7 @@ fn front(directory: &Path) -> Result<NamedFront> {
     let found = OptimizeResult::read(&bytes)
         .with_context(|| format!("{} is not a front written by this program", path.display()))?;
     Ok(NamedFront {
-        name: format!("front of {}", found.search.algorithm),
+        name: format!("front of {}", shown::algorithm(&found.search.algorithm)),
         front: found.front,
     })
 }

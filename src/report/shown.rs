@@ -72,6 +72,21 @@ pub(crate) fn significant(value: f64) -> String {
     text
 }
 
+/// The name of an algorithm as written in the literature.
+#[cfg(any(feature = "cli", feature = "figures"))]
+#[must_use]
+pub(crate) fn algorithm(word: &str) -> &str {
+    use crate::keyword::Keyword;
+    use crate::scenario::Algorithm;
+    match Algorithm::from_keyword(word) {
+        Ok(Algorithm::Nsga2) => "NSGA-II",
+        Ok(Algorithm::Mopso) => "MOPSO",
+        Ok(Algorithm::Random) => "Random search",
+        Ok(Algorithm::Exhaustive) => "Exhaustive search",
+        Err(_) => word,
+    }
+}
+
 /// A reference point: `(2, 22)`.
 #[must_use]
 pub(crate) fn point(coordinates: &[f64]) -> String {

@@ -15,7 +15,7 @@ use std::fmt::Write;
 
 /// Four significant digits, in scientific notation only for very large and very small values; `none`
 /// if the value is not finite.
-pub(super) fn digits(value: f64) -> String {
+pub(crate) fn digits(value: f64) -> String {
     if !value.is_finite() {
         return "none".to_owned();
     }

@@ -88,7 +88,7 @@ fn a_report_is_written_and_repeats() {
     ];
     stdout(&navwalker(directory.path(), &elsewhere));
     let other = fs::read_to_string(directory.path().join("other.html")).unwrap();
-    assert!(other.contains("star:86.4:24/6/1@900") && other.contains("front of nsga2"));
+    assert!(other.contains("star:86.4:24/6/1@900") && other.contains("front of NSGA-II"));
 }
 
 #[test]

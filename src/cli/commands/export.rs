@@ -16,6 +16,7 @@ use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::ElementChoice;
 use crate::frames::Frame;
 use crate::keyword::Keyword;
+use crate::report::validation::digits;
 use crate::report::{Align, Table};
 use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
@@ -150,14 +151,14 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
             .with_context(|| format!("cannot check {name}"))?;
         passed &= found.passed();
         let cells = |difference: Option<Difference>, scale: f64| {
-            let number = |value: f64| format!("{:.2e}", value * scale);
+            let number = |value: f64| digits(value * scale);
             let gate = difference.and_then(|difference| difference.gate);
             [difference.map(|difference| difference.value), gate]
                 .map(|value| value.map_or_else(|| "none".to_owned(), number))
         };
         let mut row = vec![name];
         row.extend(cells(Some(found.position_km), 1000.0));
-        let theory = found.theory_km.map(|km| format!("{:.2e}", km * 1000.0));
+        let theory = found.theory_km.map(|km| digits(km * 1000.0));
         row.push(theory.unwrap_or_else(|| "-".to_owned()));
         row.extend(cells(Some(found.mean_visible), 1.0));
         row.extend(cells(found.mean_pdop, 1.0));
@@ -244,7 +245,7 @@ fn text(args: &ExportArgs, manifest: &Manifest) -> String {
     let metres = |values: &mut dyn Iterator<Item = f64>| {
         values
             .reduce(f64::max)
-            .map_or_else(|| "-".to_owned(), |km| format!("{:.2e}", km * 1000.0))
+            .map_or_else(|| "-".to_owned(), |km| digits(km * 1000.0))
     };
     let mut formats: Vec<&str> = Vec::new();
     for file in &manifest.files {

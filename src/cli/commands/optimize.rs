@@ -258,7 +258,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         "Pareto set of scenario {scenario}: {}, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
         counted(result.front.len(), "design"),
         result.search.evaluations,
-        result.search.algorithm,
+        shown::algorithm(&result.search.algorithm),
         result.search.seed,
         table.to_text()
     );

@@ -8,7 +8,7 @@ use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
 use crate::run::{FrontMember, Run, VERSION};
-use crate::scenario::{Algorithm, ObservationWeights, Quantity, Region, Scenario, Visibility};
+use crate::scenario::{ObservationWeights, Quantity, Region, Scenario, Visibility};
 use crate::time::leap_seconds_note;
 use crate::units::round_decimal;
 use crate::validate::Tally;
@@ -56,17 +56,6 @@ pub(super) fn title(run: &Run) -> String {
     match &run.scenario {
         Some(scenario) => format!("Constellation study: {}", scenario.name),
         None => "Constellation study".to_owned(),
-    }
-}
-
-/// The name of an algorithm as written in the literature.
-fn algorithm_title(word: &str) -> &str {
-    match Algorithm::from_keyword(word) {
-        Ok(Algorithm::Nsga2) => "NSGA-II",
-        Ok(Algorithm::Mopso) => "MOPSO",
-        Ok(Algorithm::Random) => "Random search",
-        Ok(Algorithm::Exhaustive) => "Exhaustive search",
-        Err(_) => word,
     }
 }
 
@@ -189,7 +178,7 @@ fn found(run: &Run) -> String {
     };
     let mut text = format!(
         "{} (seed {}) evaluated {} designs and found {members}.",
-        algorithm_title(&search.algorithm),
+        shown::algorithm(&search.algorithm),
         search.seed,
         search.evaluations
     );
