@@ -4,7 +4,7 @@
 //! number, the international designator, the name. Placeholders count as not given. The rule is described
 //! for users in `docs/formats.md`.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Placeholders for a missing identifier (CCSDS 502.0-B-3 asks for `UNKNOWN`).
 const PLACEHOLDERS: [&str; 9] = [
@@ -123,7 +123,15 @@ pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
         }
         _ => label.clone(),
     };
-    labels.iter().zip(identities).map(unique).collect()
+    let mut labels: Vec<String> = labels.iter().zip(identities).map(unique).collect();
+    // An object may be named as another is numbered.
+    let mut known = HashSet::new();
+    for (place, label) in labels.iter_mut().enumerate() {
+        if !known.insert(label.clone()) {
+            *label = format!("{label} #{}", place + 1);
+        }
+    }
+    labels
 }
 
 /// The objects found so far, indexed by identity.
@@ -238,6 +246,7 @@ mod tests {
             object(9, "", ""),
             object(0, "", ""),
             object(10, "", "SAT"),
+            object(0, "", "9"),
         ]);
         let expected = [
             "2025-900A",
@@ -247,6 +256,7 @@ mod tests {
             "9",
             "satellite 6",
             "SAT",
+            "9 #8",
         ];
         assert_eq!(labels, expected);
     }

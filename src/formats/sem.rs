@@ -80,9 +80,10 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
                     record.clear();
                 }
                 (Some(week), FIELDS) => {
-                    let almanac = almanac(week, &record);
-                    almanac.check((first, 1), &almanacs, findings);
-                    almanacs.push(almanac);
+                    if let Some(almanac) = almanac(week, &record, (first, 1), findings) {
+                        almanac.check((first, 1), &almanacs, findings);
+                        almanacs.push(almanac);
+                    }
                     record.clear();
                 }
                 _ => {}
@@ -111,10 +112,17 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
     Ok(almanacs)
 }
 
-fn almanac([week, toa_s]: [f64; 2], record: &[f64]) -> Almanac {
-    Almanac {
-        prn: record[0] as u32,
-        health: record[12] as u32,
+fn almanac(
+    [week, toa_s]: [f64; 2],
+    record: &[f64],
+    place: (usize, usize),
+    findings: &mut FindingList,
+) -> Option<Almanac> {
+    let mut whole = |value| number::whole(value, place, "sem-number", findings);
+    let (prn, health, week) = (whole(record[0])?, whole(record[12])?, whole(week)?);
+    Some(Almanac {
+        prn,
+        health,
         eccentricity: record[3],
         toa_s,
         inclination_rad: (INCLINATION + record[4]) * PI,
@@ -123,8 +131,8 @@ fn almanac([week, toa_s]: [f64; 2], record: &[f64]) -> Almanac {
         raan_at_week_rad: record[7] * PI,
         arg_perigee_rad: record[8] * PI,
         mean_anomaly_rad: record[9] * PI,
-        week: week as u32,
-    }
+        week,
+    })
 }
 
 #[cfg(test)]

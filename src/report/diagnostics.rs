@@ -33,10 +33,9 @@ pub fn diagnose(
     }
     // A sweep works through a grid, so how fast its front grows says nothing.
     if !matches!(search, Search::Exhaustive(_)) {
-        found.extend(progress::of_history(
-            search.history(),
-            &problem.goals().objectives,
-        ));
+        let (history, objectives) = (search.history(), &problem.goals().objectives);
+        found.extend(progress::of_history(history, objectives));
+        found.extend(progress::lost_volume(history, objectives));
     }
     found
 }

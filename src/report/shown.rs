@@ -60,10 +60,15 @@ fn decimals(value: Option<f64>, digits: usize) -> String {
 /// Five significant digits, and all digits of the integer part: `0.61097`, `12.346`, `146`, `123457`.
 #[must_use]
 pub(crate) fn significant(value: f64) -> String {
-    if value == 0.0 {
+    // Of the rounded number: 9.999996 has one digit more than it seems.
+    let rounded = format!("{value:.*e}", SIGNIFICANT as usize - 1);
+    let exponent = rounded
+        .split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok());
+    let magnitude: i32 = exponent.unwrap_or_default();
+    if value == 0.0 || magnitude < -12 {
         return "0".to_owned();
     }
-    let magnitude = value.abs().log10().floor() as i32;
     let digits = (SIGNIFICANT - 1 - magnitude).clamp(0, 12) as usize;
     let text = format!("{value:.digits$}");
     if text.contains('.') && value.fract() == 0.0 {
@@ -169,6 +174,9 @@ mod tests {
     fn digits_suit_the_kind() {
         for (value, text) in [
             (0.610_974_4, "0.61097"),
+            (9.999_996, "10.000"),
+            (9.999_94, "9.9999"),
+            (1e-16, "0"),
             (12.345_67, "12.346"),
             (146.0, "146"),
             (146.212_3, "146.21"),

@@ -25,8 +25,8 @@ pub(super) struct GnssFile {
 #[derive(Default)]
 pub(super) struct GnssFiles {
     found: GnssFile,
-    /// Name of the first file of states, and the states from all files.
-    sampled: Option<(String, Fleet)>,
+    /// Files of states, each with its name; one that continues the satellites of an earlier one is joined to it.
+    sampled: Vec<(String, Fleet)>,
 }
 
 impl GnssFiles {
@@ -56,22 +56,32 @@ impl GnssFiles {
                     self.found.systems.push(system.into());
                 }
             }
-            Fleet::Sampled(more) => match &mut self.sampled {
-                None => self.sampled = Some((name.to_owned(), Fleet::Sampled(more))),
-                Some((_, sampled)) => sampled.append(Fleet::Sampled(more)),
-            },
+            more @ Fleet::Sampled(_) => {
+                let labels = more.labels();
+                let continues =
+                    |known: &Fleet| known.labels().iter().any(|label| labels.contains(label));
+                match self.sampled.iter_mut().find(|(_, known)| continues(known)) {
+                    Some((_, known)) => known.append(more),
+                    None => self.sampled.push((name.to_owned(), more)),
+                }
+            }
             Fleet::Elements(_) => {
                 let content = read.fleet.content();
                 return Err(GnssFileError::NoSets { content });
             }
-            other => self.propagate(name, &other, grid)?,
+            other => {
+                let stale = other.stale(name, grid);
+                let notes = &mut self.found.notes;
+                notes.extend(stale.as_ref().map(StaleElements::to_string));
+                self.propagate(name, &other, grid)?;
+            }
         }
         Ok(())
     }
 
     /// The systems, those of states last.
     pub(super) fn finish(mut self, grid: TimeGrid) -> Result<GnssFile, GnssFileError> {
-        if let Some((name, sampled)) = self.sampled.take() {
+        for (name, sampled) in std::mem::take(&mut self.sampled) {
             self.propagate(&name, &sampled, grid)?;
         }
         Ok(self.found)

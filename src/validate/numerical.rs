@@ -219,7 +219,7 @@ fn span_checks(bounds: &IntegrationBounds, tracks: &[RevolutionMeans], days: f64
                 statistic: "mean slope",
             },
             drift,
-            Some(bounds.drift_km_per_day),
+            bounds.drift_km_per_day,
             bounds.drift_reason,
         ),
         Check::new(

@@ -92,10 +92,10 @@ impl ElementSets {
         let mut members = Vec::with_capacity(sets.len());
         let identities: Vec<_> = sets.iter().map(ObjectIdentity::of_set).collect();
         let names = unique_labels(&identities);
-        if let Some((_, second)) = first_repeated(&identities) {
+        if let Some((first, _)) = first_repeated(&identities) {
             return Err(ElementSetError::Duplicate {
                 system: system(),
-                satellite: names[second].clone(),
+                satellite: names[first].clone(),
             });
         }
         for (satellite, set) in names.into_iter().zip(sets) {

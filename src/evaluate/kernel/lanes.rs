@@ -114,7 +114,8 @@ impl Real for f64 {
 
     /// That of f32 with one Newton step, which squares its error of 1e-7: 2e-14, in a third of the
     /// time of a root and a division in f64. The error stretches a line of sight but does not rotate
-    /// it, so the pivots of a singular geometry stay at zero.
+    /// it, so the pivots of a singular geometry stay at zero: exactly for coplanar directions, and to the
+    /// square of the error for those on a cone.
     #[inline(always)]
     fn inverse_root(self) -> Self {
         let seed = f64::from((self as f32).inverse_root());
@@ -456,7 +457,8 @@ impl NormalLanes<f64> {
 }
 
 /// A pivot above this is above the floor of the plain path too, whose sums are made in another
-/// order: those of the lanes, with a GNSS part of 48 bits, are within one floor of it.
+/// order: storing the GNSS part in 48 bits moves a pivot by at most two floors, and the order of the
+/// sums by less than one.
 #[inline(always)]
 pub(super) fn clear_pivot(satellites: u32) -> f64 {
     4.0 * pivot_floor(f64::from(satellites))

@@ -186,7 +186,13 @@ impl Fleet {
                 let stale = parts.iter().filter_map(|part| part.stale(name, grid));
                 stale.max_by(|a, b| a.age_days.total_cmp(&b.age_days))
             }
-            Self::Elements(_) | Self::Sampled(_) | Self::Almanacs(_) => None,
+            Self::Almanacs(almanacs) => {
+                let epochs = almanacs
+                    .iter()
+                    .map(|almanac| almanac.applicability(grid.epoch()));
+                StaleElements::among(name, self.labels().into_iter().zip(epochs), grid)
+            }
+            Self::Elements(_) | Self::Sampled(_) => None,
         }
     }
 }

@@ -55,6 +55,8 @@ fn neither() -> Content {
 #[derive(Default)]
 struct Scanner {
     depth: usize,
+    /// Depth of arrays inside the first object.
+    arrays: usize,
     /// Start of the current string.
     string: Option<usize>,
     escaped: bool,
@@ -96,8 +98,10 @@ impl Scanner {
                     return Step::ObjectEnd;
                 }
             }
+            b'[' if self.depth > 0 => self.arrays += 1,
+            b']' => self.arrays = self.arrays.saturating_sub(1),
             b':' => self.is_value = true,
-            b',' if self.depth == 1 => self.is_value = false,
+            b',' if self.depth == 1 && self.arrays == 0 => self.is_value = false,
             _ => {}
         }
         Step::Other

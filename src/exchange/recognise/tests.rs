@@ -104,6 +104,11 @@ fn what_is_not_read_is_named() {
             br#"{"type": "FeatureCollection", "features": []}"#,
             "GeoJSON",
         ),
+        // An item of an array is no key.
+        (
+            br#"{"a": ["x", "OBJECT_NAME"], "type": "FeatureCollection"}"#,
+            "GeoJSON",
+        ),
         (
             br#"{"design": {"id": "document"}}"#,
             "JSON, but neither CZML nor OMM",

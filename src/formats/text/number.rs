@@ -24,6 +24,22 @@ pub(crate) fn read(
     value
 }
 
+/// A number read by [`read`] as a count, an identifier or a code; a finding under `rule` if it is not whole, or
+/// negative.
+pub(crate) fn whole(
+    value: f64,
+    place: (usize, usize),
+    rule: &'static str,
+    findings: &mut FindingList,
+) -> Option<u32> {
+    let is_whole = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
+    if !is_whole {
+        let message = format!("{value} is not a whole number from 0 up");
+        findings.error(place, rule, message);
+    }
+    is_whole.then_some(value as u32)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -116,9 +116,11 @@ impl AlmanacBlock {
             return None;
         }
         let value = |at: usize| self.values[at].unwrap_or_default();
+        let mut whole = |at| number::whole(value(at), place, "yuma-number", findings);
+        let (prn, health, week) = (whole(0)?, whole(1)?, whole(12)?);
         Some(Almanac {
-            prn: value(0) as u32,
-            health: value(1) as u32,
+            prn,
+            health,
             eccentricity: value(2),
             toa_s: value(3),
             inclination_rad: value(4),
@@ -127,7 +129,7 @@ impl AlmanacBlock {
             raan_at_week_rad: value(7),
             arg_perigee_rad: value(8),
             mean_anomaly_rad: value(9),
-            week: value(12) as u32,
+            week,
         })
     }
 }

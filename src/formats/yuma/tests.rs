@@ -112,6 +112,10 @@ fn validate_a_published_form() {
     assert!(error(&lacking).contains("has no 'SQRT(A)' [yuma-missing]"));
     let twice = text.replace("Health:", "ID: 2\nHealth:");
     assert!(error(&twice).starts_with("line 3, column 1: ID is given twice"));
+    for (field, wrong) in [("000\nEcc", "-1\nEcc"), ("   295\n", "   295.7\n")] {
+        let found = error(&text.replace(field, wrong));
+        assert!(found.contains("is not a whole number from 0 up"), "{found}");
+    }
     let low = text.replace("5153.596191", "5.153596191");
     assert!(error(&low).contains("[implausible-state]"));
 }

@@ -15,7 +15,7 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
     if front.is_empty() {
         return vec![Diagnostic {
             code: "no-feasible-design".to_owned(),
-            message: "no design of the last population meets the constraints; widen the search bounds or \
+            message: "no design of the result meets the constraints; widen the search bounds or \
                       relax the mask, the PDOP cap or the constraints"
                 .to_owned(),
         }];
@@ -53,7 +53,11 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
         if hi <= lo {
             continue;
         }
-        for (bound, side) in [(lo, "lower"), (hi, "upper")] {
+        let ends = [(lo, "lower"), (hi, "upper")];
+        for (bound, side) in ends
+            .into_iter()
+            .filter(|(bound, _)| !is_physical_limit(name, *bound))
+        {
             let near = |m: &&FrontMember| (value(m) - bound).abs() <= RESTING_DISTANCE * (hi - lo);
             let resting = front.iter().filter(near).count();
             if resting as f64 >= RESTING_SHARE * front.len() as f64 {
@@ -68,6 +72,16 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
         }
     }
     found
+}
+
+/// Whether a bound is where the variable itself ends, so that no search could be wider.
+fn is_physical_limit(variable: &str, bound: f64) -> bool {
+    match variable {
+        "planes" | "satellites-per-plane" => bound <= 1.0,
+        "inclination-deg" => bound <= 0.0 || bound >= 180.0,
+        "phasing" | "eccentricity" => bound <= 0.0,
+        _ => false,
+    }
 }
 
 /// `n` of `all` designs of a front, in words.
@@ -161,9 +175,20 @@ mod tests {
         let round = DesignSpace {
             planes: [11, 13],
             phasing: [0, 12],
-            arg_perigee_deg: [-90.0, 270.0],
+            arg_perigee_deg: [0.0, 360.0],
             ..space
         };
         assert_eq!(codes(&round), ["at-bound:planes", "at-bound:eccentricity"]);
+        // Nor can a search go below a circle.
+        let front = ["delta:45:169/13/0@900"].map(|design| testing::member(1, design));
+        let found = at_bounds(
+            &front,
+            &DesignSpace {
+                phasing: [0, 5],
+                ..round
+            },
+        );
+        let codes: Vec<_> = found.into_iter().map(|d| d.code).collect();
+        assert_eq!(codes, ["at-bound:planes"]);
     }
 }

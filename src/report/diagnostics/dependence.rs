@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// depend on it in practice.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// One variable set to both ends of its range, with all others as in the chosen design.
+/// One variable set to both ends and the middle of its range, with all others as in the chosen design.
 struct Variation {
     variable: String,
     /// Relative change of each watched quantity.
@@ -47,8 +47,8 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         found.push(Diagnostic::new(
             &format!("independent:{objective}"),
             format!(
-                "`{objective}` does not depend on {}: over the full range of each, with the other \
-                 variables as in the chosen design, it changes by less than {} %{}",
+                "`{objective}` does not depend on {}: at both ends and in the middle of the range of each, \
+                 with the other variables as in the chosen design, it changes by less than {} %{}",
                 listed(&names),
                 100.0 * NEGLIGIBLE,
                 free_satellites(*objective, &names)
@@ -91,8 +91,8 @@ fn without_objective(
         return Some(Diagnostic::new(
             &format!("idle:{name}"),
             format!(
-                "{none} on `{name}`: over its full range, with the other variables as in the chosen \
-                 design, none changes by {percent} %"
+                "{none} on `{name}`: at both ends and in the middle of its range, with the other \
+                 variables as in the chosen design, none changes by {percent} %"
             ),
         ));
     }
@@ -100,8 +100,8 @@ fn without_objective(
     Some(Diagnostic::new(
         &format!("only-constrained:{name}"),
         format!(
-            "of the objectives and constraints, `{name}` affects only {}: over its full range, with the \
-             other variables as in the chosen design, no objective changes by {percent} %, so \
+            "of the objectives and constraints, `{name}` affects only {}: at both ends and in the \
+             middle of its range, with the other variables as in the chosen design, no objective changes by {percent} %, so \
              designs that differ only in it tie; add an objective that depends on it to choose \
              among them",
             listed(&bound)
@@ -127,15 +127,18 @@ fn variations(
     watched: &[Quantity],
 ) -> Vec<Variation> {
     let variables = problem.space().variables().iter().enumerate();
-    let varied: Vec<(usize, [f64; 2])> = variables
+    // The middle, since the ends of a full circle are one orbit.
+    let varied: Vec<(usize, [f64; 3])> = variables
         .map(|(k, variable)| (k, variable.kind.bounds()))
         .filter(|(_, (lo, hi))| lo < hi)
-        .map(|(k, (lo, hi))| (k, [lo, hi]))
+        .map(|(k, (lo, hi))| (k, [lo, 0.5 * (lo + hi), hi]))
         .collect();
-    let ends = varied
+    let points = varied
         .iter()
-        .flat_map(|&(k, ends)| ends.map(|end| at(problem, chosen, k, end)));
-    let genomes: Vec<Vec<f64>> = std::iter::once(chosen.genome.clone()).chain(ends).collect();
+        .flat_map(|&(k, points)| points.map(|point| at(problem, chosen, k, point)));
+    let genomes: Vec<Vec<f64>> = std::iter::once(chosen.genome.clone())
+        .chain(points)
+        .collect();
     let values: Vec<Vec<Option<f64>>> = genomes
         .par_iter()
         .map(|genome| quantities(problem, genome, watched))
@@ -143,15 +146,15 @@ fn variations(
     let Some((here, values)) = values.split_first() else {
         return Vec::new();
     };
-    let variation = |(&(k, _), ends): (&(usize, _), &[Vec<Option<f64>>])| Variation {
+    let variation = |(&(k, _), points): (&(usize, _), &[Vec<Option<f64>>])| Variation {
         variable: problem.space().variables()[k].name.clone(),
         changes: (0..watched.len())
-            .map(|m| change([here[m], ends[0][m], ends[1][m]]))
+            .map(|m| change(here[m], points.iter().map(|values| values[m])))
             .collect(),
     };
     varied
         .iter()
-        .zip(values.chunks_exact(2))
+        .zip(values.chunks_exact(3))
         .map(variation)
         .collect()
 }
@@ -171,13 +174,14 @@ fn quantities(
     watched.iter().map(value).collect()
 }
 
-/// Width of three values relative to the first. A first value of 0, or a missing one, counts as a
-/// change.
-fn change(values: [Option<f64>; 3]) -> f64 {
-    let [Some(here), Some(one), Some(other)] = values else {
+/// Width of values relative to the first. A first value of 0, or a missing one, counts as a change.
+fn change(here: Option<f64>, others: impl Iterator<Item = Option<f64>>) -> f64 {
+    let (Some(here), Some(others)) = (here, others.collect::<Option<Vec<f64>>>()) else {
         return f64::INFINITY;
     };
-    let relative = (here.max(one).max(other) - here.min(one).min(other)) / here.abs();
+    let highest = others.iter().copied().fold(here, f64::max);
+    let lowest = others.iter().copied().fold(here, f64::min);
+    let relative = (highest - lowest) / here.abs();
     if relative.is_finite() {
         relative
     } else {
@@ -224,8 +228,11 @@ mod tests {
 
     #[test]
     fn a_change_is_relative_and_a_missing_value_is_one() {
-        assert_eq!(change([Some(2.0), Some(1.0), Some(4.0)]), 1.5);
-        assert_eq!(change([Some(2.0), None, Some(2.0)]), f64::INFINITY);
-        assert_eq!(change([Some(0.0); 3]), f64::INFINITY);
+        assert_eq!(change(Some(2.0), [Some(1.0), Some(4.0)].into_iter()), 1.5);
+        assert_eq!(
+            change(Some(2.0), [None, Some(2.0)].into_iter()),
+            f64::INFINITY
+        );
+        assert_eq!(change(Some(0.0), [Some(0.0); 2].into_iter()), f64::INFINITY);
     }
 }

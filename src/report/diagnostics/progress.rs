@@ -18,7 +18,7 @@ const LAST_RISE: f64 = 1e-3;
 /// Minimum number of generations for these diagnostics.
 const FEWEST_GENERATIONS: usize = 5;
 
-/// The measure of progress in a history; it rises.
+/// The measure of progress in a history: the best value so far, which never falls.
 struct Course {
     /// Its name.
     what: String,
@@ -39,19 +39,55 @@ impl Course {
             return Some(Self {
                 what: format!("best value of {objective}"),
                 verb: "improved",
-                values: history.iter().map(best).collect(),
+                values: best_so_far(history.iter().map(best)),
                 scale: if ideal[0] == 0.0 { 1.0 } else { ideal[0].abs() },
             });
         }
         let volumes = Record::volumes(history);
-        let last = (*volumes.last()?)?;
-        (last > 0.0).then(|| Self {
-            what: "hypervolume".to_owned(),
+        let values = best_so_far(volumes.iter().map(|v| v.unwrap_or(0.0)));
+        let scale = *values.last()?;
+        (scale > 0.0).then(|| Self {
+            what: "best hypervolume so far".to_owned(),
             verb: "rose",
-            values: volumes.iter().map(|v| v.unwrap_or(0.0)).collect(),
-            scale: last,
+            values,
+            scale,
         })
     }
+}
+
+/// The running maximum.
+fn best_so_far(values: impl Iterator<Item = f64>) -> Vec<f64> {
+    let best = |best: &mut f64, value: f64| {
+        *best = best.max(value);
+        Some(*best)
+    };
+    values.scan(f64::NEG_INFINITY, best).collect()
+}
+
+/// Whether the last population has lost hypervolume that an earlier one had.
+pub(super) fn lost_volume(history: &[Record], objectives: &[Quantity]) -> Option<Diagnostic> {
+    if objectives.len() == 1 {
+        return None;
+    }
+    let volumes: Vec<f64> = Record::volumes(history)
+        .into_iter()
+        .map(|v| v.unwrap_or(0.0))
+        .collect();
+    let (generation, best) = (1..)
+        .zip(&volumes)
+        .max_by(|a: &(u64, _), b| a.1.total_cmp(b.1))?;
+    let last = volumes.last()?;
+    let lost = (best - last) / best;
+    (*best > 0.0 && lost > LAST_RISE).then(|| {
+        Diagnostic::new(
+            "lost-volume",
+            format!(
+                "the hypervolume is {:.2} % below that of generation {generation}; a larger population loses \
+                 less",
+                100.0 * lost
+            ),
+        )
+    })
 }
 
 /// Whether the history calls for more generations.
@@ -95,10 +131,16 @@ pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<
     let tail = ((LAST_SHARE * count as f64).ceil() as usize).max(1);
     let rise = last - values[count - 1 - tail];
     (rise > LAST_RISE * scale).then(|| {
-        let event = if rise.is_finite() {
-            format!("the {what} still {verb} by {:.2} %", 100.0 * rise / scale)
-        } else {
+        let before = values[count - 1 - tail];
+        let event = if !rise.is_finite() {
             "the first feasible design was found".to_owned()
+        } else if before == 0.0 {
+            format!("the {what} still {verb} from 0")
+        } else {
+            format!(
+                "the {what} still {verb} by {:.2} %",
+                100.0 * rise / before.abs()
+            )
         };
         Diagnostic::new(
             "still-improving",
@@ -111,18 +153,15 @@ pub(super) fn of_history(history: &[Record], objectives: &[Quantity]) -> Option<
 mod tests {
     use super::*;
 
-    fn code(volumes: &[f64]) -> Option<String> {
-        let record = |(generation, &volume): (u64, &f64)| Record {
-            generation,
-            evaluations: 0,
+    fn of_volume(generation: u64, volume: f64) -> Record {
+        Record {
             hypervolume: Some(volume),
-            hypervolume_at_chosen: None,
-            ideal: None,
-            front_size: 1,
-            feasible: 1,
-            front: Vec::new(),
-        };
-        let history: Vec<Record> = (1..).zip(volumes).map(record).collect();
+            ..record(generation, None)
+        }
+    }
+
+    fn code(volumes: &[f64]) -> Option<String> {
+        let history: Vec<Record> = (1..).zip(volumes).map(|(g, v)| of_volume(g, *v)).collect();
         of_history(&history, &[]).map(|d| d.code)
     }
 
@@ -138,6 +177,21 @@ mod tests {
         assert_eq!(code(&steady), None);
         assert_eq!(code(&rising[..4]), None);
         assert_eq!(code(&[0.0; 9]), None);
+    }
+
+    /// A volume that falls is no progress, and what was lost is said.
+    #[test]
+    fn a_falling_volume_is_reported() {
+        let volumes = [1.0, 6.0, 10.0, 9.5, 9.0, 8.0, 8.0, 7.5];
+        assert_eq!(code(&volumes).as_deref(), Some("no-progress"));
+        let history: Vec<Record> = (1..).zip(volumes).map(|(g, v)| of_volume(g, v)).collect();
+        let lost = lost_volume(&history, &[]).unwrap();
+        assert!(
+            lost.message.contains("25.00 % below that of generation 3"),
+            "{}",
+            lost.message
+        );
+        assert!(lost_volume(&history[..3], &[]).is_none());
     }
 
     fn record(generation: u64, best: Option<f64>) -> Record {
@@ -164,11 +218,11 @@ mod tests {
             .collect();
         let found = told(&falling, Quantity::MaxPdop).unwrap();
         assert_eq!(found.code, "still-improving");
-        // From 2.3 to 2.1 in two generations.
+        // From 2.3 to 2.1 in two generations: 0.2 of 2.3.
         assert!(
             found
                 .message
-                .contains("best value of max-pdop still improved by 9.52 %"),
+                .contains("best value of max-pdop still improved by 8.70 %"),
             "{}",
             found.message
         );

@@ -106,6 +106,22 @@ fn states_of_many_systems_are_split_by_their_letter() {
     assert!(beyond.contains("has no state at"), "{beyond}");
 }
 
+/// Two files of one system each keep their names, whatever the letters of their satellites.
+#[test]
+fn files_of_other_satellites_stay_apart() {
+    let study = grid(2.0 * 3_600.0, 900.0);
+    let (gps, galileo) = (
+        sp3(&[('G', Preset::Gps)], 0, 3),
+        sp3(&[('E', Preset::Galileo)], 0, 3),
+    );
+    let files = [
+        ("mine.sp3", gps.as_bytes()),
+        ("theirs.sp3", galileo.as_bytes()),
+    ];
+    let found = systems(&files, study).unwrap();
+    assert_eq!(names(&found), [("mine", 24), ("theirs", 24)]);
+}
+
 /// One system is named by its file; catalogue names split a file of several.
 #[test]
 fn element_sets_are_split_by_their_names() {

@@ -5,11 +5,8 @@ use crate::orbit::sgp4::ZonalHarmonics;
 use crate::orbit::{MeanElements, Model};
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::Subject;
-use crate::validate::sgp4::causes::Causes;
+use crate::validate::sgp4::causes::{Causes, FIRST_ORDER_MARGIN};
 use std::f64::consts::SQRT_2;
-
-/// Factor on a closed form of first order: terms of order e and J2.
-const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// The bounds for one design and model.
 pub(super) struct IntegrationBounds {
@@ -19,8 +16,8 @@ pub(super) struct IntegrationBounds {
     a_km: f64,
     /// Drift in-track by a change of the semi-major axis, 3/2 n, per day.
     pub(super) drift_per_a_per_day: f64,
-    /// Bound on the in-track drift, km/day.
-    pub(super) drift_km_per_day: f64,
+    /// Bound on the in-track drift, km/day; `None` where none is known.
+    pub(super) drift_km_per_day: Option<f64>,
     /// Why it is there.
     pub(super) drift_reason: &'static str,
     /// Node rate that the model leaves out, in closed form, degrees a day.
@@ -46,14 +43,13 @@ impl IntegrationBounds {
         let over_node = |km: f64| (km / a_km / orbit.inclination_rad.sin().max(1e-3)).to_degrees();
         let excess = causes.excess_rad_s(ZonalHarmonics::J2Only)[0] * SECONDS_PER_DAY;
         let (drift_km_per_day, known_node_deg_per_day, node_km) = match model {
-            Model::TwoBody => (integrator, 0.0, integrator),
+            Model::TwoBody => (Some(integrator), 0.0, integrator),
             Model::J2 | Model::J2Osculating => {
-                // Third order in J2, and what the closed form at e = 0 leaves out.
-                let higher = (causes.eccentric_factor - 1.0 + 0.02) * second_order;
-                let drift = largest_drift_from_start_km_per_day(&orbit) + higher;
-                (drift, excess.to_degrees(), 0.05 * second_order)
+                let start = largest_drift_from_start_km_per_day(&orbit);
+                let drift = start + causes.third_order_km_per_day();
+                (Some(drift), excess.to_degrees(), 0.05 * second_order)
             }
-            Model::Sgp4 => (2.0 * second_order, 0.0, 0.05 * second_order),
+            Model::Sgp4 => (None, 0.0, 0.05 * second_order),
         };
         let (drift_reason, node_reason, after_fit_reason) = match model {
             Model::TwoBody => {
@@ -71,7 +67,7 @@ impl IntegrationBounds {
                 "the start has an eccentricity of O(J2^2), in closed form at the equator, where it is largest; long-period terms of order e J2; the node drifts by its terms in J2^2",
             ),
             Model::Sgp4 => (
-                "the starting semi-major axis is known to O(J2^2), some metres, which drifts by 3/2 n per metre: no error of the rates",
+                "reported only: the starting semi-major axis of SGP4 is known to O(J2^2), and its drift is as large as that by J4",
                 "SGP4 has the secular terms of J2^2 and J4: third order and the start are left",
                 "reported only: the periodic terms of second order and of J3 and J4 that SGP4 leaves out",
             ),
@@ -101,7 +97,9 @@ impl IntegrationBounds {
         let [_, along_km, across_km] = causes.short_period_km;
         // e J2 a grows through a turn of the perigee, which takes months.
         let long_period = 3.0 * self.eccentricity * crate::earth::J2 * self.a_km * (1.0 + days);
-        let higher = 0.01 + first_order(self.second_order_in_track_km()) + long_period;
+        // Periodic terms of second order, J2² a: 9 m.
+        let periodic_km = FIRST_ORDER_MARGIN * crate::earth::J2.powi(2) * self.a_km;
+        let higher = periodic_km + first_order(self.second_order_in_track_km()) + long_period;
         let whole = |km: f64| FIRST_ORDER_MARGIN * causes.eccentric_factor * km + higher;
         match self.model {
             Model::TwoBody => [Some(integrator), Some(integrator)],

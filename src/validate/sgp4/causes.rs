@@ -16,7 +16,7 @@ const J3_OVER_J2_WGS72: f64 = -::sgp4::WGS72.j3 / ::sgp4::WGS72.j2;
 
 /// Factor by which a first-order closed form at e = 0 may be exceeded: terms of order e and J2, the
 /// rotation of the frozen eccentricity in a day, and the sampling of the extremes.
-const FIRST_ORDER_MARGIN: f64 = 1.15;
+pub(in crate::validate) const FIRST_ORDER_MARGIN: f64 = 1.15;
 
 /// Secular rates that SGP4 has beyond first-order J2, rad/s ([M-46](crate::models#m-46)): Hoots and
 /// Roehrich, *Spacetrack Report* 3 (1980), section 6, the terms of the node, of ω and of M in J2² and J4,
@@ -178,6 +178,12 @@ impl Causes {
         without.rms_gates_km(zonals, days)
     }
 
+    /// What the closed forms at e = 0 leave out of a drift in-track: third order in J2, 2 % of the second,
+    /// and second order times the eccentricity, km/day.
+    pub(in crate::validate) fn third_order_km_per_day(&self) -> f64 {
+        (self.eccentric_factor - 1.0 + 0.02) * self.second_order_km_per_day
+    }
+
     /// Bound on the slope of the mean in-track difference minus its closed form, km/day: third order
     /// in J2, the eccentricity, the constants (5 m/day), and the slope left by the periodic terms, as
     /// fractions of the amplitudes at once and twice per revolution.
@@ -192,8 +198,7 @@ impl Causes {
         };
         let twice = self.short_period_km[1];
         let periodic = once * leftover_per_day[0] + twice * leftover_per_day[1];
-        let higher = (self.eccentric_factor - 1.0 + 0.02) * self.second_order_km_per_day;
-        higher + self.eccentric_factor * periodic + 0.01
+        self.third_order_km_per_day() + self.eccentric_factor * periodic + 0.01
     }
 }
 
