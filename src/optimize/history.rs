@@ -32,7 +32,7 @@ impl History {
     /// Checks a history read from a file: one record for each step, in order, with a finite value for
     /// each objective, and a reference of as many.
     pub(super) fn check(&self, problem: &dyn Problem, steps: u64) -> Result<(), OptimizeError> {
-        check_equal("records", self.records.len() as u64, steps)?;
+        check_equal("history", self.records.len() as u64, steps)?;
         let objectives = problem.objective_names().len() as u64;
         for (step, record) in (1..).zip(&self.records) {
             check_equal("step of a record", record.generation, step)?;
