@@ -24,7 +24,7 @@ struct MassProblem<'a> {
 impl MassProblem<'_> {
     fn objectives(&self, genome: &[f64]) -> Option<Vec<f64>> {
         let (design, metrics) = self.designs.evaluated(genome)?;
-        let mass_kg = launch_mass_kg(design.satellite_count(), design.altitude_km());
+        let mass_kg = launch_mass_kg(design.satellite_count(), design.highest_altitude_km());
         Some(vec![metrics.mean_pdop?, mass_kg])
     }
 }

@@ -12,6 +12,7 @@ mod args;
 mod chart;
 mod coincidence;
 mod commands;
+mod constellations;
 mod files;
 mod interrupt;
 mod output;

@@ -7,10 +7,11 @@ pub mod hermite;
 pub mod sampled;
 
 use crate::constellation::gnss::GnssSatellite;
-use crate::constellation::{Design, Slot};
+use crate::constellation::{Design, Shell, Slot};
 use crate::frames::{State, Teme};
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::time::TimeGrid;
+use std::ops::Range;
 use thiserror::Error;
 
 /// A satellite with a state at any instant of its span.
@@ -33,19 +34,43 @@ pub struct EphemerisError {
     pub source: PropagationError,
 }
 
+/// A whole shell among the satellites of an ephemeris.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ShellSpan {
+    /// The shell.
+    pub shell: Shell,
+    /// The theory that propagates it.
+    pub model: Model,
+    /// Place of its first satellite; the others follow, plane by plane.
+    pub first: usize,
+}
+
+impl ShellSpan {
+    /// Places of its satellites.
+    #[must_use]
+    pub fn places(&self) -> Range<usize> {
+        self.first..self.first + self.shell.satellite_count()
+    }
+}
+
 /// Satellites and the instants at which they are sampled.
 ///
 /// States are computed on demand, so that a product can stream ten thousand satellites.
 pub struct Ephemeris {
     grid: TimeGrid,
     satellites: Vec<EphemerisSatellite>,
+    shells: Vec<ShellSpan>,
 }
 
 impl Ephemeris {
     /// Any satellites on a grid.
     #[must_use]
     pub fn new(grid: TimeGrid, satellites: Vec<EphemerisSatellite>) -> Self {
-        Self { grid, satellites }
+        Self {
+            grid,
+            satellites,
+            shells: Vec::new(),
+        }
     }
 
     /// A design propagated by `model` from the epoch of the grid.
@@ -73,7 +98,35 @@ impl Ephemeris {
             .iter()
             .map(propagate)
             .collect::<Result<_, _>>()?;
-        Ok(Self::new(grid, satellites))
+        let mut first = 0;
+        let span = |shell: &Shell| {
+            let span = ShellSpan {
+                shell: *shell,
+                model,
+                first,
+            };
+            first += shell.satellite_count();
+            span
+        };
+        let shells = design.shells().iter().map(span).collect();
+        Ok(Self {
+            grid,
+            satellites,
+            shells,
+        })
+    }
+
+    /// The same satellites and those of another ephemeris on the same grid after them.
+    #[must_use]
+    pub fn joined(mut self, other: Self) -> Self {
+        let first = self.satellites.len();
+        let moved = |span: ShellSpan| ShellSpan {
+            first: first + span.first,
+            ..span
+        };
+        self.shells.extend(other.shells.into_iter().map(moved));
+        self.satellites.extend(other.satellites);
+        self
     }
 
     /// The satellites of a GNSS constellation.
@@ -97,6 +150,12 @@ impl Ephemeris {
     #[must_use]
     pub fn satellites(&self) -> &[EphemerisSatellite] {
         &self.satellites
+    }
+
+    /// The whole shells among the satellites, in their order.
+    #[must_use]
+    pub fn shells(&self) -> &[ShellSpan] {
+        &self.shells
     }
 
     /// The satellites, without the grid.
@@ -153,7 +212,7 @@ impl Ephemeris {
     }
 }
 
-/// The name of the satellite in a slot of a design: `NW-P01-S01`.
+/// The name of the satellite in a slot of a design: `NW-P01-S01`, and `NW-A-P01-S01` in one of several shells.
 #[must_use]
 pub fn object_name(slot: Slot) -> String {
     format!("NW-{slot}")

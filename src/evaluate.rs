@@ -26,7 +26,7 @@ use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
 use fixed::FixedGeometry;
-use kernel::{Kernel, StateSource};
+use kernel::Kernel;
 use metrics::Evaluated;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
@@ -267,7 +267,7 @@ impl Evaluator {
     /// If the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
-        self.counted(StateSource::Design(design, &ephemeris))
+        self.counted(&ephemeris)
     }
 
     /// The metrics of some satellites, on the grid of the setup.
@@ -275,15 +275,14 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        Ok(self.counted(StateSource::Ephemeris(ephemeris))?.0)
+        Ok(self.counted(ephemeris)?.0)
     }
 
-    fn counted(&self, source: StateSource<'_>) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let (StateSource::Design(_, ephemeris) | StateSource::Ephemeris(ephemeris)) = source;
+    fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
         let Some(kernel) = &self.kernel else {
             return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
         };
-        let (evaluated, rechecks) = kernel.evaluate(source)?;
+        let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
         Ok((self.metrics(&evaluated, ephemeris), rechecks))
     }
 

@@ -1,6 +1,7 @@
-//! From designs to files and back: exports with their manifest, constellations from files, products
+//! Constellations, and from designs to files and back: exports with their manifest, constellations from files, products
 //! read back, and files checked against their standards.
 
+pub mod constellation;
 pub mod export;
 pub mod import;
 pub mod lint;

@@ -7,7 +7,7 @@ mod quantity;
 pub use constraint::{Constraint, ConstraintError, Relation};
 pub use quantity::{LaunchCost, Quantity};
 
-use crate::constellation::{Design, DesignError, DesignParameters, Pattern};
+use crate::constellation::{Design, DesignError, Pattern, Shell, ShellParameters};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Evaluation, OptimizeError, Problem, Space, Variable, VariableKind};
 use crate::units::round_decimal;
@@ -151,18 +151,16 @@ impl DesignSpace {
     /// If the vector is not a design: an ellipse whose perigee is not above ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
-        Design::new(DesignParameters {
+        let shell = Shell::new(ShellParameters {
             pattern: self.pattern,
             planes: count(PLANES),
             satellites_per_plane: count(PER_PLANE),
             phasing: count(PHASING),
             inclination_deg: genome[INCLINATION],
             altitude_km: genome[ALTITUDE],
-        })
-        .and_then(|design| {
-            let (eccentricity, arg_perigee_deg) = self.ellipse(genome);
-            design.with_ellipse(eccentricity, arg_perigee_deg)
-        })
+        })?;
+        let (eccentricity, arg_perigee_deg) = self.ellipse(genome);
+        Ok(shell.with_ellipse(eccentricity, arg_perigee_deg)?.into())
     }
 }
 

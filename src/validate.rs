@@ -21,7 +21,7 @@ pub use check::{Check, CheckedQuantity, Outcome, Tally};
 pub use parts::{ModelPropagator, Parts};
 
 use self::sgp4::SweepCell;
-use crate::constellation::{Design, Satellite, Slot};
+use crate::constellation::{Satellite, Shell, Slot};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::formats::tle::TleFieldError;
@@ -108,6 +108,18 @@ impl Findings {
             .filter(|check| check.outcome() == Outcome::Fail)
     }
 
+    /// The same findings, named after the shell of a design of several that they are about.
+    #[must_use]
+    pub fn of_shell(mut self, letters: &str) -> Self {
+        let named = |name: &mut String| *name = format!("{letters}/{name}");
+        self.checks.iter_mut().for_each(|one| named(&mut one.name));
+        self.budget.iter_mut().for_each(|one| named(&mut one.case));
+        let distributions = self.distributions.iter_mut();
+        distributions.for_each(|one| named(&mut one.name));
+        self.files.iter_mut().for_each(|one| named(&mut one.source));
+        self
+    }
+
     /// Adds what another target found.
     pub fn append(&mut self, mut other: Self) {
         self.checks.append(&mut other.checks);
@@ -172,7 +184,7 @@ impl Target {
 /// A design in a study, with the parts that propagate it and decide what is visible.
 pub struct Subject<'a> {
     /// The design.
-    pub design: Design,
+    pub shell: Shell,
     /// The study.
     pub evaluator: &'a Evaluator,
     /// The parts of the library under test.
@@ -182,9 +194,9 @@ pub struct Subject<'a> {
 impl<'a> Subject<'a> {
     /// A design with the library's own parts.
     #[must_use]
-    pub fn new(design: Design, evaluator: &'a Evaluator) -> Self {
+    pub fn new(shell: Shell, evaluator: &'a Evaluator) -> Self {
         Self {
-            design,
+            shell,
             evaluator,
             parts: Parts::default(),
         }
@@ -208,11 +220,11 @@ impl<'a> Subject<'a> {
 
     /// Elements of the first satellite; all satellites share a, e and i.
     fn orbit(&self) -> MeanElements {
-        self.design.elements(Slot { plane: 0, index: 0 })
+        self.shell.elements(Slot::FIRST)
     }
 
     fn satellites(&self) -> Vec<Satellite> {
-        (self.parts.satellites)(&self.design)
+        (self.parts.satellites)(&self.shell)
     }
 
     /// The model that the study propagates the design with, which is on trial.
@@ -305,7 +317,7 @@ pub enum ValidateError {
     Integration(#[from] numerical::integrator::IntegrationError),
     /// A design of a sweep is invalid.
     #[error(transparent)]
-    Design(#[from] crate::constellation::DesignError),
+    Shell(#[from] crate::constellation::DesignError),
     /// A span does not give a time grid.
     #[error(transparent)]
     Time(#[from] crate::time::TimeError),

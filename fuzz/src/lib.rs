@@ -260,7 +260,7 @@ pub fn csv(bytes: &[u8]) {
 fn same_elements(rows: &[ElementsRow]) {
     for row in rows {
         let satellite = navwalker::constellation::Satellite {
-            slot: navwalker::constellation::Slot { plane: 0, index: 0 },
+            slot: navwalker::constellation::Slot::FIRST,
             elements: row.elements,
         };
         let object = Object {

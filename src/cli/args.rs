@@ -7,6 +7,7 @@ mod scenario;
 pub(crate) use run_view::{PlotArgs, ReportArgs, RunArgs};
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
+use crate::cli::constellations::Named;
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::exchange::export::Product;
@@ -178,6 +179,35 @@ impl StudyArgs {
     pub(crate) fn name(&self) -> &str {
         self.scenario.as_deref().unwrap_or("paper")
     }
+}
+
+/// Constellations, each given directly.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct ConstellationArgs {
+    /// A design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG][,raan=DEG][,u=DEG][,node-step=DEG]`, degrees
+    /// and km; `+` joins shells. A name before it labels the results, as in `polar=star:90:182/13/1@925`; may be
+    /// repeated.
+    #[arg(long, value_name = "[NAME=]NOTATION")]
+    pub(crate) design: Vec<Named>,
+
+    /// The satellites in a file: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM almanacs, or a table
+    /// of elements or states, also packed by gzip; a directory is one constellation, of all its files that are
+    /// read. A name before it labels the results; may be repeated.
+    #[arg(long, value_name = "[NAME=]FILE")]
+    pub(crate) constellation: Vec<Named>,
+
+    /// Read the constellation files in this format instead of the one that their content shows.
+    #[arg(long, value_name = "FORMAT", requires = "constellation")]
+    pub(crate) input_format: Option<crate::exchange::lint::Format>,
+
+    /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
+    /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
+    #[arg(long, value_name = "PATTERN", requires = "constellation")]
+    pub(crate) only: Vec<String>,
+
+    /// Leave these satellites of the files out, named as for `--only`; may be repeated.
+    #[arg(long, value_name = "PATTERN", requires = "constellation")]
+    pub(crate) exclude: Vec<String>,
 }
 
 /// Output format on stdout.

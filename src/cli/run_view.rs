@@ -150,7 +150,7 @@ fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
     let compared = args
         .compare
         .iter()
-        .map(|design| (design.to_string(), *design));
+        .map(|design| (design.to_string(), design.clone()));
     reference.into_iter().chain(compared).collect()
 }
 

@@ -330,8 +330,8 @@ pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result
         return Ok((loaded, picked));
     }
     let loaded = Study::load(study, &[])?;
-    let design = match design.design {
-        Some(design) => design,
+    let design = match &design.design {
+        Some(design) => design.clone(),
         None => loaded.reference_design()?,
     };
     Ok((loaded, design))

@@ -1,13 +1,14 @@
-//! Walker's notation with pattern and altitude: `delta:55:182/13/1@925[,e=0.01,w=270]`.
+//! Walker's notation with pattern and altitude, `delta:55:182/13/1@925[,e=0.01,w=270]`; `+` joins shells.
 
-use super::{Design, DesignError, DesignParameters};
+use super::{Design, DesignError, Orientation, Shell, ShellParameters, shell_letters};
 use crate::keyword::UnknownKeyword;
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
 
 /// The form of the notation, for error messages.
-const FORM: &str = "pattern:inclination:T/P/F@altitude[,e=E][,w=DEG], e.g. delta:55:182/13/1@925";
+const FORM: &str = "pattern:inclination:T/P/F@altitude[,e=E][,w=DEG][,raan=DEG][,u=DEG][,node-step=DEG], \
+                    e.g. delta:55:182/13/1@925, and + joins shells";
 
 /// Why a text is not a design.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -26,12 +27,22 @@ pub enum NotationError {
         /// The text found.
         text: String,
     },
-    /// An option other than `e` and `w`, or the same one twice.
-    #[error("option '{0}' is unknown or given twice; the options are e=E and w=DEG")]
+    /// An unknown option, or the same one twice.
+    #[error(
+        "option '{0}' is unknown or given twice; the options are e=E, w=DEG, raan=DEG, u=DEG and node-step=DEG"
+    )]
     Option(String),
-    /// Several shells.
-    #[error("'+' is reserved for designs of several shells, which are not supported yet")]
-    SeveralShells,
+    /// Nothing before, between or after the `+` of a design.
+    #[error("'{0}' has an empty shell: + joins two shells")]
+    EmptyShell(String),
+    /// An error in one of several shells.
+    #[error("shell {letters}: {source}")]
+    Shell {
+        /// Its letters.
+        letters: String,
+        /// The error.
+        source: Box<NotationError>,
+    },
     /// A pattern that does not exist.
     #[error("pattern: {0}")]
     Pattern(#[from] UnknownKeyword),
@@ -47,9 +58,10 @@ fn number<T: FromStr>(field: &'static str, text: &str) -> Result<T, NotationErro
     })
 }
 
+/// A number without an exponent, whose `+` would join shells.
 fn decimal(field: &'static str, text: &str) -> Result<f64, NotationError> {
     let value: f64 = number(field, text)?;
-    if value.is_finite() {
+    if value.is_finite() && !text.contains(['e', 'E']) {
         Ok(value)
     } else {
         Err(NotationError::Number {
@@ -63,12 +75,33 @@ impl FromStr for Design {
     type Err = NotationError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let shells: Vec<&str> = text.split('+').collect();
+        if shells.len() > 1 && shells.iter().any(|shell| shell.trim().is_empty()) {
+            return Err(NotationError::EmptyShell(text.to_owned()));
+        }
+        let parse = |(n, shell): (usize, &&str)| {
+            shell
+                .parse()
+                .map_err(|source: NotationError| match shells.len() {
+                    1 => source,
+                    _ => NotationError::Shell {
+                        letters: shell_letters(n),
+                        source: Box::new(source),
+                    },
+                })
+        };
+        let shells = shells.iter().enumerate().map(parse);
+        Ok(Self::new(shells.collect::<Result<_, _>>()?)?)
+    }
+}
+
+impl FromStr for Shell {
+    type Err = NotationError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
         let form = || NotationError::Form {
             text: text.to_owned(),
         };
-        if text.contains('+') {
-            return Err(NotationError::SeveralShells);
-        }
         let (pattern, rest) = text.split_once(':').ok_or_else(form)?;
         let (inclination, rest) = rest.split_once(':').ok_or_else(form)?;
         let (counts, rest) = rest.split_once('@').ok_or_else(form)?;
@@ -85,7 +118,7 @@ impl FromStr for Design {
         let phasing = number("phasing F", f)?;
         let inclination_deg = decimal("inclination", inclination)?;
         let altitude_km = decimal("altitude", altitude)?;
-        let design = Self::new(DesignParameters {
+        let shell = Self::new(ShellParameters {
             pattern,
             planes,
             satellites_per_plane: Self::per_plane(satellites, planes)?,
@@ -93,25 +126,64 @@ impl FromStr for Design {
             inclination_deg,
             altitude_km,
         })?;
-        let (mut eccentricity, mut arg_perigee_deg) = (None, None);
-        for option in options {
-            let (slot, field, value) = match option.split_once('=') {
-                Some(("e", value)) => (&mut eccentricity, "eccentricity e", value),
-                Some(("w", value)) => (&mut arg_perigee_deg, "argument of perigee w", value),
-                _ => return Err(NotationError::Option(option.to_owned())),
+        Options::parse(options)?.apply(shell)
+    }
+}
+
+/// The options after the altitude.
+#[derive(Default)]
+struct Options {
+    eccentricity: Option<f64>,
+    arg_perigee_deg: Option<f64>,
+    raan_deg: Option<f64>,
+    arg_latitude_deg: Option<f64>,
+    node_step_deg: Option<f64>,
+}
+
+impl Options {
+    fn parse<'a>(texts: impl Iterator<Item = &'a str>) -> Result<Self, NotationError> {
+        let mut options = Self::default();
+        for text in texts {
+            let wrong = || NotationError::Option(text.to_owned());
+            let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+            let (place, field) = match name {
+                "e" => (&mut options.eccentricity, "eccentricity e"),
+                "w" => (&mut options.arg_perigee_deg, "argument of perigee w"),
+                "raan" => (&mut options.raan_deg, "right ascension of the node raan"),
+                "u" => (&mut options.arg_latitude_deg, "argument of latitude u"),
+                "node-step" => (&mut options.node_step_deg, "node-step"),
+                _ => return Err(wrong()),
             };
-            if slot.replace(decimal(field, value)?).is_some() {
-                return Err(NotationError::Option(option.to_owned()));
+            if place.replace(decimal(field, value)?).is_some() {
+                return Err(wrong());
             }
         }
-        let design =
-            design.with_ellipse(eccentricity.unwrap_or(0.0), arg_perigee_deg.unwrap_or(0.0))?;
-        Ok(design)
+        Ok(options)
+    }
+
+    fn apply(self, shell: Shell) -> Result<Shell, NotationError> {
+        let shell = shell.with_ellipse(
+            self.eccentricity.unwrap_or(0.0),
+            self.arg_perigee_deg.unwrap_or(0.0),
+        )?;
+        Ok(shell.with_orientation(Orientation {
+            raan_deg: self.raan_deg.unwrap_or(0.0),
+            arg_latitude_deg: self.arg_latitude_deg,
+            node_step_deg: self.node_step_deg,
+        })?)
     }
 }
 
 impl fmt::Display for Design {
-    /// The shortest digits that round-trip to the same design.
+    /// The shells joined by `+`, each in the shortest digits that round-trip.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shells: Vec<String> = self.shells().iter().map(Shell::to_string).collect();
+        formatter.pad(&shells.join("+"))
+    }
+}
+
+impl fmt::Display for Shell {
+    /// The shortest digits that round-trip to the same shell.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut text = format!(
             "{}:{}:{}/{}/{}@{}",
@@ -122,11 +194,19 @@ impl fmt::Display for Design {
             self.phasing(),
             self.altitude_km()
         );
-        if self.eccentricity() != 0.0 {
-            text += &format!(",e={}", self.eccentricity());
-        }
-        if self.arg_perigee_deg() != 0.0 {
-            text += &format!(",w={}", self.arg_perigee_deg());
+        let orientation = self.orientation();
+        let other_than_zero = |value: f64| (value != 0.0).then_some(value);
+        let options = [
+            ("e", other_than_zero(self.eccentricity())),
+            ("w", other_than_zero(self.arg_perigee_deg())),
+            ("raan", other_than_zero(orientation.raan_deg)),
+            ("u", orientation.arg_latitude_deg),
+            ("node-step", orientation.node_step_deg),
+        ];
+        for (name, value) in options {
+            if let Some(value) = value {
+                text += &format!(",{name}={value}");
+            }
         }
         formatter.pad(&text)
     }
@@ -150,6 +230,9 @@ mod tests {
             "star:90:182/13/1@925",
             "lattice:63.4:182/13/5@950,e=0.01,w=270",
             "delta:43.8274:225/15/1@1000,w=90",
+            "star:86.4:66/6/3@780,node-step=31.6",
+            "delta:53:160/10/1@1000+star:90:40/5/1@1100",
+            "delta:53:24/3/1@1000,raan=12.5,u=0+delta:53:24/3/1@1000,raan=72.5,u=359.5,node-step=-40",
         ] {
             assert_eq!(text.parse::<Design>().unwrap().to_string(), text);
         }
@@ -178,7 +261,19 @@ mod tests {
             "planes P = 0; at least one plane is needed"
         );
         assert!(error("delta:55:4/2/1@925,e=0.95").contains("outside [0, 0.9)"));
-        assert!(error("delta:55:4/2/1@925+delta:40:4/2/1@925").contains("several shells"));
+        assert!(error("delta:55:4/2/1@1e3").starts_with("altitude '1e3' is not a number"));
+        assert_eq!(
+            error("delta:55:4/2/1@925+"),
+            "'delta:55:4/2/1@925+' has an empty shell: + joins two shells"
+        );
+        assert_eq!(
+            error("delta:55:4/2/1@925+delta:40:4/2/2@925"),
+            "shell B: phasing F = 2 is outside 0 to P - 1 = 1"
+        );
+        assert_eq!(
+            error("delta:55:4/2/1@925+delta:55:0/2/1@925"),
+            "shell B: satellites T = 0; at least one satellite is needed"
+        );
     }
 
     proptest! {
@@ -187,9 +282,11 @@ mod tests {
             pattern in prop::sample::select(<Pattern as Keyword>::ALL.to_vec()),
             planes in 1_usize..40, satellites_per_plane in 1_usize..40, f in 0_usize..40,
             inclination_deg in 0.0..180.0_f64, altitude_km in 200.0..30_000.0_f64,
-            e in 0.0..0.02_f64, w in 0.0..360.0_f64,
+            e in 0.0..0.02_f64, w in 0.0..360.0_f64, raan_deg in 0.0..360.0_f64,
+            u in prop::option::of(0.0..360.0_f64), step in prop::option::of(-360.0..360.0_f64),
+            copies in 1_usize..4,
         ) {
-            let parameters = DesignParameters {
+            let parameters = ShellParameters {
                 pattern,
                 planes,
                 satellites_per_plane,
@@ -197,7 +294,16 @@ mod tests {
                 inclination_deg,
                 altitude_km,
             };
-            let design = Design::new(parameters).unwrap().with_ellipse(e, w).unwrap();
+            let orientation = Orientation {
+                raan_deg,
+                arg_latitude_deg: u,
+                node_step_deg: step.filter(|_| pattern != Pattern::Lattice),
+            };
+            let shell = Shell::new(parameters).unwrap().with_ellipse(e, w).unwrap();
+            let turned = shell.with_orientation(orientation).unwrap();
+            let mut shells = vec![turned; copies];
+            shells[0] = shell;
+            let design = Design::new(shells).unwrap();
             prop_assert_eq!(design.to_string().parse::<Design>().unwrap(), design);
         }
 

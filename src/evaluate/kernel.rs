@@ -52,7 +52,6 @@ pub use instructions::InstructionSet;
 
 use super::Setup;
 use super::metrics::Evaluated;
-use crate::constellation::Design;
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
@@ -60,7 +59,7 @@ use crate::stats::Summary;
 use fixed::{Fixed, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
-use propagation::PatternPropagator;
+use propagation::Propagation;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
 use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, Workspace};
@@ -118,15 +117,6 @@ pub struct Rechecks {
     pub near_limit: u64,
 }
 
-/// The source of the satellites of an evaluation.
-#[derive(Clone, Copy)]
-pub(super) enum StateSource<'a> {
-    /// A design, and its satellites under the model of the setup.
-    Design(&'a Design, &'a Ephemeris),
-    /// Any satellites.
-    Ephemeris(&'a Ephemeris),
-}
-
 /// The part of the kernel that is the same for all designs.
 pub(super) struct Kernel {
     setup: Arc<Setup>,
@@ -136,13 +126,6 @@ pub(super) struct Kernel {
     instructions: InstructionSet,
     places: Places,
     kept_values: usize,
-}
-
-/// Satellites, and their pattern if there is a fast way to propagate it.
-#[derive(Clone, Copy)]
-struct PropagationSource<'a> {
-    ephemeris: &'a Ephemeris,
-    pattern: Option<&'a PatternPropagator>,
 }
 
 /// Counts of one piece of work.
@@ -212,18 +195,9 @@ impl Kernel {
     /// Evaluates satellites.
     pub(super) fn evaluate(
         &self,
-        source: StateSource<'_>,
+        ephemeris: &Ephemeris,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
-        let (ephemeris, pattern) = match source {
-            StateSource::Design(design, ephemeris) => {
-                (ephemeris, PatternPropagator::new(design, self.setup.model))
-            }
-            StateSource::Ephemeris(ephemeris) => (ephemeris, None),
-        };
-        let propagation = PropagationSource {
-            ephemeris,
-            pattern: pattern.as_ref(),
-        };
+        let propagation = &Propagation::new(ephemeris);
         if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
             self.keeping(propagation)
         } else {
@@ -234,7 +208,7 @@ impl Kernel {
     /// One pass over the samples and two over the stored values.
     fn keeping(
         &self,
-        propagation: PropagationSource<'_>,
+        propagation: &Propagation<'_>,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let samples = self.setup.grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
@@ -266,7 +240,7 @@ impl Kernel {
     /// Recomputes the order statistics in f64.
     fn refine(
         &self,
-        propagation: PropagationSource<'_>,
+        propagation: &Propagation<'_>,
         values: &[Lanes<f32>],
         search: &RankSearch,
         summary: &mut Summary,
@@ -308,7 +282,7 @@ impl Kernel {
     /// Two passes over the samples, each on all threads; only counts are stored.
     fn streaming(
         &self,
-        propagation: PropagationSource<'_>,
+        propagation: &Propagation<'_>,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
         let (counts, parts) = self.pass(
@@ -341,7 +315,7 @@ impl Kernel {
     /// integers, in any order, and returns a sum, which is stored for each chunk.
     fn pass<A: Merge + Send>(
         &self,
-        propagation: PropagationSource<'_>,
+        propagation: &Propagation<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
         note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
@@ -393,7 +367,7 @@ impl Kernel {
     /// Evaluates some samples and passes the values of each to `take`.
     fn run(
         &self,
-        propagation: PropagationSource<'_>,
+        propagation: &Propagation<'_>,
         chunk: Range<usize>,
         limits: Limits,
         mut take: impl FnMut(&[Lanes<f32>]),
@@ -411,17 +385,14 @@ impl Kernel {
                 rotation,
             };
             let fixed = self.fixed.at(&self.scene.tiles, instant, &mut scratch)?;
-            if propagation.pattern.is_none() {
-                work.positions
-                    .propagate(propagation.ephemeris, elapsed_s, rotation)?;
-            }
-            let pattern = propagation
-                .pattern
-                .map(|pattern| (pattern, pattern.turn(elapsed_s, rotation)));
+            let Workspace {
+                positions, turns, ..
+            } = &mut work;
+            propagation.start(elapsed_s, rotation, positions, turns)?;
             self.instructions.run(Sample {
                 scene: &self.scene,
                 limits,
-                pattern,
+                patterns: &propagation.patterns,
                 fixed,
                 work: &mut work,
                 outcome: &mut outcome,

@@ -9,7 +9,7 @@
 
 pub(crate) mod gates;
 
-use crate::constellation::{Design, Satellite};
+use crate::constellation::{Design, Satellite, Shell};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::exchange::import::{Fleet, FleetError};
@@ -124,7 +124,7 @@ impl<'a> Original<'a> {
         let setup = evaluator.setup();
         Ok(Self {
             evaluator,
-            design: *design,
+            design: design.clone(),
             propagated: Rescored {
                 ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
                 metrics: evaluator.evaluate(design)?,
@@ -236,7 +236,8 @@ impl<'a> Original<'a> {
             (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
             (ElementChoice::Fit, Model::Sgp4) => Some(0.0),
             (ElementChoice::Fit, Model::J2 | Model::J2Osculating) => {
-                let eccentric = 1.0 + 8.0 * self.design.eccentricity();
+                let largest = self.design.shells().iter().map(Shell::eccentricity);
+                let eccentric = 1.0 + 8.0 * largest.fold(0.0, f64::max);
                 Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
             }
             (ElementChoice::Fit, Model::TwoBody) => None,

@@ -3,6 +3,7 @@
 //! The sweep is exact only on its grid; a search may find better designs between its points.
 
 use super::shown;
+use crate::constellation::Shell;
 use crate::optimize::{dominates, hypervolume};
 use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
 use crate::search::Quantity;
@@ -114,20 +115,22 @@ impl Certificate {
 
 impl Missed {
     fn of(members: &[&FrontMember]) -> Option<Self> {
-        let whole = |value: fn(&FrontMember) -> usize| {
-            let values = || members.iter().map(|member| value(member));
+        let designs = members.iter().filter_map(|m| m.design.design());
+        let shells: Vec<Shell> = designs.flat_map(|d| d.shells().to_vec()).collect();
+        let whole = |value: fn(&Shell) -> usize| {
+            let values = || shells.iter().map(value);
             Some([values().min()?, values().max()?])
         };
-        let real = |value: fn(&FrontMember) -> f64| {
-            let values = || members.iter().map(|member| value(member));
+        let real = |value: fn(&Shell) -> f64| {
+            let values = || shells.iter().map(value);
             Some([values().reduce(f64::min)?, values().reduce(f64::max)?])
         };
         Some(Self {
             members: members.len(),
-            planes: whole(|m| m.design.planes)?,
-            satellites_per_plane: whole(|m| m.design.satellites_per_plane)?,
-            inclination_deg: real(|m| m.design.inclination_deg)?,
-            altitude_km: real(|m| m.design.altitude_km)?,
+            planes: whole(Shell::planes)?,
+            satellites_per_plane: whole(Shell::satellites_per_plane)?,
+            inclination_deg: real(Shell::inclination_deg)?,
+            altitude_km: real(Shell::altitude_km)?,
         })
     }
 }

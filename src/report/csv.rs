@@ -16,7 +16,7 @@ use std::io;
 /// # Errors
 /// Never for a table in memory.
 pub fn metrics_csv(result: &EvaluateResult) -> io::Result<String> {
-    let (of_design, of_metrics) = (fields::<DesignSummary>(), fields::<Metrics>());
+    let (of_design, of_metrics) = (DesignSummary::columns(), fields::<Metrics>());
     let columns = of_design.iter().chain(of_metrics).copied();
     let mut header: Vec<String> = columns.map(str::to_owned).collect();
     let mut row = cells(&result.design, of_design)?;

@@ -64,8 +64,8 @@ fn row(label: &str, member: &FrontMember, further: &[String]) -> Vec<String> {
         label.to_owned(),
         design.notation.clone(),
         design.satellites.to_string(),
-        format!("{:.2}", design.inclination_deg),
-        format!("{:.1}", design.altitude_km),
+        design.by_shell(|shell| Some(format!("{:.2}", shell.inclination_deg?))),
+        design.by_shell(|shell| Some(format!("{:.1}", shell.altitude_km?))),
         shown::named("mean-visible", Some(metrics.mean_visible)),
     ];
     let pdops = [

@@ -91,7 +91,11 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         .iter()
         .filter_map(|&n| members[n].design.design())
         .collect();
-    let beside: Vec<Design> = page.beside.iter().map(|(_, design)| *design).collect();
+    let beside: Vec<Design> = page
+        .beside
+        .iter()
+        .map(|(_, design)| design.clone())
+        .collect();
     let profiles = |designs: &[Design]| match page.evaluator {
         Some(evaluator) => Profile::of_all(evaluator, designs),
         None => vec![None; designs.len()],

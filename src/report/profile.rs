@@ -61,7 +61,7 @@ impl Profile {
             cvar: summary.cvar,
         });
         Ok(Self {
-            design: *design,
+            design: design.clone(),
             epochs: series.epochs,
             points: series.points,
             pdop,

@@ -1,55 +1,98 @@
 //! The results in the files of a run, as printed by `--format json`.
 
-use crate::constellation::Design;
+use super::columns::fields;
+use crate::constellation::{Design, Shell};
 use crate::evaluate::Metrics;
 use crate::keyword::Keyword;
 use crate::optimize::Record;
 use crate::search::Quantity;
 use serde::{Deserialize, Serialize};
 
-/// A design, field by field.
+/// A design, field by field; a field is `None` where its shells differ.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DesignSummary {
     /// Walker notation of the design.
     pub notation: String,
     /// `delta`, `star` or `lattice`.
-    pub pattern: String,
-    /// Planes P.
+    pub pattern: Option<String>,
+    /// Planes P of all shells.
     pub planes: usize,
     /// Satellites per plane S.
-    pub satellites_per_plane: usize,
-    /// Satellites T.
+    pub satellites_per_plane: Option<usize>,
+    /// Satellites T of all shells.
     pub satellites: usize,
     /// Phasing F, or `N_c` of a lattice.
-    pub phasing: usize,
+    pub phasing: Option<usize>,
     /// Inclination, degrees.
-    pub inclination_deg: f64,
+    pub inclination_deg: Option<f64>,
     /// Altitude over the equatorial radius, km.
-    pub altitude_km: f64,
+    pub altitude_km: Option<f64>,
     /// Eccentricity.
-    pub eccentricity: f64,
+    pub eccentricity: Option<f64>,
     /// Argument of perigee, degrees.
-    pub arg_perigee_deg: f64,
+    pub arg_perigee_deg: Option<f64>,
+    /// Right ascension of the first node at the epoch, TEME, degrees.
+    pub raan_deg: Option<f64>,
+    /// Mean argument of latitude of the first satellite at the epoch, degrees.
+    pub arg_latitude_deg: Option<f64>,
+    /// From the node of one plane to that of the next, degrees.
+    pub node_step_deg: Option<f64>,
+    /// The shells of a design of several.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shells: Vec<DesignSummary>,
 }
 
 impl From<&Design> for DesignSummary {
     fn from(design: &Design) -> Self {
+        let shells = match design.only_shell() {
+            Some(_) => Vec::new(),
+            None => design.shells().iter().map(Self::from).collect(),
+        };
         Self {
             notation: design.to_string(),
-            pattern: design.pattern().to_string(),
+            pattern: design.common(Shell::pattern).map(|one| one.to_string()),
             planes: design.planes(),
-            satellites_per_plane: design.satellites_per_plane(),
+            satellites_per_plane: design.common(Shell::satellites_per_plane),
             satellites: design.satellite_count(),
-            phasing: design.phasing(),
-            inclination_deg: design.inclination_deg(),
-            altitude_km: design.altitude_km(),
-            eccentricity: design.eccentricity(),
-            arg_perigee_deg: design.arg_perigee_deg(),
+            phasing: design.common(Shell::phasing),
+            inclination_deg: design.common(Shell::inclination_deg),
+            altitude_km: design.common(Shell::altitude_km),
+            eccentricity: design.common(Shell::eccentricity),
+            arg_perigee_deg: design.common(Shell::arg_perigee_deg),
+            raan_deg: design.common(|shell| shell.orientation().raan_deg),
+            arg_latitude_deg: design.common(Shell::arg_latitude_deg),
+            node_step_deg: design.common(Shell::node_step_deg),
+            shells,
         }
     }
 }
 
+impl From<&Shell> for DesignSummary {
+    fn from(shell: &Shell) -> Self {
+        Self::from(&Design::from(*shell))
+    }
+}
+
 impl DesignSummary {
+    /// The columns of a design in a table: every field but the shells.
+    #[must_use]
+    pub fn columns() -> &'static [&'static str] {
+        let all = fields::<Self>();
+        &all[..all.len() - 1]
+    }
+
+    /// A value as text, of each shell in turn where they differ: `53+90`.
+    #[must_use]
+    pub fn by_shell(&self, text: impl Fn(&Self) -> Option<String>) -> String {
+        match text(self) {
+            Some(text) => text,
+            None => {
+                let texts = self.shells.iter().filter_map(text);
+                texts.collect::<Vec<_>>().join("+")
+            }
+        }
+    }
+
     /// The design of the notation; `None` if the notation is invalid.
     #[must_use]
     pub fn design(&self) -> Option<Design> {

@@ -16,10 +16,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let further = further_quantities(front);
     let header = fields::<FrontMember>().iter().flat_map(|name| match *name {
-        "design" => fields::<DesignSummary>()
-            .iter()
-            .map(|n| column(n))
-            .collect(),
+        "design" => DesignSummary::columns().iter().map(|n| column(n)).collect(),
         "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
         "objectives" => further.iter().map(|name| column(name)).collect(),
         "constraints" => Vec::new(),
@@ -30,7 +27,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         let mut row = Vec::new();
         for name in fields::<FrontMember>() {
             row.extend(match *name {
-                "design" => cells(&member.design, fields::<DesignSummary>())?,
+                "design" => cells(&member.design, DesignSummary::columns())?,
                 "metrics" => cells(&member.metrics, fields::<Metrics>())?,
                 "objectives" => {
                     let values = further.iter().map(|name| member.quantity(name));
@@ -52,7 +49,7 @@ fn column(name: &str) -> String {
 
 /// Objectives and constrained quantities that are not columns of the design or the metrics.
 fn further_quantities(front: &[FrontMember]) -> Vec<String> {
-    let columns = [fields::<DesignSummary>(), fields::<Metrics>()].concat();
+    let columns = [DesignSummary::columns(), fields::<Metrics>()].concat();
     let first = front.first().into_iter();
     let names = first.flat_map(|member| {
         let objectives = member.objectives.iter().map(|(name, _)| name);

@@ -115,7 +115,7 @@ impl Quantity {
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
             Self::LaunchCost => {
-                let lift = 1.0 + cost.per_1000_km * design.altitude_km() / 1000.0;
+                let lift = 1.0 + cost.per_1000_km * design.highest_altitude_km() / 1000.0;
                 Some(cost.per_satellite * satellites * lift + cost.per_plane * planes)
             }
         }

@@ -21,7 +21,7 @@ pub use measured::{Measured, RowValue};
 pub use searches::{FoundMember, FoundSet};
 pub use table::{PERCENTAGES, Percentage, Printable, Scheme, TABLE1, TableRow, table2};
 
-use crate::constellation::{Design, DesignError, DesignParameters, NotationError};
+use crate::constellation::{Design, DesignError, NotationError, Shell, ShellParameters};
 use crate::ephemeris::EphemerisError;
 use crate::evaluate::{Evaluator, Setup};
 use crate::ground::GroundError;
@@ -213,18 +213,19 @@ fn cost_of_size(evaluator: &Evaluator, study: &PaperStudy) -> Result<CostOfSize,
         .find(|row| row.name() == lines::REFERENCE)
         .ok_or_else(|| PaperError::NoRow(lines::REFERENCE.to_owned()))?
         .design;
+    let reference = reference.shells()[0];
     let mut satellites = [0; 2];
     let mut j_cost = [None; 2];
     for end in [0, 1] {
         let planes = space.planes[end] as usize;
-        let design = Design::new(DesignParameters {
+        let shell = Shell::new(ShellParameters {
             planes,
             satellites_per_plane: space.satellites_per_plane[end] as usize,
             phasing: reference.phasing().min(planes - 1),
             ..reference.parameters()
         })?;
-        satellites[end] = design.satellite_count();
-        j_cost[end] = evaluator.evaluate(&design)?.j_cost;
+        satellites[end] = shell.satellite_count();
+        j_cost[end] = evaluator.evaluate(&Design::from(shell))?.j_cost;
     }
     Ok(CostOfSize { satellites, j_cost })
 }

@@ -185,7 +185,7 @@ fn coverage_checks(
     matching: &Matching,
     tracks: &[Track],
 ) -> Vec<Check> {
-    let slots = subject.design.satellite_count() as f64;
+    let slots = subject.shell.satellite_count() as f64;
     let matched = matching.count() as f64;
     let count = |name: &str, quantity: &str, value: f64, reason: &str| {
         Check::new(

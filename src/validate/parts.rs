@@ -1,7 +1,7 @@
 //! What is on trial, and what judges it, as parts that a test can exchange.
 
 use super::numerical::integrator::{Acceleration, ZonalField};
-use crate::constellation::{Design, Satellite};
+use crate::constellation::{Satellite, Shell};
 use crate::dop::Clocks;
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -23,7 +23,7 @@ pub type ModelPropagator =
 #[derive(Debug, Clone, Copy)]
 pub struct Parts {
     /// Satellites and their slots.
-    pub satellites: fn(&Design) -> Vec<Satellite>,
+    pub satellites: fn(&Shell) -> Vec<Satellite>,
     /// The secular J2 theory.
     pub mean_j2: fn(&MeanElements) -> SecularOrbit,
     /// The other models that a study can propagate its design with.
@@ -56,7 +56,7 @@ pub struct Parts {
 impl Default for Parts {
     fn default() -> Self {
         Self {
-            satellites: Design::satellites,
+            satellites: Shell::satellites,
             mean_j2: SecularOrbit::j2,
             propagator: Model::propagator,
             sgp4: Sgp4Theory::STANDARD,

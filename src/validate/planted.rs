@@ -49,7 +49,7 @@ fn findings(model: Model, parts: Parts, targets: &[Target]) -> Findings {
     let grid = TimeGrid::new(epoch, 86_400.0, 600.0).unwrap();
     let evaluator = testing::evaluator_of(model, grid);
     let subject = Subject {
-        design: "delta:40:30/6/1@925".parse().unwrap(),
+        shell: "delta:40:30/6/1@925".parse().unwrap(),
         evaluator: &evaluator,
         parts,
     };

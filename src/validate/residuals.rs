@@ -200,7 +200,7 @@ fn distances(case: &str, first: &Ephemeris, instants: &[InstantSums]) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::constellation::Design;
+    use crate::constellation::Shell;
     use crate::ephemeris::EphemerisSatellite;
     use crate::orbit::j2::{SecularOrbit, SecularRates};
     use crate::time::{Epoch, TimeGrid};
@@ -213,10 +213,10 @@ mod tests {
     /// A mean motion that is off by δ drifts by a δ t: growth, maximum and RMS are those of a ramp.
     #[test]
     fn validate_a_known_drift() {
-        let design: Design = "delta:55:6/3/1@925".parse().unwrap();
+        let shell: Shell = "delta:55:6/3/1@925".parse().unwrap();
         let drift_km_per_day = 2.0;
         let propagate = |extra_rad_s: f64| {
-            let satellites = design.satellites().into_iter().map(|satellite| {
+            let satellites = shell.satellites().into_iter().map(|satellite| {
                 let mut rates = SecularRates::j2(&satellite.elements);
                 rates.mean_anomaly_rad_s += extra_rad_s;
                 EphemerisSatellite {

@@ -271,7 +271,7 @@ impl GateScale {
             label: subject.model_label(),
             causes: Causes::of(&orbit),
             days,
-            leftover_per_day: leftover_per_day(&subject.design.satellites(), days),
+            leftover_per_day: leftover_per_day(&subject.shell.satellites(), days),
             deep_space: is_deep_space(&orbit),
         }
     }

@@ -1,7 +1,7 @@
 //! The evaluator against an independent one: `validation/cases/evaluate-reference.json`.
 
 use navwalker::constellation::gnss::Preset;
-use navwalker::constellation::{Design, DesignParameters, Pattern};
+use navwalker::constellation::{Design, Pattern, Shell, ShellParameters};
 use navwalker::dop::Clocks;
 use navwalker::earth::Surface;
 use navwalker::evaluate::{Evaluator, Setup};
@@ -56,7 +56,7 @@ impl Case {
             (None, 180.0) => (Pattern::Star, self.phasing),
             _ => (Pattern::Delta, self.phasing),
         };
-        Design::new(DesignParameters {
+        let shell = Shell::new(ShellParameters {
             pattern,
             planes: self.planes,
             satellites_per_plane: self.sats_per_plane,
@@ -65,8 +65,8 @@ impl Case {
             altitude_km: self.altitude_km,
         })
         .unwrap()
-        .with_ellipse(self.eccentricity, self.arg_perigee_deg)
-        .unwrap()
+        .with_ellipse(self.eccentricity, self.arg_perigee_deg);
+        shell.unwrap().into()
     }
 
     fn setup(&self) -> Setup {

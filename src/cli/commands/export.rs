@@ -78,7 +78,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         .transpose()?;
     let scene = evaluator.as_ref().map(|evaluator| {
         let (surface, grid) = (scenario.earth.surface, scenario.ground_grid());
-        Scene::new(evaluator, subject.design, surface, grid)
+        Scene::new(evaluator, subject.design.clone(), surface, grid)
     });
     let request = Request {
         subject: &subject,

@@ -3,6 +3,7 @@
 use crate::cli::args::{ReportFormat, ValidateArgs};
 use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, coincidence, files, output, read_constellation};
+use crate::constellation::shell_letters;
 use crate::ephemeris::Ephemeris;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
@@ -79,21 +80,14 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     if let Ok(satellites) = Ephemeris::of_design(&design, setup.model, setup.grid) {
         coincidence::warn(&setup.gnss, setup.grid, Some(&satellites));
     }
-    let subject = Subject::new(design, &evaluator);
     let mut findings = Findings::default();
-    for target in &targets {
-        match target {
-            Against::Standard(target) => {
-                for each in standards_for(*target, &study)? {
-                    findings.append(each.findings(&subject)?);
-                }
-            }
-            Against::Files(path) => {
-                for (source, comparands) in comparisons(path, args.input_format)? {
-                    findings.append(against_file(&subject, &source, &comparands)?);
-                }
-            }
-        }
+    for (n, shell) in design.shells().iter().enumerate() {
+        let subject = Subject::new(*shell, &evaluator);
+        let found = found(&subject, &targets, args.input_format, &study)?;
+        findings.append(match design.only_shell() {
+            Some(_) => found,
+            None => found.of_shell(&shell_letters(n)),
+        });
     }
     let model = evaluator.setup().model;
     let against = args.against.clone();
@@ -111,6 +105,31 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     } else {
         Status::Failed
     })
+}
+
+/// What the targets find about a shell.
+fn found(
+    subject: &Subject<'_>,
+    targets: &[Against],
+    format: Option<Format>,
+    study: &Study,
+) -> Result<Findings> {
+    let mut findings = Findings::default();
+    for target in targets {
+        match target {
+            Against::Standard(target) => {
+                for each in standards_for(*target, study)? {
+                    findings.append(each.findings(subject)?);
+                }
+            }
+            Against::Files(path) => {
+                for (source, comparands) in comparisons(path, format)? {
+                    findings.append(against_file(subject, &source, &comparands)?);
+                }
+            }
+        }
+    }
+    Ok(findings)
 }
 
 /// The standards a target covers; `all` includes the paper's tables only for the paper's own study,

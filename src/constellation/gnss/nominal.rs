@@ -6,7 +6,7 @@
 //! from the sidereal time of its epoch. For actual satellite positions, use element sets.
 
 use super::{GeosynchronousOrbit, GnssOrbit, GnssSatellite};
-use crate::constellation::{Design, DesignParameters, Pattern};
+use crate::constellation::{Pattern, Shell, ShellParameters};
 use crate::earth::RADIUS_KM;
 use crate::orbit::MeanElements;
 use crate::orbit::j2::SecularOrbit;
@@ -101,7 +101,7 @@ pub(super) fn glonass() -> Vec<GnssSatellite> {
 
 /// A circular Walker delta 24/3/1 under secular J2; the first satellite has Ω = M = 0.
 fn walker_24_3_1(prefix: &str, inclination_deg: f64, altitude_km: f64) -> Vec<GnssSatellite> {
-    let design = Design::new(DesignParameters {
+    let shell = Shell::new(ShellParameters {
         pattern: Pattern::Delta,
         planes: 3,
         satellites_per_plane: 8,
@@ -110,7 +110,7 @@ fn walker_24_3_1(prefix: &str, inclination_deg: f64, altitude_km: f64) -> Vec<Gn
         altitude_km,
     });
     // The presets are constants of this module, covered by its tests.
-    let satellites = design.map(|design| design.satellites()).unwrap_or_default();
+    let satellites = shell.map(|shell| shell.satellites()).unwrap_or_default();
     (1..)
         .zip(satellites)
         .map(|(number, satellite)| GnssSatellite {

@@ -8,12 +8,13 @@
 
 mod anomaly;
 
-use crate::constellation::{Design, Satellite};
-use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::constellation::Satellite;
+use crate::ephemeris::{Ephemeris, EphemerisError, ShellSpan};
 use crate::frames::EarthRotation;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Satellites that are processed together.
 pub(super) const BLOCK: usize = 64;
@@ -37,15 +38,18 @@ pub(super) struct Positions {
     pub(super) farthest_km: f64,
 }
 
+impl PositionBlock {
+    const NOWHERE: Self = Self {
+        x: [f64::NAN; BLOCK],
+        y: [f64::NAN; BLOCK],
+        z: [f64::NAN; BLOCK],
+    };
+}
+
 impl Positions {
     pub(super) fn new(count: usize) -> Self {
-        let nowhere = PositionBlock {
-            x: [f64::NAN; BLOCK],
-            y: [f64::NAN; BLOCK],
-            z: [f64::NAN; BLOCK],
-        };
         Self {
-            blocks: vec![nowhere; count.div_ceil(BLOCK)],
+            blocks: vec![PositionBlock::NOWHERE; count.div_ceil(BLOCK)],
             count,
             nearest_km: 0.0,
             farthest_km: 0.0,
@@ -59,15 +63,50 @@ impl Positions {
         [block.x[place], block.y[place], block.z[place]]
     }
 
-    /// Positions from the propagators, one by one.
+    /// Forgets the distances of the last sample.
+    fn restart(&mut self) {
+        (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
+    }
+
+    #[inline(always)]
+    fn widen(&mut self, nearest_km: f64, farthest_km: f64) {
+        self.nearest_km = self.nearest_km.min(nearest_km);
+        self.farthest_km = self.farthest_km.max(farthest_km);
+    }
+
+    /// The first `count` positions of a block become those from place `first` on.
+    #[inline(always)]
+    fn copy(&mut self, first: usize, count: usize, from: &PositionBlock) {
+        for n in 0..count {
+            let block = &mut self.blocks[(first + n) / BLOCK];
+            let place = (first + n) % BLOCK;
+            block.x[place] = from.x[n];
+            block.y[place] = from.y[n];
+            block.z[place] = from.z[n];
+        }
+    }
+
+    /// Positions of all satellites from their propagators, one by one.
     pub(super) fn propagate(
         &mut self,
         ephemeris: &Ephemeris,
         elapsed_s: f64,
         rotation: EarthRotation,
     ) -> Result<(), EphemerisError> {
-        (self.nearest_km, self.farthest_km) = (f64::INFINITY, 0.0);
-        for (n, satellite) in ephemeris.satellites().iter().enumerate() {
+        self.restart();
+        let all = 0..ephemeris.satellites().len();
+        self.propagate_some(ephemeris, all, elapsed_s, rotation)
+    }
+
+    fn propagate_some(
+        &mut self,
+        ephemeris: &Ephemeris,
+        places: Range<usize>,
+        elapsed_s: f64,
+        rotation: EarthRotation,
+    ) -> Result<(), EphemerisError> {
+        for n in places {
+            let satellite = &ephemeris.satellites()[n];
             let block = &mut self.blocks[n / BLOCK];
             let place = n % BLOCK;
             let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? else {
@@ -76,11 +115,55 @@ impl Positions {
                 continue;
             };
             let position = rotation.to_earth_fixed(state.position_km).km();
-            let radius_km = position.norm();
-            self.nearest_km = self.nearest_km.min(radius_km);
-            self.farthest_km = self.farthest_km.max(radius_km);
             (block.x[place], block.y[place], block.z[place]) = (position.x, position.y, position.z);
+            let radius_km = position.norm();
+            self.widen(radius_km, radius_km);
         }
+        Ok(())
+    }
+}
+
+/// How the satellites of an ephemeris are propagated: shells under a secular model at once, all others one by
+/// one.
+pub(super) struct Propagation<'a> {
+    pub(super) ephemeris: &'a Ephemeris,
+    pub(super) patterns: Vec<PatternPropagator>,
+    others: Vec<Range<usize>>,
+}
+
+impl<'a> Propagation<'a> {
+    pub(super) fn new(ephemeris: &'a Ephemeris) -> Self {
+        let spans = ephemeris.shells();
+        let patterns: Vec<_> = spans.iter().filter_map(PatternPropagator::new).collect();
+        let (mut others, mut next) = (Vec::new(), 0);
+        for pattern in &patterns {
+            others.push(next..pattern.places.start);
+            next = pattern.places.end;
+        }
+        others.push(next..ephemeris.satellites().len());
+        others.retain(|range| !range.is_empty());
+        Self {
+            ephemeris,
+            patterns,
+            others,
+        }
+    }
+
+    /// Starts a sample: the positions of the satellites without a pattern, and the rotation of each pattern.
+    pub(super) fn start(
+        &self,
+        elapsed_s: f64,
+        rotation: EarthRotation,
+        positions: &mut Positions,
+        turns: &mut Vec<Turn>,
+    ) -> Result<(), EphemerisError> {
+        positions.restart();
+        for places in &self.others {
+            positions.propagate_some(self.ephemeris, places.clone(), elapsed_s, rotation)?;
+        }
+        turns.clear();
+        let turn = |pattern: &PatternPropagator| pattern.turn(elapsed_s, rotation);
+        turns.extend(self.patterns.iter().map(turn));
         Ok(())
     }
 }
@@ -88,6 +171,8 @@ impl Positions {
 /// A pattern under a secular model.
 #[derive(Debug, Clone)]
 pub(super) struct PatternPropagator {
+    /// Places of its satellites in the ephemeris.
+    places: Range<usize>,
     semi_major_axis_km: f64,
     eccentricity: f64,
     sin_i: f64,
@@ -157,17 +242,17 @@ impl PatternBlock {
 }
 
 impl PatternPropagator {
-    /// The propagation of a design; `None` if its model is not secular or its eccentricity too large for
+    /// The propagation of a shell; `None` if its model is not secular or its eccentricity too large for
     /// the lanes.
-    pub(super) fn new(design: &Design, model: Model) -> Option<Self> {
-        let satellites = design.satellites();
+    pub(super) fn new(span: &ShellSpan) -> Option<Self> {
+        let satellites = span.shell.satellites();
         let first = satellites.first()?.elements;
-        let rates = match model {
+        let rates = match span.model {
             Model::J2 => SecularRates::j2(&first),
             Model::TwoBody => SecularRates::two_body(&first),
             _ => return None,
         };
-        let eccentricity = design.eccentricity();
+        let eccentricity = span.shell.eccentricity();
         if eccentricity > anomaly::LARGEST_ECCENTRICITY {
             return None;
         }
@@ -177,6 +262,7 @@ impl PatternPropagator {
             _ => rates.mean_anomaly_rad_s,
         };
         Some(Self {
+            places: span.places(),
             semi_major_axis_km: first.semi_major_axis_km,
             eccentricity,
             sin_i,
@@ -208,8 +294,16 @@ impl PatternPropagator {
 
     #[inline(always)]
     fn place_all(&self, shape: &impl Shape, turn: &Turn, positions: &mut Positions) {
-        for (from, to) in self.blocks.iter().zip(&mut positions.blocks) {
-            from.place_at(self, turn, shape, to);
+        let mut scratch = PositionBlock::NOWHERE;
+        for (from, first) in self.blocks.iter().zip(self.places.clone().step_by(BLOCK)) {
+            let count = BLOCK.min(self.places.end - first);
+            // A block of another place or length would spill over its neighbours.
+            if count == BLOCK && first.is_multiple_of(BLOCK) {
+                from.place_at(self, turn, shape, &mut positions.blocks[first / BLOCK]);
+            } else {
+                from.place_at(self, turn, shape, &mut scratch);
+                positions.copy(first, count, &scratch);
+            }
         }
     }
 
@@ -229,8 +323,7 @@ impl PatternPropagator {
         } else {
             self.place_all(&CircularShape { radius_km: a }, turn, positions);
         }
-        positions.nearest_km = a * (1.0 - e);
-        positions.farthest_km = a * (1.0 + e);
+        positions.widen(a * (1.0 - e), a * (1.0 + e));
     }
 }
 

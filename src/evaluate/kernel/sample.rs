@@ -73,6 +73,8 @@ pub(super) struct SampleContext {
 /// Memory of one evaluation that is reused for each sample.
 pub(super) struct Workspace {
     pub(super) positions: Positions,
+    /// Of each pattern, at the sample.
+    pub(super) turns: Vec<Turn>,
     all: Candidates,
     near: Candidates,
     /// Words of a tile.
@@ -87,6 +89,7 @@ impl Workspace {
         let blocks = satellites.div_ceil(BLOCK).max(1);
         Self {
             positions: Positions::new(satellites),
+            turns: Vec::new(),
             near: all.clone(),
             blocks,
             words: vec![0; blocks * TILES_IN_GROUP],
@@ -146,8 +149,8 @@ pub(super) struct Sample<'a> {
     pub(super) scene: &'a SampleContext,
     /// The limits of the scene, or narrower ones.
     pub(super) limits: Limits,
-    /// The pattern to propagate; without one the positions are given.
-    pub(super) pattern: Option<(&'a PatternPropagator, Turn)>,
+    /// The patterns to propagate, each by its turn in the workspace; the other positions are given.
+    pub(super) patterns: &'a [PatternPropagator],
     /// The GNSS part.
     pub(super) fixed: FixedSample<'a>,
     pub(super) work: &'a mut Workspace,
@@ -159,7 +162,7 @@ impl Work for Sample<'_> {
 
     #[inline(always)]
     fn run(self) {
-        if let Some((pattern, turn)) = &self.pattern {
+        for (pattern, turn) in self.patterns.iter().zip(&self.work.turns) {
             pattern.place_at(turn, &mut self.work.positions);
         }
         evaluate(

@@ -1,9 +1,9 @@
 use super::candidates::Candidates;
-use super::propagation::{PatternPropagator, Positions};
+use super::propagation::{PatternPropagator, Positions, Turn};
 use super::tiles::{Horizon, Tiles};
 use super::*;
 use crate::constellation::gnss::Preset;
-use crate::constellation::{DesignParameters, Pattern};
+use crate::constellation::{Design, Orientation, Pattern, Shell, ShellParameters};
 use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
@@ -47,7 +47,24 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// One shell, and often two or three.
 fn designs() -> impl Strategy<Value = Design> {
+    let designs = prop::collection::vec(shells(), 1..4);
+    designs.prop_map(|shells| Design::new(shells).unwrap())
+}
+
+fn orientations() -> impl Strategy<Value = Orientation> {
+    let angle = || prop::option::of(0.0..360.0_f64);
+    (angle(), angle(), angle()).prop_map(|(raan_deg, arg_latitude_deg, node_step_deg)| {
+        Orientation {
+            raan_deg: raan_deg.unwrap_or(0.0),
+            arg_latitude_deg,
+            node_step_deg,
+        }
+    })
+}
+
+fn shells() -> impl Strategy<Value = Shell> {
     let pattern = prop::sample::select(<Pattern as crate::keyword::Keyword>::ALL.to_vec());
     let shape = (1..9_usize, 1..12_usize, 0..9_usize);
     // As a fraction of the eccentricity that brings the perigee to the ground.
@@ -55,10 +72,15 @@ fn designs() -> impl Strategy<Value = Design> {
         2 => Just((0.0, 0.0)),
         1 => (0.0..0.95_f64, 0.0..360.0_f64)
     ];
-    (pattern, shape, 0.0..180.0_f64, 300.0..3000.0_f64, ellipse).prop_map(
-        |(pattern, (planes, per_plane, phasing), inclination_deg, altitude_km, (e, w))| {
+    let orbit = (0.0..180.0_f64, 300.0..3000.0_f64, ellipse);
+    (pattern, shape, orbit, orientations()).prop_map(
+        |(pattern, (planes, per_plane, phasing), (inclination_deg, altitude_km, (e, w)), at)| {
             let e = e * altitude_km / (RADIUS_KM + altitude_km);
-            Design::new(DesignParameters {
+            let orientation = Orientation {
+                node_step_deg: at.node_step_deg.filter(|_| pattern != Pattern::Lattice),
+                ..at
+            };
+            Shell::new(ShellParameters {
                 pattern,
                 planes,
                 satellites_per_plane: per_plane,
@@ -66,7 +88,7 @@ fn designs() -> impl Strategy<Value = Design> {
                 inclination_deg,
                 altitude_km,
             })
-            .and_then(|design| design.with_ellipse(e, w))
+            .and_then(|shell| shell.with_ellipse(e, w)?.with_orientation(orientation))
             .unwrap()
         },
     )
@@ -166,6 +188,10 @@ fn whole_days_equal_the_plain_path() {
         ("delta:55:182/13/1@925", vec![Preset::Beidou3.into()]),
         ("delta:50:44/11/3@420", vec![Preset::Beidou3.into()]),
         ("star:88:132/11/1@900", vec![]),
+        (
+            "delta:53:70/7/1@1000,raan=20+star:90:33/3/1@1100,u=12,node-step=31.6",
+            vec![Preset::Beidou3.into()],
+        ),
     ] {
         let design: Design = text.parse().unwrap();
         let setup = Setup {
@@ -182,6 +208,30 @@ fn whole_days_equal_the_plain_path() {
         assert!(rechecks.near_mask > 0, "{text}");
         assert!(rechecks.large_pdop > 0, "{text}");
     }
+}
+
+/// Shells under a secular model at any place among other satellites, whose numbers fill no block.
+#[test]
+fn shells_among_other_satellites_equal_the_plain_path() {
+    let base = setup([3.0, 54.0], Surface::Sphere);
+    let setup = Setup {
+        grid: TimeGrid::new(base.grid.epoch(), 7_200.0, 60.0).unwrap(),
+        ..base
+    };
+    let part = |text: &str, model: Model| {
+        let design: Design = text.parse().unwrap();
+        Ephemeris::of_design(&design, model, setup.grid).unwrap()
+    };
+    let ephemeris = part("delta:60:30/5/1@700", Model::J2Osculating)
+        .joined(part("delta:53:91/7/1@1000", Model::J2))
+        .joined(part("star:80:24/6/1@800", Model::J2Osculating))
+        .joined(part("delta:45:66/6/1@1200", Model::TwoBody));
+    assert_eq!(Propagation::new(&ephemeris).patterns.len(), 2);
+    let evaluator = Evaluator::new(setup.clone()).unwrap();
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    let fast = evaluator.evaluate_ephemeris(&ephemeris).unwrap();
+    assert!(plain.mean_visible > 5.0);
+    compare(&fast, &plain).unwrap();
 }
 
 /// A satellite at rest over the rotating Earth.
@@ -227,7 +277,7 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::new(setup.grid, satellites);
     let evaluator = Evaluator::new(setup).unwrap();
     let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, rechecks) = kernel.evaluate(StateSource::Ephemeris(&ephemeris)).unwrap();
+    let (_, rechecks) = kernel.evaluate(&ephemeris).unwrap();
     assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
@@ -294,7 +344,8 @@ fn streaming_equals_keeping() {
 fn regress_culling_looks_at_twice_what_is_seen() {
     let setup = setup([3.0, 54.0], Surface::Sphere);
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
-    let propagation = PatternPropagator::new(&design, setup.model).unwrap();
+    let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+    let propagation = PatternPropagator::new(&ephemeris.shells()[0]).unwrap();
     let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
     assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
     let count = design.satellite_count();
@@ -379,17 +430,26 @@ fn patterns_propagate_as_their_propagators_do() {
         "lattice:63.4:60/6/5@2000",
         "delta:63.4:24/6/1@2000,e=0.01,w=270",
         "lattice:40:24/6/5@9000,e=0.25,w=77",
+        "star:86.4:66/6/3@780,raan=77,u=5,node-step=31.6",
+        "delta:63.4:24/6/1@2000,e=0.01,w=270,u=100+delta:55:182/13/1@925+lattice:40:24/6/5@9000,e=0.25",
     ] {
         let design: Design = text.parse().unwrap();
         let base = setup([3.0, 54.0], Surface::Sphere);
         let grid = TimeGrid::new(base.grid.epoch(), 7.0 * 86_400.0, 5000.0).unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        let propagation = PatternPropagator::new(&design, Model::J2).unwrap();
+        let propagation = Propagation::new(&ephemeris);
+        assert_eq!(propagation.patterns.len(), design.shells().len());
         let mut propagated = Positions::new(design.satellite_count());
         let mut asked = propagated.clone();
+        let mut turns: Vec<Turn> = Vec::new();
         for elapsed_s in grid.iter() {
             let rotation = EarthRotation::from_gmst(grid.epoch().gmst_rad(elapsed_s));
-            propagation.place_at(&propagation.turn(elapsed_s, rotation), &mut propagated);
+            propagation
+                .start(elapsed_s, rotation, &mut propagated, &mut turns)
+                .unwrap();
+            for (pattern, turn) in propagation.patterns.iter().zip(&turns) {
+                pattern.place_at(turn, &mut propagated);
+            }
             asked.propagate(&ephemeris, elapsed_s, rotation).unwrap();
             for n in 0..design.satellite_count() {
                 let apart = Vector3::from(propagated.at(n)) - Vector3::from(asked.at(n));
@@ -416,7 +476,6 @@ fn single_values_hold_six_digits() {
             ..setup([3.0, 54.0], Surface::Wgs84)
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-        let pattern = PatternPropagator::new(&design, setup.model).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let kernel = evaluator.kernel.as_ref().unwrap();
         let values = |single_below: f32| {
@@ -424,10 +483,7 @@ fn single_values_hold_six_digits() {
                 single_below,
                 ..kernel.scene.limits
             };
-            let propagation = PropagationSource {
-                ephemeris: &ephemeris,
-                pattern: Some(&pattern),
-            };
+            let propagation = &Propagation::new(&ephemeris);
             let mut all = Vec::new();
             let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
             kernel.run(propagation, 0..200, limits, take).unwrap();

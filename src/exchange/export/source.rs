@@ -55,7 +55,7 @@ impl<'a> ExportSource<'a> {
 
     /// The distance of the design's satellites from their positions in an ITRF.
     fn distance_from_itrf(&self) -> String {
-        let radius_km = RADIUS_KM + self.subject.design.altitude_km();
+        let radius_km = RADIUS_KM + self.subject.design.highest_altitude_km();
         distance_from_itrf(self.subject.grid.epoch(), radius_km)
     }
 

@@ -71,7 +71,12 @@ pub(crate) fn in_memory(
     let contents = Contents::default();
     let sink = |path: &str| Ok(Kept(Arc::clone(&contents), path.to_owned()));
     let evaluator = Evaluator::new(setup(subject)).unwrap();
-    let scene = Scene::new(&evaluator, subject.design, Surface::Wgs84, Some(GRID));
+    let scene = Scene::new(
+        &evaluator,
+        subject.design.clone(),
+        Surface::Wgs84,
+        Some(GRID),
+    );
     // The ephemerides of STK alone have none.
     let shown = products.iter().any(|one| one.row().needs_scenario());
     let request = Request {

@@ -62,7 +62,7 @@ impl ReadBackTheory {
 /// The quantities on which the effect of a digit depends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Semi-major axis of the design, km.
+    /// Largest semi-major axis of the design, km.
     pub semi_major_axis_km: f64,
     /// Span of the study, days.
     pub days: f64,
@@ -71,7 +71,7 @@ pub struct Extent {
 impl Extent {
     pub(super) fn new(design: &Design, grid: TimeGrid) -> Self {
         Self {
-            semi_major_axis_km: RADIUS_KM + design.altitude_km(),
+            semi_major_axis_km: RADIUS_KM + design.highest_altitude_km(),
             days: grid.elapsed_s(grid.len() - 1) / SECONDS_PER_DAY,
         }
     }

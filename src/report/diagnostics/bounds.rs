@@ -21,16 +21,16 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
         }];
     }
     let whole = |[lo, hi]: [u32; 2]| [f64::from(lo), f64::from(hi)];
-    type Value = fn(&FrontMember) -> f64;
+    type Value = fn(&FrontMember) -> Option<f64>;
     let variables: [(&str, &str, [f64; 2], Value); 7] = [
         ("planes", "", whole(space.planes), |m| {
-            m.design.planes as f64
+            Some(m.design.planes as f64)
         }),
         (
             "satellites-per-plane",
             "",
             whole(space.satellites_per_plane),
-            |m| m.design.satellites_per_plane as f64,
+            |m| Some(m.design.satellites_per_plane? as f64),
         ),
         ("inclination-deg", "°", space.inclination_deg, |m| {
             m.design.inclination_deg
@@ -39,7 +39,7 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
             m.design.altitude_km
         }),
         ("phasing", "", open_phasing(space), |m| {
-            m.design.phasing as f64
+            Some(m.design.phasing? as f64)
         }),
         ("eccentricity", "", space.eccentricity, |m| {
             m.design.eccentricity
@@ -58,7 +58,9 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
             .into_iter()
             .filter(|(bound, _)| !is_physical_limit(name, *bound))
         {
-            let near = |m: &&FrontMember| (value(m) - bound).abs() <= RESTING_DISTANCE * (hi - lo);
+            let near = |m: &&FrontMember| {
+                value(m).is_some_and(|x| (x - bound).abs() <= RESTING_DISTANCE * (hi - lo))
+            };
             let resting = front.iter().filter(near).count();
             if resting as f64 >= RESTING_SHARE * front.len() as f64 {
                 found.push(Diagnostic {

@@ -32,7 +32,7 @@ const Core = (() => {
         pdop: unpack(cuts.pdop),
         tail: cuts.tail,
         tailShown: cuts.tail_shown,
-        orbit: { ...cuts.orbit, meanAnomalyDeg: unpack(cuts.orbit.mean_anomaly_deg) },
+        orbits: cuts.orbits.map((orbit) => ({ ...orbit, meanAnomalyDeg: unpack(orbit.mean_anomaly_deg) })),
       });
     }
     return unpacked.get(cuts);

@@ -92,7 +92,7 @@ const Globe = (() => {
     });
   }
 
-  /** Earth-fixed positions of all satellites, three numbers each, in radii of the Earth. */
+  /** Earth-fixed positions of the satellites of a shell, three numbers each, in radii of the Earth. */
   function positions(orbit, axes, elapsed) {
     const e = orbit.eccentricity;
     const advance = orbit.rates_deg_s[2] * elapsed;
@@ -163,9 +163,9 @@ const Globe = (() => {
 
   let size = { x: 0, y: 0, radius: 1 };
 
-  function drawGlobe(orbit, axes, found, seen) {
+  function drawGlobe(orbits, axes, found, seen) {
     const { context: c, width, height } = fitted(globe);
-    const reach = orbit ? orbit.semi_major_axis_km * (1 + orbit.eccentricity) / world.radius_km : 1.1;
+    const reach = Math.max(1.1, ...orbits.map((o) => o.semi_major_axis_km * (1 + o.eccentricity) / world.radius_km));
     const radius = 0.47 * Math.min(width, height) / Math.min(reach, 3);
     size = { x: width / 2, y: height / 2, radius };
     const [right, upward, towards] = screenAxes();
@@ -191,8 +191,8 @@ const Globe = (() => {
     };
     strokeFront(coasts, colours.coast, 0.8);
     strokeFront(region, colours.second, 2);
-    if (orbit) drawOrbits(c, axes, project, radius);
-    if (orbit) drawSatellites(c, found, seen, project, radius);
+    drawOrbits(c, axes.flat(), project, radius);
+    drawSatellites(c, found, seen, project, radius);
     const here = site().up;
     const [x, y, depth] = project(here, 0);
     if (depth > 0) {
@@ -297,12 +297,12 @@ const Globe = (() => {
 
   function draw() {
     const start = performance.now();
-    const orbit = open(data.cuts[state.place])?.orbit;
-    const axes = orbit ? planes(orbit, time.elapsed) : [];
-    const found = orbit ? positions(orbit, axes, time.elapsed) : new Float64Array(0);
+    const orbits = open(data.cuts[state.place])?.orbits ?? [];
+    const axes = orbits.map((orbit) => planes(orbit, time.elapsed));
+    const found = orbits.flatMap((orbit, n) => [...positions(orbit, axes[n], time.elapsed)]);
     const seen = overhead(found);
     drawn = seen;
-    drawGlobe(orbit, axes, found, seen);
+    drawGlobe(orbits, axes, found, seen);
     drawSky(seen);
     tell(seen);
     frames.push(performance.now() - start);

@@ -4,7 +4,7 @@ mod setting;
 
 use super::Page;
 use super::pack::{Packed, short};
-use crate::constellation::Design;
+use crate::constellation::{Design, Shell};
 use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
 use crate::optimize::Record;
 use crate::orbit::Model;
@@ -111,10 +111,11 @@ struct Cuts {
     tail: Option<[f64; 3]>,
     /// Quantile and CVaR with the digits of the table.
     tail_shown: Option<[String; 2]>,
-    orbit: Orbit,
+    /// One of each shell.
+    orbits: Vec<Orbit>,
 }
 
-/// Data of the globe: mean elements at the epoch and their rates.
+/// Data of the globe for one shell: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
     semi_major_axis_km: f64,
@@ -250,8 +251,9 @@ impl Front {
                 .map(|m| value(m).map(short))
                 .collect::<Vec<_>>()
         };
-        let of_design =
-            |value: fn(&Design) -> f64| column(&move |m| m.design.design().as_ref().map(value));
+        let of_design = |value: fn(&Design) -> Option<f64>| {
+            column(&move |m| m.design.design().as_ref().and_then(value))
+        };
         Self {
             index: members.iter().map(|m| m.index).collect(),
             notation: members.iter().map(|m| m.design.notation.clone()).collect(),
@@ -273,12 +275,24 @@ impl Front {
                 .map(|m| shown::membership(m.membership))
                 .collect(),
             variables: vec![
-                ("satellites", of_design(|d| d.satellite_count() as f64)),
-                ("planes", of_design(|d| d.planes() as f64)),
-                ("per plane", of_design(|d| d.satellites_per_plane() as f64)),
-                ("phasing", of_design(|d| d.phasing() as f64)),
-                ("inclination (\u{b0})", of_design(Design::inclination_deg)),
-                ("altitude (km)", of_design(Design::altitude_km)),
+                (
+                    "satellites",
+                    of_design(|d| Some(d.satellite_count() as f64)),
+                ),
+                ("planes", of_design(|d| Some(d.planes() as f64))),
+                (
+                    "per plane",
+                    of_design(|d| Some(d.common(Shell::satellites_per_plane)? as f64)),
+                ),
+                (
+                    "phasing",
+                    of_design(|d| Some(d.common(Shell::phasing)? as f64)),
+                ),
+                (
+                    "inclination (\u{b0})",
+                    of_design(|d| d.common(Shell::inclination_deg)),
+                ),
+                ("altitude (km)", of_design(|d| d.common(Shell::altitude_km))),
             ],
         }
     }
@@ -357,7 +371,7 @@ impl Cuts {
             tail_shown: profile
                 .tail
                 .map(|tail| [tail.value_at_risk, tail.cvar].map(|x| shown::pdop(Some(x)))),
-            orbit: Orbit::new(&profile.design, setup.model),
+            orbits: Orbit::of_design(&profile.design, setup.model),
         }
     }
 }
@@ -387,9 +401,14 @@ fn by_intervals(epochs: &[EpochMetrics], measure: Measure) -> Packed {
 }
 
 impl Orbit {
-    fn new(design: &Design, model: Model) -> Self {
-        let satellites = design.satellites();
-        let per_plane = design.satellites_per_plane();
+    fn of_design(design: &Design, model: Model) -> Vec<Self> {
+        let shells = design.shells().iter();
+        shells.map(|shell| Self::new(shell, model)).collect()
+    }
+
+    fn new(shell: &Shell, model: Model) -> Self {
+        let satellites = shell.satellites();
+        let per_plane = shell.satellites_per_plane();
         let first = satellites[0].elements;
         let rates = match model {
             Model::TwoBody => SecularRates::two_body(&first),
@@ -405,8 +424,8 @@ impl Orbit {
         Self {
             semi_major_axis_km: first.semi_major_axis_km,
             eccentricity: first.eccentricity,
-            inclination_deg: design.inclination_deg(),
-            arg_perigee_deg: design.arg_perigee_deg(),
+            inclination_deg: shell.inclination_deg(),
+            arg_perigee_deg: shell.arg_perigee_deg(),
             per_plane,
             raan_deg: raan.map(|x| short(x.to_degrees())).collect(),
             mean_anomaly_deg: Packed::of(anomalies),

@@ -156,7 +156,7 @@ fn cuts_are_those_of_the_design() {
     let (scenario, evaluator) = evaluator();
     let run = run(Some(scenario.clone()), 2);
     let design: Design = "delta:50:12/3/1@900".parse().unwrap();
-    let beside = vec![("beside".to_owned(), design)];
+    let beside = vec![("beside".to_owned(), design.clone())];
     let problem =
         DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals()).unwrap();
     let baselines: Vec<_> = Baseline::evaluate("beside", &design, &problem)

@@ -66,11 +66,11 @@ pub(super) fn figures(
     printed: &Measured,
     searches: &[FoundSet],
 ) -> Result<Figures, PaperError> {
-    let designs: Vec<Design> = rows.iter().map(|row| row.design).collect();
+    let designs: Vec<Design> = rows.iter().map(|row| row.design.clone()).collect();
     let strategies = [PROPOSED, SINGLE, SATELLITES];
     let picks = strategies.iter().filter_map(|&name| {
         let set = searches.iter().find(|set| set.name == name)?;
-        Some((name.to_owned(), set.pick()?.design))
+        Some((name.to_owned(), set.pick()?.design.clone()))
     });
     let mut places = table_places(rows, printed)?;
     places.extend(search_places(searches)?);
@@ -89,7 +89,7 @@ pub(super) fn compared(
     designs: &[Design],
 ) -> Result<Vec<Curve>, PaperError> {
     let second = rows.iter().zip(designs).filter(|(row, _)| row.number == 2);
-    let named = second.map(|(row, design)| (row.scheme.to_string(), *design));
+    let named = second.map(|(row, design)| (row.scheme.to_string(), design.clone()));
     curves(evaluator, named.collect())
 }
 

@@ -1,7 +1,7 @@
 //! One-dimensional fits to the visibility column of Table II.
 
 use super::{PaperError, TableRow};
-use crate::constellation::{Design, DesignParameters};
+use crate::constellation::{Design, Shell, ShellParameters};
 use crate::evaluate::{Evaluator, Setup};
 use crate::visibility::Mask;
 use rayon::prelude::*;
@@ -67,10 +67,14 @@ pub(super) fn sky(setup: &Setup) -> Setup {
 
 /// The design with another inclination.
 pub(super) fn inclined(design: &Design, inclination_deg: f64) -> Result<Design, PaperError> {
-    Ok(Design::new(DesignParameters {
-        inclination_deg,
-        ..design.parameters()
-    })?)
+    let incline = |shell: &Shell| {
+        Shell::new(ShellParameters {
+            inclination_deg,
+            ..shell.parameters()
+        })
+    };
+    let shells = design.shells().iter().map(incline);
+    Ok(Design::new(shells.collect::<Result<_, _>>()?)?)
 }
 
 /// The inclination nearest to the printed one that gives the row's N̄, in steps of a tenth of a
@@ -83,7 +87,7 @@ pub(super) fn fitting_inclination(
         let design = inclined(&row.design, inclination_deg)?;
         Ok::<f64, PaperError>(evaluator.evaluate(&design)?.mean_visible - row.mean_visible)
     };
-    let printed = row.design.inclination_deg();
+    let printed = row.design.shells()[0].inclination_deg();
     let here = excess(printed)?;
     let mut sides = [(-1.0, printed, here), (1.0, printed, here)];
     for step in 1..=WALK_STEPS {

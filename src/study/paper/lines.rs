@@ -212,7 +212,7 @@ pub(super) fn judged_rows(table: &Measurements) -> Vec<JudgedRow> {
         };
         let [visible, pdop] = printed(row);
         JudgedRow {
-            row: *row,
+            row: row.clone(),
             mean_visible: judge("mean visible", Provenance::Fitted, visible, |value| {
                 Some(value.mean_visible)
             }),
@@ -419,7 +419,7 @@ fn lowest_max(curves: &[Curve]) -> Option<f64> {
 
 /// The three strategies, as changes from the proposed one, percent.
 fn figure4(evidence: &Evidence<'_>) -> Vec<Statement> {
-    let pick = |name: &str| Some(*evidence.set(name)?.pick()?);
+    let pick = |name: &str| Some(evidence.set(name)?.pick()?.clone());
     let (proposed, single, fewest) = (pick(PROPOSED), pick(SINGLE), pick(SATELLITES));
     let table = evidence.table;
     let Ok(reference) = table.index(REFERENCE) else {

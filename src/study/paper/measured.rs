@@ -60,11 +60,11 @@ impl Measurements {
     pub(super) fn new(evaluator: &Evaluator) -> Result<Self, PaperError> {
         let setup = evaluator.setup();
         let rows = table2()?;
-        let designs: Vec<Design> = rows.iter().map(|row| row.design).collect();
+        let designs: Vec<Design> = rows.iter().map(|row| row.design.clone()).collect();
         let printed = measure(evaluator, "as in the scenario", &designs)?;
         let fitted = fitted_rows(setup, &rows)?;
         let moved: Vec<Design> = (rows.iter().zip(&fitted))
-            .map(|(row, fit)| fit.map_or(Ok(row.design), |i| fit::inclined(&row.design, i)))
+            .map(|(row, fit)| fit.map_or(Ok(row.design.clone()), |i| fit::inclined(&row.design, i)))
             .collect::<Result<_, _>>()?;
         let at_fitting = measure(evaluator, "the inclination that fits N̄", &moved)?;
         let alternatives = assumptions::alternatives(setup)?

@@ -12,7 +12,7 @@ use serde::Serialize;
 const IRIDIUM_LIKE_DEG: [f64; 2] = [83.2, 86.4];
 
 /// A design of a set, with its metrics.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct FoundMember {
     /// The design.
     pub design: Design,

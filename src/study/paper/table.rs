@@ -26,7 +26,7 @@ impl Serialize for Scheme {
 }
 
 /// One row of Table II.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TableRow {
     /// The kind of constellation.
     pub scheme: Scheme,
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn validate_the_percentages_follow_from_the_table() {
         let rows = table2().unwrap();
-        let find = |name: &str| *rows.iter().find(|row| row.name() == name).unwrap();
+        let find = |name: &str| rows.iter().find(|row| row.name() == name).unwrap();
         for percentage in PERCENTAGES {
             let value = |name| match percentage.of {
                 Printable::MeanVisible => find(name).mean_visible,

@@ -157,7 +157,7 @@ fn the_baselines_are_searched_in_their_own_patterns() {
     let paper = &*PAPER;
     let pattern = |name: &str| {
         let set = paper.searches.iter().find(|set| set.name == name).unwrap();
-        set.members[0].design.pattern()
+        set.members[0].design.shells()[0].pattern()
     };
     assert_eq!(pattern("proposed"), Pattern::Delta);
     assert_eq!(pattern("polar"), Pattern::Star);

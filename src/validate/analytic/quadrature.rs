@@ -95,7 +95,7 @@ fn rows(setup: &Setup) -> Vec<(Site, f64)> {
 /// one at random. For T satellites, twice the standard deviation is 1.2/(N √T).
 fn finite_span(subject: &Subject<'_>) -> f64 {
     let revolutions = subject.days() * 86_400.0 * subject.orbit().kepler_mean_motion_rad_s() / TAU;
-    let satellites = subject.design.satellite_count() as f64;
+    let satellites = subject.shell.satellite_count() as f64;
     1.2 / revolutions.max(1.0) / satellites.sqrt()
 }
 
@@ -133,7 +133,7 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
         .map(|(site, weight)| weight * visible_share(&orbit, site, setup.mask.degrees()))
         .sum::<f64>()
         / weight;
-    let expected = share * subject.design.satellite_count() as f64;
+    let expected = share * subject.shell.satellite_count() as f64;
     let propagated = subject.propagate_model()?;
     let found = (subject.parts.evaluate)(subject.evaluator, &propagated)?.mean_visible;
     Ok(vec![

@@ -28,15 +28,13 @@ pub(super) fn checks(subject: &Subject<'_>) -> Result<Vec<Check>, ValidateError>
 
 /// What maps a pattern onto itself: the rotation of the nodes and the shift of M, rad.
 fn symmetry(subject: &Subject<'_>) -> (f64, f64) {
-    let design = &subject.design;
-    let (planes, per_plane) = (design.planes() as f64, design.satellites_per_plane() as f64);
-    let phase = TAU * design.phasing() as f64 / (planes * per_plane);
-    match design.pattern() {
-        Pattern::Delta => (TAU / planes, phase),
-        // Half a revolution: the other half of the nodes is not occupied.
-        Pattern::Star => (0.5 * TAU / planes, phase),
-        Pattern::Lattice => (TAU / planes, -phase),
-    }
+    let shell = &subject.shell;
+    let phase = TAU * shell.phasing() as f64 / shell.satellite_count() as f64;
+    let shift = match shell.pattern() {
+        Pattern::Delta | Pattern::Star => phase,
+        Pattern::Lattice => -phase,
+    };
+    (shell.node_step_deg().to_radians(), shift)
 }
 
 /// Largest distance of a rotated position from the nearest position of the pattern, km.
@@ -62,10 +60,13 @@ fn turn_check(subject: &Subject<'_>) -> Result<Option<Check>, EphemerisError> {
         .map(|satellite| position(satellite, &satellite.elements))
         .collect::<Result<_, _>>()?;
     let rotation = EarthRotation::from_gmst(turn);
-    let is_last = |satellite: &Satellite| satellite.slot.plane + 1 == subject.design.planes();
+    // Where the nodes do not go round once, no plane follows the last.
+    let turns = subject.shell.node_step_deg() * subject.shell.planes() as f64 / 360.0;
+    let is_open = (turns - 1.0).abs() > 1e-9;
+    let is_last = |satellite: &Satellite| satellite.slot.plane + 1 == subject.shell.planes();
     let mut largest = 0.0_f64;
     for satellite in &satellites {
-        if subject.design.pattern() == Pattern::Star && is_last(satellite) {
+        if is_open && is_last(satellite) {
             continue;
         }
         let elements = &satellite.elements;

@@ -4,7 +4,7 @@ mod propagators;
 
 use super::matching::Matching;
 use super::tracks::Track;
-use crate::constellation::{Design, Pattern, Satellite};
+use crate::constellation::{Pattern, Satellite, Shell, Slot};
 use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite, object_name};
 use crate::frames::Frame;
@@ -101,7 +101,7 @@ fn with_elements(
     subject: &Subject<'_>,
     change: impl Fn(&Satellite) -> MeanElements,
 ) -> Vec<(String, OtherPropagator)> {
-    let changed = subject.design.satellites().into_iter();
+    let changed = subject.shell.satellites().into_iter();
     j2_of(
         changed
             .map(|satellite| Satellite {
@@ -119,38 +119,39 @@ fn with_altitude(subject: &Subject<'_>, extra_km: f64) -> Vec<(String, OtherProp
     })
 }
 
-/// The design with another pattern or phase step, in revolutions between planes.
+/// The shell with another pattern or phase step, in revolutions between planes.
 fn with_layout(
     subject: &Subject<'_>,
     node_turns: f64,
     phase_turns: f64,
 ) -> Vec<(String, OtherPropagator)> {
-    let design = subject.design;
-    let per_plane = design.satellites_per_plane() as f64;
+    let per_plane = subject.shell.satellites_per_plane() as f64;
+    let first = subject.shell.elements(Slot::FIRST);
     with_elements(subject, |satellite| {
         let (plane, index) = (satellite.slot.plane as f64, satellite.slot.index as f64);
         MeanElements {
-            raan_rad: TAU * node_turns * plane,
-            mean_anomaly_rad: wrap_two_pi(TAU * (index / per_plane + phase_turns * plane)),
+            raan_rad: first.raan_rad + TAU * node_turns * plane,
+            mean_anomaly_rad: wrap_two_pi(
+                first.mean_anomaly_rad + TAU * (index / per_plane + phase_turns * plane),
+            ),
             ..satellite.elements
         }
     })
 }
 
-/// The design's steps of node and phase between planes, revolutions.
-fn layout(design: &Design) -> (f64, f64) {
-    let (p, t) = (design.planes() as f64, design.satellite_count() as f64);
-    let f = design.phasing() as f64;
-    match design.pattern() {
-        Pattern::Delta => (1.0 / p, f / t),
-        Pattern::Star => (0.5 / p, f / t),
-        Pattern::Lattice => (1.0 / p, -f / t),
-    }
+/// The shell's steps of node and phase between planes, revolutions.
+fn layout(shell: &Shell) -> (f64, f64) {
+    let phase = shell.phasing() as f64 / shell.satellite_count() as f64;
+    let phase = match shell.pattern() {
+        Pattern::Delta | Pattern::Star => phase,
+        Pattern::Lattice => -phase,
+    };
+    (shell.node_step_deg() / 360.0, phase)
 }
 
 fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, OtherPropagator)> {
     let epoch = subject.epoch();
-    propagate_each(&subject.design.satellites(), |elements| {
+    propagate_each(&subject.shell.satellites(), |elements| {
         Sgp4Orbit::from_mean_elements(elements, epoch, slot, ZonalHarmonics::Full).ok()
     })
 }
@@ -163,13 +164,13 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
         meaning: "secular J2 on the mean elements, as the model j2 propagates it",
-        propagate: |subject, _| j2_of(subject.design.satellites()),
+        propagate: |subject, _| j2_of(subject.shell.satellites()),
     },
     Convention {
         name: "two-body",
         meaning: "two-body motion, without J2",
         propagate: |subject, _| {
-            propagate_each(&subject.design.satellites(), |e| {
+            propagate_each(&subject.shell.satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
             })
         },
@@ -178,7 +179,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "j2-without-mean-anomaly",
         meaning: "secular J2 on node and perigee, but dM/dt = n",
         propagate: |subject, _| {
-            propagate_each(&subject.design.satellites(), |elements| {
+            propagate_each(&subject.shell.satellites(), |elements| {
                 let rates = SecularRates {
                     mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
                     ..SecularRates::j2(elements)
@@ -191,7 +192,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "osculating-j2",
         meaning: "mean elements propagated with first-order short-period terms",
         propagate: |subject, _| {
-            propagate_each(&subject.design.satellites(), |e| {
+            propagate_each(&subject.shell.satellites(), |e| {
                 Some(OsculatingOrbit::new(e))
             })
         },
@@ -220,7 +221,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "star-for-delta",
         meaning: "nodes over 180 degrees instead of 360",
         propagate: |subject, _| {
-            let (node, phase) = layout(&subject.design);
+            let (node, phase) = layout(&subject.shell);
             with_layout(subject, 0.5 * node, phase)
         },
     },
@@ -228,7 +229,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "delta-for-star",
         meaning: "nodes over 360 degrees instead of 180",
         propagate: |subject, _| {
-            let (node, phase) = layout(&subject.design);
+            let (node, phase) = layout(&subject.shell);
             with_layout(subject, 2.0 * node, phase)
         },
     },
@@ -236,11 +237,11 @@ const CONVENTIONS: &[Convention] = &[
         name: "phasing-in-slots",
         meaning: "phase step F 360/P instead of F 360/T",
         propagate: |subject, _| {
-            let (node, phase) = layout(&subject.design);
+            let (node, phase) = layout(&subject.shell);
             with_layout(
                 subject,
                 node,
-                phase * subject.design.satellites_per_plane() as f64,
+                phase * subject.shell.satellites_per_plane() as f64,
             )
         },
     },
@@ -248,15 +249,15 @@ const CONVENTIONS: &[Convention] = &[
         name: "phasing-in-degrees",
         meaning: "phase step of F degrees",
         propagate: |subject, _| {
-            let (node, _) = layout(&subject.design);
-            with_layout(subject, node, subject.design.phasing() as f64 / 360.0)
+            let (node, _) = layout(&subject.shell);
+            with_layout(subject, node, subject.shell.phasing() as f64 / 360.0)
         },
     },
     Convention {
         name: "phasing-backwards",
         meaning: "phase step -F 360/T",
         propagate: |subject, _| {
-            let (node, phase) = layout(&subject.design);
+            let (node, phase) = layout(&subject.shell);
             with_layout(subject, node, -phase)
         },
     },
@@ -264,7 +265,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "phasing-halved",
         meaning: "phase step F 180/T, as lox has for stars",
         propagate: |subject, _| {
-            let (node, phase) = layout(&subject.design);
+            let (node, phase) = layout(&subject.shell);
             with_layout(subject, node, 0.5 * phase)
         },
     },
@@ -272,7 +273,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "phasing-ignored",
         meaning: "no phase step between planes: F = 0",
         propagate: |subject, _| {
-            let (node, _) = layout(&subject.design);
+            let (node, _) = layout(&subject.shell);
             with_layout(subject, node, 0.0)
         },
     },

@@ -153,7 +153,7 @@ fn apart_km(subject: &Subject<'_>, theirs: &State<Teme>, own: &State<Teme>) -> f
 /// How far from its slot an object may be: a third of the distance to the next satellite in the
 /// plane, at most 1500 km.
 fn reach_km(subject: &Subject<'_>) -> f64 {
-    let per_plane = subject.design.satellites_per_plane() as f64;
+    let per_plane = subject.shell.satellites_per_plane() as f64;
     let spacing = std::f64::consts::TAU * subject.orbit().semi_major_axis_km / per_plane;
     (spacing / 3.0).min(1_500.0)
 }

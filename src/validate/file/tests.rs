@@ -1,5 +1,5 @@
 use super::*;
-use crate::constellation::Design;
+use crate::constellation::Shell;
 use crate::evaluate::Evaluator;
 use crate::exchange::export::{Choices, ExportSubject, Product, testing::in_memory};
 use crate::exchange::manifest::ExportedStudy;
@@ -23,7 +23,7 @@ fn evaluator() -> Evaluator {
     testing::evaluator(grid())
 }
 
-fn design() -> Design {
+fn design() -> Shell {
     DESIGN.parse().unwrap()
 }
 
@@ -143,7 +143,7 @@ fn an_unknown_difference_is_not_explained() {
 #[test]
 fn satellites_that_meet_are_told_apart_by_their_course() {
     let evaluator = evaluator();
-    let design: Design = "delta:54.6:24/4/2@925".parse().unwrap();
+    let design: Shell = "delta:54.6:24/4/2@925".parse().unwrap();
     let subject = Subject::new(design, &evaluator);
     let ours = subject.propagate_model().unwrap();
     let objects = ours.satellites().iter().enumerate().map(|(n, satellite)| {
@@ -189,7 +189,7 @@ fn the_design_itself_needs_no_explanation() {
 #[test]
 fn exported_files_are_the_design() {
     let subject = ExportSubject {
-        design: design(),
+        design: design().into(),
         model: Model::J2,
         grid: grid(),
         study: ExportedStudy {

@@ -15,7 +15,7 @@ const LATITUDES_DEG: [f64; 5] = [0.0, 20.0, 45.0, 55.0, 80.0];
 
 /// Distance from the sub-satellite point, m, at which the elevation equals the mask.
 fn edge_m(subject: &Subject<'_>, earth: &Geodesic, latitude: f64, bearing: f64) -> f64 {
-    let height_km = subject.design.altitude_km();
+    let height_km = subject.shell.altitude_km();
     let satellite = geodetic_position_km([latitude, 0.0], height_km);
     let mask_rad = subject.setup().mask.degrees().to_radians();
     let (mut near, mut far) = (0.0, 0.5 * PI * RADIUS_KM * 1e3);
@@ -49,7 +49,7 @@ fn area_km2(subject: &Subject<'_>, earth: &Geodesic, latitude: f64) -> f64 {
 pub(super) fn checks(subject: &Subject<'_>) -> Vec<Check> {
     let earth = Geodesic::wgs84();
     let mask_rad = subject.setup().mask.degrees().to_radians();
-    let reach = RADIUS_KM * mask_rad.cos() / (RADIUS_KM + subject.design.altitude_km());
+    let reach = RADIUS_KM * mask_rad.cos() / (RADIUS_KM + subject.shell.altitude_km());
     let cap_km2 = 2.0 * PI * RADIUS_KM * RADIUS_KM * (1.0 - (reach.acos() - mask_rad).cos());
     let worst = LATITUDES_DEG
         .map(|latitude| area_km2(subject, &earth, latitude) / cap_km2 - 1.0)

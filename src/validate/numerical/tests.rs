@@ -55,7 +55,7 @@ fn validate_an_eccentric_design() {
 #[test]
 fn validate_the_integrator_on_two_bodies() {
     let elements = "delta:55:1/1/0@925,e=0.1"
-        .parse::<crate::constellation::Design>()
+        .parse::<crate::constellation::Shell>()
         .unwrap();
     let orbit = elements.satellites()[0].elements;
     let start = crate::orbit::j2::SecularOrbit::two_body(&orbit).state(0.0);

@@ -1,7 +1,7 @@
 //! Errors in the models of a study, in its satellites and in its element sets.
 
 use super::PlantedError;
-use crate::constellation::{Design, DesignParameters, Pattern};
+use crate::constellation::{Pattern, Shell, ShellParameters};
 use crate::formats::tle;
 use crate::orbit::j2::{SecularOrbit, SecularRates};
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
@@ -221,7 +221,7 @@ pub(super) const ERRORS: &[PlantedError] = &[
         model: Model::J2,
         parts: || Parts {
             satellites: |design| {
-                Design::new(DesignParameters {
+                Shell::new(ShellParameters {
                     pattern: Pattern::Star,
                     ..design.parameters()
                 })

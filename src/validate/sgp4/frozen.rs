@@ -50,7 +50,7 @@ pub(super) fn checks(
     }
     let found = eccentricities(subject, &orbit, &scale.causes);
     let found = found.map_err(|source| EphemerisError {
-        name: crate::ephemeris::object_name(crate::constellation::Slot { plane: 0, index: 0 }),
+        name: crate::ephemeris::object_name(crate::constellation::Slot::FIRST),
         source,
     })?;
     let Some([forced, left]) = found else {

@@ -2,7 +2,7 @@
 //! may be so by chance.
 
 use super::{GateScale, Propagations};
-use crate::constellation::{Design, DesignParameters, Pattern};
+use crate::constellation::{Pattern, Shell, ShellParameters};
 use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
 use crate::validate::distribution::{Distribution, Residual};
@@ -54,7 +54,7 @@ pub(super) fn over_inclination_and_altitude(
     let mut shares: Vec<Share> = Vec::new();
     for inclination_deg in INCLINATIONS_DEG {
         for altitude_km in ALTITUDES_KM {
-            let design = Design::new(DesignParameters {
+            let shell = Shell::new(ShellParameters {
                 pattern: Pattern::Delta,
                 planes: 3,
                 // Four satellites in a plane cancel harmonics of order one to three.
@@ -63,7 +63,7 @@ pub(super) fn over_inclination_and_altitude(
                 inclination_deg,
                 altitude_km,
             })?;
-            let (cell, found) = cell(&Subject { design, ..*subject })?;
+            let (cell, found) = cell(&Subject { shell, ..*subject })?;
             findings.sweep.push(cell);
             shares.extend(found);
         }
@@ -96,10 +96,7 @@ fn cell(subject: &Subject<'_>) -> Result<(SweepCell, Vec<Share>), ValidateError>
     let step_s = STEP_S.max(subject.grid().step_s()).min(span_s);
     let grid = TimeGrid::new(subject.epoch(), span_s, step_s)?;
     let budget = Propagations::new(subject, grid)?.budget()?;
-    let at = (
-        subject.design.inclination_deg(),
-        subject.design.altitude_km(),
-    );
+    let at = (subject.shell.inclination_deg(), subject.shell.altitude_km());
     let checks = GateScale::of(subject).budget_checks(&budget);
     let shares: Vec<Share> = checks
         .into_iter()

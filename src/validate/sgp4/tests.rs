@@ -1,5 +1,5 @@
 use super::*;
-use crate::constellation::Design;
+use crate::constellation::Shell;
 use crate::evaluate::Evaluator;
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
@@ -12,7 +12,7 @@ fn day() -> TimeGrid {
     TimeGrid::new(epoch, SECONDS_PER_DAY, 300.0).unwrap()
 }
 
-fn design(inclination_deg: f64, altitude_km: f64) -> Design {
+fn design(inclination_deg: f64, altitude_km: f64) -> Shell {
     format!("delta:{inclination_deg}:30/6/1@{altitude_km}")
         .parse()
         .unwrap()
@@ -23,7 +23,7 @@ fn evaluator() -> Evaluator {
     testing::evaluator(day())
 }
 
-fn found(design: Design) -> Findings {
+fn found(design: Shell) -> Findings {
     against_sgp4(&Subject::new(design, &evaluator())).unwrap()
 }
 
