@@ -180,7 +180,7 @@ fn cuts_are_those_of_the_design() {
         data["baselines"][0]["objectives"].as_array().unwrap().len(),
         2
     );
-    let orbit = &cuts["orbit"];
+    let orbit = &cuts["orbits"][0];
     assert_eq!(
         (orbit["raan_deg"][1].as_f64(), orbit["per_plane"].as_u64()),
         (Some(120.0), Some(4))
