@@ -91,7 +91,7 @@ impl<R: Rule> Key<R> {
     }
 }
 
-/// Fields of which each is a key, or a section of its own.
+/// Fields, each of which is a key or a subsection.
 pub(super) trait Section: Sized {
     /// The section of its keys, empty at the top.
     const SECTION: &'static str;

@@ -70,7 +70,7 @@ pub enum SetupError {
 }
 
 impl SetupError {
-    /// The keys behind it, the likeliest first.
+    /// The keys that may have caused it, most likely first.
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],

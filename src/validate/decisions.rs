@@ -9,13 +9,13 @@ use crate::ground::Site;
 use crate::units::wrap_pi;
 use rayon::prelude::*;
 
-/// Sites at which passes are timed; more would not change the picture.
+/// Number of sites at which passes are timed; more would not change the result noticeably.
 const PASS_SITES: usize = 6;
 
 /// Maximum number of satellites whose passes are timed.
 const PASS_SATELLITES: usize = 60;
 
-/// The reason given where there is no bound.
+/// The reason given if there is no bound.
 const UNBOUNDED: &str = "reported only: effect of the state difference on the result";
 
 /// Two propagations of the same satellites, seen from the points of a study.

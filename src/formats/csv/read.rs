@@ -1,5 +1,5 @@
 //! Reads tables of elements and of states. Columns are found by their names, in any order; others
-//! are passed over.
+//! are ignored.
 
 use super::CsvTable;
 use crate::formats::ReadError;
@@ -130,7 +130,7 @@ pub fn read_states(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
     findings.unless_error(trajectories)
 }
 
-/// The states of a table; what it breaks goes to the list of findings.
+/// The states of a table; violations go to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.

@@ -316,7 +316,7 @@ fn regress_what_is_read_can_be_written() {
         );
         sets[0].clone()
     };
-    // Blanks behind the mark of a name, and a name that looks marked itself.
+    // Blanks after the marker of a name, and a name that itself looks like a marker.
     assert_eq!(
         read_back("0   A\n", first, second).object_name.as_deref(),
         Some("A")
