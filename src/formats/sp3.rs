@@ -33,7 +33,7 @@ keywords! {
 }
 
 impl Sp3Version {
-    /// Most satellites of a file: what a letter and two digits tell apart, and 85 in SP3-c.
+    /// Maximum number of satellites in a file: what a letter and two digits can distinguish, and 85 in SP3-c.
     #[must_use]
     pub fn most_satellites(self) -> usize {
         match self {

@@ -23,7 +23,7 @@ pub struct EvaluateResult {
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
-    /// The constraints of the scenario, and whether the design keeps them.
+    /// The constraints of the scenario, and whether the design meets them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
     /// The study.

@@ -1,5 +1,5 @@
-//! Spans over a leap second, in every product and from every reader: what a file says of its instants is held
-//! against labels that others define, since writer and reader could err alike.
+//! Spans over a leap second, in every product and from every reader: what a file says of its instants is compared
+//! with labels that others define, since writer and reader could share an error.
 
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;

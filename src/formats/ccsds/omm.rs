@@ -67,7 +67,7 @@ pub fn read(input: impl BufRead, notation: OmmSyntax) -> Result<Vec<Omm>, ReadEr
     findings.unless_error(messages)
 }
 
-/// Passes every message that keeps the rules to `take`, until the list of findings is full.
+/// Passes every valid message to `take`, until the list of findings is full.
 ///
 /// # Errors
 /// A failure of the input.

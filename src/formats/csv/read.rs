@@ -81,7 +81,7 @@ pub fn read_elements(input: impl BufRead) -> Result<Vec<ElementsRow>, ReadError>
     findings.unless_error(rows)
 }
 
-/// Passes every row that keeps the rules to `take`.
+/// Passes every valid row to `take`.
 ///
 /// # Errors
 /// A failure of the input.

@@ -28,7 +28,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<sgp4::Elements>, ReadError> {
     findings.unless_error(sets)
 }
 
-/// Passes every element set that keeps the rules to `take`, until the list of findings is full.
+/// Passes every valid element set to `take`, until the list of findings is full.
 ///
 /// # Errors
 /// A failure of the input.
@@ -184,7 +184,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     true
 }
 
-/// The element set of two lines that keep the rules.
+/// The element set of two valid lines.
 fn record(
     name: Option<Line>,
     first: &Line,

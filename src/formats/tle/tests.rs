@@ -207,7 +207,7 @@ fn a_design_survives_its_file_and_tells_the_loss() {
     assert_eq!(as_written(&sets[17]).unwrap(), read_back[17]);
 }
 
-/// Slope of a straight line through the constellation's mean along-track difference between
+/// Slope of a straight line through the constellation's mean in-track difference between
 /// mean J2 and SGP4 of the written file, km/day.
 fn growth_km_per_day(inclination_deg: f64, slot: MeanMotionSlot) -> f64 {
     let design: Design = format!("delta:{inclination_deg}:6/3/1@925")

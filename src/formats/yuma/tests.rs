@@ -81,7 +81,7 @@ fn what_is_written_is_read() {
             (read.prn, read.week, read.toa_s),
             (written.prn, 2347 % 1024, 258_048.0)
         );
-        // Digits: 5e-8 of sqrt(A) is 0.5 m of radius, and 0.3 m more along the track in a day.
+        // Digits: 5e-8 of sqrt(A) is 0.5 m of radius, and 0.3 m more in-track in a day.
         let apart = read.position_km(86_400.0) - written.position_km(86_400.0);
         assert!(apart.norm() < 2e-3, "{}", apart.norm());
     }
