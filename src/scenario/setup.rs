@@ -167,7 +167,7 @@ impl Scenario {
     /// The same, with notes on the GNSS files: age, gaps, interpolation, skipped parts.
     ///
     /// # Errors
-    /// When a file cannot be read, or the values together leave no point or sample.
+    /// If a file cannot be read, or the values together leave no point or sample.
     pub fn setup_with_notes(
         &self,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,

@@ -154,7 +154,7 @@ impl TrajectoryPair<'_> {
         for site in sites {
             let [first, second] = [propagations[0].passes(site)?, propagations[1].passes(site)?];
             for pass in &first {
-                // Two passes are the same pass if one is under way at the middle of the other.
+                // Two passes count as the same if one is in progress at the middle of the other.
                 let middle = 0.5 * (pass.0 + pass.1);
                 let Some(other) = second.iter().find(|p| p.0 <= middle && middle <= p.1) else {
                     continue;

@@ -51,7 +51,7 @@ fn validate_an_eccentric_design() {
     ]);
 }
 
-/// Kepler's ellipse comes back to its start after each period.
+/// Kepler's ellipse returns to its start after each period.
 #[test]
 fn validate_the_integrator_on_two_bodies() {
     let elements = "delta:55:1/1/0@925,e=0.1"

@@ -195,7 +195,7 @@ fn the_model_of_the_study_is_on_trial() {
             gated.iter().all(|case| case.starts_with(label)) && !gated.is_empty(),
             "{model}: {gated:?}"
         );
-        // Two bodies miss what J2 does; the others keep their gates.
+        // Two-body propagation lacks the effect of J2; the others meet their gates.
         assert_eq!(
             failed.is_empty(),
             model != Model::TwoBody,
