@@ -188,7 +188,7 @@ fn what_cannot_be_run_says_why() {
         ),
         (
             refused(&["validate", "--against", "stk"]),
-            "unknown word \"stk\" (choices: sgp4,",
+            "unknown name \"stk\" (choices: sgp4,",
         ),
         (refused(&["frobnicate"]), "unrecognized subcommand"),
     ];

@@ -118,7 +118,7 @@ fn report_unpaired(first: Option<Line>, findings: &mut FindingList) {
 }
 
 fn missing_lines(name: &Line, findings: &mut FindingList) {
-    let message = "neither line 1 nor line 2 of an element set, nor a name before one";
+    let message = "expected line 1 or 2 of an element set, or a name before line 1";
     findings.error((name.number, 1), "tle-line", message);
 }
 

@@ -98,7 +98,7 @@ fn setting(scenario: &Scenario) -> String {
             let [west, east] = grid.longitude_deg;
             let [dlat, dlon] = grid.step_deg;
             format!(
-                "{} to {} and {} to {}, every {dlat}\u{b0} by {dlon}\u{b0}",
+                "{} to {} and {} to {} on a {dlat}\u{b0} by {dlon}\u{b0} grid",
                 latitude_label(south),
                 latitude_label(north),
                 longitude_label(west),
@@ -171,7 +171,7 @@ fn found(run: &Run) -> String {
     let members = match run.front.len() {
         0 => "no design that meets the constraints".to_owned(),
         1 => "one design".to_owned(),
-        n => format!("{n} designs, none of which dominates another"),
+        n => format!("a Pareto set of {n} designs, none of which dominates another"),
     };
     let Some(search) = &run.search else {
         return format!("The search found {members}.");
@@ -187,7 +187,7 @@ fn found(run: &Run) -> String {
         text += &format!(" It was stopped after generation {done} of {of}.");
     }
     if let Some(volume) = shown::hypervolume(&search.hypervolume) {
-        text += &format!(" Its front has the {volume}.");
+        text += &format!(" The front has {volume}.");
     }
     text
 }
@@ -404,7 +404,10 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         ("Masks", masks(&scenario.visibility)),
         (
             "Unsolved",
-            format!("PDOP above {}", scenario.visibility.pdop_cap),
+            format!(
+                "no solution, or PDOP above {}",
+                scenario.visibility.pdop_cap
+            ),
         ),
         ("Constraints", constraints(scenario)),
         (
