@@ -30,7 +30,7 @@ fn exported() -> Vec<(String, Vec<u8>)> {
 }
 
 /// What the program writes is recognised without its name, over blank lines and comments of 100 kB, packed or not;
-/// products that have no reader are not.
+/// products without a reader are not recognised.
 #[test]
 fn our_own_files_are_recognised_over_any_preamble() {
     let long = "operator notice ".repeat(6_000);
