@@ -1,4 +1,4 @@
-//! Searches with an objective of one's own: launch mass, with more propellant the higher the orbit.
+//! Searches with a custom objective: launch mass, with more propellant for higher orbits.
 //!
 //! `cargo run --release --example search_pareto`
 

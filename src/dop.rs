@@ -7,8 +7,8 @@
 //! [M-26](crate::models#m-26); with weights [M-27](crate::models#m-27)). The full geometry matrix is
 //! never built.
 //!
-//! Directions that leave a component of the position undetermined give an A that is singular but for
-//! rounding. Whether a sample is solved is decided by the pivots of A in one place, [`Geometry`].
+//! If the directions leave a component of the position undetermined, A is singular up to rounding.
+//! [`Geometry`] alone decides whether a sample is solved, from the pivots of A.
 
 mod factor;
 mod family;
@@ -108,20 +108,20 @@ impl AddAssign for ClockGroup {
     }
 }
 
-/// The largest cap on PDOP: beyond it rounding takes part in whether a sample is solved.
+/// Maximum cap on PDOP: above it, rounding would influence whether a sample is solved.
 pub const MOST_PDOP_CAP: f64 = 1e6;
 
 /// The normal matrix of the position, accumulated group by group.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Geometry {
     normal: Symmetric3,
-    /// Σ w of all satellites, those included that determine no more than their clock.
+    /// Σ w over all satellites, including those that determine only their clock.
     weight: f64,
     satellites: u32,
     clocks: u32,
 }
 
-/// A geometry that is solved.
+/// The solution of a geometry.
 pub(crate) struct Solution {
     pub(crate) pdop: f64,
     pub(crate) factor: Factor,
@@ -129,7 +129,7 @@ pub(crate) struct Solution {
 
 impl Geometry {
     /// Adds the satellites of one clock. An empty group adds nothing, not even a clock state; a lone
-    /// satellite determines its clock and leaves the normal matrix exactly as it is.
+    /// satellite determines only its clock and leaves the normal matrix unchanged to the bit.
     pub fn add(&mut self, group: &ClockGroup) {
         if group.count == 0 {
             return;
@@ -143,8 +143,8 @@ impl Geometry {
         self.clocks += 1;
     }
 
-    /// PDOP; `None` if unsolved: fewer satellites than states, a pivot of the normal matrix that is
-    /// not above rounding ([M-26](crate::models#m-26)), or a value above `cap`.
+    /// PDOP; `None` if unsolved: fewer satellites than states, a pivot of the normal matrix at or
+    /// below the rounding floor ([M-26](crate::models#m-26)), or a value above `cap`.
     #[must_use]
     pub fn pdop(&self, cap: f64) -> Option<f64> {
         self.solve(cap).map(|solution| solution.pdop)

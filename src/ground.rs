@@ -30,9 +30,9 @@ pub enum GroundError {
         /// Number of points of the grid.
         points: f64,
     },
-    /// A point that is not on the Earth.
+    /// A point out of range.
     #[error(
-        "latitude {latitude_deg}, longitude {longitude_deg} is not on the Earth: latitudes are -90 to 90, longitudes {}",
+        "latitude {latitude_deg}, longitude {longitude_deg} is out of range: latitudes are -90 to 90, longitudes {}",
         longitude_range()
     )]
     Point {
@@ -57,8 +57,8 @@ pub enum GroundError {
     Empty,
 }
 
-/// The longitudes that are accepted, of a grid as of a point, degrees: one turn more on either side
-/// than anyone writes, so that an interval over the date line can be written in rising order.
+/// Accepted longitudes of grids and points, degrees: a turn beyond the usual ranges on either side, so
+/// that an interval across the antimeridian can be written in ascending order.
 pub const LONGITUDES_DEG: [f64; 2] = [-360.0, 720.0];
 
 fn longitude_range() -> String {
@@ -86,7 +86,7 @@ keywords! {
 /// A ground point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Site {
-    /// What it is called, if anything.
+    /// Its name, if it has one.
     pub name: Option<Arc<str>>,
     /// Latitude of the surface model (geodetic on WGS 84), degrees.
     pub latitude_deg: f64,
@@ -102,7 +102,7 @@ impl Site {
     /// The point of `surface` at a latitude and longitude in degrees.
     ///
     /// # Errors
-    /// If the point is not on the Earth or the weight is not positive.
+    /// If the point is out of range or the weight is not positive.
     pub fn new(
         surface: Surface,
         latitude_deg: f64,
@@ -179,7 +179,7 @@ impl Grid {
         } else {
             wrap_360(east - west)
         };
-        // An interval that is written with its east below its west may end beyond the range.
+        // An interval whose east edge is written below its west edge may end beyond the range.
         let west = if west + span > LONGITUDES_DEG[1] {
             west - 360.0
         } else {
@@ -211,7 +211,7 @@ impl Grid {
         for &latitude in &latitudes {
             let weight = match self.weights {
                 PointWeights::Equal => 1.0,
-                // The cosine vanishes at a pole; its points get the weight of the cap within half a step.
+                // The cosine vanishes at a pole, whose points get the weight of the cap within half a step.
                 PointWeights::CosLatitude => latitude
                     .to_radians()
                     .cos()
@@ -300,7 +300,7 @@ mod tests {
         for turns in [-1.0, 1.0] {
             let far = Site::new(Surface::Wgs84, 50.0, 10.0 + 360.0 * turns, 1.0).unwrap();
             let apart = far.local.origin_km.km() - near.local.origin_km.km();
-            // A rounding of 2 pi, times the radius.
+            // The rounding error of 2 pi, times the radius.
             assert!(apart.norm() < 1e-11, "{apart}");
         }
         for longitude_deg in [-360.1, 720.1] {

@@ -53,7 +53,7 @@ impl UnknownKeyword {
 
 impl fmt::Display for UnknownKeyword {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown word {:?}", self.found)?;
+        write!(f, "unknown name {:?}", self.found)?;
         if let Some(nearest) = self.nearest {
             write!(f, ", did you mean {nearest:?}?")?;
         }

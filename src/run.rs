@@ -155,7 +155,7 @@ impl Run {
         measured.or_else(|| hypervolume.reference.clone())
     }
 
-    /// The names of the quantities under constraints that are no objectives, in the order of the
+    /// The names of the constrained quantities that are not objectives, in the order of the
     /// scenario.
     #[must_use]
     pub fn constraint_names(&self) -> Vec<String> {

@@ -42,7 +42,7 @@ pub struct DesignSpace {
     pub inclination_deg: [f64; 2],
     /// Altitude over the equatorial radius, km.
     pub altitude_km: [f64; 2],
-    /// Phasing F, or `N_c` of a lattice; cut at P - 1.
+    /// Phasing F, or `N_c` of a lattice; capped at P - 1.
     pub phasing: [u32; 2],
     /// Eccentricity; a variable if the limits differ.
     pub eccentricity: [f64; 2],
@@ -50,7 +50,7 @@ pub struct DesignSpace {
     pub arg_perigee_deg: [f64; 2],
 }
 
-/// Distances between the designs of a sweep.
+/// The steps of a grid sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SweepSteps {
     /// Step of the inclination, degrees.
@@ -117,14 +117,14 @@ impl DesignSpace {
         (next(self.eccentricity), next(self.arg_perigee_deg))
     }
 
-    /// The phasings that occur: the limits, capped at P - 1 for the fewest and the most planes.
+    /// The phasings that can occur: the limits, capped at P - 1 for the fewest and the most planes.
     fn cut_phasing(&self) -> [u32; 2] {
         let cut = |n: usize| self.phasing[n].min(self.planes[n].saturating_sub(1));
         [cut(0), cut(1)]
     }
 
-    /// Brings the phasing between its limits, both capped at P - 1, and rounds inclination and altitude
-    /// to their resolution, so that a design has few digits and equal designs are equal vectors.
+    /// Clamps the phasing to its limits, both capped at P - 1, and rounds the continuous variables to
+    /// their resolution, so that designs have few digits and equal designs are equal vectors.
     fn repair(&self, genome: &mut [f64]) {
         let lowest = f64::from(self.phasing[0]);
         genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
@@ -148,7 +148,7 @@ impl DesignSpace {
     /// The design of a vector.
     ///
     /// # Errors
-    /// If the vector is not a design: an ellipse whose perigee is not above ground.
+    /// If the vector is not a valid design, for example because its perigee is below ground.
     pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
         let count = |n: usize| genome[n] as usize;
         let shell = Shell::new(ShellParameters {
@@ -181,7 +181,7 @@ pub struct Goals {
 }
 
 impl Goals {
-    /// The quantities under constraints that are no objectives, each once.
+    /// The constrained quantities that are not objectives, each once.
     #[must_use]
     pub fn constrained(&self) -> Vec<Quantity> {
         let mut found: Vec<Quantity> = Vec::new();
@@ -255,8 +255,8 @@ impl<'a> DesignProblem<'a> {
         self.judge(&design, &metrics)
     }
 
-    /// The metrics of a design, which need not be in the space, and what an optimiser makes of
-    /// them; `None` when it cannot be propagated.
+    /// The metrics of a design, which need not be in the space, and their evaluation for an
+    /// optimiser; `None` if it cannot be propagated.
     #[must_use]
     pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
         let metrics = self.evaluator.evaluate(design).ok()?;
@@ -272,7 +272,7 @@ impl<'a> DesignProblem<'a> {
             .iter()
             .map(|c| c.violation(value(c.quantity), metrics.solved_fraction))
             .sum();
-        // A design is infeasible for an objective that unsolved samples make infinite.
+        // A design is infeasible if unsolved samples make an objective infinite.
         let unsolved = |quantity: &Quantity| quantity.unsolved_share(metrics.solved_fraction);
         violation += self
             .goals
@@ -401,14 +401,14 @@ mod tests {
             relation: Relation::AtLeast,
             bound: 0.75,
         };
-        // A share of all samples: those without a solution are in it already.
+        // A fraction of all samples, which already includes the unsolved ones.
         assert_eq!(at_least.violation(Some(0.5), 0.5), 0.25);
         let cost: Constraint = "j-cost <= 10".parse().unwrap();
         assert_eq!(cost.violation(None, 1.0), 1.0);
     }
 
-    /// An unsolved sample is infinite: one is too much for a mean, a tail or a maximum, a share
-    /// above 1 - q for a quantile.
+    /// PDOP counts as infinite in an unsolved sample: one is too many for a mean, a tail or a maximum, and
+    /// a fraction above 1 - q for a quantile of level q.
     #[test]
     fn unsolved_samples_violate_what_they_would_make_infinite() {
         let violation = |text: &str, value, solved| {
@@ -423,7 +423,7 @@ mod tests {
                 violation(&text, 2.0, one_of_a_million),
                 1.0 - one_of_a_million
             );
-            // The excess on the solved samples comes on top.
+            // The excess of the solved samples is added.
             assert_eq!(violation(&text, 30.0, 0.75), 0.5 + 0.25);
         }
         for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99)] {
@@ -438,8 +438,8 @@ mod tests {
         }
     }
 
-    /// LEO alone, of which hardly any sample is solved: no bound on PDOP calls that feasible,
-    /// whatever the objectives.
+    /// With LEO alone many samples are unsolved, so no bound on PDOP is met, whatever the
+    /// objectives.
     #[test]
     fn what_is_not_solved_is_not_feasible() {
         use crate::constellation::gnss::Preset;

@@ -17,14 +17,14 @@ pub struct LevelError(pub f64);
 pub struct Level(f64);
 
 impl Default for Level {
-    /// 0.95, the mean of the worst twentieth.
+    /// 0.95: the tail is the worst 5 %.
     fn default() -> Self {
         Self(0.95)
     }
 }
 
 impl Level {
-    /// The level itself.
+    /// Accepts a level that is strictly between 0 and 1.
     ///
     /// # Errors
     /// If `level` is not strictly between 0 and 1.
@@ -70,7 +70,7 @@ pub fn quantile_rank(q: f64, n: usize) -> usize {
 
 /// The order statistic of rank `rank` (1-based). Reorders `sample`.
 ///
-/// Afterwards every later element is at least as large.
+/// Afterwards, every element behind it is at least as large.
 fn select(sample: &mut [f64], rank: usize) -> f64 {
     *sample.select_nth_unstable_by(rank - 1, f64::total_cmp).1
 }
@@ -178,7 +178,7 @@ mod tests {
         assert!((cvar(&mut sample, level(0.95)).unwrap() - 98.0).abs() < 1e-12);
     }
 
-    /// Ten values at 95 %: the tail is half a sample, all of it the largest.
+    /// Ten values at 95 %: the tail is half a sample, all of it from the largest value.
     /// Thirty values: one and a half samples, (30 + 0.5 * 29) / 1.5.
     #[test]
     fn validate_cvar_of_a_fractional_tail() {

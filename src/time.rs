@@ -1,11 +1,11 @@
-//! Instants, their labels in UTC, sidereal time, and the sampling of a span.
+//! Instants and their UTC labels, sidereal time, and the sampling of a time span.
 //!
-//! Time is counted in SI seconds. An [`Epoch`] is an instant of TAI, so that seconds between instants are
-//! those that elapse, over a leap second too; chrono carries its label in UTC, where the leap second is 23:59:60.
-//! Sidereal time and leap seconds come from the SOFA port.
+//! Time is counted in SI seconds. An [`Epoch`] is an instant in TAI, so that differences between instants are
+//! elapsed seconds, even across a leap second; its UTC label, in which the leap second is 23:59:60, is a chrono
+//! date and time. Sidereal time and leap seconds come from `sofars`, a port of SOFA.
 //!
-//! UT1 is UTC at the epoch of the scenario and advances with SI seconds from there, so that the Earth
-//! turns evenly over a leap second (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator, absorbed by the
+//! UT1 equals UTC at the epoch of the scenario and advances in SI seconds from there, so that the Earth
+//! rotates evenly through a leap second (|UT1 - UTC| < 0.9 s, at most 0.42 km along the equator, absorbed by the
 //! pseudo-Earth-fixed frame).
 
 mod leap;
@@ -47,7 +47,7 @@ pub(crate) const TT_MINUS_TAI_S: f64 = 32.184;
 /// An instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Epoch {
-    /// Whole seconds of TAI since its midnight of 1 January 1970.
+    /// Whole seconds of TAI since 1970-01-01T00:00:00 TAI.
     tai_s: i64,
     /// Nanoseconds of the second, below 1e9.
     nanosecond: u32,
@@ -57,9 +57,9 @@ pub struct Epoch {
 const NANOSECONDS: i64 = 1_000_000_000;
 
 impl Epoch {
-    /// The instant of a UTC date and time; chrono keeps 23:59:60 as a nanosecond count past 1e9.
+    /// The instant of a UTC date and time; chrono writes 23:59:60 as 23:59:59 with 1e9 nanoseconds or more.
     ///
-    /// On a day without a leap second, 23:59:60 is the midnight after it.
+    /// On a day without a leap second, 23:59:60 is the following midnight.
     #[must_use]
     pub fn from_utc(utc: DateTime<Utc>) -> Self {
         let tai_minus_utc_s = leap::tai_minus_utc_s(utc.date_naive());
@@ -70,16 +70,16 @@ impl Epoch {
         }
     }
 
-    /// The date and time in UTC; chrono keeps 23:59:60 as a nanosecond count past 1e9.
+    /// The date and time in UTC; chrono writes 23:59:60 as 23:59:59 with 1e9 nanoseconds or more.
     ///
-    /// Saturates beyond the range of the calendar.
+    /// Saturates at the ends of chrono's calendar.
     #[must_use]
     pub fn utc(self) -> DateTime<Utc> {
         let label = |seconds, nanosecond| {
             let label = DateTime::from_timestamp(seconds, nanosecond);
             label.unwrap_or(DateTime::<Utc>::MAX_UTC)
         };
-        // UTC is behind TAI by less than a day: the date is that of TAI, or the one before.
+        // UTC is less than a day behind TAI: its date is that of TAI or the day before.
         let date = label(self.tai_s, 0).date_naive();
         let later = label(self.tai_s - leap::tai_minus_utc_s(date), self.nanosecond);
         if later.date_naive() == date {
@@ -106,7 +106,7 @@ impl Epoch {
 
     /// The date and time in TAI.
     ///
-    /// Saturates beyond the range of the calendar.
+    /// Saturates at the ends of chrono's calendar.
     #[must_use]
     pub fn tai(self) -> NaiveDateTime {
         let label = DateTime::from_timestamp(self.tai_s, self.nanosecond);
@@ -115,7 +115,7 @@ impl Epoch {
 
     /// This instant moved by a number of SI seconds, to the nearest nanosecond.
     ///
-    /// Saturates at 100 000 years.
+    /// Saturates 100 000 years from 1970.
     #[must_use]
     pub fn plus_seconds(self, seconds: f64) -> Self {
         const MOST_S: f64 = 1e5 * 366.0 * SECONDS_PER_DAY;
@@ -138,7 +138,7 @@ impl Epoch {
     }
 
     /// UTC as a two-part Julian date: the preceding midnight, and the fraction of a day of 86 400 s, which
-    /// passes 1 inside a leap second.
+    /// is 1 or more during a leap second.
     #[must_use]
     pub fn julian_date(self) -> (f64, f64) {
         let utc = self.utc();
@@ -150,7 +150,7 @@ impl Epoch {
         (midnight, seconds / SECONDS_PER_DAY)
     }
 
-    /// Julian date of Terrestrial Time, two-part: UTC + leap seconds + 32.184 s.
+    /// Terrestrial Time as a two-part Julian date: UTC + leap seconds + 32.184 s.
     #[must_use]
     pub fn terrestrial_julian_date(self) -> (f64, f64) {
         let (midnight, fraction) = self.julian_date();
@@ -160,9 +160,9 @@ impl Epoch {
         )
     }
 
-    /// TAI - UTC in seconds, inside a leap second the value before it.
+    /// TAI - UTC, s; during a leap second, the value that holds before it.
     ///
-    /// 10 s before 1972; constant after the table's last entry, of 2016-12-31.
+    /// 10 s before 1972; constant after the last leap second so far, that of 2016-12-31.
     #[must_use]
     pub fn leap_seconds(self) -> f64 {
         leap::tai_minus_utc_s(self.utc().date_naive()) as f64
@@ -183,10 +183,10 @@ impl Epoch {
 
     /// Greenwich mean sidereal time (IAU 1982) `elapsed_s` after this epoch, in [0, 2π) radians.
     ///
-    /// UT1 is UTC at this epoch and advances with SI seconds, over a leap second too: within a
-    /// scenario, take it from the scenario's epoch alone.
+    /// UT1 equals UTC at this epoch and advances in SI seconds from there, even through a leap second:
+    /// within a scenario, always start from the scenario's epoch.
     ///
-    /// Source: Aoki et al. (1982), by the SOFA routine `gmst82` ([M-17](crate::models#m-17)).
+    /// Source: Aoki et al. (1982), as computed by SOFA's `gmst82` ([M-17](crate::models#m-17)).
     #[must_use]
     pub fn gmst_rad(self, elapsed_s: f64) -> f64 {
         let (midnight, fraction) = self.julian_date();
@@ -204,7 +204,7 @@ impl fmt::Display for Epoch {
     }
 }
 
-/// Equally spaced instants of a span from an epoch: every k·step < duration, from k = 0.
+/// Equally spaced instants from an epoch: k·step for every k ≥ 0 with k·step < duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TimeGrid {
     epoch: Epoch,
@@ -213,10 +213,10 @@ pub struct TimeGrid {
 }
 
 impl TimeGrid {
-    /// Maximum number of samples: ample for one per second over a leap year.
+    /// Maximum number of samples: enough for one per second over a leap year.
     pub const MAX_SAMPLES: usize = 100_000_000;
 
-    /// The samples of the span of `duration_s` seconds from `epoch`.
+    /// The samples of `duration_s` seconds from `epoch`; the end instant is excluded.
     ///
     /// # Errors
     /// If the step or the duration is not positive, or there would be too many samples.
@@ -234,7 +234,7 @@ impl TimeGrid {
                 limit: Self::MAX_SAMPLES,
             });
         }
-        // The quotient may round either way at a whole number; the product decides.
+        // Near a whole number the quotient may round either way; the product decides.
         while samples > 1.0 && (samples - 1.0) * step_s >= duration_s {
             samples -= 1.0;
         }
@@ -325,8 +325,8 @@ mod tests {
         assert!((tt * 86_400.0 - 69.184).abs() < 1e-9);
     }
 
-    /// UTC over the leap seconds of 2015-06-30 and 2016-12-31 (IERS Bulletins C 49 and C 52): a second with a label
-    /// of its own, and TAI - UTC of 36 and 37 s after them.
+    /// UTC over the leap seconds of 2015-06-30 and 2016-12-31 (IERS Bulletins C 49 and C 52): each has its own
+    /// label, and TAI - UTC is 36 s and 37 s after them.
     #[test]
     fn validate_labels_over_leap_seconds() {
         for (start, ahead_s, labels) in [
@@ -368,11 +368,11 @@ mod tests {
         let inside = epoch("2016-12-31T23:59:60.5Z");
         assert_eq!(inside.leap_seconds_within(year_s), [0.0; 0]);
         let both = epoch("2015-06-30T23:59:59Z").leap_seconds_within(2.0 * year_s);
-        // 550 days from one to the other, and the first leap second itself.
+        // The two are 550 days apart, plus the first leap second itself.
         assert_eq!(both, [1.0, 550.0 * SECONDS_PER_DAY + 2.0]);
     }
 
-    /// TAI and TT go on evenly over a leap second, and so does the Earth.
+    /// TAI and TT run evenly through a leap second, and so does the Earth's rotation.
     #[test]
     fn nothing_jumps_at_a_leap_second() {
         let start = epoch("2016-12-31T23:59:58Z");
@@ -387,13 +387,13 @@ mod tests {
                 at.terrestrial_julian_date(),
             );
             let tt_s = (tt_jd.0 - start_jd.0 + tt_jd.1 - start_jd.1) * SECONDS_PER_DAY;
-            // A day's fraction in doubles is good to 1e-11 s.
+            // An f64 resolves a fraction of a day to 1e-11 s.
             assert!((tt_s - elapsed_s).abs() < 1e-10, "{at}: {tt_s}");
-            // A leap second would be 7.3e-5 rad; the digits of a day's fraction are 1e-15 rad.
+            // A leap second would be 7.3e-5 rad; an f64 resolves a fraction of a day to 1e-15 rad.
             let turned = crate::units::wrap_pi(start.gmst_rad(elapsed_s) - start.gmst_rad(0.0));
             assert!((turned - crate::earth::GMST_RATE_RAD_S * elapsed_s).abs() < 1e-12);
         }
-        // As the epoch of a scenario, its UT1 is UTC by the offset before the leap second.
+        // At an epoch inside the leap second, UT1 = UTC uses the offset that holds before it.
         let gmst = crate::units::wrap_pi(inside.gmst_rad(0.0) - start.gmst_rad(2.25));
         assert!(gmst.abs() < 1e-12);
     }

@@ -70,8 +70,10 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
-    /// Check files against the standard of their format: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, almanacs,
-    /// and tables of elements and states.
+    /// Check files against the standard of their format, with line, column and rule.
+    ///
+    /// Formats: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM almanacs, and tables of
+    /// elements and states.
     ///
     /// Example: navwalker lint constellation.tle oem/*.oem
     #[command(verbatim_doc_comment)]
@@ -95,7 +97,7 @@ pub(crate) enum Command {
 
     /// Check a design's propagation against independent standards, with a gate and a reason for each.
     ///
-    /// The model under test is the one that the scenario propagates (`propagation.model`): it is the first of each
+    /// The model under test is that of the scenario (`propagation.model`); it is the first of each
     /// case. Checks without a gate are for information. The exit status is 1 if a gate fails.
     ///
     /// Example: navwalker validate --design star:86.4:66/6/2@780 --against sgp4
@@ -254,7 +256,7 @@ pub(crate) struct OptimizeArgs {
     #[arg(long)]
     pub(crate) resume: bool,
 
-    /// Replace another run that this program wrote; what it did not write is never deleted.
+    /// Replace another run that this program wrote; other files are never deleted.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -281,12 +283,12 @@ pub(crate) struct EvaluateArgs {
     pub(crate) design: Option<Design>,
 
     /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM
-    /// almanacs, or a table of elements or states, also packed by gzip; a directory means all its files that
-    /// are constellations; may be repeated.
+    /// almanacs, or a table of elements or states, gzipped or not; a directory means all constellation files
+    /// in it; may be repeated.
     #[arg(long, value_name = "FILE", conflicts_with = "design")]
     pub(crate) constellation: Vec<PathBuf>,
 
-    /// Read the constellation files in this format instead of the one that their content shows.
+    /// Read the constellation files in this format instead of the detected one.
     #[arg(long, value_name = "FORMAT", requires = "constellation")]
     pub(crate) input_format: Option<crate::exchange::lint::Format>,
 
@@ -342,7 +344,7 @@ pub(crate) struct ReproduceArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Replace another run that this program wrote; what it did not write is never deleted.
+    /// Replace another run that this program wrote; other files are never deleted.
     #[arg(long)]
     pub(crate) force: bool,
 
@@ -475,7 +477,7 @@ pub(crate) struct ValidateArgs {
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
 
-    /// Read the files of other programs in this format instead of the one that their content shows.
+    /// Read the files of other programs in this format instead of the detected one.
     #[arg(long, value_name = "FORMAT")]
     pub(crate) input_format: Option<crate::exchange::lint::Format>,
 

@@ -14,10 +14,10 @@ pub(crate) fn pivot_floor(weight: f64) -> f64 {
     ROUNDING * weight
 }
 
-/// A symmetric 3x3 matrix as L D Lᵀ, each pivot the largest remaining on the diagonal.
+/// The factors L D Lᵀ of a symmetric 3x3 matrix; each pivot is the largest element left on the diagonal.
 ///
-/// Free of branches, so that the evaluator can compute it in vector lanes. A matrix that is
-/// singular or not positive definite gives pivots that are zero, negative or NaN.
+/// Branch-free, so that the evaluator can compute it in SIMD lanes. A matrix that is singular or not
+/// positive definite yields pivots that are zero, negative or NaN.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Factor {
     /// The axes in the order in which they were eliminated.
@@ -43,7 +43,7 @@ impl Factor {
             xz,
             yz,
         } = *matrix;
-        // The largest of three goes first.
+        // The largest of the three becomes the first pivot.
         let swap = yy > xx;
         let (first, second) = swap_if(swap, (xx, yy));
         let (first_third, second_third) = swap_if(swap, (xz, yz));

@@ -13,9 +13,9 @@ keywords! {
     ObservationWeights {
         /// Equally.
         Unit = "unit",
-        /// sin² of the elevation: the standard deviation of an observation is that of the zenith
-        /// over sin(elevation), as in Dach et al., *Bernese GNSS Software Version 5.2* (2015),
-        /// which writes cos² of the zenith angle.
+        /// sin² of the elevation: the standard deviation of an observation is that at the zenith
+        /// divided by sin(elevation), as in Dach et al., *Bernese GNSS Software Version 5.2* (2015),
+        /// where the weight is written as cos² of the zenith angle.
         SineElevation = "sine-elevation",
     }
 }
@@ -56,7 +56,7 @@ impl DopFamily {
     pub fn of(groups: &[ClockGroup], site: &LocalFrame, cap: f64) -> Option<Self> {
         let mut geometry = Geometry::default();
         groups.iter().for_each(|group| geometry.add(group));
-        // The factor of the Schur complement of the clocks: its inverse is the position block
+        // The normal matrix is the Schur complement of the clocks: its inverse is the position block
         let solution = geometry.solve(cap)?;
         let variance = |v| solution.factor.inverse_form(v);
         // A clock has the variance 1/W + sᵀ Q s / W², s = Σ w v, W = Σ w
@@ -108,7 +108,7 @@ mod tests {
         sky.iter().map(group).collect()
     }
 
-    /// (Gᵀ W G)⁻¹ with rows (east, north, up, clock ...), in the local frame and
+    /// (Gᵀ W G)⁻¹ with rows (east, north, up, clock ...) in the local frame,
     /// inverted in full: variances of east, north, up and the clocks in view.
     fn variances_by_inversion(
         sky: &[Vec<(f64, f64)>],
@@ -226,7 +226,7 @@ mod tests {
             }
         }
 
-        /// With unit weights PDOP is that of the evaluator.
+        /// With unit weights, PDOP equals that of the evaluator.
         #[test]
         fn unit_weights_are_the_geometry_of_the_evaluator(a in sky(4..12), b in sky(0..8)) {
             let site = LocalFrame::new(Surface::Wgs84, 0.5, 1.0);

@@ -13,7 +13,7 @@ fn geometry(groups: &[Vec<Vector3<f64>>]) -> Geometry {
 }
 
 /// PDOP by the definition, equation (7) of the paper: the geometry matrix with a column of ones
-/// per clock, inverted whole.
+/// per clock, inverted in full.
 fn pdop_by_inversion(groups: &[Vec<Vector3<f64>>]) -> Option<f64> {
     let in_view: Vec<_> = groups.iter().filter(|group| !group.is_empty()).collect();
     let rows: usize = in_view.iter().map(|group| group.len()).sum();
@@ -55,8 +55,8 @@ fn validate_pdop_of_a_symmetric_geometry() {
     }
 }
 
-/// Five satellites, four of them at 15° elevation in the four winds and one at the zenith; the
-/// closed form follows from the same symmetry as above.
+/// Five satellites, four of them at 15° elevation to the north, east, south and west and one at the
+/// zenith; the closed form follows from the same symmetry as above.
 #[test]
 fn validate_pdop_of_a_cross() {
     let (s, c) = 15_f64.to_radians().sin_cos();
@@ -77,14 +77,14 @@ fn unsolved_is_a_value_of_its_own() {
     // Two clocks make five states.
     assert_eq!(geometry(&[first.to_vec(), rest.to_vec()]).pdop(100.0), None);
     assert_eq!(geometry(&[]).pdop(100.0), None);
-    // Four satellites in one direction have no geometry at all.
+    // Four satellites in one direction determine no position.
     assert_eq!(geometry(&[vec![four[0]; 4]]).pdop(100.0), None);
     let pdop = geometry(&[four.to_vec()]).pdop(f64::INFINITY).unwrap();
     assert_eq!(geometry(&[four.to_vec()]).pdop(pdop * 0.999), None);
 }
 
-/// A group whose normal matrix is diagonal with these elements, of eight satellites in pairs along
-/// the axes and no weight in the sum.
+/// A geometry with this diagonal normal matrix, as of eight satellites in opposite pairs along the
+/// axes, so that Σ w v vanishes.
 fn diagonal(elements: [f64; 3], weight: f64) -> Geometry {
     let [xx, yy, zz] = elements;
     Geometry {
@@ -117,13 +117,13 @@ fn a_pivot_at_the_floor_is_rounding() {
             let pdop = diagonal(elements, 8.0).pdop(f64::INFINITY);
             assert_eq!(pdop.is_some(), solved, "{axis} {pivot:e}");
         }
-        // The heavier the observations, the larger what rounding leaves.
+        // The floor grows with the total weight.
         elements[axis] = floor.next_up();
         assert_eq!(diagonal(elements, 8.001).pdop(f64::INFINITY), None);
     }
 }
 
-/// Each satellite beyond the clocks determines one component of the position.
+/// Three satellites more than there are clock states are enough for a position.
 #[test]
 fn as_many_satellites_as_states_are_enough() {
     let sky = [
@@ -147,8 +147,7 @@ fn as_many_satellites_as_states_are_enough() {
     );
 }
 
-/// The factor of any definite matrix gives it back, and its inverse, whatever the order of the
-/// pivots.
+/// The factor of a positive definite matrix yields its inverse, whatever the order of the pivots.
 #[test]
 fn factors_follow_the_largest_pivot() {
     let matrix = nalgebra::Matrix3::new(2.0, 0.5, -0.3, 0.5, 3.0, 0.7, -0.3, 0.7, 5.0);
@@ -197,7 +196,7 @@ proptest! {
         }
     }
 
-    /// Teng and Wang (2015): the clock of a single satellite of a new system takes up its measurement.
+    /// Teng and Wang (2015): the clock of a single satellite of a new system absorbs its measurement.
     #[test]
     fn validate_a_lone_satellite_with_its_own_clock_changes_nothing(a in sky(5..12), b in sky(1..2)) {
         let without = geometry(std::slice::from_ref(&a)).pdop(100.0);

@@ -24,18 +24,18 @@ pub(crate) fn velocities<F>(positions: &[(Epoch, Position<F>)]) -> Option<Vec<Ve
     all_finite.then_some(found)
 }
 
-/// Least difference of a velocity from the derivative of the positions that is told, km/s: above the
-/// rounding of any format, below every mistaken unit and the speed of the Earth's axes at any orbit.
+/// Smallest difference of a velocity from the derivative of the positions that is reported, km/s: above the
+/// rounding of any format, and below the effect of any wrong unit or of a rotating frame taken as inertial.
 const LEAST_FAULT_KM_S: f64 = 1e-3;
 
 /// Additional tolerance, as a fraction of the speed.
 const SHARE: f64 = 0.01;
 
-/// Samples of a satellite whose velocities are compared.
+/// Number of samples of a satellite whose velocities are compared.
 const COMPARED: usize = 50;
 
-/// Says how velocities differ from the derivative of the positions, if they do wherever the positions stand
-/// close enough to tell; by the median, so that a manoeuvre does not count.
+/// Says how velocities differ from the derivative of the positions, if they do wherever the positions are
+/// dense enough to judge; by the median, so that a manoeuvre does not count.
 pub(crate) fn velocity_fault<F>(samples: &[(Epoch, Position<F>, Vector3<f64>)]) -> Option<String> {
     let positions: Vec<_> = samples
         .iter()

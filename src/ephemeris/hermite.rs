@@ -1,7 +1,7 @@
-//! Hermite interpolation between the samples of a file, and what it costs.
+//! Hermite interpolation between the samples of a file, and its error.
 //!
-//! A table of positions and velocities is read between its lines by a polynomial. The file
-//! names its degree; here is measured which degree the step of the study needs.
+//! A polynomial interpolates between the lines of a table of positions and velocities. The file
+//! names its degree; this module measures which degree the step of the study needs.
 
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{EphemerisError, EphemerisSatellite};

@@ -227,7 +227,7 @@ impl Fleet {
             let most_s = file.step_s.map_or(f64::INFINITY, |step_s| 1.5 * step_s);
             trajectories.push(Trajectory {
                 name: name.to_owned(),
-                // Ids start again in each file: beyond it only the name tells satellites apart.
+                // Ids start again in each file: across files only names distinguish satellites.
                 id: name.to_owned(),
                 arcs: arcs_without_gaps(frame, states, most_s),
             });

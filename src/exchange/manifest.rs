@@ -65,7 +65,7 @@ pub struct Conventions {
     /// How far the pseudo-Earth-fixed frame is from an ITRF at the epoch.
     #[serde(default)]
     pub distance_from_itrf: String,
-    /// What is counted, and where leap seconds come in.
+    /// The time scale of instants, and the treatment of leap seconds.
     #[serde(default)]
     pub time: String,
 }

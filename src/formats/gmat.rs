@@ -1,13 +1,13 @@
 //! GMAT: a script that propagates the satellites of a design under J2 alone, and its gravity field.
 //!
 //! Source: *GMAT User Guide* R2022a and later: "Spacecraft Orbit State", "ForceModel"
-//! (`PotentialFile`, `Degree`, `Order`), "Propagator", "ReportFile", "Report", "For". One assignment
-//! stands on a line. A potential file is looked for beside the script, and a report that begins with `./`
+//! (`PotentialFile`, `Degree`, `Order`), "Propagator", "ReportFile", "Report", "For". There is one
+//! assignment per line. A potential file is looked for next to the script, and a report that begins with `./`
 //! is written there.
 //!
-//! GMAT integrates, so that it starts from osculating states: the mean elements with their first-order
-//! short-period terms, in `EarthMJ2000Eq`. What remains between its trajectory and secular J2 are those
-//! terms, and a drift along the track of the second order in J2, 1 to 3 km a day.
+//! GMAT integrates, so it starts from osculating states: the mean elements with their first-order
+//! short-period terms, in `EarthMJ2000Eq`. Its trajectory differs from secular J2 by those
+//! terms and by an in-track drift of second order in J2, 1 to 3 km a day.
 
 use crate::constellation::Satellite;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
@@ -42,7 +42,7 @@ pub fn script_name(name: &str) -> String {
 #[must_use]
 pub fn calendar(epoch: Epoch) -> Option<String> {
     let utc = epoch.utc();
-    // chrono keeps a leap second as a nanosecond count past 1e9.
+    // chrono writes second 60 as second 59 with 1e9 nanoseconds or more.
     let milliseconds = utc.nanosecond() % 1_000_000_000 / 1_000_000;
     utc.nanosecond().is_multiple_of(1_000_000).then(|| {
         let month = crate::formats::stk::MONTHS[utc.month0() as usize];

@@ -242,7 +242,7 @@ pub struct Metadata {
     pub theory: Theory,
     /// The study that the file belongs to, one line each: design, scenario.
     pub subject: Vec<String>,
-    /// What else is said of the frame: how far it is from the one that it is named for.
+    /// A note on the frame: its distance from the frame that it is labelled as.
     pub frame_note: Option<String>,
 }
 

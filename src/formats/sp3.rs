@@ -33,7 +33,7 @@ keywords! {
 }
 
 impl Sp3Version {
-    /// Most satellites of a file: what a letter and two digits tell apart, and 85 in SP3-c.
+    /// Maximum number of satellites in a file: what a letter and two digits can distinguish, and 85 in SP3-c.
     #[must_use]
     pub fn most_satellites(self) -> usize {
         match self {
@@ -350,7 +350,7 @@ pub struct Sp3 {
     pub ids: Vec<String>,
     /// Comments.
     pub comments: Vec<String>,
-    /// For each satellite its states in the order of time; a missing velocity is none.
+    /// The states of each satellite in order of time; a missing velocity is `None`.
     pub states: Vec<Vec<Sp3Sample>>,
     /// Smallest spacing of the epochs, s.
     pub step_s: Option<f64>,

@@ -1,4 +1,4 @@
-//! What text formats share: lines with their places, findings, JSON with places, timestamps.
+//! Shared by the text formats: lines and JSON with their places in the file, numbers, timestamps, findings.
 
 pub mod finding;
 pub(crate) mod json;

@@ -2,8 +2,8 @@
 //!
 //! Columns and digits: Hoots and Roehrich, *Spacetrack Report No. 3* (1980); Vallado et al.,
 //! AIAA 2006-6753, appendix B; Space-Track, *Basic Description of the Two Line Element Format*
-//! and *Alpha-5*. The name line carries the bare name, as `CelesTrak` writes it; a reader also
-//! takes it behind `0 `.
+//! and *Alpha-5*. The name line is the bare name, as `CelesTrak` writes it; the reader also
+//! accepts it after `0 `.
 
 mod read;
 
@@ -224,7 +224,7 @@ fn rate_field(value: f64) -> Result<String, TleFieldError> {
     }
 }
 
-/// `-0.11606e-4` as `-11606-4`: five digits behind an assumed point, and a power of ten.
+/// `-0.11606e-4` as `-11606-4`: five digits after an assumed decimal point, and a power of ten.
 fn exponent_field(field: &'static str, value: f64) -> Result<String, TleFieldError> {
     // Below the smallest power of ten the mantissa has zeros in front; less than half a digit is 0.
     let last_digits = (value.abs() * 1e14).round();

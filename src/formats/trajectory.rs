@@ -19,7 +19,7 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    /// One arc of states in the order of time, between which nothing is said of the interpolation.
+    /// One arc of states in order of time, with no interpolation specified.
     #[must_use]
     pub fn of_states(
         name: &str,
@@ -87,10 +87,10 @@ const EARTH_FIXED: [&str; 10] = [
     "ITR", "IGS", "IGB", "WGS84", "WGS-84", "SLR", "GTRF", "BTRF", "CGCS", "PZ",
 ];
 
-/// The frame that a name in a file means; case does not matter.
+/// The frame with this name in files; case does not matter.
 ///
-/// Every realisation of the ITRF is the Earth-fixed frame, and so are the frames of navigation systems, which are
-/// centimetres off it. `ICRF` of an Earth orbit is GCRF, and `J2000` is what older files call EME2000. Frames that
+/// Every realisation of the ITRF is the Earth-fixed frame, and so are the frames of navigation systems, which
+/// agree with it to centimetres. `ICRF` of an Earth orbit is GCRF, and `J2000` is what older files call EME2000. Frames that
 /// are true or mean of date (`TOD`, `MOD`, `TDR`) are not read.
 ///
 /// # Errors
@@ -106,10 +106,10 @@ pub fn frame_of_name(name: &str) -> Result<Frame, UnknownKeyword> {
     }
 }
 
-/// The frame that SP3 names in five characters; positions are Earth-fixed also where the name is left out.
+/// The frame that SP3 names in five characters; without a name, positions are Earth-fixed too.
 ///
 /// # Errors
-/// When the library has no such frame.
+/// If the library has no such frame.
 pub fn frame_of_sp3_name(name: &str) -> Result<Frame, UnknownKeyword> {
     match name.trim() {
         "" | "UNDEF" => Ok(Frame::EarthFixed),

@@ -1,4 +1,4 @@
-//! Ground points from a table.
+//! Ground points from a CSV table.
 
 use super::{GroundError, MAX_POINTS, Site};
 use crate::earth::Surface;
@@ -10,7 +10,7 @@ const NEEDED: [&str; 2] = ["latitude_deg", "longitude_deg"];
 /// Optional columns.
 const OPTIONAL: [&str; 2] = ["weight", "name"];
 
-/// The mark that spreadsheets put before UTF-8 text.
+/// The mark that spreadsheets write in front of UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The positions of the columns in a row.
@@ -25,7 +25,7 @@ struct Columns {
 /// if empty) and `name`, in any order; others are ignored.
 ///
 /// # Errors
-/// If a column is missing, a line cannot be read, with its number, or there is no point.
+/// If a column is missing, a line cannot be read (the error has its number), or there are no points.
 pub fn sites_from_csv(mut source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
     let mut text = Vec::new();
     source.read_to_end(&mut text).map_err(|error| {
@@ -73,7 +73,7 @@ pub fn ignored_columns(source: impl Read) -> Vec<String> {
     }
 }
 
-/// The line of a record; the reader gives the position of the blank lines before it.
+/// The line of a record. The reader reports the position of any blank lines before it, so they are added.
 fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
@@ -141,14 +141,14 @@ impl Columns {
         let mut site = site.map_err(|error| error.to_string())?;
         let name = self.name.map(field).filter(|name| !name.is_empty());
         if name.is_some_and(|name| name.contains(char::is_control)) {
-            return Err("name: it contains a control character".to_owned());
+            return Err("name: found a control character, expected printable text".to_owned());
         }
         site.name = name.map(Into::into);
         Ok(site)
     }
 }
 
-/// The error for a missing column, with a column that may be meant instead.
+/// The error for a missing column, suggesting a column that may have been meant.
 fn missing(column: &str, header: &StringRecord) -> String {
     let found: Vec<&str> = header.iter().collect();
     let alike = |name: &&&str| name.to_lowercase().starts_with(&column[..3]);
@@ -184,8 +184,8 @@ mod tests {
         assert_eq!(sites[0].name, None);
     }
 
-    /// As spreadsheets write them: a byte order mark, columns in any order, more columns, names
-    /// that are not English.
+    /// As spreadsheets write them: a byte order mark, columns in any order, extra columns,
+    /// names that are not English.
     #[test]
     fn columns_are_found_by_their_names() {
         let text = "\u{feff}name,country,longitude_deg,latitude_deg,opened\r\n\

@@ -75,7 +75,7 @@ fn edge(
 ) -> LonLat {
     let at = |angle: f64| surface.below_rad(foot(surface, arc.direction(angle)));
     let (mut seen, mut hidden) = (0.0, FRAC_PI_2);
-    // 2⁻⁴⁰ of a quarter of the Earth is 10 micrometres.
+    // 2⁻⁴⁰ of a quarter of the Earth's circumference is 10 micrometres.
     for _ in 0..40 {
         let middle = 0.5 * (seen + hidden);
         let (latitude, longitude) = at(middle);
@@ -97,7 +97,7 @@ fn foot(surface: Surface, direction: Vector3<f64>) -> Vector3<f64> {
     surface.position_km(latitude, direction.y.atan2(direction.x))
 }
 
-/// The place below a position, degrees.
+/// The sub-satellite point of a position, degrees.
 pub(crate) fn place_below(surface: Surface, position_km: Position<EarthFixed>) -> LonLat {
     degrees(surface.below_rad(position_km.km()))
 }
@@ -142,8 +142,8 @@ pub(crate) fn rings(corners: &[LonLat]) -> Vec<Vec<LonLat>> {
     cut(&around_pole(&unwrapped, turns))
 }
 
-/// An area around a pole, from a line that closes after one turn of longitude: starting and ending at
-/// the antimeridian, it is one ring on the map.
+/// An area around a pole, from an edge that closes after one turn of longitude: cut open at the
+/// antimeridian, it is one ring on the map.
 fn around_pole(line: &[LonLat], turns: f64) -> Vec<LonLat> {
     let turn = |place: &LonLat| ((place[0] + 180.0) / 360.0).floor();
     let crosses = |pair: &[LonLat]| turn(&pair[0]) != turn(&pair[1]);
@@ -219,7 +219,7 @@ fn closed(corners: &[LonLat], shift: f64) -> Option<Vec<LonLat>> {
     Some(ring)
 }
 
-/// Area of a ring on the map, square degrees: positive counterclockwise.
+/// Area of a ring on the map, square degrees: positive if counterclockwise.
 fn signed_area(ring: &[LonLat]) -> f64 {
     let pairs = ring.iter().zip(ring.iter().cycle().skip(1));
     pairs.map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>() / 2.0

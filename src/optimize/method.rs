@@ -76,7 +76,7 @@ impl Search {
     }
 
     /// Checks a search that comes from outside, as from a checkpoint, against the problem: lengths,
-    /// counts and bounds, so that whatever is asked of it afterwards has an answer.
+    /// counts and bounds, so that no later call on it can fail.
     ///
     /// # Errors
     ///

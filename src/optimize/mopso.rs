@@ -192,7 +192,7 @@ impl Mopso {
         self.archive.iter().try_for_each(|a| a.check(problem))
     }
 
-    /// Where each particle goes next, and how fast.
+    /// The next position and velocity of each particle.
     fn moves(&self, space: &Space, generator: &mut Generator) -> Vec<(Vec<f64>, Vec<f64>)> {
         if self.swarm.is_empty() {
             let still = vec![0.0; space.variables().len()];

@@ -68,7 +68,9 @@ impl Pick {
     /// The meaning of a pick's score.
     fn reason(self) -> &'static str {
         match self {
-            Self::Fuzzy => "the fuzzy pick: the best worst-case membership over the objectives",
+            Self::Fuzzy => {
+                "the fuzzy pick, with the best worst-case membership over the objectives"
+            }
             Self::Sum => "the largest normalised sum of memberships over the objectives",
             Self::Topsis => {
                 "TOPSIS, equal weights: nearest to the best and farthest from the worst of every objective"

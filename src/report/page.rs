@@ -2,8 +2,8 @@
 //!
 //! Texts and tables are in the page itself; the figures are drawn by the script of the plotly crate
 //! from numbers embedded in the page. A click on a design updates everything below it, so the page
-//! contains the packed cuts of all members. If the front is too large for that, only some members
-//! have them and the page says so.
+//! contains the cuts of all members, packed: maps, series, quantiles and orbit. If the front is too
+//! large for that, only some members have them and the page says so.
 
 mod pack;
 mod payload;
@@ -24,10 +24,10 @@ use words::{Best, CheckRow, MemberRow, PageSummary};
 /// Why a page cannot be written.
 #[derive(Debug, Error)]
 pub enum PageError {
-    /// The numbers.
+    /// The numbers cannot be serialised.
     #[error("cannot write the page's numbers")]
     Numbers(#[from] serde_json::Error),
-    /// Where it goes.
+    /// Writing fails.
     #[error("cannot write the page")]
     Write(#[from] std::io::Error),
 }
@@ -129,7 +129,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     Ok(html.write_into(&mut to)?)
 }
 
-/// The members whose cuts are in the page, by position: evenly over the front, plus the chosen one.
+/// The members whose cuts are in the page, by position: evenly spaced over the front, plus the chosen one.
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
     let Some(evaluator) = page.evaluator else {
@@ -168,7 +168,7 @@ fn first_script(html: &str) -> &str {
 /// JSON that is safe in a script element, whatever texts it contains.
 fn safe_json(payload: &Payload) -> Result<String, PageError> {
     let json = serde_json::to_string(payload)?;
-    // This character occurs in JSON only within strings.
+    // These characters occur in JSON only within strings.
     Ok(json
         .replace('<', "\\u003c")
         .replace('>', "\\u003e")

@@ -23,7 +23,7 @@ pub struct EvaluateResult {
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
-    /// The constraints of the scenario, and whether the design keeps them.
+    /// The constraints of the scenario, and whether the design meets them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
     /// The study.
@@ -182,7 +182,7 @@ impl OptimizeResult {
 
 impl Hypervolume {
     /// The volume of a front, points and references as they are minimised: at the written reference
-    /// or, where there is none, or none of use, at the chosen one.
+    /// or, if there is none or it is of no use, at the chosen one.
     pub(super) fn of<P: AsRef<[f64]>>(
         points: &[P],
         written: Option<&[f64]>,
@@ -260,7 +260,7 @@ fn front_members(
         .collect()
 }
 
-/// The quantities under constraints that are no objectives, by name.
+/// The constrained quantities that are not objectives, by name.
 fn constrained(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<(String, Option<f64>)> {
     let value = |q: Quantity| (q.to_string(), q.value(design, metrics, &goals.launch_cost));
     goals.constrained().into_iter().map(value).collect()

@@ -539,7 +539,7 @@ mod tests {
         }
     }
 
-    /// A line without a gate is no passed test.
+    /// A line without a gate does not count as a passed test.
     #[test]
     fn junit_counts_as_the_other_formats_do() {
         let text = checks_junit(&checks());

@@ -91,7 +91,7 @@ impl<R: Rule> Key<R> {
     }
 }
 
-/// Fields of which each is a key, or a section of its own.
+/// Fields, each of which is a key or a subsection.
 pub(super) trait Section: Sized {
     /// The section of its keys, empty at the top.
     const SECTION: &'static str;
@@ -103,7 +103,7 @@ pub(super) trait Section: Sized {
 
 /// An operation on every key.
 pub(super) trait Walk {
-    /// Visits a key with its value, where there is one, and gives the value that it shall have.
+    /// Visits a key with its value, if it has one, and returns the value that it is to have.
     fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value;
 
     /// Completes what was gathered: only a reader has defaults that follow other keys to fill in,

@@ -116,7 +116,7 @@ pub enum Fault {
         /// Objectives.
         expected: usize,
     },
-    /// Two bounds of one quantity that exclude everything.
+    /// Two bounds on one quantity that together exclude everything.
     #[error("{lower} and {upper} exclude every design")]
     Contradiction {
         /// The bound below, as written.

@@ -70,7 +70,7 @@ pub enum SetupError {
 }
 
 impl SetupError {
-    /// The keys behind it, the likeliest first.
+    /// The keys that may have caused it, most likely first.
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
@@ -167,7 +167,7 @@ impl Scenario {
     /// The same, with notes on the GNSS files: age, gaps, interpolation, skipped parts.
     ///
     /// # Errors
-    /// When a file cannot be read, or the values together leave no point or sample.
+    /// If a file cannot be read, or the values together leave no point or sample.
     pub fn setup_with_notes(
         &self,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,

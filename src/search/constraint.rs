@@ -21,7 +21,7 @@ keywords! {
 pub struct Constraint {
     /// What is bounded.
     pub quantity: Quantity,
-    /// The side.
+    /// On which side of the bound it must be.
     pub relation: Relation,
     /// The bound, in the unit of the quantity.
     pub bound: f64,
@@ -38,7 +38,7 @@ pub enum ConstraintError {
         /// The text as written.
         found: String,
     },
-    /// The quantity is not known.
+    /// The quantity is unknown.
     #[error(transparent)]
     UnknownQuantity(#[from] UnknownKeyword),
     /// The bound is not a finite number.
@@ -51,7 +51,7 @@ pub enum ConstraintError {
 
 impl Constraint {
     /// How far a design is from meeting the bound ([M-33](crate::models#m-33)): the excess of the
-    /// value, relative to the bound (absolute for bounds below 1), plus the share of unsolved samples
+    /// value, relative to the bound (absolute for bounds below 1), plus the fraction of unsolved samples
     /// for a statistic of PDOP that they would make infinite. 1 for any other missing value.
     #[must_use]
     pub fn violation(&self, value: Option<f64>, solved_fraction: f64) -> f64 {

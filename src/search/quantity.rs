@@ -7,19 +7,19 @@ use crate::keyword::keywords;
 keywords! {
     /// A quantity of a design.
     Quantity {
-        /// Mean PDOP + λ CVaR; without unit, minimised (equation 8 of the paper).
+        /// Mean PDOP + λ CVaR; dimensionless, minimised (equation 8 of the paper).
         JPos = "j-pos",
-        /// Satellites / mean visible; without unit, minimised (equation 9).
+        /// Satellites / mean visible; dimensionless, minimised (equation 9).
         JCost = "j-cost",
-        /// Mean PDOP; without unit, minimised.
+        /// Mean PDOP; dimensionless, minimised.
         MeanPdop = "mean-pdop",
-        /// CVaR of PDOP; without unit, minimised.
+        /// CVaR of PDOP; dimensionless, minimised.
         CvarPdop = "cvar-pdop",
-        /// 95 % quantile of PDOP; without unit, minimised.
+        /// 95 % quantile of PDOP; dimensionless, minimised.
         P95Pdop = "p95-pdop",
-        /// 99 % quantile of PDOP; without unit, minimised.
+        /// 99 % quantile of PDOP; dimensionless, minimised.
         P99Pdop = "p99-pdop",
-        /// Maximum PDOP; without unit, minimised.
+        /// Maximum PDOP; dimensionless, minimised.
         MaxPdop = "max-pdop",
         /// Satellites T; minimised.
         Satellites = "satellites",
@@ -35,7 +35,7 @@ keywords! {
 }
 
 /// Parameters of the launch cost c_T T (1 + c_h h/1000 km) + c_P P ([M-32](crate::models#m-32)), in
-/// any one unit.
+/// a currency or unit of the user's choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
     /// c_T, cost of launching one satellite to zero altitude.
@@ -63,11 +63,11 @@ impl Quantity {
         }
     }
 
-    /// The share of unsolved samples if, counted as infinite, they make the quantity infinite;
-    /// otherwise 0. They would make a statistic of the solved samples alone look better.
+    /// The fraction of unsolved samples if, counted as infinite, they make the quantity infinite;
+    /// otherwise 0. Ignoring them would make a statistic of the solved samples look better.
     #[must_use]
     pub fn unsolved_share(self, solved_fraction: f64) -> f64 {
-        /// Rounding of a share that is made of weights.
+        /// Rounding error of a fraction that is a sum of weights.
         const ROUNDING: f64 = 1e-12;
         match self.solved_share_needed() {
             Some(needed) if solved_fraction < needed - ROUNDING => 1.0 - solved_fraction,
@@ -75,8 +75,8 @@ impl Quantity {
         }
     }
 
-    /// Share of the samples that have to be solved: all of them for a mean, a tail or a maximum of
-    /// PDOP, q for its quantile of level q. `None` for what is not a statistic of PDOP.
+    /// Fraction of the samples that must be solved: all for a mean, a tail or a maximum of PDOP, q for
+    /// its quantile of level q. `None` for a quantity that is not a statistic of PDOP.
     fn solved_share_needed(self) -> Option<f64> {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),

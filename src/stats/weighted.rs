@@ -1,4 +1,4 @@
-//! The same statistics of a weighted sample.
+//! The same statistics for a weighted sample.
 //!
 //! A value of weight k counts as k values of weight one. With equal weights every function is
 //! bit-identical to its unweighted counterpart.
@@ -22,7 +22,7 @@ struct Sorted<'a> {
 
 impl<'a> Sorted<'a> {
     fn new(sample: &'a mut [Weighted]) -> Self {
-        // Equal values by weight, so that no sum depends on the order of the samples.
+        // Equal values are ordered by weight, so that no sum depends on the order of the samples.
         sample.sort_unstable_by(|a, b| {
             let by_value = a.value.total_cmp(&b.value);
             by_value.then_with(|| a.weight.total_cmp(&b.weight))
@@ -31,8 +31,8 @@ impl<'a> Sorted<'a> {
         Self { sample, total }
     }
 
-    /// The smallest value at which the weights add up to `q` of their sum, minus 1e-9 of the mean
-    /// weight ([M-28](crate::models#m-28) with weights), and the index after it.
+    /// The smallest value at which the cumulative weight reaches the fraction `q` of the total minus
+    /// 1e-9 of the mean weight ([M-28](crate::models#m-28) with weights), and the index after it.
     fn quantile(&self, q: f64) -> Option<(f64, usize)> {
         let slack = 1e-9 * self.total / self.sample.len() as f64;
         let wanted = q * self.total - slack;
@@ -135,7 +135,7 @@ mod tests {
     }
 
     /// Weights 1, 2, 3, 4 on 1, 2, 3, 4: mean 30/10; half of the weight is reached at 3; the
-    /// worst 60 % are all of 4 and two thirds of 3, (4 · 4 + 2 · 3)/6.
+    /// worst 60 % is all of the 4 and two thirds of the 3, (4 · 4 + 2 · 3)/6.
     #[test]
     fn validate_a_small_weighted_sample() {
         let mut sample: Vec<_> = [4.0, 2.0, 1.0, 3.0]
@@ -163,7 +163,7 @@ mod tests {
     }
 
     proptest! {
-        /// Equal weights, whatever their size, change no bit.
+        /// Equal weights of any size give the unweighted statistics to the bit.
         #[test]
         fn equal_weights_are_no_weights(
             values in prop::collection::vec(1.0..9.0_f64, 1..60),
@@ -180,8 +180,8 @@ mod tests {
             prop_assert_eq!(weighted_cvar(&mut weighted, level(q)), cvar(&mut plain, level(q)));
         }
 
-        /// A value of weight k is k values. The first two pairs differ in weight, so that the
-        /// path with weights is taken.
+        /// A value of weight k equals k repeated values. The first two pairs differ in weight, so
+        /// that the weighted path is taken.
         #[test]
         fn validate_whole_weights_are_repetitions(
             pairs in prop::collection::vec((1.0..9.0_f64, 1..5_u32), 1..40),
@@ -199,7 +199,7 @@ mod tests {
             let ours = summarize_weighted(&mut weighted, level(q)).unwrap();
             let theirs = summarize(&mut repeated, level(q)).unwrap();
             prop_assert_eq!((ours.p50, ours.p95, ours.p99, ours.max), (theirs.p50, theirs.p95, theirs.p99, theirs.max));
-            // Sums in another order: a few ulp of 9.
+            // The sums are in a different order: a few ulp of 9.
             prop_assert!((ours.mean - theirs.mean).abs() < 1e-13);
             prop_assert!((ours.cvar - theirs.cvar).abs() < 1e-12);
             let single = weighted_quantile(&mut weighted, level(q));

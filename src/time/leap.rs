@@ -1,9 +1,9 @@
-//! Leap seconds: TAI - UTC by the date.
+//! Leap seconds: TAI - UTC by date.
 
 use chrono::{Datelike, NaiveDate};
 
 /// The date up to which the table is complete (IERS Bulletin C 72, July 2026); no leap second is assumed after
-/// it.
+/// that.
 pub const LEAP_SECONDS_END: NaiveDate = NaiveDate::from_ymd_opt(2027, 6, 28).unwrap();
 
 /// The year in which UTC began to differ from TAI by whole seconds.
@@ -11,26 +11,26 @@ pub const FIRST_YEAR: i32 = 1972;
 
 /// TAI - UTC on a UTC date, s, including any leap second at its end.
 ///
-/// The table is that of SOFA. Before 1972 the initial value of 10 s is used, since UTC seconds had a
-/// different length then.
+/// From SOFA's table. Before 1972, when UTC seconds differed in length from SI seconds, the initial value
+/// of 10 s is used.
 pub(super) fn tai_minus_utc_s(date: NaiveDate) -> i64 {
     let year = date.year();
     if year < FIRST_YEAR {
         return 10;
     }
     let seconds = sofars::ts::dat(year, date.month() as i32, date.day() as i32, 0.0);
-    // The table has whole seconds, and knows every date since 1972.
+    // The table is in whole seconds and covers every date since 1972.
     seconds.unwrap_or(0.0) as i64
 }
 
-/// Whether a date of UTC ends with a leap second.
+/// Whether a UTC date ends with a leap second.
 #[must_use]
 pub fn ends_with_leap_second(date: NaiveDate) -> bool {
     let next = |date: NaiveDate| date.succ_opt();
     next(date).is_some_and(|next| tai_minus_utc_s(next) > tai_minus_utc_s(date))
 }
 
-/// The note on the table in results.
+/// The note on leap seconds that results carry.
 #[must_use]
 pub fn leap_seconds_note() -> String {
     format!(

@@ -1,16 +1,16 @@
-//! UT1 - UTC as observed.
+//! Observed UT1 - UTC.
 
 use super::Epoch;
 use super::leap::{FIRST_YEAR, tai_minus_utc_s};
 use chrono::{Datelike, NaiveDate};
 
-/// UT1 - TAI on the first of each month, a year a line; see `data/MANIFEST.toml`.
+/// UT1 - TAI on the first of each month, one line per year; see `data/MANIFEST.toml`.
 const UT1_MINUS_TAI: &str = include_str!("../../data/earth-rotation/ut1-tai.txt");
 
-/// Largest difference of UT1 from UTC, s, as maintained by leap seconds (ITU-R TF.460-6).
+/// The bound on |UT1 - UTC|, s, that leap seconds maintain (ITU-R TF.460-6).
 pub const MOST_UT1_MINUS_UTC_S: f64 = 0.9;
 
-/// UT1 - UTC at an instant, s, accurate to 0.01 s; `None` outside the IERS series, which begins in 1972 here.
+/// UT1 - UTC at an instant, s, accurate to 0.01 s; `None` outside the stored IERS series, which begins in 1972.
 #[must_use]
 pub fn ut1_minus_utc_s(at: Epoch) -> Option<f64> {
     let date = at.utc().date_naive();
@@ -23,7 +23,7 @@ pub fn ut1_minus_utc_s(at: Epoch) -> Option<f64> {
     Some(before_s + share * (after_s - before_s) + tai_minus_utc_s(date) as f64)
 }
 
-/// The value of the table on the first of a month.
+/// The tabulated value for the first of a month.
 fn ut1_minus_tai_s(first: NaiveDate) -> Option<f64> {
     let line = usize::try_from(first.year() - FIRST_YEAR).ok()?;
     let line = UT1_MINUS_TAI.lines().nth(line)?;

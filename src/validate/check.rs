@@ -4,7 +4,7 @@ use crate::keyword::keywords;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// One number of a validation, with the bound that it must keep.
+/// One number of a validation, with the bound that it must meet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Check {
     /// Unique name, `target/case/quantity`.

@@ -9,13 +9,13 @@ use crate::ground::Site;
 use crate::units::wrap_pi;
 use rayon::prelude::*;
 
-/// Sites at which passes are timed; more would not change the picture.
+/// Number of sites at which passes are timed; more would not change the result noticeably.
 const PASS_SITES: usize = 6;
 
 /// Maximum number of satellites whose passes are timed.
 const PASS_SATELLITES: usize = 60;
 
-/// The reason given where there is no bound.
+/// The reason given if there is no bound.
 const UNBOUNDED: &str = "reported only: effect of the state difference on the result";
 
 /// Two propagations of the same satellites, seen from the points of a study.
@@ -154,7 +154,7 @@ impl TrajectoryPair<'_> {
         for site in sites {
             let [first, second] = [propagations[0].passes(site)?, propagations[1].passes(site)?];
             for pass in &first {
-                // Two passes are the same pass if one is under way at the middle of the other.
+                // Two passes count as the same if one is in progress at the middle of the other.
                 let middle = 0.5 * (pass.0 + pass.1);
                 let Some(other) = second.iter().find(|p| p.0 <= middle && middle <= p.1) else {
                     continue;

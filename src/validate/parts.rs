@@ -1,4 +1,4 @@
-//! What is on trial, and what judges it, as parts that a test can exchange.
+//! The parts under test and the instruments that judge them, which a test can replace.
 
 use super::numerical::integrator::{Acceleration, ZonalField};
 use crate::constellation::{Satellite, Shell};
@@ -17,7 +17,7 @@ use crate::time::Epoch;
 pub type ModelPropagator =
     fn(Model, &MeanElements, Epoch) -> Result<Box<dyn Propagator>, PropagationError>;
 
-/// The parts of the library that are held against standards, and of the instruments that judge them.
+/// The parts of the library that are compared with standards, and of the instruments that judge them.
 ///
 /// Ours by default. A test puts a mistake in the place of one, to see which checks notice it.
 #[derive(Debug, Clone, Copy)]

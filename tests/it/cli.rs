@@ -188,7 +188,7 @@ fn what_cannot_be_run_says_why() {
         ),
         (
             refused(&["validate", "--against", "stk"]),
-            "unknown word \"stk\" (choices: sgp4,",
+            "unknown name \"stk\" (choices: sgp4,",
         ),
         (refused(&["frobnicate"]), "unrecognized subcommand"),
     ];
@@ -367,7 +367,7 @@ fn a_killed_run_resumes_to_the_same_bytes() {
     }
 }
 
-/// A finished run goes on to more generations, to the result of a run that had them from the start.
+/// A finished run can be continued to more generations, with the result of a run that had them from the start.
 #[test]
 fn a_finished_run_goes_on_to_more_generations() {
     let directory = TempDir::new().unwrap();
@@ -431,7 +431,7 @@ fn a_damaged_checkpoint_gives_way_to_the_one_before() {
     // The last generation was repeated: nothing is lost.
     assert!(fs::read(&checkpoint).unwrap() == good);
     assert!(fs::read(directory.path().join("run/front.json")).unwrap() == front);
-    // Bytes that are no text are damage like any other, and never take the place of the one before.
+    // Bytes that are not UTF-8 are damage like any other, and never replace the previous checkpoint.
     fs::write(&checkpoint, b"\xff\xfe\n").unwrap();
     let resumed = ran(
         directory.path(),

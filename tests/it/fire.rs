@@ -209,7 +209,7 @@ fn what_lies_beside_a_run_stays() {
     assert_eq!(history.lines().count(), 1 + 400);
 }
 
-/// A second process in the same run is told who holds it.
+/// A second process in the same run gets an error that names the first.
 #[cfg(unix)]
 #[test]
 fn a_run_has_one_process() {
@@ -395,7 +395,7 @@ fn the_table_of_a_figure_replaces_nothing() {
         ran(place, &[plot.clone(), vec!["--force"]].concat()).status,
         0
     );
-    // Its own table is no obstacle.
+    // Its own table does not stop it.
     assert_eq!(ran(place, &plot).status, 0);
 }
 

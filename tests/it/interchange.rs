@@ -1,5 +1,5 @@
-//! Exports and readers at the edges of the machine: disks that are full, files without end,
-//! choices and places that do not fit.
+//! Exports and readers at the edges of the machine: full disks, endless files, options and
+//! destinations that do not match.
 
 use crate::cli::{ran, refused};
 use std::fs::{self, File};

@@ -232,7 +232,7 @@ fn help_can_be_read_and_completed() {
     );
 }
 
-/// Where nobody sees them there are no colours, whatever is asked.
+/// Without a terminal there are no colours, whatever the options.
 #[test]
 fn no_terminal_means_no_colours() {
     let directory = TempDir::new().unwrap();

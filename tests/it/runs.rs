@@ -105,7 +105,7 @@ fn a_run_needs_none_of_the_files_of_its_scenario() {
     );
     fs::remove_file(place.join("run/report.html")).unwrap();
     assert!(contents(&place.join("run")) == contents(&elsewhere.join("again")));
-    // The run itself goes on, named by its directory or by its scenario.
+    // The run itself can be continued, named by its directory or by its scenario.
     done(
         &elsewhere,
         "optimize --quiet --resume --out ../run --set optimizer.generations=5",
@@ -222,7 +222,7 @@ fn a_run_of_another_scenario_says_what_differs() {
     }
 }
 
-/// The same command and --resume goes on, whatever it named by --set; so does --resume alone.
+/// The same command with --resume continues the run, whatever its --set options; so does --resume alone.
 #[test]
 fn the_same_command_resumes() {
     let directory = with_files();

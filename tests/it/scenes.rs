@@ -38,7 +38,7 @@ fn files(below: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// One export of all scenario formats: the same bytes on any number of threads, read back within the bounds,
-/// with what the other programs must be told, and evaluated again from the CZML.
+/// with the settings that the other programs need, and evaluated again from the CZML.
 #[test]
 fn scenarios_are_exported_and_read_back() {
     let directory = TempDir::new().unwrap();

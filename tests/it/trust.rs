@@ -1,4 +1,4 @@
-//! What a user is told who validates: refusals, picks, and where the reports go.
+//! Messages of `validate`: refusals, picks, and where the reports go.
 
 use crate::cli::{optimize, ran, refused};
 use serde_json::Value;
@@ -69,7 +69,7 @@ fn an_element_set_that_sgp4_refuses_is_told() {
     );
 }
 
-/// Satellites of files are chosen by pattern; what a file holds besides is told; old sets are warned of.
+/// Satellites in files are chosen by pattern; other contents are reported; old element sets give a warning.
 #[test]
 fn satellites_of_files_are_chosen_and_the_rest_is_told() {
     let directory = TempDir::new().unwrap();

@@ -49,7 +49,7 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
             return Ok(Against::Files(PathBuf::from(name)));
         }
         let target = name.parse().with_context(|| {
-            format!("--against {name}: a file or directory has a '.' or '/' in its path")
+            format!("--against {name}: neither a target nor a path (a path contains a '.' or '/')")
         })?;
         Ok(Against::Standard(target))
     };

@@ -82,7 +82,7 @@ fn nothing_is_extrapolated() {
     assert!(whole.within((at(700.0), at(800.0))).is_none());
 }
 
-/// The estimate is the error at twice the spacing: above the true one, and by the power of two that is told.
+/// The estimate is the error at twice the spacing: above the true one by two to the power of the order.
 #[test]
 fn the_estimate_is_above_the_true_error() {
     for (interpolation, step_s) in [
@@ -112,7 +112,7 @@ fn the_estimate_is_above_the_true_error() {
     );
 }
 
-/// A run between gaps that is too short for the usual polynomial stands at its samples alone.
+/// A run between gaps that is too short for the usual polynomial has states only at its samples.
 #[test]
 fn short_runs_are_not_interpolated() {
     for (count, expected) in [(10, None), (11, Some(true))] {

@@ -1,4 +1,4 @@
-//! One sample: all points, all satellites. The code that is compiled for each instruction set.
+//! One instant at all points with all satellites: the code that is compiled for each instruction set.
 
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
@@ -14,7 +14,7 @@ pub(super) const UNSOLVED: f32 = f32::INFINITY;
 /// Minimum of satellites minus clock states: one satellite for each component of position.
 pub(super) const POSITION_STATES: u32 = 3;
 
-/// The limits of f32.
+/// The thresholds of PDOP, and how close to them f32 and f64 can decide.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Limits {
     /// PDOP above this is recomputed in f64.
@@ -23,7 +23,7 @@ pub(super) struct Limits {
     pub(super) cap: f64,
     /// PDOP up to which a sample is available.
     pub(super) available: f64,
-    /// Clock states at most.
+    /// Maximum number of clock states.
     pub(super) clocks: u32,
 }
 
@@ -31,8 +31,8 @@ impl Limits {
     /// Relative distance from a threshold within which f32 does not decide.
     const BAND: f32 = 1e-5;
 
-    /// Relative distance from a threshold within which f64 lanes do not decide, besides what
-    /// rounding of the normal matrix by one floor of its pivots does to PDOP.
+    /// Relative distance from a threshold within which f64 lanes do not decide, in addition to the
+    /// change of PDOP if the normal matrix is off by one pivot floor.
     const DOUBLE_BAND: f64 = 1e-6;
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl Limits {
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
     }
 
-    /// Whether the sums of the lanes, or others that are as good, decide about a sample of finite
+    /// Whether the sums of the lanes, or others of the same accuracy, decide a sample with this finite
     /// PDOP. Otherwise the sums of the plain path do, so that all paths decide alike.
     #[inline(always)]
     pub(super) fn decides(&self, pdop: f64, satellites: u32) -> bool {
@@ -62,7 +62,7 @@ impl Limits {
     }
 }
 
-/// Data shared by all samples.
+/// Data shared by all instants.
 pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
@@ -70,16 +70,16 @@ pub(super) struct SampleContext {
     pub(super) limits: Limits,
 }
 
-/// Memory of one evaluation that is reused for each sample.
+/// Memory of one evaluation, reused for each instant.
 pub(super) struct Workspace {
     pub(super) positions: Positions,
     /// Of each pattern, at the sample.
     pub(super) turns: Vec<Turn>,
     all: Candidates,
     near: Candidates,
-    /// Words of a tile.
+    /// Number of words per tile.
     blocks: usize,
-    /// The satellites that the tiles of a group may see, tile by tile.
+    /// The satellites that may be visible from the tiles of a group, one bit each, tile by tile.
     words: Vec<u64>,
 }
 
@@ -98,7 +98,7 @@ impl Workspace {
     }
 }
 
-/// Why the lanes leave a decision open.
+/// Why the lanes cannot decide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Doubt {
     /// A satellite is too close to the mask.
@@ -107,8 +107,8 @@ pub(super) enum Doubt {
     Geometry,
 }
 
-/// A decision left to the plain path: the point in a lane of a tile, and the satellites that it may
-/// see.
+/// A decision left to the plain path: the point in a lane of a tile, and the satellites that may
+/// be visible from it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Undecided {
     pub(super) doubt: Doubt,
@@ -117,7 +117,7 @@ pub(super) struct Undecided {
     pub(super) satellites: Vec<u32>,
 }
 
-/// The result of one sample.
+/// The result of one instant.
 #[derive(Debug, Clone)]
 pub(super) struct SampleOutcome {
     /// PDOP of each slot, tile by tile; [`UNSOLVED`] if there is none.
@@ -144,14 +144,14 @@ impl SampleOutcome {
     }
 }
 
-/// One sample to be evaluated.
+/// One instant to be evaluated.
 pub(super) struct Sample<'a> {
     pub(super) scene: &'a SampleContext,
     /// The limits of the scene, or narrower ones.
     pub(super) limits: Limits,
     /// The patterns to propagate, each by its turn in the workspace; the other positions are given.
     pub(super) patterns: &'a [PatternPropagator],
-    /// The GNSS part.
+    /// The contribution of the GNSS.
     pub(super) fixed: FixedSample<'a>,
     pub(super) work: &'a mut Workspace,
     pub(super) outcome: &'a mut SampleOutcome,
@@ -240,7 +240,7 @@ fn any(lanes: &Lanes<u32>) -> bool {
     lanes.0.iter().fold(0, |all, lane| all | lane) != 0
 }
 
-/// The satellites that a tile may see.
+/// The satellites that may be visible from a tile.
 #[derive(Clone, Copy)]
 struct TileCandidates<'a> {
     blocks: &'a [Block],
@@ -263,7 +263,7 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
-    /// The number of each among all satellites.
+    /// Their indices among all satellites.
     #[inline(always)]
     fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
         let blocks = self.blocks.iter().zip(self.words);

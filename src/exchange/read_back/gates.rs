@@ -92,7 +92,7 @@ pub(crate) fn czml_km(_: Extent) -> f64 {
     CZML_KM
 }
 
-/// Nine decimals of a kilometre of a: 3/2 da n t along the track, where a low orbit turns by 16
+/// Nine decimals of a kilometre of a: 3/2 da n t in-track, where a low orbit turns by 16
 /// revolutions a day at most.
 pub(crate) fn opm_km(extent: Extent) -> f64 {
     STATES_KM + 1.5 * 0.5e-9 * (16.0 * TAU * extent.days)

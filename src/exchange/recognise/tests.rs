@@ -29,8 +29,8 @@ fn exported() -> Vec<(String, Vec<u8>)> {
         .collect()
 }
 
-/// What the program writes is recognised without its name, over blank lines and comments of 100 kB, packed or not; what
-/// of it is not read is said to be something else.
+/// What the program writes is recognised without its name, over blank lines and comments of 100 kB, packed or not;
+/// products without a reader are not recognised.
 #[test]
 fn our_own_files_are_recognised_over_any_preamble() {
     let long = "operator notice ".repeat(6_000);
@@ -104,7 +104,7 @@ fn what_is_not_read_is_named() {
             br#"{"type": "FeatureCollection", "features": []}"#,
             "GeoJSON",
         ),
-        // An item of an array is no key.
+        // An item of an array is not a key.
         (
             br#"{"a": ["x", "OBJECT_NAME"], "type": "FeatureCollection"}"#,
             "GeoJSON",
@@ -164,7 +164,7 @@ fn names_help_where_content_does_not() {
     assert!(of(b"31 28\n5 6 7\n", None).is_err());
 }
 
-/// Truncated and damaged gzip is told as such, and a bomb ends after 64 MiB.
+/// Truncated and damaged gzip is reported as such, and a decompression bomb is cut off after 64 MiB.
 #[test]
 fn damaged_gzip_is_told() {
     let (_, sp3) = exported()

@@ -72,7 +72,7 @@ fn files_cut_at_any_byte_are_told() {
                 // What follows the state and the elements may be omitted.
                 Format::Opm => text[..at].contains("\nZ_DOT = "),
                 Format::Omm => text[..at].contains("MEAN_ANOMALY"),
-                // Numbers at the end may lose digits, and a block of an almanac stands alone.
+                // Numbers at the end may lose digits, and a block of an almanac is complete by itself.
                 Format::Yuma => {
                     let last = text[..at].lines().last().unwrap_or_default();
                     ends_a_row || last.starts_with("week: ") || last.starts_with('*')
@@ -130,7 +130,7 @@ impl BufRead for Endless {
     }
 }
 
-/// One line of 64 MB behind the first line of a file, or in place of it.
+/// One line of 64 MB after the first line of a file, or in place of it.
 #[test]
 fn a_line_of_64_mb_is_refused() {
     for (format, text) in samples() {

@@ -1,5 +1,5 @@
-//! Spans over a leap second, in every product and from every reader: what a file says of its instants is held
-//! against labels that others define, since writer and reader could err alike.
+//! Spans over a leap second, in every product and from every reader: what a file says of its instants is compared
+//! with labels that others define, since writer and reader could share an error.
 
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
@@ -115,8 +115,8 @@ fn validate_labels_of_products_over_a_leap_second() {
     assert!(text(&files, "scene.czml").contains("2016-12-31T23:59:00Z/2017-01-01T00:01:59Z"));
 }
 
-/// 23:59:60 is an instant: the epoch of every product, but of a TLE, which goes to the next one that it can
-/// write.
+/// 23:59:60 is an instant: it is the epoch of every product except a TLE, whose epoch is the next instant that
+/// it can express.
 #[test]
 fn an_epoch_may_lie_inside_a_leap_second() {
     let grid = grid("2015-06-30T23:59:60.25Z");
@@ -314,7 +314,7 @@ fn validate_an_sp3_of_gps_time_over_a_leap_second() {
     }
 }
 
-/// Second 60 exists in UTC only; a file of another system that has one is refused where it stands.
+/// Second 60 exists in UTC only; in a file of another system it is refused, with its place.
 #[test]
 fn second_60_is_refused_in_other_systems() {
     let oem = |system: &str| {

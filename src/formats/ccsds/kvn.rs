@@ -1,5 +1,5 @@
-//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the values of a
-//! keyword table as they come in.
+//! Keyword = value notation of the CCSDS Orbit Data Messages (502.0-B-3, section 7), and the values read for a
+//! table of keywords.
 
 use super::keywords::{KvnKeyword, Need, ValueKind};
 use crate::formats::metadata::Metadata;
@@ -11,34 +11,34 @@ use crate::keyword::{Keyword, keywords};
 use chrono::NaiveDateTime;
 use std::io::{self, BufRead, Write};
 
-/// Longest line (7.3.2).
+/// Maximum length of a line (7.3.2).
 const LINE: usize = 254;
 
-/// Most digits of a number (7.5.6, 7.5.7).
+/// Maximum number of digits (7.5.6, 7.5.7).
 const DIGITS: usize = 16;
 
 keywords! {
     /// A version of the Orbit Data Messages.
     CcsdsVersion {
-        /// CCSDS 502.0-B-2: what most readers know.
+        /// CCSDS 502.0-B-2, which most readers support.
         V2 = "2.0",
         /// CCSDS 502.0-B-3.
         V3 = "3.0",
     }
 }
 
-/// The header of a message (tables 3-1, 4-1 and 5-2, which are alike).
+/// The header of a message (tables 3-1, 4-1 and 5-2, which agree).
 #[derive(Debug, Clone, PartialEq)]
 pub struct CcsdsHeader {
     /// Version of the message.
     pub version: CcsdsVersion,
-    /// Comments behind the version.
+    /// Comments after the version.
     pub comments: Vec<String>,
     /// Classification (version 3).
     pub classification: Option<String>,
-    /// When the message was made, UTC.
+    /// Creation time of the message, UTC.
     pub creation_date: NaiveDateTime,
-    /// Who made it.
+    /// Its originator.
     pub originator: String,
     /// Identifier of the message (version 3).
     pub message_id: Option<String>,
@@ -47,7 +47,7 @@ pub struct CcsdsHeader {
 impl CcsdsHeader {
     /// The header of a file that `metadata` describes.
     ///
-    /// Version 3 too goes without `MESSAGE_ID`, which is optional and which some readers refuse.
+    /// `MESSAGE_ID` is left out even in version 3: it is optional, and some readers refuse it.
     pub(crate) fn new(version: CcsdsVersion, metadata: &Metadata) -> Self {
         Self {
             version,
@@ -69,7 +69,7 @@ impl CcsdsHeader {
         Ok(())
     }
 
-    /// The keywords behind the comments.
+    /// The keywords after the comments.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = (&'static str, String)> {
         let digits = SecondDigits::of_stamp(self.creation_date);
         [
@@ -89,7 +89,7 @@ impl CcsdsHeader {
         findings: &mut FindingList,
     ) -> Option<Self> {
         let text = block.text(version_key)?;
-        // Version 1.0 differs from 2.0 in nothing that is read here.
+        // Nothing that is read here differs between versions 1.0 and 2.0.
         let known = if text == "1.0" { "2.0" } else { &text };
         let Ok(version) = CcsdsVersion::from_keyword(known) else {
             let message = format!("version '{text}' is not 1.0, 2.0 or 3.0");
@@ -114,22 +114,22 @@ pub(crate) fn write_comments(out: &mut impl Write, comments: &[String]) -> io::R
         .try_for_each(|comment| writeln!(out, "COMMENT {comment}"))
 }
 
-/// A keyword and its value, as a line gives them.
+/// A keyword and its value, as written.
 pub(crate) struct Pair<'a> {
     pub(crate) key: &'a str,
     pub(crate) value: &'a str,
-    /// The unit that XML has as an attribute.
+    /// The unit, which in XML is an attribute.
     pub(crate) unit: Option<&'a str>,
     pub(crate) key_place: (usize, usize),
     pub(crate) value_place: (usize, usize),
 }
 
-/// The lines of a message, whose comments may hold any text.
+/// The lines of a message, whose comments may contain any characters.
 pub(crate) fn lines<R: BufRead>(input: R) -> Lines<R> {
     Lines::new(input).with_comments(|line| line.trim_ascii_start().starts_with(b"COMMENT"))
 }
 
-/// What a line of a message is.
+/// The content of one line of a message.
 pub(crate) enum Item<'a> {
     Blank,
     Comment(&'a str),
@@ -138,7 +138,7 @@ pub(crate) enum Item<'a> {
     Other(&'a str),
 }
 
-/// Takes a line apart.
+/// Parses a line.
 pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
     if line.text.len() > LINE {
         let message = format!(
@@ -173,7 +173,7 @@ pub(crate) fn item<'a>(line: &'a Line, findings: &mut FindingList) -> Item<'a> {
 #[derive(Debug, Clone)]
 struct PlacedValue {
     text: String,
-    /// Its value, if the keyword has numbers.
+    /// Its numerical value, if the keyword takes a number.
     number: Option<f64>,
     place: (usize, usize),
 }
@@ -182,18 +182,18 @@ struct PlacedValue {
 pub(crate) struct KvnBlock {
     table: Vec<&'static KvnKeyword>,
     values: Vec<Option<PlacedValue>>,
-    /// Which keywords have come in, with a value or without.
+    /// Which keywords have been read, with or without a value.
     seen: Vec<bool>,
     last: Option<usize>,
-    /// Whether the standard's rules of order and of numbers hold: for messages, and not for the objects and rows
-    /// of a catalogue.
+    /// Whether the standard's rules on order and numbers apply: to messages, but not to the objects and rows of
+    /// a catalogue.
     is_message: bool,
     /// Comments among the keywords.
     pub(crate) comments: Vec<String>,
 }
 
 impl KvnBlock {
-    /// A block whose keywords come in the order of the tables.
+    /// A block of a message, with its keywords in the order of the tables.
     pub(crate) fn new(tables: &[&'static [KvnKeyword]]) -> Self {
         let table: Vec<_> = tables.iter().copied().flatten().collect();
         Self {
@@ -206,7 +206,7 @@ impl KvnBlock {
         }
     }
 
-    /// An object or a row of a catalogue: no message, but the same keywords, in any order.
+    /// A block for an object or a row of a catalogue: the keywords of a message, in any order.
     pub(crate) fn of_record(tables: &[&'static [KvnKeyword]]) -> Self {
         Self {
             is_message: false,
@@ -223,17 +223,17 @@ impl KvnBlock {
         self.index(key).is_some()
     }
 
-    /// Whether it is of a message, and not of a catalogue's record.
+    /// Whether the block belongs to a message rather than to a record of a catalogue.
     pub(crate) fn is_message(&self) -> bool {
         self.is_message
     }
 
-    /// Whether no keyword has come in yet.
+    /// Whether no keyword has been read yet.
     pub(crate) fn is_empty(&self) -> bool {
         self.last.is_none()
     }
 
-    /// Takes a keyword of the table.
+    /// Adds a keyword of the table.
     pub(crate) fn accept(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {
         let Some(index) = self.index(pair.key) else {
             let message = format!("keyword {} is not allowed here", pair.key);
@@ -300,7 +300,7 @@ impl KvnBlock {
         read_number(text, place, findings)
     }
 
-    /// Takes a keyword of the table whose key and value have the same position, as in XML.
+    /// Adds a keyword of the table whose key and value have the same position, as in XML.
     pub(crate) fn accept_at(
         &mut self,
         (key, value): (&str, &str),
@@ -318,7 +318,7 @@ impl KvnBlock {
         self.accept(&pair, findings);
     }
 
-    /// Reports the mandatory keywords that have not come in.
+    /// Reports the mandatory keywords that are missing.
     pub(crate) fn finish(&self, place: (usize, usize), findings: &mut FindingList) {
         for (keyword, seen) in self.table.iter().zip(&self.seen) {
             let message = || format!("{} is mandatory and missing", keyword.name);
@@ -336,7 +336,7 @@ impl KvnBlock {
         self.values[self.index(key)?].as_ref()
     }
 
-    /// Where the value of a keyword stands.
+    /// Line and column of the value of a keyword.
     pub(crate) fn place(&self, key: &str) -> (usize, usize) {
         self.placed(key).map_or((1, 1), |value| value.place)
     }
@@ -429,7 +429,7 @@ pub(crate) fn read_number(
     let unsigned = mantissa.strip_prefix(['+', '-']).unwrap_or(mantissa);
     let (whole, decimals) = unsigned.split_once('.').unwrap_or((unsigned, "0"));
     if whole.is_empty() || decimals.is_empty() {
-        let message = format!("'{text}' needs a digit on both sides of its point (7.5.6)");
+        let message = format!("'{text}' needs a digit on both sides of the decimal point (7.5.6)");
         findings.warning(place, "ccsds-point", message);
     }
     let digits = unsigned.bytes().filter(u8::is_ascii_digit).count();

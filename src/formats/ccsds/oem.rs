@@ -60,7 +60,7 @@ pub struct Oem {
 /// The metadata of a segment (table 5-3).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SegmentMetadata {
-    /// Comments behind `META_START`.
+    /// Comments after `META_START`.
     pub comments: Vec<String>,
     /// Name of the satellite.
     pub object_name: String,

@@ -2,7 +2,7 @@
 //!
 //! Sources: CCSDS 502.0-B-3, section 4 (KVN), section 8 and 505.0-B-2 (XML); for JSON and CSV,
 //! which no standard describes, `CelesTrak`'s *GP Data Formats*: an object or a row of the same
-//! keywords. Unlike a TLE an OMM keeps all digits, so that it carries the elements without loss.
+//! keywords. Unlike a TLE, an OMM keeps all digits, so the elements lose nothing.
 //! `MEAN_MOTION_DOT` and `_DDOT` hold what a TLE holds (half and a sixth of the derivatives).
 
 mod read;
@@ -67,7 +67,7 @@ pub fn read(input: impl BufRead, notation: OmmSyntax) -> Result<Vec<Omm>, ReadEr
     findings.unless_error(messages)
 }
 
-/// Passes every message that keeps the rules to `take`, until the list of findings is full.
+/// Passes every valid message to `take`, until the list of findings is full.
 ///
 /// # Errors
 /// A failure of the input.

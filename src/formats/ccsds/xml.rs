@@ -1,7 +1,8 @@
 //! Elements of an XML file, with their places, for the Navigation Data Messages.
 //!
 //! Leaves are distinguished from elements with children; memory is bounded by the length of one tag or
-//! text and by the depth. Document types and entities other than the five of XML are refused.
+//! text and by the depth. Document type declarations, and entities other than XML's five predefined ones, are
+//! refused.
 
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
 use crate::formats::text::finding::FindingList;
@@ -10,10 +11,10 @@ use quick_xml::escape::{escape, resolve_predefined_entity};
 use quick_xml::events::{BytesRef, BytesStart, Event};
 use std::io::{self, BufRead, Read, Write};
 
-/// Longest tag or text, in bytes.
+/// Maximum length of a tag or text, in bytes.
 const MAX_EVENT: usize = 1 << 16;
 
-/// Deepest nesting.
+/// Maximum depth of nesting.
 const MAX_DEPTH: usize = 32;
 
 /// An element, or its end.
@@ -21,18 +22,18 @@ const MAX_DEPTH: usize = 32;
 pub(crate) enum XmlNode {
     /// Beginning of an element with children, with its `version` if it has one.
     Open(String, Option<String>),
-    /// An element with text alone.
+    /// An element that contains only text.
     Leaf(XmlLeaf),
     /// End of an element with children.
     Close(String),
 }
 
-/// An element with text alone.
+/// An element that contains only text.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct XmlLeaf {
     pub(crate) name: String,
     pub(crate) text: String,
-    /// Its attribute `units`.
+    /// Its `units` attribute.
     pub(crate) unit: Option<String>,
 }
 
@@ -67,7 +68,7 @@ impl<R: BufRead> BufRead for Counting<R> {
     }
 
     fn consume(&mut self, count: usize) {
-        // The bytes are still at hand: filling again does not read.
+        // The bytes are still in the buffer, so `fill_buf` does not read again.
         if let Ok(available) = self.input.fill_buf() {
             for byte in &available[..count.min(available.len())] {
                 self.place = match byte {
@@ -81,7 +82,7 @@ impl<R: BufRead> BufRead for Counting<R> {
     }
 }
 
-/// An element that has begun and has no child yet.
+/// An open element that has no child yet.
 struct Held {
     place: (usize, usize),
     name: String,
@@ -99,7 +100,7 @@ impl Held {
     }
 }
 
-/// Takes the nodes out of a file.
+/// Reads the nodes of a file one by one.
 pub(crate) struct Nodes<R> {
     reader: Reader<Counting<R>>,
     held: Option<Held>,
@@ -126,7 +127,7 @@ impl<R: BufRead> Nodes<R> {
         }
     }
 
-    /// Where the reader stands.
+    /// Line and column that the reader has reached.
     pub(crate) fn place(&self) -> (usize, usize) {
         self.reader.get_ref().place
     }
@@ -141,7 +142,7 @@ impl<R: BufRead> Nodes<R> {
         self.ended = true;
     }
 
-    /// The next node; none at the end, or after a finding.
+    /// The next node; `None` at the end or after a finding.
     pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<Placed>> {
         let mut buffer = Vec::new();
         loop {
@@ -197,7 +198,7 @@ impl<R: BufRead> Nodes<R> {
                         Some(text) => self.text(&text, place, findings),
                         None => self.refuse(
                             place,
-                            "the entity is not one that XML predefines",
+                            "the entity is not one of the five that XML predefines",
                             findings,
                         ),
                     }
@@ -233,7 +234,7 @@ impl<R: BufRead> Nodes<R> {
         self.held.replace(held).map(opened)
     }
 
-    /// The first of two nodes, with the second behind it.
+    /// The first of two nodes; the second is queued.
     fn after(&mut self, first: Option<Placed>, second: Placed) -> Option<Placed> {
         match first {
             Some(first) => {
@@ -249,7 +250,11 @@ impl<R: BufRead> Nodes<R> {
             Some(held) if held.text.len() + text.len() <= MAX_EVENT => held.text.push_str(text),
             Some(_) => self.refuse(place, "the text of an element is too long", findings),
             None if text.trim().trim_start_matches('\u{feff}').is_empty() => {}
-            None => self.refuse(place, "text must be in an element of its own", findings),
+            None => self.refuse(
+                place,
+                "found text where only elements are allowed",
+                findings,
+            ),
         }
     }
 }
@@ -265,7 +270,7 @@ fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
     };
     Held {
         place,
-        // A prefix of a namespace says nothing that the name does not.
+        // A namespace prefix adds nothing to the name.
         name: name_of(tag.local_name().as_ref()),
         version: attribute("version"),
         unit: attribute("units"),
@@ -273,7 +278,7 @@ fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
     }
 }
 
-/// Text of an event; bytes that are not UTF-8 become replacement characters, which no field takes.
+/// Text of an event; bytes that are not UTF-8 become replacement characters, which no field accepts.
 fn name_of(bytes: impl AsRef<[u8]>) -> String {
     String::from_utf8_lossy(bytes.as_ref()).into_owned()
 }
@@ -318,7 +323,7 @@ pub(crate) fn begin_file(
     )
 }
 
-/// Writes elements that hold text alone.
+/// Writes elements that contain only text.
 pub(crate) fn write_leaves<'a>(
     out: &mut impl Write,
     leaves: impl IntoIterator<Item = (&'a str, &'a str)>,

@@ -1,5 +1,5 @@
 //! Reads tables of elements and of states. Columns are found by their names, in any order; others
-//! are passed over.
+//! are ignored.
 
 use super::CsvTable;
 use crate::formats::ReadError;
@@ -81,7 +81,7 @@ pub fn read_elements(input: impl BufRead) -> Result<Vec<ElementsRow>, ReadError>
     findings.unless_error(rows)
 }
 
-/// Passes every row that keeps the rules to `take`.
+/// Passes every valid row to `take`.
 ///
 /// # Errors
 /// A failure of the input.
@@ -130,7 +130,7 @@ pub fn read_states(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
     findings.unless_error(trajectories)
 }
 
-/// The states of a table; what it breaks goes to the list of findings.
+/// The states of a table; violations go to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.

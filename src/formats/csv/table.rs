@@ -3,7 +3,7 @@
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead, Read};
 
-/// Longest row, in bytes, line feeds within quotes included; the buffer of the reader comes on top.
+/// Longest row, in bytes, line feeds within quotes included; the reader's buffer is extra.
 const MAX_ROW: usize = 1 << 16;
 
 /// Refuses to give more bytes for one row than it may have, and ends every line with a line feed,

@@ -46,7 +46,7 @@ pub fn write_tracks(out: &mut impl Write, ground: &[Ground]) -> Result<(), Write
     Ok(())
 }
 
-/// Writes the footprint of each satellite at the epoch: where it stands above the mask.
+/// Writes the footprint of each satellite at the epoch: where it is above the mask.
 ///
 /// # Errors
 /// If writing fails.

@@ -2,7 +2,7 @@
 //!
 //! Source: OGC 07-147r2, *KML 2.2*: placemarks in folders (9.1, 9.6), coordinates as
 //! `longitude,latitude` in degrees of WGS 84 (16.10), outer boundaries counterclockwise (10.8), colours
-//! as `aabbggrr` (16.5). Areas and lines are cut at the antimeridian, which viewers do not do alike.
+//! as `aabbggrr` (16.5). Areas and lines are cut at the antimeridian, since viewers differ in how they do it.
 
 use crate::constellation::Design;
 use crate::evaluate::PointMetrics;

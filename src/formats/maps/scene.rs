@@ -1,4 +1,4 @@
-//! What a whole scenario consists of besides the satellites of the design: the region with its
+//! The parts of a scenario other than the satellites of the design: the region with its
 //! metrics, the GNSS, masks and conventions, for the programs that rebuild or show it.
 
 use crate::constellation::Design;

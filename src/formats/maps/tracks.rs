@@ -19,7 +19,7 @@ pub struct Ground {
     pub(crate) slot: Option<[usize; 2]>,
     /// The first revolution, cut at the antimeridian.
     pub(crate) track: Vec<Vec<LonLat>>,
-    /// Where it stands above the mask at the epoch.
+    /// Where it is above the mask at the epoch.
     pub(crate) footprint: Vec<Vec<LonLat>>,
     /// The place below it at the epoch.
     pub(crate) below: LonLat,

@@ -24,7 +24,7 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
     findings.unless_error(file)
 }
 
-/// Reads a file; what it breaks goes to the list of findings.
+/// Reads a file; violations go to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.

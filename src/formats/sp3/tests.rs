@@ -229,7 +229,7 @@ proptest! {
     }
 }
 
-/// A satellite so far away, or so fast, that its numbers take more columns than SP3 has.
+/// A satellite so far away, or so fast, that its numbers need more columns than SP3 has.
 struct Distant(State<Teme>);
 
 impl crate::orbit::Propagator for Distant {

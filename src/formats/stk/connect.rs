@@ -5,9 +5,9 @@
 //! "SetConstraint", "Cov Grid" (`AreaOfInterest LatLonRegion`, `PointGranularity LatLon`,
 //! `GridConstraint`), "Cov Asset", "Cov Access", "Cov FOMDefine"; *STK Help*, "Point Files (*.pnt)".
 //!
-//! Every satellite has a `SetState` of its own: it takes any pattern and any number, and keeps our names.
-//! `Walker` takes at most 999 satellites, no lattice, and names them itself. The file holds commands
-//! alone; what they cannot say is in [`by_hand`].
+//! Every satellite has its own `SetState`, which works for any pattern and number and keeps our names;
+//! `Walker` allows at most 999 satellites and no lattice, and names them itself. The file contains only
+//! commands; settings that commands cannot make are in [`by_hand`].
 
 use super::{FORMAT_VERSION, MONTHS};
 use crate::formats::maps::scene::wrapped;

@@ -1,7 +1,7 @@
 //! Reads `.e` files: keywords in any order and case, then one table.
 //!
-//! Accelerations and covariances are passed over. Segment boundaries are kept, since nothing may be
-//! interpolated across them, and each may have two rows of one time.
+//! Accelerations and covariances are skipped. Segment boundaries are kept, since nothing may be
+//! interpolated across them, and each may have two rows with the same time.
 
 use super::{MONTHS, StkEphemeris, StkInterpolation, is_boundary};
 use crate::ephemeris::derivative::{velocities, velocity_fault};
@@ -41,7 +41,7 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
     read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
 }
 
-/// Reads a file; what it breaks goes to the list of findings.
+/// Reads a file; violations go to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.

@@ -141,14 +141,14 @@ fn broken_rules_are_named_with_their_place() {
     }
 }
 
-/// The rows of `METRES`, with its keywords and what stands among and behind them changed.
+/// The rows of `METRES`, with other keywords before them and other lines among and after them.
 fn changed(before: &str, rows: &str, behind: &str) -> String {
     let head =
         "stk.v.11.0\nBEGIN Ephemeris\nScenarioEpoch 1 Jul 2007 12:00:00\nCoordinateSystem Fixed\n";
     format!("{head}{before}\n{rows}\n{behind}END Ephemeris\n")
 }
 
-/// Accelerations and covariances are passed over, a comment may hold any characters.
+/// Accelerations and covariances are skipped; a comment may contain any characters.
 #[test]
 fn further_columns_and_blocks_are_passed_over() {
     let rows = "0 7.0e6 0 0 0 7.5e3 0 0 0 0\n60 6.9E6 4.0e5 0 -1 7.4e3 0 0 0 0";

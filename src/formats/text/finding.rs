@@ -1,9 +1,9 @@
-//! What a reader objects to in a file: where it stands and which rule it breaks.
+//! Findings in a file: what is wrong, where, and which rule it breaks.
 
 use std::fmt;
 use thiserror::Error;
 
-/// How bad a broken rule is.
+/// The severity of a broken rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
     /// The content cannot be trusted: a reader refuses the file.
@@ -28,10 +28,10 @@ pub struct Finding {
     pub severity: Severity,
 }
 
-/// Names that are listed of each kind that is left out.
+/// Maximum number of names listed for each kind of part that is left out.
 const MOST_NAMES: usize = 5;
 
-/// Parts of a file that a reader does not read, counted, so that nothing goes without a word.
+/// Parts of a file that a reader skips, counted so that none is skipped silently.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct LeftOut {
     kinds: Vec<LeftOutKind>,
@@ -42,7 +42,7 @@ pub struct LeftOut {
 struct LeftOutKind {
     what: &'static str,
     count: usize,
-    /// The first of them.
+    /// Names of the first few.
     names: Vec<String>,
 }
 
@@ -93,7 +93,7 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// A list of findings that stops growing at a limit, so that a hostile file costs no memory.
+/// A list of findings that stops growing at a limit, so that a hostile file cannot exhaust memory.
 #[derive(Debug)]
 pub struct FindingList {
     limit: usize,
@@ -124,13 +124,13 @@ impl FindingList {
         }
     }
 
-    /// Whether the list takes no more: a parser may stop.
+    /// Whether the list is full, so that a parser may stop.
     #[must_use]
     pub fn is_full(&self) -> bool {
         self.found.len() >= self.limit
     }
 
-    /// Whether there is an error among them.
+    /// Whether any finding is an error.
     pub(crate) fn has_errors(&self) -> bool {
         let mut found = self.found.iter();
         found.any(|finding| finding.severity == Severity::Error)
@@ -158,21 +158,21 @@ impl FindingList {
         }
     }
 
-    /// Notes that a part of the file is not read although it breaks no rule: a warning of a linter, and what a
-    /// reader says once it is done. `what` is its kind, as in `message` or `packet without position`.
+    /// Records that a part of the file is skipped although it breaks no rule: a linter warns of it, and a reader
+    /// reports it at the end. `what` is its kind, as in `message` or `packet without position`.
     pub(crate) fn leave_out(&mut self, place: (usize, usize), what: &'static str, name: &str) {
         let message = format!("{what} {name} is not read");
         self.warning(place, "left-out", message);
         self.left_out.add(what, name);
     }
 
-    /// Notes that a part of the file is not read because it is no satellite of the file: no warning of a linter,
-    /// but what a reader says once it is done.
+    /// Records that a part of the file is skipped because it is not a satellite: a linter does not warn of it,
+    /// but a reader reports it at the end.
     pub(crate) fn pass_over(&mut self, what: &'static str, name: &str) {
         self.left_out.add(what, name);
     }
 
-    /// What has been left out so far.
+    /// The parts left out so far.
     #[must_use]
     pub fn left_out(&self) -> &LeftOut {
         &self.left_out
@@ -208,7 +208,7 @@ impl FindingList {
         self.found
     }
 
-    /// `value` if a reader can continue with it.
+    /// `value`, or the first error.
     pub(crate) fn unless_error<T>(self, value: T) -> Result<T, crate::formats::ReadError> {
         let mut errors = self
             .found

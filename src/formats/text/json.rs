@@ -3,7 +3,7 @@
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Maximum size of an object, in bytes, in a format of small ones.
+/// Default maximum size of an object, in bytes.
 const MAX_OBJECT: usize = 1 << 20;
 
 /// An object of the array.
@@ -25,12 +25,12 @@ impl JsonObject {
         }
     }
 
-    /// Where a key of the object stands.
+    /// Line and column of a key of the object.
     pub(crate) fn place_of(&self, key: &str) -> (usize, usize) {
         self.place(self.text.find(&format!("\"{key}\"")).unwrap_or(0))
     }
 
-    /// The members of the object as texts; a finding if it is not an object of plain values.
+    /// The members of the object as text; a finding if it is not an object of plain values.
     pub(crate) fn members(&self, findings: &mut FindingList) -> Option<Vec<(String, String)>> {
         let members: serde_json::Map<String, serde_json::Value> = self.parsed(findings)?;
         let text = |(key, value): (String, serde_json::Value)| match value {
@@ -42,7 +42,7 @@ impl JsonObject {
         Some(members.into_iter().filter_map(text).collect())
     }
 
-    /// The object as a type of ours; a finding if it is another.
+    /// The object parsed as `T`; a finding if it does not match.
     pub(crate) fn parsed<T: serde::de::DeserializeOwned>(
         &self,
         findings: &mut FindingList,
@@ -57,19 +57,19 @@ impl JsonObject {
             _ => error.column().max(1),
         };
         let text = error.to_string();
-        // The place that serde_json adds is one inside the object.
+        // serde_json appends a place relative to the object.
         let message = text.split(" at line ").next().unwrap_or_default();
         findings.error((lines, column), "json-syntax", message);
         None
     }
 }
 
-/// Takes the objects out of an array, or a single object.
+/// Reads the objects of an array one by one, or a single object.
 pub(crate) struct Objects<R> {
     input: R,
     place: (usize, usize),
     state: ScanState,
-    /// Longest object that is kept, in bytes.
+    /// Maximum size of an object, in bytes.
     most: usize,
 }
 
@@ -91,12 +91,12 @@ impl<R: BufRead> Objects<R> {
         }
     }
 
-    /// Objects of up to `most` bytes.
+    /// Accepts objects of up to `most` bytes.
     pub(crate) fn up_to(self, most: usize) -> Self {
         Self { most, ..self }
     }
 
-    /// The next byte; its place is that of `self` afterwards.
+    /// The next byte; afterwards `self.place` is its place.
     fn byte(&mut self) -> io::Result<Option<u8>> {
         let available = self.input.fill_buf()?;
         let Some(byte) = available.first().copied() else {
@@ -113,7 +113,7 @@ impl<R: BufRead> Objects<R> {
         }
     }
 
-    /// The next object; none at the end, or after a finding.
+    /// The next object; `None` at the end or after a finding.
     pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
         while self.state != ScanState::End {
             let Some(byte) = self.byte()? else {
@@ -124,7 +124,7 @@ impl<R: BufRead> Objects<R> {
             };
             match (self.state, byte) {
                 (_, b' ' | b'\t' | b'\r' | b'\n') => {}
-                // A byte order mark in front.
+                // A byte order mark may come first.
                 (ScanState::Start, 0xEF | 0xBB | 0xBF) if self.place.1 <= 3 => {}
                 (ScanState::Start, b'[') => self.state = ScanState::Inside,
                 (ScanState::Inside | ScanState::BetweenObjects, b']') => {
@@ -139,7 +139,7 @@ impl<R: BufRead> Objects<R> {
                     return self.object(findings);
                 }
                 _ => {
-                    let message = "neither an array of objects nor an object";
+                    let message = "expected an object or an array of objects";
                     findings.error(self.place, "json-syntax", message);
                     self.state = ScanState::End;
                 }
@@ -149,7 +149,7 @@ impl<R: BufRead> Objects<R> {
         Ok(None)
     }
 
-    /// The rest of an object whose brace has been taken.
+    /// The rest of an object whose opening brace has been read.
     fn object(&mut self, findings: &mut FindingList) -> io::Result<Option<JsonObject>> {
         let start = self.place;
         let mut bytes = vec![b'{'];

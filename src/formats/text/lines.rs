@@ -1,19 +1,19 @@
-//! Lines of a text file, with a bound on their length and an eye on their encoding.
+//! Lines of a text file, with checks of their length and encoding.
 
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
-/// Longest line that is kept, in bytes; the longest that a supported format allows is 254.
+/// Maximum length of a line, in bytes; no supported format allows more than 254.
 const MAX_LINE: usize = 4096;
 
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
-/// A line without its end.
+/// A line without its terminator.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Line {
     /// Number, from 1.
     pub(crate) number: usize,
-    /// Text: printable ASCII, but in free text.
+    /// Text: printable ASCII, except in comments and names.
     pub(crate) text: String,
 }
 
@@ -22,13 +22,13 @@ pub(crate) struct Lines<R> {
     input: R,
     number: usize,
     after_carriage_return: bool,
-    /// Whether a tab is as good as a blank, which CCSDS and TLE do not know.
+    /// Whether tabs count as spaces; CCSDS messages and TLE have none.
     takes_tabs: bool,
-    /// Lines whose text means nothing to the reader, or is a name: they may hold any characters.
+    /// Whether a line is a comment or a name, which may contain any characters.
     is_comment: fn(&[u8]) -> bool,
 }
 
-/// How the bytes of a line were taken.
+/// The outcome of reading the bytes of a line.
 enum Taken {
     Nothing,
     Line,
@@ -46,13 +46,13 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// The same, with lines that may hold more than printable ASCII: comments and names. `is_comment` sees the
-    /// bytes of a line.
+    /// Allows more than printable ASCII in the lines for which `is_comment` is true, given their bytes: comments
+    /// and names.
     pub(crate) fn with_comments(self, is_comment: fn(&[u8]) -> bool) -> Self {
         Self { is_comment, ..self }
     }
 
-    /// Lines of a format that separates its words by tabs too.
+    /// Reads a format whose words may also be separated by tabs.
     pub(crate) fn with_tabs(input: R) -> Self {
         Self {
             takes_tabs: true,
@@ -65,7 +65,7 @@ impl<R: BufRead> Lines<R> {
         self.number
     }
 
-    /// The next line whose bytes are text; findings tell of the lines that are passed over.
+    /// The next line of text; lines that are skipped are reported in `findings`.
     pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<Line>> {
         while !findings.is_full() {
             let mut bytes = Vec::new();
@@ -123,7 +123,7 @@ impl<R: BufRead> Lines<R> {
         }
     }
 
-    /// Takes the bytes up to the end of the line out of the input, and keeps the first of them.
+    /// Consumes the input up to the end of the line, and keeps its first [`MAX_LINE`] bytes.
     fn take_bytes(&mut self, kept: &mut Vec<u8>) -> io::Result<Taken> {
         let mut any = false;
         let mut too_long = false;

@@ -1,4 +1,4 @@
-//! Decimal numbers in formats that do not define their notation.
+//! Decimal numbers in formats that do not define a notation for them.
 
 use crate::formats::text::finding::FindingList;
 
@@ -34,7 +34,7 @@ pub(crate) fn whole(
 ) -> Option<u32> {
     let is_whole = value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value);
     if !is_whole {
-        let message = format!("{value} is not a whole number from 0 up");
+        let message = format!("{value} is not a whole number, 0 or more");
         findings.error(place, rule, message);
     }
     is_whole.then_some(value as u32)

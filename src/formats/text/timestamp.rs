@@ -1,4 +1,4 @@
-//! Calendar instants as files write them, and the time systems that they are counted in.
+//! Dates and times as written in files, and their time systems.
 
 use crate::keyword::keywords;
 use crate::time::{Epoch, TT_MINUS_TAI_S, TimeGrid, ends_with_leap_second};
@@ -27,14 +27,14 @@ keywords! {
 }
 
 impl TimeSystem {
-    /// Whether the system has such a stamp: second 60 exists in UTC only.
+    /// Whether a stamp exists in the system: second 60 is found in UTC only.
     #[must_use]
     pub fn has(self, stamp: NaiveDateTime) -> bool {
-        // chrono keeps a leap second as a nanosecond count past 1e9.
+        // chrono writes second 60 as second 59 with 1e9 nanoseconds or more.
         self == Self::Utc || stamp.nanosecond() < 1_000_000_000
     }
 
-    /// The instant that a stamp of this system means, which must be one that it [has](Self::has).
+    /// The instant of a stamp that this system [has](Self::has).
     #[must_use]
     pub fn epoch(self, stamp: NaiveDateTime) -> Epoch {
         match self.ahead_of_tai_s() {
@@ -43,7 +43,7 @@ impl TimeSystem {
         }
     }
 
-    /// How this system writes an instant.
+    /// The stamp of an instant in this system.
     #[must_use]
     pub fn stamp(self, epoch: Epoch) -> NaiveDateTime {
         match self.ahead_of_tai_s() {
@@ -52,7 +52,7 @@ impl TimeSystem {
         }
     }
 
-    /// This system minus TAI in seconds; none for UTC.
+    /// This system minus TAI, s; `None` for UTC, whose offset varies.
     fn ahead_of_tai_s(self) -> Option<f64> {
         match self {
             Self::Utc => None,
@@ -64,15 +64,15 @@ impl TimeSystem {
     }
 }
 
-/// How many decimals of a second are written.
+/// The number of decimals written for seconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SecondDigits(usize);
 
 impl SecondDigits {
-    /// Fewest decimals that are written: milliseconds.
+    /// Minimum number of decimals: milliseconds.
     pub const FEWEST: Self = Self(3);
 
-    /// The decimals that write every sample of a grid without rounding, up to nanoseconds.
+    /// The decimals that show every sample of a grid without rounding, up to nanoseconds.
     #[must_use]
     pub fn of_grid(grid: &TimeGrid) -> Self {
         let start = Self::of_nanoseconds(grid.epoch().utc().nanosecond());
@@ -83,7 +83,7 @@ impl SecondDigits {
         start.max(Self::of_nanoseconds(step_ns))
     }
 
-    /// The decimals that write a stamp without rounding.
+    /// The decimals that show a stamp without rounding.
     #[must_use]
     pub fn of_stamp(stamp: NaiveDateTime) -> Self {
         Self::of_nanoseconds(stamp.nanosecond())
@@ -103,7 +103,7 @@ impl SecondDigits {
 /// A stamp in CCSDS ASCII time code A: `2025-01-01T00:00:00.000`.
 #[must_use]
 pub fn calendar(stamp: NaiveDateTime, digits: SecondDigits) -> String {
-    // chrono keeps a leap second as a nanosecond count past 1e9.
+    // chrono writes second 60 as second 59 with 1e9 nanoseconds or more.
     let leap = stamp.nanosecond() / 1_000_000_000;
     let fraction = format!("{:09}", stamp.nanosecond() % 1_000_000_000);
     format!(
@@ -141,7 +141,7 @@ pub fn parse(text: &str) -> Option<NaiveDateTime> {
     stamp(date, (hour, minute, second), nanoseconds)
 }
 
-/// The stamp of a date, a time of day and nanoseconds; none for a second that the day does not have.
+/// The stamp of a date, a time of day and nanoseconds; `None` for a second that the day does not have.
 #[must_use]
 pub fn stamp(
     date: NaiveDate,
@@ -150,7 +150,7 @@ pub fn stamp(
 ) -> Option<NaiveDateTime> {
     let start = match (hour, minute, second) {
         (23, 59, 60) if ends_with_leap_second(date) => {
-            // chrono keeps a leap second as a nanosecond count past 1e9.
+            // chrono writes second 60 as second 59 with 1e9 nanoseconds or more.
             date.and_hms_nano_opt(hour, minute, 59, 1_000_000_000)?
         }
         _ => date.and_hms_opt(hour, minute, second)?,
@@ -163,7 +163,7 @@ pub fn stamp(
 #[must_use]
 pub fn parse_with_offset(text: &str) -> Option<NaiveDateTime> {
     let (date, time) = text.split_once('T')?;
-    // The end of a day, as in the last instant of all, 9999-12-31T24:00:00Z.
+    // 24:00:00 ends a day, as in 9999-12-31T24:00:00Z, which CZML writes for an open end.
     if let Some(rest) = time.strip_prefix("24:00:00") {
         let start = parse_with_offset(&format!("{date}T00:00:00{rest}"))?;
         return start.checked_add_signed(TimeDelta::days(1));
@@ -192,7 +192,7 @@ fn digits(text: &str, count: usize) -> Option<u32> {
     all_digits.then(|| text.parse().ok())?
 }
 
-/// The decimals of a second in nanoseconds, rounded.
+/// The fraction of a second in nanoseconds, rounded.
 fn nanoseconds(fraction: &str) -> Option<i64> {
     if fraction.is_empty() || !fraction.bytes().all(|byte| byte.is_ascii_digit()) {
         return None;
@@ -247,7 +247,7 @@ mod tests {
     }
 
     /// GPS time has been 18 s ahead of UTC since 2017, TAI 37 s, TT 69.184 s (IERS Bulletin C), BeiDou time
-    /// 14 s behind GPS time always (BDS-SIS-ICD).
+    /// is always 14 s behind GPS time (BDS-SIS-ICD).
     #[test]
     fn validate_offsets_of_time_systems() {
         let utc = epoch("2025-01-01T00:00:00Z");
@@ -265,7 +265,7 @@ mod tests {
         }
     }
 
-    /// The labels of the leap second of 2016-12-31 and of the seconds beside it: those of ERFA's `utctai` and the
+    /// The labels of the leap second of 2016-12-31 and of the adjacent seconds, from ERFA's `utctai` and the
     /// fixed offsets of the other systems.
     #[test]
     fn validate_stamps_over_a_leap_second() {

@@ -28,7 +28,7 @@ pub fn read(input: impl BufRead) -> Result<Vec<sgp4::Elements>, ReadError> {
     findings.unless_error(sets)
 }
 
-/// Passes every element set that keeps the rules to `take`, until the list of findings is full.
+/// Passes every valid element set to `take`, until the list of findings is full.
 ///
 /// # Errors
 /// A failure of the input.
@@ -118,7 +118,7 @@ fn report_unpaired(first: Option<Line>, findings: &mut FindingList) {
 }
 
 fn missing_lines(name: &Line, findings: &mut FindingList) {
-    let message = "neither line 1 nor line 2 of an element set, nor a name before one";
+    let message = "expected line 1 or 2 of an element set, or a name before line 1";
     findings.error((name.number, 1), "tle-line", message);
 }
 
@@ -184,7 +184,7 @@ fn line_fits(line: &Line, columns: &[u8; LINE], findings: &mut FindingList) -> b
     true
 }
 
-/// The element set of two lines that keep the rules.
+/// The element set of two valid lines.
 fn record(
     name: Option<Line>,
     first: &Line,

@@ -207,7 +207,7 @@ fn a_design_survives_its_file_and_tells_the_loss() {
     assert_eq!(as_written(&sets[17]).unwrap(), read_back[17]);
 }
 
-/// Slope of a straight line through the constellation's mean along-track difference between
+/// Slope of a straight line through the constellation's mean in-track difference between
 /// mean J2 and SGP4 of the written file, km/day.
 fn growth_km_per_day(inclination_deg: f64, slot: MeanMotionSlot) -> f64 {
     let design: Design = format!("delta:{inclination_deg}:6/3/1@925")
@@ -316,7 +316,7 @@ fn regress_what_is_read_can_be_written() {
         );
         sets[0].clone()
     };
-    // Blanks behind the mark of a name, and a name that looks marked itself.
+    // Blanks after the marker of a name, and a name that itself looks like a marker.
     assert_eq!(
         read_back("0   A\n", first, second).object_name.as_deref(),
         Some("A")

@@ -81,7 +81,7 @@ fn what_is_written_is_read() {
             (read.prn, read.week, read.toa_s),
             (written.prn, 2347 % 1024, 258_048.0)
         );
-        // Digits: 5e-8 of sqrt(A) is 0.5 m of radius, and 0.3 m more along the track in a day.
+        // Digits: 5e-8 of sqrt(A) is 0.5 m of radius, and 0.3 m more in-track in a day.
         let apart = read.position_km(86_400.0) - written.position_km(86_400.0);
         assert!(apart.norm() < 2e-3, "{}", apart.norm());
     }
@@ -114,13 +114,16 @@ fn validate_a_published_form() {
     assert!(error(&twice).starts_with("line 3, column 1: ID is given twice"));
     for (field, wrong) in [("000\nEcc", "-1\nEcc"), ("   295\n", "   295.7\n")] {
         let found = error(&text.replace(field, wrong));
-        assert!(found.contains("is not a whole number from 0 up"), "{found}");
+        assert!(
+            found.contains("is not a whole number, 0 or more"),
+            "{found}"
+        );
     }
     let low = text.replace("5153.596191", "5.153596191");
     assert!(error(&low).contains("[implausible-state]"));
 }
 
-/// Weeks of ten bits are the ones next to the study, weeks beyond them stand as they are: week 295 is that of 1985-09-01,
+/// Ten-bit weeks are taken as the ones nearest to the study; larger weeks are taken as they are: week 295 is that of 1985-09-01,
 /// 2005-04-17 and 2024-12-01 (each 1024 weeks later), and 2343 the last of them in full.
 #[test]
 fn validate_weeks_are_those_next_to_the_study() {

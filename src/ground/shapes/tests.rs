@@ -38,7 +38,7 @@ fn validate_footprints_against_the_sphere() {
     }
 }
 
-/// The edge on the ellipsoid sees the satellite at the mask by the one definition of elevation.
+/// Seen from the edge on the ellipsoid, the satellite is at the mask, by [`LocalFrame::look_angles`].
 #[test]
 fn edges_see_the_satellite_at_the_mask() {
     let satellite = over([100.0, 62.0], 925.0);
@@ -52,7 +52,7 @@ fn edges_see_the_satellite_at_the_mask() {
     }
 }
 
-/// Whether a place is in one of the rings, by the crossings of a line to the north of it.
+/// Whether a place is in one of the rings, by counting their crossings of the meridian to the north of it.
 fn holds(rings: &[Vec<LonLat>], [x, y]: LonLat) -> bool {
     rings.iter().any(|ring| {
         let crossings = ring.windows(2).filter(|pair| {
@@ -63,8 +63,8 @@ fn holds(rings: &[Vec<LonLat>], [x, y]: LonLat) -> bool {
     })
 }
 
-/// Places inside and outside of footprints anywhere, the poles and the antimeridian among them,
-/// by the angle at the centre of the Earth.
+/// Places inside and outside footprints, including those over the poles and the antimeridian, checked by
+/// the angle at the centre of the Earth.
 #[test]
 fn footprints_hold_what_sees_the_satellite() {
     let radius_deg = ((RADIUS_KM / (RADIUS_KM + 925.0)).acos()).to_degrees();
@@ -85,8 +85,8 @@ fn footprints_hold_what_sees_the_satellite() {
                 .map(move |lat| [f64::from(lon) + 0.3, f64::from(lat) + 0.1])
         }) {
             let apart_deg = over(place, 0.0).km().angle(&satellite.km()).to_degrees();
-            // Straight edges of a map stand off the circle, by most around a pole: 5° on the
-            // circle are up to a right angle in longitude there.
+            // Edges that are straight on the map deviate from the circle, most of all around a
+            // pole, where 5° along the circle can be a right angle in longitude.
             if (apart_deg - radius_deg).abs() > 1.5 {
                 assert_eq!(
                     holds(&rings, place),
@@ -98,7 +98,7 @@ fn footprints_hold_what_sees_the_satellite() {
     }
 }
 
-/// A cap over a pole is one ring from the one side of the map to the other, wherever its first corner is.
+/// A cap over a pole is one ring across the whole map, whatever its first corner.
 #[test]
 fn caps_over_a_pole_are_one_ring() {
     for place in [[33.0, 85.0], [-120.0, -89.9], [180.0, -80.0], [0.0, 90.0]] {

@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(code(&[0.0; 9]), None);
     }
 
-    /// A volume that falls is no progress, and what was lost is said.
+    /// A falling volume is not progress, and the loss is reported.
     #[test]
     fn a_falling_volume_is_reported() {
         let volumes = [1.0, 6.0, 10.0, 9.5, 9.0, 8.0, 8.0, 7.5];

@@ -1,5 +1,5 @@
 "use strict";
-// The numbers of the page, the selected design, and figures that are drawn when they are seen.
+// The numbers of the page, the selected design, and figures that are drawn when they scroll into view.
 const Core = (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
 
@@ -51,18 +51,18 @@ const Core = (() => {
     for (const listener of listeners) listener(place);
   }
 
-  /** Text of a file, safe where Plotly reads a few HTML tags. */
+  /** Text from a file, escaped because Plotly interprets a few HTML tags. */
   function plain(text) {
     return String(text).replace(/[&<>]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;" })[c]);
   }
 
-  /** A number to read, with the six digits in which the page carries it: rounded once. */
+  /** A number as text, with the six digits that the page holds: rounded only once. */
   function digits(value, significant = 6) {
     if (value === null || value === undefined) return "none";
     return String(Number(value.toPrecision(significant)));
   }
 
-  /** The colours of the present theme. */
+  /** The colours of the current theme. */
   function theme() {
     const style = getComputedStyle(document.documentElement);
     const names = ["paper", "ink", "soft", "line", "panel", "accent", "second", "third", "faint",
@@ -93,7 +93,7 @@ const Core = (() => {
     }
   }, { rootMargin: "200px" });
 
-  /** A figure: `build` gives its traces and layout, `click` takes a clicked point. */
+  /** A figure: `build` gives its traces and layout, `click` handles a clicked point. */
   function figure(id, { build, click, follows = true }) {
     const element = document.getElementById(id);
     if (!element) return;
@@ -101,7 +101,7 @@ const Core = (() => {
     seen.observe(element);
   }
 
-  /** Draws again what has been drawn. */
+  /** Redraws the figures drawn so far. */
   function refresh(onlyFollowing) {
     for (const figure of figures.values()) {
       if (figure.drawn && (figure.follows || !onlyFollowing)) draw(figure);
@@ -111,7 +111,7 @@ const Core = (() => {
   listeners.push(() => refresh(true));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => refresh(false));
   // Print uses the light colours, and draws figures that have not been scrolled to.
-  // The sheet is not as wide as the window, and no figure is told: it gets half a sheet.
+  // A sheet is narrower than the window, but figures do not notice: each gets half the width of a sheet.
   const SHEET = { width: 345, height: 310 };
   let printing = false;
   function print(begins) {
@@ -122,7 +122,7 @@ const Core = (() => {
   addEventListener("beforeprint", () => print(true));
   addEventListener("afterprint", () => print(false));
 
-  /** What all layouts have in common. */
+  /** The layout that all figures share. */
   function layout(colours, more) {
     const axis = { gridcolor: colours.line, zeroline: false, linecolor: colours.soft, automargin: true,
       ticks: "outside", tickcolor: colours.line, exponentformat: "power" };

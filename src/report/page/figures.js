@@ -23,7 +23,7 @@
     return list.filter((one) => one.cuts);
   }
 
-  /** A range of an axis that holds some values. */
+  /** An axis range that contains some values, with a margin. */
   function around(values) {
     const lo = Math.min(...values), hi = Math.max(...values);
     const margin = 0.08 * (hi - lo) || 0.05 * Math.abs(hi) || 1;
@@ -38,7 +38,7 @@
     if (data.generations.length > 0 && y !== null) {
       traces.push({ type: "scatter", mode: "markers", name: "earlier generations",
         x: data.generations.map((g) => g[1][x]), y: data.generations.map((g) => g[1][y]),
-        hoverinfo: "skip", // Many lie under the front, whose points are what is clicked.
+        hoverinfo: "skip", // Many lie under the front, whose points must stay clickable.
         marker: { size: 4, color: colours.faint, opacity: 0.45 } });
     }
     for (const other of data.fronts) {
@@ -99,7 +99,7 @@
     return lo <= hi ? [lo, hi] : undefined;
   }
 
-  /** The range of one map's colours: as it is, or around a value that is the same everywhere. */
+  /** The range of the values of one map. */
   function ownRange(values) {
     const present = values.filter((v) => v !== null);
     return present.length > 0 ? [Math.min(...present), Math.max(...present)] : undefined;
@@ -206,7 +206,7 @@
       yaxis: { title: { text: volume ? "hypervolume" + at : "designs on the front" } } }) };
   }
 
-  /** Columns of the parallel coordinates that vary. */
+  /** The columns of the parallel coordinates that have values. */
   const columns = [...front.variables, ...objectives.map((o, n) => [o.name, front.objectives[n]])]
     .map(([name, values]) => {
       const present = values.filter((v) => v !== null);
@@ -271,7 +271,7 @@
 
   document.getElementById("close-up")?.addEventListener("change", () => Core.refresh(true));
 
-  // More than two objectives: which two are shown.
+  // With more than two objectives, the reader chooses the two axes.
   const axes = document.getElementById("axes");
   if (axes && objectives.length > 2) {
     axes.hidden = false;
@@ -280,7 +280,7 @@
       objectives.forEach((o, n) => chooser.add(new Option(o.label, n, false, n === shown[axis])));
       chooser.addEventListener("change", () => { shown[axis] = Number(chooser.value); Core.refresh(true); });
       const text = document.createElement("label");
-      text.append(axis === "x" ? "across " : "up ", chooser);
+      text.append(axis === "x" ? "x axis " : "y axis ", chooser);
       axes.append(text);
     }
   }

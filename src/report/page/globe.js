@@ -1,4 +1,4 @@
-// The constellation over a turning Earth, and the sky over a place.
+// The constellation over a rotating Earth, and the sky above a place.
 const Globe = (() => {
   const { data, state, open, plain, digits, theme } = Core;
   const world = data.world;
@@ -14,7 +14,7 @@ const Globe = (() => {
     const angle = 2 * Math.PI * n / REVOLUTION;
     return [Math.cos(angle), Math.sin(angle)];
   });
-  /** Seconds of the study in one of the reader's. */
+  /** Simulated seconds per second of real time. */
   const SPEEDS = [10, 60, 240, 600, 1800];
 
   const view = { longitude: 0, latitude: 20 * RAD };
@@ -23,7 +23,7 @@ const Globe = (() => {
   const frames = [];
   let colours = theme();
   let visibleNow = false;
-  /** What the sky shows. */
+  /** The satellites that the sky plot shows. */
   let drawn = [];
 
   /** Earth-fixed unit vector. */
@@ -282,7 +282,7 @@ const Globe = (() => {
       + world.gnss_mask_deg + "° (dotted)" : "") + ".";
   const clock = document.getElementById("clock");
   const epoch = Date.parse(world.epoch);
-  // The clock of a browser has no leap seconds: it stands still during one.
+  // Dates in a browser have no leap seconds: the clock stands still during one.
   const ofBrowser = (elapsed) => elapsed - world.leap_seconds_s.filter((start) => start <= elapsed).length;
 
   function tell(seen) {
@@ -313,7 +313,7 @@ const Globe = (() => {
   function tick(now) {
     if (visibleNow && !document.hidden) {
       if (time.playing) {
-        // A page that was hidden resumes where it was.
+        // A page that was hidden resumes where it stopped.
         time.elapsed += time.speed * Math.min(0.1, (now - (before ?? now)) / 1000);
         draw();
       }

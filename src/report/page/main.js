@@ -1,4 +1,4 @@
-// The bar of the selected design, and what else can be clicked.
+// The bar of the selected design, and the other controls.
 (() => {
   const { data, state, count, select } = Core;
   const front = data.front;

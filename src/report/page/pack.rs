@@ -45,7 +45,7 @@ impl Packed {
 /// A number with six significant digits.
 pub(super) fn short(value: f64) -> f64 {
     let text = format!("{value:.5e}");
-    // It was written just above, so it can be read.
+    // Formatted just above, so it parses.
     text.parse().unwrap_or(value)
 }
 

@@ -67,7 +67,7 @@ struct Front {
     objectives: Vec<Vec<f64>>,
     membership: Vec<Option<f64>>,
     membership_sum: Vec<Option<f64>>,
-    /// What the strip of the selected design shows, with the digits of the table.
+    /// The values shown for the selected design, with the digits of the table.
     tiles: Vec<(String, Vec<String>)>,
     memberships_shown: Vec<String>,
     variables: Vec<(&'static str, Vec<Option<f64>>)>,
@@ -115,7 +115,7 @@ struct Cuts {
     orbits: Vec<Orbit>,
 }
 
-/// Data of the globe for one shell: mean elements at the epoch and their rates.
+/// Data for the globe, of one shell: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
     semi_major_axis_km: f64,
@@ -231,7 +231,6 @@ fn budget(run: &Run) -> Vec<Budget> {
     budget.collect()
 }
 
-/// Polylines as longitude and latitude in hundredths of a degree.
 impl Objective {
     fn new(name: &str) -> Self {
         Self {
@@ -298,8 +297,8 @@ impl Front {
     }
 }
 
-/// What the strip shows of each design: objectives, metrics, and quantities under constraints that
-/// are neither.
+/// The values shown for each design: objectives, metrics, and constrained quantities that are
+/// neither.
 fn tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
     let tile = |name: &str, text: &dyn Fn(&FrontMember) -> String| {
         (name.to_owned(), run.front.iter().map(text).collect())
@@ -380,7 +379,7 @@ fn levels(quantiles: &[Quantile]) -> Packed {
     Packed::of(quantiles.iter().map(|q| q.value))
 }
 
-/// Instants in an interval that is drawn as one point.
+/// Number of instants that are drawn as one point.
 fn interval(epochs: usize) -> usize {
     epochs.div_ceil(MOST_EPOCHS).max(1)
 }

@@ -172,8 +172,8 @@ fn cuts_are_those_of_the_design() {
     let cuts = &data["baselines"][0]["cuts"];
     let largest = cuts["maps"].as_array().unwrap();
     let largest = largest.iter().find(|pair| pair[0] == "max-pdop").unwrap();
-    // The packed row keeps its range in full; the kernel of the metrics and the plain path of the
-    // cuts agree to 1e-5 in a maximum.
+    // A packed row keeps its range in full; the kernel behind the metrics and the plain path behind
+    // the cuts agree on a maximum to 1e-5.
     let shown = largest[1]["hi"].as_f64().unwrap();
     assert!((shown / metrics.max_pdop.unwrap() - 1.0).abs() < 1e-5);
     assert_eq!(
@@ -188,7 +188,7 @@ fn cuts_are_those_of_the_design() {
     assert!(data["cuts"]["0"].is_object() && data["cuts"]["1"].is_object());
 }
 
-/// Skyline and masks of each system, as the sky plot draws them and the words tell them.
+/// The sky plot draws, and the text states, the skyline and the mask of each system.
 #[test]
 fn skyline_and_masks_are_shown() {
     let keys = [
@@ -210,15 +210,15 @@ fn skyline_and_masks_are_shown() {
     assert_eq!(world["gnss_mask_deg"], 12.0);
     assert_eq!(world["skyline_deg"][1], serde_json::json!([90.0, 40.0]));
     for told in [
-        "elevation masks 7\u{b0} (LEO) and 12\u{b0} (GNSS), under a skyline of up to 40\u{b0}",
-        "LEO 7\u{b0}, GNSS 12\u{b0}; skyline at every point",
+        "elevation masks 7\u{b0} (LEO) and 12\u{b0} (GNSS), with a skyline of up to 40\u{b0}",
+        "LEO 7\u{b0}, GNSS 12\u{b0}; a skyline at every point",
         "5\u{b0} at 0\u{b0}, 40\u{b0} at 90\u{b0}, 5\u{b0} at 180\u{b0}",
     ] {
         assert!(html.contains(told), "{told}");
     }
 }
 
-/// 1.23445 lies between: six digits first and five then would give 1.2345.
+/// Rounded first to six digits (1.23445) and then to five, it would be 1.2345.
 #[test]
 fn numbers_are_rounded_once_and_the_same_everywhere() {
     let (scenario, _) = evaluator();
@@ -271,7 +271,7 @@ fn constraints_are_shown() {
     let html = written(&page);
     assert!(html.contains("<th class=\"number\">planes</th>"));
     assert!(html.contains("max-pdop &#60;= 2.5, planes &#60;= 14"));
-    assert!(html.contains("Under constraints: max-pdop 2.2500, planes 3."));
+    assert!(html.contains("Constrained quantities: max-pdop 2.2500, planes 3."));
     let tiles = data(&html)["front"]["tiles"].to_string();
     assert!(tiles.contains("[\"planes\",[\"3\",\"3\"]]"), "{tiles}");
 }

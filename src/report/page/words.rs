@@ -98,7 +98,7 @@ fn setting(scenario: &Scenario) -> String {
             let [west, east] = grid.longitude_deg;
             let [dlat, dlon] = grid.step_deg;
             format!(
-                "{} to {} and {} to {}, every {dlat}\u{b0} by {dlon}\u{b0}",
+                "{} to {} and {} to {} on a {dlat}\u{b0} by {dlon}\u{b0} grid",
                 latitude_label(south),
                 latitude_label(north),
                 longitude_label(west),
@@ -171,7 +171,7 @@ fn found(run: &Run) -> String {
     let members = match run.front.len() {
         0 => "no design that meets the constraints".to_owned(),
         1 => "one design".to_owned(),
-        n => format!("{n} designs, none of which dominates another"),
+        n => format!("a Pareto set of {n} designs, none of which dominates another"),
     };
     let Some(search) = &run.search else {
         return format!("The search found {members}.");
@@ -187,12 +187,12 @@ fn found(run: &Run) -> String {
         text += &format!(" It was stopped after generation {done} of {of}.");
     }
     if let Some(volume) = shown::hypervolume(&search.hypervolume) {
-        text += &format!(" Its front has the {volume}.");
+        text += &format!(" The front has {volume}.");
     }
     text
 }
 
-/// The chosen design and why, and what outdoes it.
+/// The chosen design, why it was chosen, and the designs that dominate it.
 fn choice(page: &Page<'_>) -> Option<String> {
     let run = page.run;
     let member = &run.front[run.chosen()?];
@@ -224,7 +224,7 @@ fn choice(page: &Page<'_>) -> Option<String> {
         .iter()
         .map(|(name, v)| (name.as_str(), *v));
     if !member.constraints.is_empty() {
-        text += &format!(" Under constraints: {}.", shown::pairs(constrained));
+        text += &format!(" Constrained quantities: {}.", shown::pairs(constrained));
     }
     Some(text)
 }
@@ -335,7 +335,7 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
     row.collect()
 }
 
-/// The conventions behind every number.
+/// The conventions behind the numbers.
 pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         (
@@ -356,7 +356,7 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
         (
             "Time",
             format!(
-                "SI seconds from the epoch, over which the Earth turns evenly; {}",
+                "SI seconds from the epoch; the Earth rotates evenly through leap seconds; {}",
                 leap_seconds_note()
             ),
         ),
@@ -404,13 +404,16 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         ("Masks", masks(&scenario.visibility)),
         (
             "Unsolved",
-            format!("PDOP above {}", scenario.visibility.pdop_cap),
+            format!(
+                "no solution, or PDOP above {}",
+                scenario.visibility.pdop_cap
+            ),
         ),
         ("Constraints", constraints(scenario)),
         (
             "Objectives",
             format!(
-                "{}; CVaR weight \u{3bb} = {}, CVaR level \u{3b1} = {}; available means PDOP at most {}",
+                "{}; CVaR weight \u{3bb} = {}, CVaR level \u{3b1} = {}; available if PDOP is at most {}",
                 run_names(scenario),
                 objectives.cvar_weight,
                 objectives.cvar_level,
@@ -420,7 +423,7 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
     ]
 }
 
-/// The lowest elevations at which satellites count, per system and by azimuth.
+/// The lowest elevations at which satellites are visible, by system and azimuth.
 fn masks(visibility: &Visibility) -> String {
     let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
     let mut text = format!("LEO {leo}\u{b0}, GNSS {gnss}\u{b0}");
@@ -431,8 +434,8 @@ fn masks(visibility: &Visibility) -> String {
             .map(|point| format!("{}\u{b0} at {}\u{b0}", point.mask_deg, point.azimuth_deg))
             .collect();
         text += &format!(
-            "; skyline at every point, where it is higher: elevation by azimuth from north over \
-             east, linear between {}",
+            "; a skyline at every point, which applies where it is higher: elevation by azimuth \
+             (clockwise from north), linear between {}",
             points.join(", ")
         );
     }
@@ -448,7 +451,7 @@ fn constraints(scenario: &Scenario) -> String {
     texts.join(", ")
 }
 
-/// The masks in a sentence: one where both are alike.
+/// The masks in a sentence; only one if both are the same.
 fn mask_clause(visibility: &Visibility) -> String {
     let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
     let mut text = if leo == gnss {
@@ -458,7 +461,7 @@ fn mask_clause(visibility: &Visibility) -> String {
     };
     let heights = visibility.mask_table.iter().map(|point| point.mask_deg);
     if let Some(highest) = heights.reduce(f64::max) {
-        text += &format!(", under a skyline of up to {highest}\u{b0}");
+        text += &format!(", with a skyline of up to {highest}\u{b0}");
     }
     text
 }

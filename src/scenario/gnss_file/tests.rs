@@ -169,7 +169,7 @@ fn element_sets_are_split_by_their_names() {
     assert_eq!(names(&found), expected);
 }
 
-/// An almanac is a system; what is unhealthy is left out and told.
+/// An almanac is a system; unhealthy satellites are left out and reported.
 #[test]
 fn almanacs_are_systems() {
     let study = grid(86_400.0, 3_600.0);

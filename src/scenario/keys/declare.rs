@@ -114,7 +114,7 @@ macro_rules! section {
 /// The path of the key that is declared with a field: `key!(TimeSpan.step_s)`.
 macro_rules! key {
     ($section:ident.$field:ident) => {{
-        // No more than a check that there is such a field.
+        // This only checks that the field exists.
         let _ = |values: &$section| {
             let _ = &values.$field;
         };

@@ -151,7 +151,7 @@ impl Rule for OneConstraint {
     }
 }
 
-/// Why two bounds of one quantity do not go together.
+/// Why two bounds on one quantity contradict each other.
 fn conflict(first: &Constraint, second: &Constraint) -> Option<Fault> {
     let (lower, upper) = match (first.relation, second.relation) {
         (Relation::AtLeast, Relation::AtMost) => (first, second),

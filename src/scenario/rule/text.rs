@@ -19,9 +19,9 @@ pub(in crate::scenario) enum Text {
 }
 
 impl Text {
-    /// Longest text in bytes. A name becomes part of the name of a directory, where 255 is the usual
-    /// limit; ASCII stands behind its keyword in a line of a CCSDS message, which has 254 characters
-    /// (502.0-B-3, 7.3.2); 4096 is the usual limit of a path.
+    /// Longest text in bytes. A name becomes part of a directory name, where 255 is the usual
+    /// limit; ASCII text follows its keyword on a line of a CCSDS message, which has at most 254
+    /// characters (502.0-B-3, 7.3.2); 4096 is the usual limit of a path.
     fn longest(&self) -> usize {
         match self {
             Self::Name => 100,
@@ -93,7 +93,7 @@ impl UtcInstant {
         let instant = DateTime::parse_from_rfc3339(text).ok()?;
         let in_utc = instant.offset().local_minus_utc() == 0;
         let instant = instant.to_utc();
-        // chrono keeps the second 60 of any minute as a nanosecond count past 1e9.
+        // chrono writes second 60 of any minute as second 59 with 1e9 nanoseconds or more.
         let of_day = instant.num_seconds_from_midnight();
         let exists = instant.nanosecond() < 1_000_000_000
             || (of_day == 86_399 && ends_with_leap_second(instant.date_naive()));

@@ -120,7 +120,7 @@ fn an_unknown_builtin_suggests_the_nearest() {
     let message = builtin("regoinal").unwrap_err().to_string();
     assert_eq!(
         message,
-        "unknown word \"regoinal\", did you mean \"regional\"? (choices: paper, regional)"
+        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional)"
     );
 }
 

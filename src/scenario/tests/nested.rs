@@ -193,7 +193,7 @@ enum Either<A, B> {
     Other(B),
 }
 
-/// What the first rule accepts, or the second; which of them is told by the type of the value.
+/// What the first rule accepts, or the second; the type of the value decides which.
 struct OneOrOther<A, B>(A, B);
 
 impl<A: Rule, B: Rule> Rule for OneOrOther<A, B> {

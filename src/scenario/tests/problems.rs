@@ -110,7 +110,7 @@ study.toml:4: time.step-s: found 0, expected a number > 0, in s
 study.toml:5: time.duration-s: unknown key, did you mean `time.duration-h`? (choices: epoch, duration-h, step-s)
   5 | duration-s = 5
     | ^^^^^^^^^^
-study.toml:7: gnss.constellations: unknown word \"beidou\", did you mean \"beidou-3\"? (choices: beidou-3, gps, galileo, glonass)
+study.toml:7: gnss.constellations: unknown name \"beidou\", did you mean \"beidou-3\"? (choices: beidou-3, gps, galileo, glonass)
   7 | constellations = [\"beidou\", \"gps\", \"gps\"]
     |                   ^^^^^^^^
 study.toml:7: gnss.constellations: \"gps\" appears more than once

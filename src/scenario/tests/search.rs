@@ -125,7 +125,7 @@ fn optimizers_are_bounded() {
 
 #[test]
 fn objectives_are_known_and_different() {
-    let choices = "unknown word \"mean-pdp\", did you mean \"mean-pdop\"? (choices: j-pos, j-cost, \
+    let choices = "unknown name \"mean-pdp\", did you mean \"mean-pdop\"? (choices: j-pos, j-cost, \
                    mean-pdop, cvar-pdop, p95-pdop, p99-pdop, max-pdop, satellites, planes, \
                    mean-visible, availability, launch-cost)";
     refuses(
@@ -215,7 +215,7 @@ fn constraints_are_a_quantity_a_relation_and_a_number() {
         ),
         (
             "max-pdob <= 2.5",
-            "unknown word \"max-pdob\", did you mean \"max-pdop\"?",
+            "unknown name \"max-pdob\", did you mean \"max-pdop\"?",
         ),
         (
             "max-pdop <= low",
@@ -225,7 +225,7 @@ fn constraints_are_a_quantity_a_relation_and_a_number() {
             "max-pdop <= inf",
             "found the bound \"inf\", expected a finite number",
         ),
-        ("<=", "unknown word \"\" (choices: j-pos"),
+        ("<=", "unknown name \"\" (choices: j-pos"),
     ] {
         let line = format!("constraints = [\"{constraint}\"]");
         refuses("objectives", &line, "constraints", message);
@@ -267,7 +267,7 @@ fn words_are_known() {
     let refuses = |section: &str, key: &str, word: &str, message: &str| {
         super::refuses(section, &format!("{key} = {word}"), key, message);
     };
-    let surfaces = "unknown word \"WGS84\", did you mean \"wgs84\"? (choices: wgs84, sphere)";
+    let surfaces = "unknown name \"WGS84\", did you mean \"wgs84\"? (choices: wgs84, sphere)";
     refuses("earth", "surface", "\"WGS84\"", surfaces);
     refuses(
         "earth",

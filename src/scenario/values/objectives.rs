@@ -23,7 +23,7 @@ section! {
         pub availability_pdop: f64 = Number::above(0.0), default 6.0;
         /// Parameters of `launch-cost`.
         pub launch_cost: LaunchCost;
-        /// Reference point of the hypervolume, one number for each objective; where no design of the
+        /// Reference point of the hypervolume, one number for each objective; if no design of the
         /// front dominates it, the run chooses its own.
         pub hypervolume_reference: Option<Vec<f64>> = Optional(Numbers),
             follows "2 for j-pos, 22 for j-cost, chosen from the run with other objectives",
@@ -33,8 +33,7 @@ section! {
 
 section! {
     impl LaunchCost in "objectives", prefix "launch-cost-" {
-        /// Part of launch-cost: one satellite at zero altitude; the unit of the cost is
-        /// yours.
+        /// Part of launch-cost: one satellite at zero altitude, in any unit of cost.
         per_satellite = Number::from_to(0.0, 1e12), default 1.0;
         /// Part of launch-cost: one plane, in the same unit.
         per_plane = Number::from_to(0.0, 1e12), default 5.0;

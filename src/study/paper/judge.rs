@@ -81,7 +81,7 @@ pub struct Statement {
     pub ours: Option<f64>,
     /// The verdict.
     pub verdict: Verdict,
-    /// The changed assumption under which it is met, if it is not met as the scenario stands.
+    /// The changed assumption under which it is met, if it is not met with the scenario unchanged.
     pub assumption: Option<String>,
     /// Our value under that assumption.
     pub ours_there: Option<f64>,
@@ -177,7 +177,7 @@ mod tests {
         assert_eq!((line.verdict, line.assumption), (Verdict::NotMet, None));
     }
 
-    /// What was copied or fitted is told from what was computed, and from what does not hold.
+    /// Numbers that were copied or fitted are distinguished from those computed, and from those not met.
     #[test]
     fn verdicts_follow_the_provenance() {
         let verdict = |provenance, ours, others: &[Option<f64>]| {

@@ -22,11 +22,11 @@ pub(super) struct IntegrationBounds {
     pub(super) drift_reason: &'static str,
     /// Node rate that the model leaves out, in closed form, degrees a day.
     pub(super) known_node_deg_per_day: f64,
-    /// Bound on what is left of the node rate, degrees a day.
+    /// Bound on the remaining node rate, degrees a day.
     pub(super) node_deg_per_day: f64,
     /// Why it is there.
     pub(super) node_reason: &'static str,
-    /// Why there are bounds on what is left after the fit, or none.
+    /// Why there are, or are not, bounds on what remains after the fit.
     pub(super) after_fit_reason: &'static str,
 }
 

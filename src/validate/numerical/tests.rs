@@ -51,7 +51,7 @@ fn validate_an_eccentric_design() {
     ]);
 }
 
-/// Kepler's ellipse comes back to its start after each period.
+/// Kepler's ellipse returns to its start after each period.
 #[test]
 fn validate_the_integrator_on_two_bodies() {
     let elements = "delta:55:1/1/0@925,e=0.1"
@@ -66,7 +66,7 @@ fn validate_the_integrator_on_two_bodies() {
         .integrate(ZonalField::acceleration, &start, &times)
         .unwrap();
     let apart = (states[100].position_km - start.position_km).norm();
-    // A hundred revolutions at 1e-13 a step: some 1e-6 km along the track.
+    // A hundred revolutions at 1e-13 a step: some 1e-6 km in-track.
     assert!(apart < 1e-5, "{apart:e}");
 }
 

@@ -206,7 +206,7 @@ impl Causes {
 /// of the difference of the gravity constants (5 m), km.
 const HIGHER_ORDER_KM: f64 = 0.01;
 
-/// The slope that a difference which goes once, twice or four times around leaves in the mean over a
+/// The slope that a difference with one, two or four periods per revolution leaves in the mean over a
 /// constellation, per day and unit of amplitude.
 ///
 /// The least-squares slope of a sine of amplitude A over N of its periods in D days is at most

@@ -102,7 +102,7 @@ pub(super) fn checks(
             }
             _ => 0.0,
         };
-    // The square of the swing goes four times around.
+    // The square of the swing has four periods per revolution.
     let [_, twice, four_times] = scale.leftover_per_day;
     let swing_rad_per_day = swing_rad * twice + swing_rad * swing_rad * four_times;
     let rounding_deg = ROUNDING_DEG_PER_DAY + swing_rad_per_day.to_degrees();

@@ -138,8 +138,8 @@ fn gates_follow_inclination_and_altitude() {
     assert!(failed.is_empty(), "{failed:#?}");
 }
 
-/// The model of the study is the first of the first case and is held to its gates; mean J2 stands
-/// beside it under the names that it always has.
+/// The model of the study comes first in the first case and must meet its gates; mean J2 is reported
+/// too, under its usual names.
 #[test]
 fn the_model_of_the_study_is_on_trial() {
     let cases = |model| {
@@ -195,7 +195,7 @@ fn the_model_of_the_study_is_on_trial() {
             gated.iter().all(|case| case.starts_with(label)) && !gated.is_empty(),
             "{model}: {gated:?}"
         );
-        // Two bodies miss what J2 does; the others keep their gates.
+        // Two-body propagation lacks the effect of J2; the others meet their gates.
         assert_eq!(
             failed.is_empty(),
             model != Model::TwoBody,

@@ -81,7 +81,7 @@ fn states_are_interpolated_off_the_step_of_the_file() {
     }
 }
 
-/// A record of zeros: the satellite is in view of nobody there, in both paths of the evaluator, and is told once.
+/// A record of zeros: both paths of the evaluator leave the satellite invisible there, and it is reported once.
 #[test]
 fn a_gap_is_no_view_and_is_told_once() {
     let sp3 = text(Product::Sp3);

@@ -45,7 +45,7 @@ fn states_come_from_the_usable_span() {
     overlapping.write_xml(&mut xml).unwrap();
     let read = warned(std::str::from_utf8(&xml).unwrap(), &[]);
     assert_eq!(useable(&read), expected);
-    // Without usable spans nobody can tell which of the two holds.
+    // Without usable spans it is unclear which of the two applies.
     let mut without = overlapping.clone();
     without.segments[0].metadata.useable_stop_time = None;
     without.segments[1].metadata.useable_start_time = None;

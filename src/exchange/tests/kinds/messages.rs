@@ -302,7 +302,7 @@ fn number_rules_of_ccsds_are_not_applied_to_others() {
     warned(&changed(&sample(Format::OmmCsv), "0.01,", ".01,"), &[]);
 }
 
-/// Names of people and agencies in comments are no reason to refuse a file.
+/// Names of people and agencies in comments do not cause a file to be refused.
 #[test]
 fn comments_may_hold_any_text() {
     for format in [Format::Oem, Format::Omm, Format::Opm] {

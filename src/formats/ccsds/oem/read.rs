@@ -55,7 +55,7 @@ pub fn read(input: impl BufRead) -> Result<Oem, ReadError> {
     read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
 }
 
-/// Passes every segment that keeps the rules to `take`, until the list of findings is full.
+/// Passes every valid segment to `take`, until the list of findings is full.
 /// The header, if it keeps them too.
 ///
 /// # Errors

@@ -111,7 +111,7 @@ pub fn read_xml(input: impl BufRead) -> Result<Vec<Oem>, ReadError> {
     findings.unless_error(messages)
 }
 
-/// Passes every message that keeps the rules to `take`: the one of the file, or those of a
+/// Passes every valid message to `take`: the one of the file, or those of a
 /// combined instantiation, whose messages of other kinds are left out by name.
 ///
 /// # Errors

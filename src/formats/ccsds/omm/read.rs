@@ -55,7 +55,7 @@ const TLE_PARAMETERS: &[KvnKeyword] = &[
 /// A message.
 const MESSAGE: &[&[KvnKeyword]] = &[ELEMENTS, SPACECRAFT, TLE_PARAMETERS, COVARIANCE];
 
-/// What an object of JSON or a row of CSV must and may hold; other members are passed over.
+/// The members that a JSON object or a CSV row must or may have; others are ignored.
 const RECORD: &[KvnKeyword] = &[
     may("CENTER_NAME"),
     may("REF_FRAME"),
@@ -82,7 +82,7 @@ const RECORD: &[KvnKeyword] = &[
     may("AGOM").unit("m**2/kg"),
 ];
 
-/// Keywords that users define (4.2.4.10); they are passed over.
+/// Keywords that users define (4.2.4.10); they are ignored.
 const USER_DEFINED: &str = "USER_DEFINED";
 
 /// Reads keyword = value notation. The standard has one message a file; files of several, as
@@ -268,7 +268,7 @@ pub fn parse_csv(
     Ok(())
 }
 
-/// Whether a value of a record is given: an empty one is as good as none, but of an identifier it is told.
+/// Whether a value of a record is given: an empty one counts as missing, except that an empty identifier is reported.
 fn is_given(block: &KvnBlock, key: &str, value: &str) -> bool {
     block.knows(key) && (!value.is_empty() || matches!(key, "OBJECT_NAME" | "OBJECT_ID"))
 }

@@ -67,7 +67,7 @@ pub fn read(input: impl BufRead) -> Result<Opm, ReadError> {
     read.ok_or_else(|| io::Error::from(io::ErrorKind::UnexpectedEof).into())
 }
 
-/// The message of a file, if it keeps the rules; what it breaks goes to the list of findings.
+/// The message of a file, if it is valid; violations go to the list of findings.
 ///
 /// # Errors
 /// A failure of the input.
@@ -187,7 +187,7 @@ fn keplerian(block: &KvnBlock, findings: &mut FindingList) -> Option<Keplerian> 
     let [true_anomaly, mean_anomaly] = anomalies.map(|key| block.number(key));
     let eccentricity = e?;
     if !(0.0..1.0).contains(&eccentricity) {
-        // Open orbits have elements too, which nothing here computes with.
+        // Open orbits have elements too, but nothing here uses them.
         return None;
     }
     let of_mean = |mean_deg: f64| {

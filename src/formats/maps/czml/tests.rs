@@ -189,7 +189,7 @@ fn positions_are_read_however_they_are_written() {
         r#"{"id": "a", "position": {"epoch": "2025-01-01T02:00:00+02:00", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}}"#,
         r#"{"id": "a", "position": {"epoch": "2025-01-01T00:01:00Z", "cartesian": [0, 7e6, 6e5, 0, 60, 7e6, 12e5, 0]}},
            {"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0]}}"#,
-        // A repeated instant: the later one stands, as in CesiumJS.
+        // A repeated instant: the later sample is used, as in CesiumJS.
         r#"{"id": "a", "position": {"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 9e6, 9e6, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}}"#,
         r#"{"id": "a", "position": [{"epoch": "2025-01-01T00:00:00Z", "cartesian": [0, 7e6, 0, 0, 60, 7e6, 6e5, 0, 120, 7e6, 12e5, 0]}]}"#,
     ] {

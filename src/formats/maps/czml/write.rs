@@ -100,7 +100,7 @@ impl<W: Write> Packets<'_, W> {
         self.out.write_all(b"\n]\n")
     }
 
-    /// The packets of satellites that propagate alike, so that the first tells the spacing of all.
+    /// The packets of satellites with the same propagation, so that the first determines the spacing of all.
     fn satellites(
         &mut self,
         shown: &ShownSpan,

@@ -1,4 +1,4 @@
-//! Where and when the metrics are, for the page: the region and the globe.
+//! Places and times for the figures of the page: the region and the globe.
 
 use super::interval;
 use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
@@ -27,7 +27,7 @@ pub(super) struct RegionData {
 #[derive(Serialize)]
 pub(super) struct World {
     coast: Vec<Vec<i32>>,
-    /// UTC; inside a leap second the second before, which a browser can read.
+    /// UTC; during a leap second, the second before it, since browsers cannot read second 60.
     epoch: String,
     /// Seconds from the epoch to the beginning of each leap second of the span.
     leap_seconds_s: Vec<f64>,
@@ -37,10 +37,11 @@ pub(super) struct World {
     flattening: f64,
     mask_deg: f64,
     gnss_mask_deg: f64,
-    /// Azimuth and elevation of the skyline, degrees, once around; empty without one.
+    /// Azimuth and elevation of the skyline, degrees, over a full turn; empty without one.
     skyline_deg: Vec<[f64; 2]>,
 }
 
+/// Polylines as longitudes and latitudes in hundredths of a degree.
 fn hundredths(lines: Vec<Vec<[f64; 2]>>) -> Vec<Vec<i32>> {
     let whole = |x: f64| (100.0 * x).round() as i32;
     let flat = |line: Vec<[f64; 2]>| line.into_iter().flatten().map(whole).collect();
@@ -86,8 +87,8 @@ impl RegionData {
     }
 }
 
-/// A UTC date and time with seconds up to 59, since browsers read no 60: chrono keeps a leap second as a
-/// nanosecond count past 1e9.
+/// A UTC date and time with seconds up to 59, since browsers cannot read second 60, which chrono writes as
+/// second 59 with 1e9 nanoseconds or more.
 fn readable_by_browsers(utc: DateTime<Utc>) -> String {
     let within_second = utc.with_nanosecond(utc.nanosecond() % 1_000_000_000);
     let format = "%Y-%m-%dT%H:%M:%S%.3fZ";
