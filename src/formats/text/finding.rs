@@ -166,6 +166,12 @@ impl FindingList {
         self.left_out.add(what, name);
     }
 
+    /// Notes that the file breaks no rule, and is not read all the same: a warning of a linter. The reader refuses the
+    /// file once it knows what it needs.
+    pub(crate) fn unsupported(&mut self, place: (usize, usize), message: impl Into<String>) {
+        self.warning(place, "unsupported", message);
+    }
+
     /// Notes that a part of the file is not read because it is no satellite of the file: no warning of a linter,
     /// but what a reader says once it is done.
     pub(crate) fn pass_over(&mut self, what: &'static str, name: &str) {
