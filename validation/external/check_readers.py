@@ -2,8 +2,8 @@
 """Reads constellations with readers that this project did not write, and prints how far its own are from them.
 
     python -m venv venv && venv/bin/pip install -r requirements.txt
-    cargo build --profile test --example print_states
-    venv/bin/python check_readers.py target/debug/examples/print_states
+    cargo build --profile test --bin navwalker --example print_states
+    venv/bin/python check_readers.py target/debug/examples/print_states target/debug/navwalker
 
 The files come from reader_cases.py, and from the gallery for the project's own tables and OPM. Almanacs, STK ephemerides,
 OMM in KVN and OPM are read by Orekit; SP3 by georinex and Orekit; OEM by the oem package and Orekit; element sets by
@@ -18,7 +18,7 @@ import json
 import subprocess
 import sys
 import tempfile
-from datetime import datetime, timedelta
+from datetime import datetime
 from pathlib import Path
 
 import georinex
@@ -65,16 +65,20 @@ ALMANAC_KM = 1e-6
 # Closed forms in two programs, from the digits of one file.
 J2_KM = 1e-6
 
+# Degrees are printed as they are read, and a mean of four numbers is rounded twice.
+POINT_DEG = 1e-12
+MEAN = 1e-12
+
 
 class Ours:
-    """States of our reader: {name: {second: state}}."""
+    """States of our reader, {name: {second: state}}, and the program itself."""
 
-    def __init__(self, program):
-        self.program = program
+    def __init__(self, print_states, navwalker):
+        self.print_states, self.navwalker = print_states, navwalker
 
     def states(self, path, frame, span_s, step_s, start=reader_cases.START, as_gnss=False):
         arguments = ["--gnss"] * as_gnss + [str(path), f"{start.isoformat()}Z", str(span_s), str(step_s), frame]
-        done = subprocess.run([self.program, *arguments], capture_output=True, text=True, check=False)
+        done = subprocess.run([self.print_states, *arguments], capture_output=True, text=True, check=False)
         if done.returncode:
             raise RuntimeError(f"{path.name}: {done.stderr.strip()}")
         found = {}
@@ -96,7 +100,7 @@ class Comparison:
         for name in ours.keys() & theirs.keys():
             mine, other = ours[name], theirs[name]
             if mine.keys() != other.keys():
-                apart = sorted(mine.keys() ^ other.keys())
+                apart = sorted(float(t) for t in mine.keys() ^ other.keys())
                 self.report.same(self.reader, f"{what}: {name} has a state for one reader only at", apart[:3], [])
             for t in mine.keys() & other.keys():
                 position = max(position, float(np.linalg.norm(mine[t][:3] - other[t][:3])))
@@ -229,8 +233,8 @@ def between(samples, seconds, step_s):
 
 def check_sp3(folder, ours, report):
     stand_in = jpype.JProxy("java.util.function.Function", dict={"apply": lambda name: FramesFactory.getGCRF()})
-    start = reader_cases.START - timedelta(seconds=reader_cases.GPS_S)
     for path in sorted(folder.glob("*.sp3")):
+        start = reader_cases.sp3_start(path)
         form = f"SP3 {path.name}"
         step_s, span_s = (60, 7201) if path.stem == "low" else (900, 35101)
         mine = ours.states(path, "ITRF", span_s, step_s / 3, start)
@@ -375,6 +379,26 @@ def check_tables(folder, ours, report):
         Comparison(report, "csv").hold(f"states in {axes.upper()}, samples", mine, theirs, SAMPLE_KM, KM_S)
 
 
+def check_points(folder, ours, report):
+    """Ground points, by the table of metrics by point; their weights, by the mean over them."""
+    arguments = ["evaluate", "--design", "delta:55:24/6/1@925", "--set", f"region.points={folder}/points.csv", "--set", "time.duration-h=6"]
+    arguments += ["--set", "time.step-s=600", "--format", "json", "--quiet", "--series", str(folder / "series")]
+    done = subprocess.run([ours.navwalker, *arguments], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise RuntimeError(done.stderr.strip())
+    with open(folder / "points.csv", newline="") as file:
+        theirs = {row["name"]: row for row in csv.DictReader(file)}
+    with open(folder / "series/points.csv", newline="") as file:
+        mine = {row["name"]: row for row in csv.DictReader(file)}
+    report.same("csv", "points: names", sorted(mine), sorted(theirs))
+    places = ["latitude_deg", "longitude_deg"]
+    apart = max(abs(float(mine[name][key]) - float(theirs[name][key])) for name in mine.keys() & theirs.keys() for key in places)
+    report.number("csv", "points: latitude and longitude", apart, POINT_DEG, "deg")
+    weights = [float(theirs[name]["weight"]) for name in mine]
+    mean = np.average([float(row["mean_visible"]) for row in mine.values()], weights=weights)
+    report.number("csv", "points: mean by weight", abs(mean - json.loads(done.stdout)["metrics"]["mean_visible"]), MEAN, "satellites")
+
+
 def check_rotation(folder, ours, report):
     """What files in EME2000 and GCRF are to a study, in TEME, by ERFA."""
     epoch = f"{reader_cases.START.isoformat()}Z"
@@ -390,13 +414,16 @@ def check_rotation(folder, ours, report):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", help="the example print_states")
-    ours, report = Ours(parser.parse_args().program), Report()
+    parser.add_argument("print_states", help="the example of that name")
+    parser.add_argument("navwalker", help="the program")
+    given, report = parser.parse_args(), Report()
+    ours = Ours(given.print_states, given.navwalker)
     without_data()
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
         reader_cases.write_all(folder)
-        for check in (check_almanacs, check_oem, check_stk, check_sp3, check_czml, check_sets, check_opm, check_tables, check_rotation):
+        checks = (check_almanacs, check_oem, check_stk, check_sp3, check_czml, check_sets, check_opm, check_tables, check_points, check_rotation)
+        for check in checks:
             try:
                 check(folder, ours, report)
             except Exception as error:  # a reader that refuses a file is a failed check

@@ -14,6 +14,8 @@ from sgp4.exporter import export_omm, export_tle
 START = datetime(2025, 6, 1)
 # TAI and GPS time of the same instant: UTC + 37 s and + 18 s since 2017.
 TAI_S, GPS_S = 37, 18
+# In GPS time, four hours before the leap second of 2016, when it was UTC + 17 s.
+LEAP_GPS, LEAP_GPS_S = datetime(2016, 12, 31, 20), 17
 MU_KM3_S2 = 398600.4418
 TURN_RAD_S = 7.2921151467e-5
 
@@ -147,9 +149,8 @@ def write_stk(folder):
         (folder / f"{name}.e").write_text("\n".join([*lines, "", "END Ephemeris"]) + "\n")
 
 
-def write_sp3(path, version, satellites, step_s, count, velocities, missing=()):
-    """Satellites as {id: orbit}, from the start in GPS time on; `missing` are pairs of id and number of the epoch."""
-    first = START
+def write_sp3(path, version, satellites, step_s, count, velocities, missing=(), first=START):
+    """Satellites as {id: orbit} from an instant in GPS time on; `missing` are pairs of id and number of the epoch."""
     week, of_week = divmod((first - datetime(1980, 1, 6)).total_seconds(), 604800)
     mjd = (first - datetime(1858, 11, 17)).days
     letter = "V" if velocities else "P"
@@ -187,7 +188,15 @@ def write_sp3s(folder):
     write_sp3(folder / "systems-d.sp3", "d", several, 900, 40, velocities=False)
     write_sp3(folder / "systems-c.sp3", "c", several, 900, 40, velocities=True)
     write_sp3(folder / "gap.sp3", "d", several, 900, 40, velocities=False, missing=[("R07", 20)])
+    write_sp3(folder / "leap.sp3", "d", several, 900, 40, velocities=False, first=LEAP_GPS)
     write_sp3(folder / "low.sp3", "d", {"L01": LOW_FIXED, "L99": Ellipse(7000, 0.001, 97, 10, 0, 0, fixed=True)}, 60, 121, velocities=True)
+
+
+def sp3_start(path):
+    """The first instant of a file of the above in UTC."""
+    if path.stem == "leap":
+        return LEAP_GPS - timedelta(seconds=LEAP_GPS_S)
+    return START - timedelta(seconds=GPS_S)
 
 
 def write_czml(folder):
@@ -276,6 +285,12 @@ def omm_xml(messages):
     return text + "</ndm>\n"
 
 
+def write_points(folder):
+    """Columns in an order of their own, one that has no meaning, a comma in a name, and the antimeridian."""
+    rows = ['7,"A, north",-179.5,2,89.5', "7,B,179.25,1,-45.125", "8,C,0,0.5,1e-6", "9,D,12.345678901,0.25,47.5"]
+    (folder / "points.csv").write_text("\n".join(["visits,name,longitude_deg,weight,latitude_deg", *rows]) + "\n")
+
+
 def write_all(folder):
-    for write in (write_oems, write_stk, write_sp3s, write_czml, write_almanacs, write_sets):
+    for write in (write_oems, write_stk, write_sp3s, write_czml, write_almanacs, write_sets, write_points):
         write(folder)
