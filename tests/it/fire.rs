@@ -283,6 +283,14 @@ fn inputs_stay() {
     let directory = TempDir::new().unwrap();
     let place = directory.path();
     assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::create_dir(place.join("run-sweep")).unwrap();
+    fs::copy(
+        place.join("run/front.json"),
+        place.join("run-sweep/front.json"),
+    )
+    .unwrap();
+    let metrics = "export --quiet --run run --as metrics --out maps";
+    assert_eq!(ran(place, &line(metrics)).status, 0);
     fs::write(place.join("study.toml"), "name = \"mine\"\n").unwrap();
     let tle = "export --quiet --design delta:55:24/6/1@925 --as tle --out fleet/of/us";
     assert_eq!(ran(place, &line(tle)).status, 0);
@@ -317,6 +325,16 @@ fn inputs_stay() {
         (
             "plot run --figure pareto --force --out run/history.svg".to_owned(),
             "is inside the input run",
+        ),
+        (
+            "plot run --figure pareto --force --out run-sweep/front.svg".to_owned(),
+            "is inside the input run-sweep",
+        ),
+        // A file that --set names beside --run.
+        (
+            "export --run run --set region.points=../maps/metrics/points.csv --as metrics --force --out maps"
+                .to_owned(),
+            "maps contains the input run/../maps/metrics/points.csv",
         ),
         (
             format!("{export} run"),
