@@ -5,9 +5,9 @@ use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::constellation::Design;
 use crate::optimize::{Pick, Search, Strategy};
-use crate::run::checkpoint::{self, Identity};
+use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::{
-    CHECKPOINT, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
+    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
     PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
@@ -16,7 +16,7 @@ use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// File that names the process using a run directory.
@@ -59,6 +59,10 @@ pub(crate) struct RunDirectory {
     found: FoundCheckpoints,
     /// The last two checkpoints of this process, the latest first, written or not.
     recent: [Option<String>; 2],
+    /// What the log of this search has.
+    log: RecordLog,
+    /// Whether that is in the directory.
+    is_log_written: bool,
     /// Whether the search continues from a checkpoint that was found.
     is_resumed: bool,
     /// Keeps other processes out; `None` if the file system has no locks.
@@ -81,6 +85,7 @@ struct FoundCheckpoints {
 impl FoundCheckpoints {
     fn of(directory: &Path, identity: &Identity) -> Self {
         let mut found = Self::default();
+        let log = files::read_run(&directory.join(CHECKPOINT_LOG)).unwrap_or_default();
         for name in [CHECKPOINT, PREVIOUS_CHECKPOINT] {
             let path = directory.join(name);
             let shown = path.display();
@@ -92,7 +97,7 @@ impl FoundCheckpoints {
                     continue;
                 }
             };
-            match checkpoint::read(&bytes) {
+            match checkpoint::read(&bytes, &log) {
                 Ok((of, search)) if of == *identity => {
                     found.search = Some(search);
                     found.is_latest = name == CHECKPOINT;
@@ -157,6 +162,8 @@ impl RunDirectory {
             first_files: study.first_files()?,
             found: FoundCheckpoints::default(),
             recent: [None, None],
+            log: RecordLog::default(),
+            is_log_written: false,
             is_resumed: false,
             lock: None,
             holder: None,
@@ -265,13 +272,31 @@ impl RunDirectory {
 
     /// Writes the state of a search and keeps the previous one, unless the directory holds a state as
     /// far or further.
-    pub(crate) fn save(&mut self, search: &Search) -> Result<()> {
-        let text = checkpoint::write(&self.identity, search)?;
+    pub(crate) fn save(&mut self, search: &mut Search) -> Result<()> {
+        let (text, lines) = checkpoint::write(&self.identity, search, &mut self.log)?;
         if search.progress().step > self.found.step() {
+            self.write_log(search, &lines)?;
             self.write_checkpoint(&text)?;
         }
         self.recent = [Some(text), self.recent[0].take()];
         Ok(())
+    }
+
+    /// Adds lines to the log; the first time all of it is written, in place of what a process that was
+    /// killed may have left of a line.
+    fn write_log(&mut self, search: &Search, lines: &str) -> Result<()> {
+        let path = self.path.join(CHECKPOINT_LOG);
+        if !self.is_log_written {
+            let all = RecordLog::default().extend(search.history())?;
+            self.is_log_written = true;
+            return files::write_atomically(&path, all.as_bytes());
+        }
+        let append = || -> io::Result<()> {
+            let mut log = File::options().append(true).open(&path)?;
+            log.write_all(lines.as_bytes())?;
+            log.sync_data()
+        };
+        append().with_context(|| format!("cannot write {}", path.display()))
     }
 
     fn write_checkpoint(&mut self, text: &str) -> Result<()> {
@@ -313,7 +338,7 @@ impl RunDirectory {
     pub(crate) fn finish(
         &mut self,
         scenario: &Scenario,
-        search: &Search,
+        search: &mut Search,
         result: &OptimizeResult,
     ) -> Result<Placed> {
         if !search.is_done() {
@@ -333,8 +358,11 @@ impl RunDirectory {
         for (name, text) in result_files(scenario, result)? {
             files::write_atomically(&staged.path().join(name), text.as_bytes())?;
         }
-        let latest = checkpoint::write(&self.identity, search)?;
-        files::write_atomically(&staged.path().join(CHECKPOINT), latest.as_bytes())?;
+        let mut log = RecordLog::default();
+        let (latest, lines) = checkpoint::write(&self.identity, search, &mut log)?;
+        for (name, text) in [(CHECKPOINT, latest), (CHECKPOINT_LOG, lines)] {
+            files::write_atomically(&staged.path().join(name), text.as_bytes())?;
+        }
         if let Some(previous) = self.before_last()? {
             files::write_atomically(&staged.path().join(PREVIOUS_CHECKPOINT), &previous)?;
         }

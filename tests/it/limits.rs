@@ -85,3 +85,25 @@ fn files_of_a_run_are_read_up_to_a_bound() {
         fs::write(&path, before).unwrap();
     }
 }
+
+/// A checkpoint does not grow with the generations behind it, and the log beside it only as they do. A
+/// hundred generations have the records of a front each; the lines of later ones are shorter.
+#[test]
+fn checkpoints_do_not_grow_with_the_generations() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let sizes = |generations: u32| {
+        let generations = format!("optimizer.generations={generations}");
+        let arguments = optimize(&["--out", "run", "--set", &generations]);
+        assert_eq!(ran(place, &arguments).status, 0);
+        ["checkpoint", "checkpoint.log"]
+            .map(|name| fs::metadata(place.join("run").join(name)).unwrap().len() as f64)
+    };
+    let ([short, short_log], [long, long_log]) = (sizes(25), sizes(100));
+    // The digits of the counters, and a population of other numbers.
+    assert!((0.8..1.2).contains(&(long / short)), "{short} {long}");
+    assert!(
+        (2.0..6.0).contains(&(long_log / short_log)),
+        "{short_log} {long_log}"
+    );
+}

@@ -177,7 +177,7 @@ pub(super) fn search(
     let stoppable = Stoppable::begin();
     while !search.is_done() && !stoppable.is_asked_to_stop() {
         search.step(&problem)?;
-        directory.save(&search)?;
+        directory.save(&mut search)?;
         progress.show(&search);
     }
     progress.finish();
@@ -185,7 +185,7 @@ pub(super) fn search(
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);
     }
-    let placed = directory.finish(scenario, &search, &result);
+    let placed = directory.finish(scenario, &mut search, &result);
     Ok(Ended {
         result,
         placed,
