@@ -280,11 +280,8 @@ fn a_place_is_tried_before_the_work() {
     assert_eq!(fs::read_to_string(place.join("file")).unwrap(), "mine");
 }
 
-/// Inputs are not outputs: whatever `--force` says, they stay.
-#[test]
-fn inputs_stay() {
-    let directory = TempDir::new().unwrap();
-    let place = directory.path();
+/// A run with a sweep, metrics, element sets, a scenario and a repository.
+fn make_inputs(place: &Path) {
     assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
     fs::create_dir(place.join("run-sweep")).unwrap();
     fs::copy(
@@ -299,6 +296,14 @@ fn inputs_stay() {
     assert_eq!(ran(place, &line(tle)).status, 0);
     fs::create_dir_all(place.join("repository/.git")).unwrap();
     fs::create_dir_all(place.join("inside")).unwrap();
+}
+
+/// Inputs are not outputs: whatever `--force` says, they stay.
+#[test]
+fn inputs_stay() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    make_inputs(place);
     let all = || -> Vec<_> {
         let mut all = Vec::new();
         let mut waiting = vec![place.to_owned()];
