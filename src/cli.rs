@@ -15,6 +15,7 @@ mod commands;
 mod constellations;
 mod files;
 mod interrupt;
+mod limits;
 mod output;
 mod progress;
 mod read_constellation;
@@ -72,8 +73,10 @@ fn said(message: &clap::Error) -> ExitCode {
 
 fn run(cli: Cli) -> anyhow::Result<Status> {
     output::set_quiet(cli.quiet);
+    limits::set_allow_large(cli.allow_large);
     interrupt::install();
     if let Some(threads) = cli.threads {
+        limits::check_threads(threads)?;
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.get())
             .build_global()?;

@@ -23,7 +23,8 @@ pub use baseline::Baseline;
 pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{
-    ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
+    REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
+    reproduction_markdown, reproduction_text,
 };
 pub use results::{ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult};
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};

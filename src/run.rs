@@ -40,6 +40,8 @@ pub const HISTORY_CSV: &str = "history.csv";
 pub const CHECKPOINT: &str = "checkpoint";
 /// The state of the search one generation earlier.
 pub const PREVIOUS_CHECKPOINT: &str = "checkpoint.previous";
+/// The record of each generation of the checkpoints, one per line.
+pub const CHECKPOINT_LOG: &str = "checkpoint.log";
 /// What a run is a run of, and its inputs with their checksums.
 pub const MANIFEST: &str = "run.json";
 /// The directory for copies of the files that the scenario names.
@@ -50,11 +52,12 @@ pub const VALIDATION: &str = "validation";
 pub const VALIDATION_REPORT: &str = "report.json";
 
 /// The files and directories that a run writes; anything else in its directory was added later.
-pub const FILES: [&str; 9] = [
+pub const FILES: [&str; 10] = [
     MANIFEST,
     INPUTS,
     CHECKPOINT,
     PREVIOUS_CHECKPOINT,
+    CHECKPOINT_LOG,
     SCENARIO,
     FRONT_JSON,
     FRONT_CSV,

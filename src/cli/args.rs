@@ -24,6 +24,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
+/// Maximum number of seeds in one command: the results of all of them are in memory at the end.
+const MAX_SEEDS: u64 = 1000;
+
 /// Designs, evaluates, exports and validates LEO Walker constellations that augment a GNSS.
 ///
 /// A study is described by a scenario: a TOML file, or one of the built-in `paper` and
@@ -38,9 +41,15 @@ use std::path::PathBuf;
     max_term_width = 100
 )]
 pub(crate) struct Cli {
-    /// Use this many threads instead of all cores; results do not depend on the number.
+    /// Use this many threads instead of all cores, at most 4 for each core; results do not depend on the
+    /// number.
     #[arg(long, global = true, value_name = "N")]
     pub(crate) threads: Option<NonZeroUsize>,
+
+    /// Start what is very large: an export of more than 10 GB, an evaluation that needs more memory than is
+    /// available.
+    #[arg(long, global = true)]
+    pub(crate) allow_large: bool,
 
     /// Print only results and errors: no progress, no hints.
     #[arg(long, short, global = true)]
@@ -238,14 +247,14 @@ pub(crate) struct OptimizeArgs {
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 
-    /// Run this many consecutive seeds, starting with the scenario's, and report their spread and
-    /// joint front.
+    /// Run this many consecutive seeds, at most 1000, starting with the scenario's, and report their spread
+    /// and joint front.
     ///
     /// Each seed has its own run in DIR/seed-N; the summary is in DIR/seeds.csv and DIR/seeds.json, what
     /// no seed's front dominates in DIR/joint-front.csv. The front of the first seed and the summary are
     /// printed. All hypervolumes are at one reference point, which is printed too.
-    #[arg(long, value_name = "N")]
-    pub(crate) seeds: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SEEDS))]
+    pub(crate) seeds: Option<u64>,
 
     /// Also sweep the search space on a grid of the scenario's steps and compare the fronts: both
     /// hypervolumes, the distance of each design, and what was missed.

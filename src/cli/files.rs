@@ -7,7 +7,7 @@ mod staging;
 pub(crate) use guard::{refuse_foreign, refuse_inputs};
 pub(crate) use staging::{is_staged, lock};
 
-use crate::cli::interrupt::Removed;
+use crate::cli::interrupt::{self, Removed};
 use crate::cli::output;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
@@ -20,17 +20,33 @@ use tempfile::{NamedTempFile, PersistError, TempDir};
 /// Maximum bytes of a file that is read into memory at once: a scenario, or a file it names.
 const MOST_BYTES: u64 = 64 << 20;
 
+/// Maximum bytes of a file that this program wrote: a million generations, and a factor of two.
+const MOST_RUN_BYTES: u64 = 1 << 30;
+
 /// Maximum number of chained links to follow, as in the system.
 const MOST_LINKS: usize = 40;
 
-/// The bytes of a file that is not too long to be kept.
+/// The bytes of an input that is not too long to be kept.
 pub(crate) fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    read_at_most(path, MOST_BYTES)
+}
+
+/// The same of a file that this program wrote, as in a run directory.
+pub(crate) fn read_run(path: &Path) -> io::Result<Vec<u8>> {
+    read_at_most(path, MOST_RUN_BYTES)
+}
+
+fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let mut length = file.metadata()?.len();
     let mut bytes = Vec::new();
-    File::open(path)?
-        .take(MOST_BYTES + 1)
-        .read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let message = format!("the file is larger than {} MiB", MOST_BYTES >> 20);
+    if length <= most {
+        // The length of a pipe is known only at its end.
+        file.take(most + 1).read_to_end(&mut bytes)?;
+        length = bytes.len() as u64;
+    }
+    if length > most {
+        let message = format!("the file is larger than {} MiB", most >> 20);
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
     }
     Ok(bytes)
@@ -82,7 +98,11 @@ impl StagedFile {
         written
             .and_then(|()| file.as_file().sync_all())
             .with_context(|| cannot.clone())?;
-        match file.persist(&self.place) {
+        let persisted = {
+            let _held = interrupt::held();
+            file.persist(&self.place)
+        };
+        match persisted {
             Ok(_) => Ok(()),
             Err(PersistError { error, file }) => {
                 let kept = file.into_temp_path().keep();
@@ -190,6 +210,7 @@ impl StagedDirectory {
             for name in kept {
                 replace::carry_over(&place.join(name), &staging.join(name))?;
             }
+            let _held = interrupt::held();
             if place.is_dir() {
                 replace::exchange(staging, place)
             } else {
@@ -298,6 +319,23 @@ pub(crate) fn is_vacant(path: &Path) -> Result<bool> {
         }
         Err(error) => Err(error).with_context(|| format!("cannot use {}", path.display())),
     }
+}
+
+/// The names of a directory's entries that are not in `own`, sorted; those of a directory in `own` end
+/// in `/`.
+pub(crate) fn others(directory: &Path, own: &BTreeSet<String>) -> Result<Vec<OsString>> {
+    if is_vacant(directory)? {
+        return Ok(Vec::new());
+    }
+    let cannot = || format!("cannot read {}", directory.display());
+    let mut names = Vec::new();
+    for entry in fs::read_dir(directory).with_context(cannot)? {
+        names.push(entry.with_context(cannot)?.file_name());
+    }
+    let is_own = |name: &str| own.contains(name) || own.contains(&format!("{name}/"));
+    names.retain(|name| !is_staged(name) && !is_own(&name.to_string_lossy()));
+    names.sort();
+    Ok(names)
 }
 
 /// Refuses a directory that holds something; with `force` only where that is more than `own`, what

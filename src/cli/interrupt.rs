@@ -1,27 +1,36 @@
 //! Ctrl-C: partial output is removed, and a search stops after the current generation.
+//!
+//! Whenever it is pressed, the exit status is 130: either the program ends at once, or the search that
+//! it asked to stop reports it.
 
 use crate::cli::{Status, output};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Files and directories that are still being staged.
 static STAGED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-/// Whether the command stops by itself when [`SEEN`] is set.
-static ENDS_ITSELF: AtomicBool = AtomicBool::new(false);
-/// Whether Ctrl-C was pressed.
-static SEEN: AtomicBool = AtomicBool::new(false);
+/// What Ctrl-C does next: one of the three values below.
+static STATE: AtomicU8 = AtomicU8::new(ENDS);
+/// It ends the program at once.
+const ENDS: u8 = 0;
+/// It asks a search to stop.
+const ASKS: u8 = 1;
+/// It has asked, and ends the program at once if pressed again.
+const ASKED: u8 = 2;
 
 /// Installs the Ctrl-C handler; if that fails, Ctrl-C ends the program as usual.
 pub(crate) fn install() {
     let _ = ctrlc::set_handler(|| {
-        if ENDS_ITSELF.load(Ordering::Relaxed) && !SEEN.swap(true, Ordering::Relaxed) {
+        let (order, otherwise) = (Ordering::SeqCst, Ordering::SeqCst);
+        let asks = STATE.compare_exchange(ASKS, ASKED, order, otherwise);
+        if asks.is_ok() {
             output::hint("stopping after this generation; Ctrl-C again stops at once");
             return;
         }
-        let staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
+        let staged = held();
         for path in staged.iter() {
             // If removal fails, the next process that writes there removes it as stale.
             let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
@@ -30,11 +39,38 @@ pub(crate) fn install() {
     });
 }
 
-/// The flag that Ctrl-C sets, for a command that then stops by itself; a second Ctrl-C ends the
-/// program at once.
-pub(crate) fn flag() -> &'static AtomicBool {
-    ENDS_ITSELF.store(true, Ordering::Relaxed);
-    &SEEN
+/// Work that can stop by itself and keep what it has: the first Ctrl-C only asks it to, a second one
+/// ends the program at once. Afterwards Ctrl-C does what it did before.
+pub(crate) struct Stoppable(());
+
+impl Stoppable {
+    pub(crate) fn begin() -> Self {
+        STATE.store(ASKS, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// Whether Ctrl-C was pressed.
+    pub(crate) fn is_asked_to_stop(&self) -> bool {
+        STATE.load(Ordering::SeqCst) == ASKED
+    }
+
+    /// Ends the work; returns whether Ctrl-C was pressed before. None is lost: a later one ends the
+    /// program.
+    pub(crate) fn end(self) -> bool {
+        STATE.swap(ENDS, Ordering::SeqCst) == ASKED
+    }
+}
+
+impl Drop for Stoppable {
+    fn drop(&mut self) {
+        STATE.store(ENDS, Ordering::SeqCst);
+    }
+}
+
+/// Keeps Ctrl-C from removing staged files while it is held, as when one of them is moved to its
+/// destination.
+pub(crate) fn held() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    STAGED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A guard: while it exists, Ctrl-C removes its path.
@@ -42,15 +78,13 @@ pub(crate) struct Removed(PathBuf);
 
 impl Removed {
     pub(crate) fn new(path: &Path) -> Self {
-        let mut staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
-        staged.insert(path.to_owned());
+        held().insert(path.to_owned());
         Self(path.to_owned())
     }
 }
 
 impl Drop for Removed {
     fn drop(&mut self) {
-        let mut staged = STAGED.lock().unwrap_or_else(PoisonError::into_inner);
-        staged.remove(&self.0);
+        held().remove(&self.0);
     }
 }

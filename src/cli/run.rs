@@ -1,19 +1,22 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
+use crate::cli::interrupt::Removed;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::constellation::Design;
 use crate::optimize::{Pick, Search, Strategy};
-use crate::run::checkpoint::{self, Identity};
+use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::{
-    CHECKPOINT, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
+    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
     PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
+use serde::Deserialize;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// File that names the process using a run directory.
@@ -35,26 +38,118 @@ fn held(directory: &Path) -> Result<Option<File>> {
         Ok(lock) => Ok(Some(lock)),
         Err(TryLockError::Error(_)) => Ok(None),
         Err(TryLockError::WouldBlock) => {
-            let holder = fs::read_to_string(directory.join(HOLDER));
-            let holder = holder.map_or_else(
-                |_| "another process".to_owned(),
-                |id| format!("process {id}"),
-            );
+            let id = files::read_run(&directory.join(HOLDER)).ok();
+            let id = id.and_then(|id| String::from_utf8(id).ok());
+            let holder = id.map_or("another process".to_owned(), |id| format!("process {id}"));
             bail!("{} is in use: {holder} works in it", directory.display())
         }
     }
 }
 
 /// A directory in which a run is under way.
+///
+/// Nothing in it is lost to a run that does not get as far: finished results stay until they are
+/// replaced by finished results, and a checkpoint until the search has passed it.
 pub(crate) struct RunDirectory {
     path: PathBuf,
     identity: Identity,
     /// The initial contents of the run: the scenario, copies of its files, the manifest.
     first_files: Vec<(String, Vec<u8>)>,
+    /// The checkpoints in the directory when it was opened.
+    found: FoundCheckpoints,
+    /// The last two checkpoints of this process, the latest first, written or not.
+    recent: [Option<String>; 2],
+    /// What the log of this search has.
+    log: RecordLog,
+    /// Whether that is in the directory.
+    is_log_written: bool,
+    /// Whether the search continues from a checkpoint that was found.
+    is_resumed: bool,
     /// Keeps other processes out; `None` if the file system has no locks.
     lock: Option<File>,
-    /// Whether the directory is marked as in use by this process.
-    is_holder: bool,
+    /// Removes the mark that this process uses the directory, also on Ctrl-C; `None` without one.
+    holder: Option<Removed>,
+}
+
+/// The checkpoints in a run directory.
+#[derive(Default)]
+struct FoundCheckpoints {
+    /// The state in the last intact one.
+    search: Option<Search>,
+    /// Whether that is [`CHECKPOINT`], not the one before.
+    is_latest: bool,
+    /// Why others cannot be used.
+    damaged: Vec<String>,
+}
+
+impl FoundCheckpoints {
+    fn of(directory: &Path, identity: &Identity) -> Self {
+        let mut found = Self::default();
+        let log = files::read_run(&directory.join(CHECKPOINT_LOG)).unwrap_or_default();
+        for name in [CHECKPOINT, PREVIOUS_CHECKPOINT] {
+            let path = directory.join(name);
+            let shown = path.display();
+            let bytes = match files::read_run(&path) {
+                Ok(bytes) => bytes,
+                Err(error) if error.kind() == ErrorKind::NotFound => continue,
+                Err(error) => {
+                    found.damaged.push(format!("cannot read {shown}: {error}"));
+                    continue;
+                }
+            };
+            match checkpoint::read(&bytes, &log) {
+                Ok((of, search)) if of == *identity => {
+                    found.search = Some(search);
+                    found.is_latest = name == CHECKPOINT;
+                    return found;
+                }
+                Ok(_) => found.damaged.push(format!(
+                    "{shown} belongs to another scenario, seed or version"
+                )),
+                Err(reason) => found.damaged.push(format!("{shown} is damaged: {reason}")),
+            }
+        }
+        found
+    }
+
+    /// Steps that the state has behind it; 0 without one.
+    fn step(&self) -> u64 {
+        self.search
+            .as_ref()
+            .map_or(0, |search| search.progress().step)
+    }
+}
+
+/// What became of the results of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Placed {
+    /// They are in the run directory.
+    Written,
+    /// There are none, for a search that was stopped before its first generation.
+    Nothing,
+    /// The run directory keeps those it had, since they are finished or of as many generations.
+    Kept {
+        /// Generations behind the results that are kept.
+        generations: u64,
+    },
+}
+
+/// The part of [`FRONT_JSON`] that says how far its search got.
+#[derive(Deserialize)]
+struct HeldResults {
+    generations: [u64; 2],
+}
+
+impl HeldResults {
+    /// Those in a directory, if any can be read.
+    fn of(directory: &Path) -> Option<Self> {
+        let bytes = files::read_run(&directory.join(FRONT_JSON)).ok()?;
+        serde_json::from_slice(&bytes).ok()
+    }
+
+    fn is_finished(&self) -> bool {
+        self.generations[0] >= self.generations[1]
+    }
 }
 
 impl RunDirectory {
@@ -65,22 +160,20 @@ impl RunDirectory {
             path,
             identity: study.identity()?,
             first_files: study.first_files()?,
+            found: FoundCheckpoints::default(),
+            recent: [None, None],
+            log: RecordLog::default(),
+            is_log_written: false,
+            is_resumed: false,
             lock: None,
-            is_holder: false,
+            holder: None,
         };
         files::recovered(&run.path)?;
         run.lock = held(&run.path)?;
         if files::is_vacant(&run.path)? {
             run.begin(&[])?;
         } else if run.found_identity().as_ref() == Some(&run.identity) {
-            let begun = |name: &OsString| {
-                [SCENARIO, MANIFEST, INPUTS, HOLDER]
-                    .iter()
-                    .any(|n| name == n)
-            };
-            let mut kept = run.entries()?;
-            kept.retain(|name| !begun(name));
-            run.begin(&kept)?;
+            run.take_up()?;
         } else if force {
             files::refuse_inputs(&run.path, study.inputs().iter().map(PathBuf::as_path))?;
             files::refuse_foreign(&run.path, &own())?;
@@ -93,10 +186,25 @@ impl RunDirectory {
                 run.what_else(study)
             );
         }
+        let holder = run.path.join(HOLDER);
+        run.holder = Some(Removed::new(&holder));
         // Only waiting processes read it.
-        let holder = fs::write(run.path.join(HOLDER), std::process::id().to_string());
-        run.is_holder = holder.is_ok();
+        if fs::write(holder, std::process::id().to_string()).is_err() {
+            run.holder = None;
+        }
         Ok(run)
+    }
+
+    /// Takes up a directory with a run of the same scenario, seed and version.
+    fn take_up(&mut self) -> Result<()> {
+        self.found = FoundCheckpoints::of(&self.path, &self.identity);
+        if HeldResults::of(&self.path).is_some_and(|held| held.is_finished()) {
+            // Not touched before the end, but tried.
+            return files::StagedDirectory::new(&self.path).map(drop);
+        }
+        let begun = [SCENARIO, MANIFEST, INPUTS, HOLDER].map(str::to_owned);
+        let kept = files::others(&self.path, &begun.into())?;
+        self.begin(&kept)
     }
 
     /// Puts a directory with what a run begins with in the place, and these entries of the one there.
@@ -112,23 +220,10 @@ impl RunDirectory {
         self.path.display()
     }
 
-    /// The names of the directory's entries.
-    fn entries(&self) -> Result<Vec<OsString>> {
-        let cannot = || format!("cannot read {}", self.path.display());
-        let mut names = Vec::new();
-        for entry in fs::read_dir(&self.path).with_context(cannot)? {
-            names.push(entry.with_context(cannot)?.file_name());
-        }
-        names.retain(|name| !files::is_staged(name));
-        names.sort();
-        Ok(names)
-    }
-
     /// Names of the entries that a run does not write.
     fn others(&self) -> Result<Vec<OsString>> {
-        let mut others = self.entries()?;
-        others.retain(|name| name != HOLDER && !FILES.iter().any(|own| name == *own));
-        Ok(others)
+        let own = FILES.into_iter().chain([HOLDER]);
+        files::others(&self.path, &own.map(str::to_owned).collect())
     }
 
     fn warn_of_others(&self) -> Result<()> {
@@ -170,95 +265,132 @@ impl RunDirectory {
         [CHECKPOINT, PREVIOUS_CHECKPOINT]
             .into_iter()
             .find_map(|name| {
-                let text = fs::read_to_string(self.path.join(name)).ok()?;
-                Identity::read(&text)
+                let bytes = files::read_run(&self.path.join(name)).ok()?;
+                Identity::read(str::from_utf8(&bytes).ok()?)
             })
     }
 
-    /// Writes the state of a search and keeps the previous one.
-    pub(crate) fn save(&self, search: &Search) -> Result<()> {
-        let text = checkpoint::write(&self.identity, search)?;
+    /// Writes the state of a search and keeps the previous one, unless the directory holds a state as
+    /// far or further.
+    pub(crate) fn save(&mut self, search: &mut Search) -> Result<()> {
+        let (text, lines) = checkpoint::write(&self.identity, search, &mut self.log)?;
+        if search.progress().step > self.found.step() {
+            self.write_log(search, &lines)?;
+            self.write_checkpoint(&text)?;
+        }
+        self.recent = [Some(text), self.recent[0].take()];
+        Ok(())
+    }
+
+    /// Adds lines to the log; the first time all of it is written, in place of what a process that was
+    /// killed may have left of a line.
+    fn write_log(&mut self, search: &Search, lines: &str) -> Result<()> {
+        let path = self.path.join(CHECKPOINT_LOG);
+        if !self.is_log_written {
+            let all = RecordLog::default().extend(search.history())?;
+            self.is_log_written = true;
+            return files::write_atomically(&path, all.as_bytes());
+        }
+        let append = || -> io::Result<()> {
+            let mut log = File::options().append(true).open(&path)?;
+            log.write_all(lines.as_bytes())?;
+            log.sync_data()
+        };
+        append().with_context(|| format!("cannot write {}", path.display()))
+    }
+
+    fn write_checkpoint(&mut self, text: &str) -> Result<()> {
         let path = self.path.join(CHECKPOINT);
         let previous = self.path.join(PREVIOUS_CHECKPOINT);
         let cannot = || format!("cannot write in {}", self.path.display());
-        let is_first = search.progress().step <= 1;
-        if path.exists() && !is_first {
+        if self.found.is_latest {
             fs::rename(&path, &previous).with_context(cannot)?;
         }
+        // Otherwise the last intact checkpoint, if any, is the previous one already.
         files::write_atomically(&path, text.as_bytes())?;
-        if previous.exists() && is_first {
+        if !self.found.is_latest && self.found.search.is_none() && previous.exists() {
             fs::remove_file(&previous).with_context(cannot)?;
         }
+        self.found.is_latest = true;
         Ok(())
     }
 
     /// The state to resume from, the last intact checkpoint; `None` if there is no checkpoint.
-    pub(crate) fn resume(&self) -> Result<Option<Search>> {
-        let mut damaged = Vec::new();
-        for name in [CHECKPOINT, PREVIOUS_CHECKPOINT] {
-            let path = self.path.join(name);
-            let Ok(bytes) = fs::read(&path) else {
-                continue;
-            };
-            match checkpoint::read(&bytes) {
-                Ok((identity, search)) if identity == self.identity => {
-                    if let Some(reason) = damaged.first() {
-                        output::warning(&format!("{reason}; resuming from the one before it"));
-                        // Otherwise it would replace the one before at the next generation.
-                        fs::remove_file(self.path.join(CHECKPOINT))
-                            .with_context(|| format!("cannot write in {}", self.path.display()))?;
-                    }
-                    return Ok(Some(search));
-                }
-                Ok(_) => bail!(
-                    "{} belongs to another scenario, seed or version; start over with --force",
-                    path.display()
-                ),
-                Err(reason) => damaged.push(format!("{} is damaged: {reason}", path.display())),
+    pub(crate) fn resume(&mut self) -> Result<Option<Search>> {
+        let FoundCheckpoints {
+            search, damaged, ..
+        } = &self.found;
+        match (search, damaged.first()) {
+            (Some(_), Some(reason)) => {
+                output::warning(&format!("{reason}; resuming from the one before it"));
             }
-        }
-        match damaged.first() {
-            Some(reason) => {
+            (None, Some(reason)) => {
                 bail!("{reason}, and no earlier checkpoint is intact; start over without --resume")
             }
-            None => Ok(None),
+            (_, None) => {}
         }
+        self.is_resumed = search.is_some();
+        Ok(search.clone())
     }
 
-    /// Writes all results to a sibling directory and moves it into place.
+    /// Writes all results to a sibling directory and moves it into place, unless an interrupted search
+    /// has less than the directory holds.
     pub(crate) fn finish(
         &mut self,
         scenario: &Scenario,
-        search: &Search,
+        search: &mut Search,
         result: &OptimizeResult,
-    ) -> Result<()> {
+    ) -> Result<Placed> {
+        if !search.is_done() {
+            let step = search.progress().step;
+            if let Some(held) = HeldResults::of(&self.path)
+                && (held.is_finished() || held.generations[0] >= step)
+            {
+                let [generations, _] = held.generations;
+                return Ok(Placed::Kept { generations });
+            }
+            if step == 0 {
+                return Ok(Placed::Nothing);
+            }
+        }
         let staged = files::StagedDirectory::new(&self.path)?;
         files::write_all(staged.path(), &self.first_files)?;
         for (name, text) in result_files(scenario, result)? {
             files::write_atomically(&staged.path().join(name), text.as_bytes())?;
         }
-        Self {
-            path: staged.path().to_owned(),
-            identity: self.identity.clone(),
-            first_files: Vec::new(),
-            lock: None,
-            is_holder: false,
+        let mut log = RecordLog::default();
+        let (latest, lines) = checkpoint::write(&self.identity, search, &mut log)?;
+        for (name, text) in [(CHECKPOINT, latest), (CHECKPOINT_LOG, lines)] {
+            files::write_atomically(&staged.path().join(name), text.as_bytes())?;
         }
-        .save(search)?;
-        let previous = self.path.join(PREVIOUS_CHECKPOINT);
-        if previous.exists() {
-            fs::copy(&previous, staged.path().join(PREVIOUS_CHECKPOINT))
-                .with_context(|| format!("cannot copy {}", previous.display()))?;
+        if let Some(previous) = self.before_last()? {
+            files::write_atomically(&staged.path().join(PREVIOUS_CHECKPOINT), &previous)?;
         }
         self.lock = staged.commit_keeping(&self.others()?)?;
-        Ok(())
+        Ok(Placed::Written)
+    }
+
+    /// The checkpoint before the last one of this search, if there is one.
+    fn before_last(&self) -> Result<Option<Vec<u8>>> {
+        if let [_, Some(before)] = &self.recent {
+            return Ok(Some(before.clone().into_bytes()));
+        }
+        if !self.is_resumed {
+            return Ok(None);
+        }
+        let path = self.path.join(PREVIOUS_CHECKPOINT);
+        match files::read_run(&path) {
+            Ok(bytes) => Ok(Some(bytes)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error).with_context(|| format!("cannot copy {}", path.display())),
+        }
     }
 }
 
 impl Drop for RunDirectory {
     fn drop(&mut self) {
         // An interrupted run leaves only files that belong to the run.
-        if self.is_holder {
+        if self.holder.is_some() {
             let _ = fs::remove_file(self.path.join(HOLDER));
         }
     }
@@ -267,7 +399,7 @@ impl Drop for RunDirectory {
 /// The design that `pick` selects from the front of a run, and why.
 pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     let path = directory.join(FRONT_JSON);
-    let bytes = fs::read(&path).with_context(|| {
+    let bytes = files::read_run(&path).with_context(|| {
         format!(
             "{} has no front; is it a finished run?",
             directory.display()

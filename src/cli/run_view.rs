@@ -15,7 +15,6 @@ use crate::run::{
 };
 use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
-use std::fs;
 use std::io;
 use std::path::Path;
 
@@ -92,7 +91,7 @@ impl RunView {
 fn read(args: &RunArgs) -> Result<RunFiles> {
     let directory = &args.directory;
     files::recovered(directory)?;
-    let read = |name: &str| fs::read(directory.join(name)).map_err(reason);
+    let read = |name: &str| files::read_run(&directory.join(name)).map_err(reason);
     let files = RunFiles {
         scenario: read(SCENARIO),
         front: read(FRONT_JSON),
@@ -125,11 +124,11 @@ fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
             } else {
                 path.clone()
             };
-            let bytes =
-                fs::read(&file).with_context(|| format!("cannot read {}", file.display()))?;
+            let bytes = files::read_run(&file)
+                .with_context(|| format!("cannot read {}", file.display()))?;
             Ok(Some(bytes))
         }
-        None => Ok(fs::read(args.directory.join(VALIDATION).join(VALIDATION_REPORT)).ok()),
+        None => Ok(files::read_run(&args.directory.join(VALIDATION).join(VALIDATION_REPORT)).ok()),
     }
 }
 
@@ -156,9 +155,7 @@ fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
 
 /// The fronts given by the user, and that of the sweep that certified the run, if any.
 fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
-    let mut name = args.directory.file_name().unwrap_or_default().to_owned();
-    name.push("-sweep");
-    let sweep = args.directory.with_file_name(name);
+    let sweep = args.sweep();
     let found = sweep.join(FRONT_JSON).exists().then_some(&sweep);
     let wanted = found.into_iter().chain(&args.front);
     wanted.map(|path| front(path)).collect()
@@ -166,7 +163,8 @@ fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
 
 fn front(directory: &Path) -> Result<NamedFront> {
     let path = directory.join(FRONT_JSON);
-    let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    let bytes =
+        files::read_run(&path).with_context(|| format!("cannot read {}", path.display()))?;
     let found = OptimizeResult::read(&bytes)
         .with_context(|| format!("{} is not a front written by this program", path.display()))?;
     Ok(NamedFront {

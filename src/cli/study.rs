@@ -1,7 +1,7 @@
 //! From the command line to a scenario and its inputs.
 
 use crate::cli::args::{DesignArgs, StudyArgs};
-use crate::cli::{files, output, run};
+use crate::cli::{files, limits, output, run};
 use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Setup};
 use crate::ground::ignored_columns;
@@ -11,7 +11,6 @@ use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
 use crate::scenario::{Algorithm, KeyDifference, Region, Scenario, SetupError, builtin};
 use anyhow::{Context, Result, bail};
 use std::cell::OnceCell;
-use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -190,7 +189,7 @@ impl Study {
         };
         let setup = self.scenario.setup_with_notes(&read);
         let (setup, notes) = setup.map_err(|error| self.placed(&error))?;
-        check_memory(&setup)?;
+        limits::check_memory(&setup)?;
         self.warn_of_columns(contents);
         for note in &notes {
             output::warning(note);
@@ -208,17 +207,17 @@ impl Study {
         }
     }
 
-    /// The input files of the study, or the run directory.
+    /// What the study is read from: its scenario or the run directory, and every file that it names, which
+    /// with --set may be outside the run.
     pub(crate) fn inputs(&self) -> Vec<PathBuf> {
-        if self.manifest.is_some() {
-            return vec![self.directory.clone()];
-        }
+        let own = if self.manifest.is_some() {
+            Some(self.directory.clone())
+        } else {
+            is_path(&self.written.label).then(|| PathBuf::from(&self.written.label))
+        };
         let named = self.scenario.files().into_iter();
-        let mut inputs: Vec<PathBuf> = named.map(|file| self.directory.join(file)).collect();
-        if is_path(&self.written.label) {
-            inputs.push(PathBuf::from(&self.written.label));
-        }
-        inputs
+        let named = named.map(|file| self.directory.join(file));
+        own.into_iter().chain(named).collect()
     }
 
     /// The default design.
@@ -286,36 +285,6 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
         files::read_whole(path).with_context(|| format!("cannot read the scenario {name}"))?;
     let directory = path.parent().map_or_else(PathBuf::new, Path::to_owned);
     Ok((bytes, directory))
-}
-
-/// Fails before starting if a scenario needs more memory than is available.
-fn check_memory(setup: &Setup) -> Result<()> {
-    let needed = setup.memory_bytes(rayon::current_num_threads());
-    let Some(available) = available_memory() else {
-        return Ok(());
-    };
-    if needed > available {
-        let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
-        bail!(
-            "{} points x {} instants need {:.1} GiB of memory, but {:.1} GiB are available; \
-             use a coarser region.step-deg or time.step-s, or fewer --threads",
-            setup.sites.len(),
-            setup.grid.len(),
-            gib(needed),
-            gib(available)
-        );
-    }
-    Ok(())
-}
-
-/// Available memory, bytes; `None` if unknown (other than Linux).
-fn available_memory() -> Option<u64> {
-    let text = fs::read_to_string("/proc/meminfo").ok()?;
-    let line = text
-        .lines()
-        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
-    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024)
 }
 
 /// The study and the design that a command works on.

@@ -3,6 +3,7 @@
 mod products;
 mod scenario_products;
 mod scenes;
+mod size;
 mod source;
 mod table;
 
@@ -25,6 +26,7 @@ use crate::time::{Epoch, TimeGrid};
 use source::ExportSource;
 use std::io::{self, BufWriter, Write};
 
+pub use size::{ExportSize, export_size};
 pub use table::{Product, ProductRow};
 
 /// The destination of an export: gives a writer for a path relative to the manifest, with `/`.

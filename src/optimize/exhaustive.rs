@@ -152,6 +152,10 @@ impl Exhaustive {
         })
     }
 
+    pub(super) fn history_mut(&mut self) -> &mut History {
+        &mut self.history
+    }
+
     pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let points = GridPoints::new(problem, &self.config.steps).points()?;

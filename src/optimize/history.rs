@@ -25,6 +25,10 @@ impl History {
         &self.records
     }
 
+    pub(super) fn records_mut(&mut self) -> &mut Vec<Record> {
+        &mut self.records
+    }
+
     pub(super) fn chosen_reference(&self) -> Option<&[f64]> {
         self.chosen_reference.as_deref()
     }

@@ -90,6 +90,18 @@ impl Search {
         }
     }
 
+    /// The records of the steps so far, which can be kept apart from the rest of the state, as in a
+    /// checkpoint; a search continues only with all of them.
+    pub fn records_mut(&mut self) -> &mut Vec<Record> {
+        let history = match self {
+            Self::Nsga2(search) => search.history_mut(),
+            Self::Mopso(search) => search.history_mut(),
+            Self::Random(search) => search.history_mut(),
+            Self::Exhaustive(search) => search.history_mut(),
+        };
+        history.records_mut()
+    }
+
     fn strategy(&self) -> &dyn Strategy {
         match self {
             Self::Nsga2(search) => search,

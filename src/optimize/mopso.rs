@@ -179,6 +179,10 @@ impl Mopso {
         self.config.iterations = iterations;
     }
 
+    pub(super) fn history_mut(&mut self) -> &mut History {
+        &mut self.history
+    }
+
     pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         let begun = self.iteration.min(1);

@@ -148,6 +148,10 @@ impl Nsga2 {
         &self.population
     }
 
+    pub(super) fn history_mut(&mut self) -> &mut History {
+        &mut self.history
+    }
+
     /// A state can come from a file: nothing in it is taken for granted.
     pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;

@@ -84,6 +84,10 @@ impl RandomSearch {
         self.config.evaluations = evaluations;
     }
 
+    pub(super) fn history_mut(&mut self) -> &mut History {
+        &mut self.history
+    }
+
     pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
         self.history.check(problem, self.step)?;

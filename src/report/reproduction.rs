@@ -2,7 +2,7 @@
 
 mod files;
 
-pub use files::{reproduction_csv, reproduction_files};
+pub use files::{REPRODUCTION_FILES, reproduction_csv, reproduction_files};
 
 use super::{Align, Table};
 use crate::keyword::Keyword;

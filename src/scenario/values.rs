@@ -120,6 +120,16 @@ fn check_designs(scenario: &Scenario, reader: &mut Reader<'_>) {
     reader.at_most(MAX_DESIGNS, count, "designs in an exhaustive search", &keys);
 }
 
+impl Scenario {
+    /// The designs of a sweep over the grid of the search space, if they exceed the limit of an exhaustive
+    /// search: their number and the limit.
+    #[must_use]
+    pub fn excess_of_sweep(&self) -> Option<(f64, u64)> {
+        let count = self.search.design_count();
+        (count > MAX_DESIGNS as f64).then_some((count, MAX_DESIGNS))
+    }
+}
+
 /// Number of values from the low limit to the high one.
 fn count([low, high]: [f64; 2], step: f64) -> f64 {
     ((high - low) / step + STEP_SLACK).floor() + 1.0

@@ -167,6 +167,9 @@ fn a_run_without_a_checkpoint_resumes() {
             fs::remove_file(place.join("run").join(name)).unwrap();
         }
         fs::write(place.join("run/.checkpoint.navwalker-abcdefghijkl"), "half").unwrap();
+        let log = place.join("run/checkpoint.log");
+        let begun = fs::read_to_string(&log).unwrap() + "{\"generation\":";
+        fs::write(&log, begun).unwrap();
         let resumed = ran(place, &optimize(&["--out", "run", "--resume"]));
         assert_eq!(resumed.status, 0, "{}", resumed.stderr);
         assert!(fs::read(place.join("run/front.json")).unwrap() == front);
@@ -277,17 +280,30 @@ fn a_place_is_tried_before_the_work() {
     assert_eq!(fs::read_to_string(place.join("file")).unwrap(), "mine");
 }
 
-/// Inputs are not outputs: whatever `--force` says, they stay.
-#[test]
-fn inputs_stay() {
-    let directory = TempDir::new().unwrap();
-    let place = directory.path();
+/// A run with a sweep, metrics, element sets, a scenario and a repository.
+fn make_inputs(place: &Path) {
     assert_eq!(ran(place, &optimize(&["--out", "run"])).status, 0);
+    fs::create_dir(place.join("run-sweep")).unwrap();
+    fs::copy(
+        place.join("run/front.json"),
+        place.join("run-sweep/front.json"),
+    )
+    .unwrap();
+    let metrics = "export --quiet --run run --as metrics --out maps";
+    assert_eq!(ran(place, &line(metrics)).status, 0);
     fs::write(place.join("study.toml"), "name = \"mine\"\n").unwrap();
     let tle = "export --quiet --design delta:55:24/6/1@925 --as tle --out fleet/of/us";
     assert_eq!(ran(place, &line(tle)).status, 0);
     fs::create_dir_all(place.join("repository/.git")).unwrap();
     fs::create_dir_all(place.join("inside")).unwrap();
+}
+
+/// Inputs are not outputs: whatever `--force` says, they stay.
+#[test]
+fn inputs_stay() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    make_inputs(place);
     let all = || -> Vec<_> {
         let mut all = Vec::new();
         let mut waiting = vec![place.to_owned()];
@@ -317,6 +333,16 @@ fn inputs_stay() {
         (
             "plot run --figure pareto --force --out run/history.svg".to_owned(),
             "is inside the input run",
+        ),
+        (
+            "plot run --figure pareto --force --out run-sweep/front.svg".to_owned(),
+            "is inside the input run-sweep",
+        ),
+        // A file that --set names beside --run.
+        (
+            "export --run run --set region.points=../maps/metrics/points.csv --as metrics --force --out maps"
+                .to_owned(),
+            "maps contains the input run/../maps/metrics/points.csv",
         ),
         (
             format!("{export} run"),
@@ -462,10 +488,14 @@ fn a_checkpoint_of_other_lengths_is_refused() {
     let path = place.join("run/checkpoint");
     let text = fs::read_to_string(&path).unwrap();
     let (header, state) = text.split_once('\n').unwrap();
+    let sha256 = |text: &str| -> String {
+        let sum = Sha256::digest(text.as_bytes());
+        sum.iter().map(|byte| format!("{byte:02x}")).collect()
+    };
+    let mut damaged = Vec::new();
     for pointer in [
         "/nsga2/population/0/genome",
         "/nsga2/population/0/objectives",
-        "/nsga2/history/records",
     ] {
         let mut header: serde_json::Value = serde_json::from_str(header).unwrap();
         let mut state: serde_json::Value = serde_json::from_str(state).unwrap();
@@ -476,19 +506,35 @@ fn a_checkpoint_of_other_lengths_is_refused() {
             .unwrap()
             .pop();
         let state = state.to_string();
-        let sum = Sha256::digest(state.as_bytes());
-        let hex: String = sum.iter().map(|byte| format!("{byte:02x}")).collect();
-        header["sha256"] = hex.into();
-        fs::write(&path, format!("{header}\n{state}\n")).unwrap();
+        header["sha256"] = sha256(&state).into();
+        damaged.push(format!("{header}\n{state}\n"));
+    }
+    // A step less in the log.
+    let log = fs::read_to_string(place.join("run/checkpoint.log")).unwrap();
+    let lines: Vec<&str> = log.split_inclusive('\n').collect();
+    let mut shorter: serde_json::Value = serde_json::from_str(header).unwrap();
+    assert_eq!(shorter["records"], lines.len());
+    shorter["records"] = (lines.len() - 1).into();
+    shorter["records_sha256"] = sha256(&lines[..lines.len() - 1].concat()).into();
+    damaged.push(format!("{shorter}\n{state}"));
+    for text in damaged {
+        fs::write(&path, &text).unwrap();
         let refused = ran(place, &optimize(&["--out", "run", "--resume"]));
-        assert_eq!(refused.status, 2, "{pointer}: {}", refused.stderr);
+        assert_eq!(refused.status, 2, "{text}: {}", refused.stderr);
         let message = "run contains a checkpoint of another search";
         assert!(
             refused.stderr.contains(message),
-            "{pointer}: {}",
+            "{text}: {}",
             refused.stderr
         );
     }
+    // A log that has not what the checkpoints say.
+    fs::write(&path, &text).unwrap();
+    fs::write(place.join("run/checkpoint.log"), log.replace('1', "2")).unwrap();
+    let refused = ran(place, &optimize(&["--out", "run", "--resume"]));
+    let message = "the log of its steps is missing or does not match, and no earlier checkpoint";
+    assert_eq!(refused.status, 2, "{}", refused.stderr);
+    assert!(refused.stderr.contains(message), "{}", refused.stderr);
 }
 
 /// The manifest of an export that is compared with leads nowhere else.

@@ -3,10 +3,13 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod cli;
+#[cfg(unix)]
+mod ctrl_c;
 mod evidence;
 mod fire;
 mod gallery;
 mod interchange;
+mod limits;
 mod look;
 mod names;
 mod readers;

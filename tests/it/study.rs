@@ -380,4 +380,14 @@ fn the_paper_is_repeated_into_a_directory() {
     let other = with(&["--set", "visibility.mask-deg=10"]);
     assert_eq!(other.status, 2);
     assert!(other.stderr.contains("--force"), "{}", other.stderr);
+    // What was put beside it stays: the same study keeps it, and another one says that it is in the way.
+    let notes = place.join("runs/reproduce/notes.txt");
+    fs::write(&notes, "mine").unwrap();
+    assert_eq!(with(&[]).status, 0);
+    let other = with(&["--set", "visibility.mask-deg=10", "--force"]);
+    assert_eq!(other.status, 2);
+    let message = "did not write, and --force would delete them: notes.txt;";
+    assert!(other.stderr.contains(message), "{}", other.stderr);
+    assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
+    assert!(read("report.json") == before);
 }

@@ -5,14 +5,21 @@ use crate::optimize::Pick;
 use crate::report::figures::draw::Form;
 use crate::report::figures::{Figure, Measure};
 use clap::Args;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 impl RunArgs {
     /// What is read.
-    pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
-        let directory = std::iter::once(&self.directory);
-        let others = self.front.iter().chain(&self.validation);
-        directory.chain(others).map(PathBuf::as_path)
+    pub(crate) fn inputs(&self) -> impl Iterator<Item = PathBuf> {
+        let own = [self.directory.clone(), self.sweep()];
+        let others = self.front.iter().chain(&self.validation).cloned();
+        own.into_iter().chain(others)
+    }
+
+    /// The sweep that certified the run, which may not exist.
+    pub(crate) fn sweep(&self) -> PathBuf {
+        let mut name = self.directory.file_name().unwrap_or_default().to_owned();
+        name.push("-sweep");
+        self.directory.with_file_name(name)
     }
 }
 

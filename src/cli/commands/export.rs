@@ -3,11 +3,11 @@
 use crate::cli::args::ExportArgs;
 use crate::cli::progress::FileCount;
 use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, coincidence, files, output, read_constellation};
+use crate::cli::{Status, coincidence, files, limits, output, read_constellation};
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::Ephemeris;
-use crate::exchange::export::{Choices, ExportSubject, Product, Request, export};
+use crate::exchange::export::{Choices, ExportSubject, Product, Request, export, export_size};
 use crate::exchange::lint::Format as LintFormat;
 use crate::exchange::manifest::{ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
@@ -22,7 +22,6 @@ use crate::time::Epoch;
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
@@ -63,6 +62,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         sp3_letter: args.sp3_letter,
         sp3_gnss: std::array::from_fn(|at| args.gnss.contains(&Preset::ALL[at])),
     };
+    limits::check_export(export_size(&subject, &products, &choices))?;
     let staged = files::StagedDirectory::new(&args.out)?;
     let progress = FileCount::new();
     let sink = |path: &str| {
@@ -100,8 +100,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
 
 /// The files of the previous export, from its manifest.
 fn own(directory: &Path) -> BTreeSet<String> {
-    let manifest = File::open(directory.join(FILE_NAME)).ok();
-    let manifest = manifest.and_then(|file| Manifest::read(BufReader::new(file)).ok());
+    let manifest = files::read_run(&directory.join(FILE_NAME)).ok();
+    let manifest = manifest.and_then(|bytes| Manifest::read(bytes.as_slice()).ok());
     let files = manifest.into_iter().flat_map(|manifest| manifest.files);
     let files = files.map(|file| file.path);
     files.chain([FILE_NAME.to_owned()]).collect()

@@ -3,22 +3,22 @@
 mod seeds;
 
 use crate::cli::args::{OptimizeArgs, OutputFormat};
+use crate::cli::interrupt::Stoppable;
 use crate::cli::progress::SearchBar;
-use crate::cli::run::RunDirectory;
+use crate::cli::run::{Placed, RunDirectory};
 use crate::cli::study::{Study, read_manifest};
-use crate::cli::{Status, chart, coincidence, interrupt, output};
+use crate::cli::{Status, chart, coincidence, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::front_table::front_table;
 use crate::report::shown;
 use crate::run::inputs::InputError;
 use crate::run::{FrontMember, OptimizeResult, front_csv};
-use crate::scenario::Algorithm;
+use crate::scenario::{Algorithm, Scenario};
 use crate::search::DesignProblem;
 use crate::units::counted;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     match args.seeds {
@@ -68,42 +68,46 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     let out = args.out.clone().unwrap_or_else(default_out);
     let study = resumed(args, study, &out)?;
     let (study, scenario) = (&study, &study.scenario);
+    check_sweep(args, scenario)?;
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);
     let evaluator = Evaluator::new(setup)?;
     let mut directory = open(args, study, &out)?;
-    let interrupted = interrupt::flag();
-    let sweep = match sweep(args, study, &evaluator, &out, interrupted)? {
+    let sweep = match sweep(args, study, &evaluator, &out)? {
         Sweep::NotWanted => None,
         Sweep::Done(result) => Some(result),
         Sweep::Interrupted => return Ok(Status::Interrupted),
     };
-    let ended = search(
-        args,
-        study,
-        &evaluator,
-        &mut directory,
-        interrupted,
-        sweep.as_deref(),
-    )?;
+    let ended = search(args, study, &evaluator, &mut directory, sweep.as_deref())?;
     let result = &ended.result;
     output::result(&match args.format {
         OutputFormat::Text => text(result, &scenario.name),
         OutputFormat::Json => serde_json::to_string_pretty(result)?,
         OutputFormat::Csv => front_csv(&result.front)?,
     })?;
-    ended.placed?;
-    let shown = out.display().to_string();
+    let placed = ended.placed?;
     if args.report {
         let page = super::report::of_run(&out, None)?;
         output::hint(&format!("\nreport written to {}", page.display()));
     }
-    if !ended.is_done {
-        hint_resume(result, &shown);
+    if ended.is_interrupted {
+        hint_interrupted(result, placed, &out, false);
         return Ok(Status::Interrupted);
     }
-    hint_what_next(result, &shown);
+    hint_what_next(result, &out.display().to_string());
     Ok(status(result))
+}
+
+/// Refuses `--certify` for a search space that an exhaustive search refuses.
+pub(super) fn check_sweep(args: &OptimizeArgs, scenario: &Scenario) -> Result<()> {
+    let excess = scenario.excess_of_sweep().filter(|_| args.certify);
+    if let Some((designs, limit)) = excess {
+        bail!(
+            "--certify would evaluate {designs:.0} designs, expected at most {limit}; use a larger \
+             search.inclination-step-deg or search.altitude-step-km"
+        );
+    }
+    Ok(())
 }
 
 /// Outcome of the sweep for `--certify`.
@@ -122,7 +126,6 @@ pub(super) fn sweep(
     study: &Study,
     evaluator: &Evaluator,
     out: &Path,
-    interrupted: &AtomicBool,
 ) -> Result<Sweep> {
     if !args.certify {
         return Ok(Sweep::NotWanted);
@@ -136,10 +139,10 @@ pub(super) fn sweep(
         ..args.clone()
     };
     let mut directory = open(&args, &study, &place)?;
-    let ended = search(&args, &study, evaluator, &mut directory, interrupted, None)?;
-    ended.placed?;
-    if !ended.is_done {
-        hint_resume(&ended.result, &place.display().to_string());
+    let ended = search(&args, &study, evaluator, &mut directory, None)?;
+    let placed = ended.placed?;
+    if ended.is_interrupted {
+        hint_interrupted(&ended.result, placed, &place, true);
         return Ok(Sweep::Interrupted);
     }
     Ok(Sweep::Done(Box::new(ended.result)))
@@ -153,10 +156,10 @@ pub(super) fn open(args: &OptimizeArgs, study: &Study, out: &Path) -> Result<Run
 /// How a search ended.
 pub(super) struct Ended {
     pub(super) result: OptimizeResult,
-    /// Whether the results are in the run directory.
-    pub(super) placed: Result<()>,
-    /// Whether it used its full budget instead of being interrupted.
-    pub(super) is_done: bool,
+    /// What became of the results.
+    pub(super) placed: Result<Placed>,
+    /// Whether Ctrl-C was pressed before the results were placed, be they complete or not.
+    pub(super) is_interrupted: bool,
 }
 
 /// Runs, or resumes, one search and writes its results.
@@ -165,16 +168,16 @@ pub(super) fn search(
     study: &Study,
     evaluator: &Evaluator,
     directory: &mut RunDirectory,
-    interrupted: &AtomicBool,
     sweep: Option<&OptimizeResult>,
 ) -> Result<Ended> {
     let scenario = &study.scenario;
     let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals())?;
     let mut search = start(args, directory, study, &problem)?;
     let progress = SearchBar::new(&search);
-    while !search.is_done() && !interrupted.load(Ordering::Relaxed) {
+    let stoppable = Stoppable::begin();
+    while !search.is_done() && !stoppable.is_asked_to_stop() {
         search.step(&problem)?;
-        directory.save(&search)?;
+        directory.save(&mut search)?;
         progress.show(&search);
     }
     progress.finish();
@@ -182,11 +185,11 @@ pub(super) fn search(
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);
     }
-    let placed = directory.finish(scenario, &search, &result);
+    let placed = directory.finish(scenario, &mut search, &result);
     Ok(Ended {
         result,
         placed,
-        is_done: search.is_done(),
+        is_interrupted: stoppable.end(),
     })
 }
 
@@ -199,18 +202,34 @@ pub(super) fn status(result: &OptimizeResult) -> Status {
     }
 }
 
-pub(super) fn hint_resume(result: &OptimizeResult, shown: &str) {
+/// Says how far an interrupted search got, where its results are, and how to go on: if it is complete,
+/// only when the command has `more` to do.
+pub(super) fn hint_interrupted(result: &OptimizeResult, placed: Placed, place: &Path, more: bool) {
     let [done, of] = result.search.generations;
+    let place = place.display();
+    let (results, is_complete) = match placed {
+        Placed::Written if done >= of => (format!("complete results: {place}"), true),
+        Placed::Written => (format!("results so far: {place}"), false),
+        Placed::Nothing => ("no results yet".to_owned(), false),
+        Placed::Kept { generations } => (
+            format!("{place} keeps the results after generation {generations} that it had"),
+            generations >= of,
+        ),
+    };
+    let further = if is_complete && !more {
+        ""
+    } else {
+        "\ncontinue with the same command and --resume"
+    };
     output::hint(&format!(
-        "\ninterrupted after generation {done} of {of}; results so far: {shown}\n\
-         continue with the same command and --resume"
+        "\ninterrupted after generation {done} of {of}; {results}{further}"
     ));
 }
 
 /// The search resumed from its checkpoint, or a new one.
 fn start(
     args: &OptimizeArgs,
-    directory: &RunDirectory,
+    directory: &mut RunDirectory,
     study: &Study,
     problem: &DesignProblem<'_>,
 ) -> Result<Search> {
@@ -230,7 +249,8 @@ fn start(
         let progress = search.progress();
         if progress.step > progress.steps {
             bail!(
-                "the run has {} generations already, more than the {} of the scenario",
+                "the run has {0} generations already, more than the {1} of the scenario; resume with \
+                 --set optimizer.generations={0} or more",
                 progress.step,
                 progress.steps
             );

@@ -4,29 +4,36 @@ use crate::cli::args::{ReproduceArgs, StudyFormat};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
 use crate::report::{
-    ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
+    REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
+    reproduction_markdown, reproduction_text,
 };
-use crate::run::{ScenarioStamp, VERSION};
+use crate::run::{SCENARIO, ScenarioStamp, VERSION};
 use crate::study::paper::{PaperStudy, reproduce};
 use anyhow::{Result, bail};
 use serde::Deserialize;
-use std::fs;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// The report that identifies the study in a directory.
 const REPORT: &str = "report.json";
+/// The files beside the tables.
+const OTHERS: [&str; 3] = [SCENARIO, REPORT, "report.md"];
 
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
     let study = Study::load(&args.study, seed.as_slice())?;
     let scenario = &study.scenario;
     let stamp = study.stamp()?;
-    if !args.force && !may_replace(&args.out, &stamp.hash)? {
-        bail!(
-            "{} holds something other than this study by this version; choose another --out, or \
-             replace it with --force",
-            args.out.display()
-        );
+    if !holds(&args.out, &stamp.hash) {
+        if !args.force && !files::is_vacant(&args.out)? {
+            bail!(
+                "{} holds something other than this study by this version; choose another --out, or \
+                 replace it with --force",
+                args.out.display()
+            );
+        }
+        files::refuse_inputs(&args.out, study.inputs())?;
+        files::require_replaceable(&args.out, args.force, &own())?;
     }
     let staged = files::StagedDirectory::new(&args.out)?;
     output::hint("reproducing the paper; this takes seconds to minutes");
@@ -38,13 +45,16 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     })?;
     let result = ReproduceResult::new(repeated, scenario, stamp);
     let mut written = reproduction_files(&result)?;
-    written.push(("scenario.toml", scenario.to_toml()));
-    written.push((REPORT, render(&result, StudyFormat::Json)?));
-    written.push(("report.md", render(&result, StudyFormat::Markdown)?));
+    let others = [
+        scenario.to_toml(),
+        render(&result, StudyFormat::Json)?,
+        render(&result, StudyFormat::Markdown)?,
+    ];
+    written.extend(OTHERS.into_iter().zip(others));
     for (name, text) in &written {
         files::write_atomically(&staged.path().join(name), text.as_bytes())?;
     }
-    staged.commit()?;
+    staged.commit_keeping(&files::others(&args.out, &own())?)?;
     output::result(&render(&result, args.format)?)?;
     output::hint(&format!(
         "\nreport and figure data written to {}",
@@ -69,12 +79,15 @@ struct Stored {
     version: String,
 }
 
-/// Whether a directory is empty or contains this study by this version.
-fn may_replace(directory: &Path, hash: &str) -> Result<bool> {
-    if files::is_vacant(directory)? {
-        return Ok(true);
-    }
-    let stored = fs::read_to_string(directory.join(REPORT)).ok();
-    let stored: Option<Stored> = stored.and_then(|text| serde_json::from_str(&text).ok());
-    Ok(stored.is_some_and(|stored| stored.scenario.hash == hash && stored.version == VERSION))
+/// What a reproduction writes in its directory.
+fn own() -> BTreeSet<String> {
+    let own = REPRODUCTION_FILES.into_iter().chain(OTHERS);
+    own.map(str::to_owned).collect()
+}
+
+/// Whether a directory contains this study by this version.
+fn holds(directory: &Path, hash: &str) -> bool {
+    let stored = files::read_run(&directory.join(REPORT)).ok();
+    let stored: Option<Stored> = stored.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    stored.is_some_and(|stored| stored.scenario.hash == hash && stored.version == VERSION)
 }

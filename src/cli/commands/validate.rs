@@ -15,7 +15,6 @@ use crate::validate::file::{Comparand, against_file, comparands};
 use crate::validate::{Findings, Subject, Target};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 /// A standard, or files of another program.
@@ -216,8 +215,8 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
     if !path.is_dir() || !manifest.exists() {
         return Ok(vec![Source::read(name, path, format)?]);
     }
-    let bytes =
-        fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
+    let bytes = files::read_run(&manifest)
+        .with_context(|| format!("cannot read {}", manifest.display()))?;
     let manifest = Manifest::read(bytes.as_slice())
         .with_context(|| format!("{} is not an export manifest", manifest.display()))?;
     let mut by_format: BTreeMap<String, Vec<(PathBuf, Fleet)>> = BTreeMap::new();

@@ -14,12 +14,13 @@ const MOST_NAMED: usize = 5;
 
 /// Refuses an output that is an input, contains one, or is inside one; in a run directory, this
 /// program's own entries are allowed.
-pub(crate) fn refuse_inputs<'a>(
+pub(crate) fn refuse_inputs(
     out: &Path,
-    inputs: impl IntoIterator<Item = &'a Path>,
+    inputs: impl IntoIterator<Item = impl AsRef<Path>>,
 ) -> Result<()> {
     let place = canonical(out)?;
     for input in inputs {
+        let input = input.as_ref();
         let Ok(input_place) = input.canonicalize() else {
             continue;
         };

@@ -3,6 +3,7 @@
 use super::Files;
 use super::products::ProductFiles;
 use super::scenario_products::STK_SCENARIO_DIRECTORY;
+use super::size::ProductSize;
 use super::source::ExportSource;
 use crate::exchange::manifest::FileEntry;
 use crate::exchange::read_back::{Grouping, ReadBack, ReadBackTheory, gates};
@@ -18,6 +19,8 @@ pub struct ProductRow {
     pub has_frame: bool,
     /// How it is read back, or why it cannot be.
     pub read_back: Result<ReadBack, &'static str>,
+    /// What its files hold.
+    pub(super) size: ProductSize,
     write: ProductWriter,
 }
 
@@ -78,6 +81,7 @@ products! {
             theory: ReadBackTheory::Sgp4OfTle,
             digits_km: gates::tle_km,
         }),
+        size: ProductSize { each: false, satellite: 168, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.tle(files)),
     }
     /// CCSDS Orbit Mean-Elements Messages in the chosen notation.
@@ -89,6 +93,7 @@ products! {
             theory: ReadBackTheory::Sgp4,
             digits_km: gates::omm_km,
         }),
+        size: ProductSize { each: true, satellite: 1_590, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.omm(files)),
     }
     /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one for all.
@@ -100,6 +105,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::states_km,
         }),
+        size: ProductSize { each: true, satellite: 1_290, state: 117, day: 0 },
         write: ProductWriter::Design(|source, files| source.oem(files)),
     }
     /// CCSDS Orbit Parameter Messages, one file for each satellite: the state at the epoch.
@@ -113,6 +119,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::opm_km,
         }),
+        size: ProductSize { each: true, satellite: 1_920, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.opm(files)),
     }
     /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c), and of GNSS by choice.
@@ -124,6 +131,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::sp3_km,
         }),
+        size: ProductSize { each: false, satellite: 330, state: 122, day: 0 },
         write: ProductWriter::Design(|source, files| source.sp3(files)),
     }
     /// STK ephemerides, one file for each satellite, and the Connect commands of the scenario if given.
@@ -138,6 +146,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::states_km,
         }),
+        size: ProductSize { each: true, satellite: 500, state: 100, day: 0 },
         write: ProductWriter::Either(|source, files, scene| source.stk_with(files, scene)),
     }
     /// GMAT: a script that propagates the design under J2 alone.
@@ -145,6 +154,7 @@ products! {
         help: &["GMAT script of the design under J2 alone, with its gravity field file"],
         has_frame: false,
         read_back: Err("a script has no states until GMAT runs it"),
+        size: ProductSize { each: false, satellite: 560, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.gmat(files)),
     }
     /// CZML: satellites, orbits and region for CesiumJS.
@@ -156,6 +166,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::czml_km,
         }),
+        size: ProductSize { each: false, satellite: 330, state: 0, day: 11_900 },
         write: ProductWriter::Scenario(|source, files, scene| source.czml(files, scene)),
     }
     /// GeoJSON: region with metrics, ground tracks, footprints.
@@ -163,6 +174,7 @@ products! {
         help: &["GeoJSON for a GIS: region with metrics, ground tracks, footprints (RFC 7946)"],
         has_frame: false,
         read_back: Err("a map of the ground has no orbits"),
+        size: ProductSize { each: false, satellite: 100, state: 0, day: 4_900 },
         write: ProductWriter::Scenario(|source, files, scene| source.geojson(files, scene)),
     }
     /// KML: the same for Google Earth.
@@ -170,6 +182,7 @@ products! {
         help: &["KML for Google Earth: the same in one document"],
         has_frame: false,
         read_back: Err("a map of the ground has no orbits"),
+        size: ProductSize { each: false, satellite: 100, state: 0, day: 4_900 },
         write: ProductWriter::Scenario(|source, files, scene| source.kml(files, scene)),
     }
     /// YUMA almanacs of the nominal GNSS.
@@ -177,6 +190,7 @@ products! {
         help: &["YUMA almanacs of the nominal GNSS; a LEO design has none"],
         has_frame: false,
         read_back: Err("the almanacs are of the GNSS, not of the design"),
+        size: ProductSize { each: false, satellite: 0, state: 0, day: 0 },
         write: ProductWriter::Scenario(|source, files, scene| source.yuma(files, scene)),
     }
     /// Tables of mean elements and of states.
@@ -188,6 +202,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::states_km,
         }),
+        size: ProductSize { each: false, satellite: 330, state: 226, day: 0 },
         write: ProductWriter::Design(|source, files| source.csv(files)),
     }
     /// Tables of the metrics by ground point and by instant.
@@ -195,6 +210,7 @@ products! {
         help: &["tables of the metrics by ground point and by instant"],
         has_frame: false,
         read_back: Err("the tables have metrics, not satellites"),
+        size: ProductSize { each: false, satellite: 0, state: 0, day: 0 },
         write: ProductWriter::Scenario(|source, files, scene| source.metrics(files, scene)),
     }
     /// SGP4 states from the element sets as written, to compare another SGP4 with.
@@ -207,6 +223,7 @@ products! {
             theory: ReadBackTheory::Sgp4OfTle,
             digits_km: gates::tle_km,
         }),
+        size: ProductSize { each: false, satellite: 330, state: 226, day: 0 },
         write: ProductWriter::Design(|source, files| source.tle_states(files)),
     }
 }

@@ -7,22 +7,35 @@ use crate::study::paper::{Curve, PlacedDesign, Reproduction, Statement};
 use ::csv::Writer;
 use std::io;
 
+/// Names of the tables of the study.
+pub const REPRODUCTION_FILES: [&str; 8] = [
+    "statements.csv",
+    "table2.csv",
+    "sensitivity.csv",
+    "figure-2.csv",
+    "figure-3a.csv",
+    "figure-3b.csv",
+    "figure-4a.csv",
+    "figure-4b.csv",
+];
+
 /// Name and contents of every table of the study, as CSV.
 ///
 /// # Errors
 /// Never for tables in memory.
 pub fn reproduction_files(result: &ReproduceResult) -> io::Result<Vec<(&'static str, String)>> {
     let (study, figures) = (&result.study, &result.study.figures);
-    Ok(vec![
-        ("statements.csv", reproduction_csv(&study.lines)?),
-        ("table2.csv", table2_csv(study)?),
-        ("sensitivity.csv", sensitivity_csv(study)?),
-        ("figure-2.csv", places_csv(&figures.places)?),
-        ("figure-3a.csv", distribution_csv(&figures.constellations)?),
-        ("figure-3b.csv", course_csv(&figures.constellations)?),
-        ("figure-4a.csv", distribution_csv(&figures.strategies)?),
-        ("figure-4b.csv", course_csv(&figures.strategies)?),
-    ])
+    let tables = [
+        reproduction_csv(&study.lines)?,
+        table2_csv(study)?,
+        sensitivity_csv(study)?,
+        places_csv(&figures.places)?,
+        distribution_csv(&figures.constellations)?,
+        course_csv(&figures.constellations)?,
+        distribution_csv(&figures.strategies)?,
+        course_csv(&figures.strategies)?,
+    ];
+    Ok(REPRODUCTION_FILES.into_iter().zip(tables).collect())
 }
 
 fn cell(value: f64) -> String {

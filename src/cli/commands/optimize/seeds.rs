@@ -1,13 +1,14 @@
 //! `navwalker optimize --seeds N`: the same search with several seeds.
 
-use super::{Ended, Sweep, hint_resume, load, open, resumed, search, status, sweep, text};
+use super::{
+    Ended, Sweep, check_sweep, hint_interrupted, load, open, resumed, search, status, sweep, text,
+};
 use crate::cli::args::{OptimizeArgs, OutputFormat};
-use crate::cli::{Status, coincidence, files, interrupt, output};
+use crate::cli::{Status, coincidence, files, output};
 use crate::evaluate::Evaluator;
 use crate::report::SeedsResult;
 use anyhow::{Context, Result, bail};
 use std::fs;
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 /// Tables of all seeds.
@@ -16,12 +17,10 @@ const TABLE: [&str; 3] = ["seeds.csv", "seeds.json", "joint-front.csv"];
 /// Prefix of the run directories of the seeds.
 const RUN: &str = "seed-";
 
-pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
+pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
     let mut study = load(args)?;
     let first = study.scenario.optimizer.seed;
-    let last = u64::try_from(count.get() - 1)
-        .ok()
-        .and_then(|more| first.checked_add(more));
+    let last = first.checked_add(count - 1);
     let last =
         last.with_context(|| format!("{count} seeds starting at {first} exceed {}", u64::MAX))?;
     let name = &study.scenario.name;
@@ -30,14 +29,18 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
     if let Some(run) = first_run(&out) {
         study = resumed(args, study, &run)?;
     }
+    check_sweep(args, &study.scenario)?;
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);
     if !args.force {
         require_seeds(&out)?;
     }
+    let inputs = study.inputs();
+    for name in TABLE {
+        files::refuse_inputs(&out.join(name), inputs.iter().map(PathBuf::as_path))?;
+    }
     let evaluator = Evaluator::new(setup)?;
-    let interrupted = interrupt::flag();
-    let sweep = match sweep(args, &study, &evaluator, &out, interrupted)? {
+    let sweep = match sweep(args, &study, &evaluator, &out)? {
         Sweep::NotWanted => None,
         Sweep::Done(result) => Some(result),
         Sweep::Interrupted => return Ok(Status::Interrupted),
@@ -50,18 +53,12 @@ pub(super) fn run(args: &OptimizeArgs, count: NonZeroUsize) -> Result<Status> {
         let Ended {
             result,
             placed,
-            is_done,
-        } = search(
-            args,
-            &study,
-            &evaluator,
-            &mut directory,
-            interrupted,
-            sweep.as_deref(),
-        )?;
-        placed?;
-        if !is_done {
-            hint_resume(&result, &place.display().to_string());
+            is_interrupted,
+        } = search(args, &study, &evaluator, &mut directory, sweep.as_deref())?;
+        let placed = placed?;
+        if is_interrupted {
+            // At least the tables are still to be written.
+            hint_interrupted(&result, placed, &place, true);
             return Ok(Status::Interrupted);
         }
         results.push(result);

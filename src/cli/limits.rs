@@ -1,0 +1,139 @@
+//! Bounds on what is started; beyond some of them only with `--allow-large`.
+
+use crate::cli::output;
+use crate::evaluate::Setup;
+use crate::exchange::export::ExportSize;
+use anyhow::{Result, bail};
+use std::fs;
+use std::num::NonZeroUsize;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::available_parallelism;
+
+/// Threads for each core: more of them only take memory.
+const THREADS_PER_CORE: usize = 4;
+/// Size of an export that needs `--allow-large`, bytes.
+const LARGE_EXPORT_BYTES: u64 = 10_000_000_000;
+/// Size of an export from which its size and time are printed, bytes.
+const TOLD_EXPORT_BYTES: u64 = 100_000_000;
+/// Speed of writing an export, bytes per second: measured at 16 to 60 MB/s on two cores.
+const WRITTEN_PER_S: u64 = 30_000_000;
+/// Memory taken for granted where the system does not say what is available, bytes.
+const ASSUMED_MEMORY_BYTES: u64 = 8 << 30;
+
+/// Whether `--allow-large` was given; set once, from the command line.
+static ALLOW_LARGE: AtomicBool = AtomicBool::new(false);
+
+pub(crate) fn set_allow_large(allow: bool) {
+    ALLOW_LARGE.store(allow, Ordering::Relaxed);
+}
+
+fn allows_large() -> bool {
+    ALLOW_LARGE.load(Ordering::Relaxed)
+}
+
+/// Refuses more threads than are of use.
+pub(crate) fn check_threads(threads: NonZeroUsize) -> Result<()> {
+    let cores = available_parallelism().map_or(1, NonZeroUsize::get);
+    let most = THREADS_PER_CORE * cores;
+    if threads.get() > most {
+        bail!(
+            "--threads {threads}: expected at most {most}, which is {THREADS_PER_CORE} for each core"
+        );
+    }
+    Ok(())
+}
+
+/// Fails before starting if a scenario needs more memory than is available.
+pub(crate) fn check_memory(setup: &Setup) -> Result<()> {
+    let needed = setup.memory_bytes(rayon::current_num_threads());
+    let available = available_memory().unwrap_or(ASSUMED_MEMORY_BYTES);
+    if needed > available && !allows_large() {
+        let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);
+        bail!(
+            "{} points x {} instants need {:.1} GiB of memory, but {:.1} GiB are available; \
+             use a coarser region.step-deg or time.step-s, or fewer --threads, or start it anyway with \
+             --allow-large",
+            setup.sites.len(),
+            setup.grid.len(),
+            gib(needed),
+            gib(available)
+        );
+    }
+    Ok(())
+}
+
+/// Available memory, bytes; `None` if unknown (other than Linux).
+fn available_memory() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text
+        .lines()
+        .find_map(|line| line.strip_prefix("MemAvailable:"))?;
+    let kib: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024)
+}
+
+/// Says what an export comes to if it is large, and fails before starting if it is very large.
+pub(crate) fn check_export(size: ExportSize) -> Result<()> {
+    let told = told(size);
+    if size.bytes > LARGE_EXPORT_BYTES && !allows_large() {
+        bail!(
+            "the export would be {told}; more than {} needs --allow-large, or use a larger time.step-s",
+            shown_bytes(LARGE_EXPORT_BYTES)
+        );
+    }
+    if size.bytes >= TOLD_EXPORT_BYTES {
+        output::hint(&format!("writing {told}"));
+    }
+    Ok(())
+}
+
+/// Number, size and time of an export.
+fn told(size: ExportSize) -> String {
+    let ExportSize { files, bytes } = size;
+    let time = shown_time(bytes / WRITTEN_PER_S);
+    format!(
+        "about {files} files of {} in all, in about {time}",
+        shown_bytes(bytes)
+    )
+}
+
+fn shown_bytes(bytes: u64) -> String {
+    let [mega, giga, tera] = [1e6, 1e9, 1e12].map(|unit| bytes as f64 / unit);
+    if tera >= 1.0 {
+        format!("{tera:.1} TB")
+    } else if giga >= 1.0 {
+        format!("{giga:.1} GB")
+    } else {
+        format!("{mega:.0} MB")
+    }
+}
+
+fn shown_time(seconds: u64) -> String {
+    match seconds {
+        0..120 => format!("{seconds} s"),
+        120..7200 => format!("{} min", seconds / 60),
+        _ => format!("{} h", seconds / 3600),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_and_times_are_told_in_units_of_their_order() {
+        let told = |files, bytes| told(ExportSize { files, bytes });
+        assert_eq!(
+            told(182, 150_000_000),
+            "about 182 files of 150 MB in all, in about 5 s"
+        );
+        assert_eq!(
+            told(1, 12_000_000_000),
+            "about 1 files of 12.0 GB in all, in about 6 min"
+        );
+        assert_eq!(
+            told(2, 2_000_000_000_000),
+            "about 2 files of 2.0 TB in all, in about 18 h"
+        );
+    }
+}

@@ -1,0 +1,245 @@
+//! Ctrl-C at any moment of a search: what is finished stays, and the exit status is 130.
+
+use crate::cli::{optimize, ran};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+/// Time within which a program that was told to stop is gone.
+const SOON: Duration = Duration::from_secs(300);
+
+fn started(directory: &Path, arguments: &[&str]) -> Child {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("navwalker"));
+    command.current_dir(directory).args(arguments);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().unwrap()
+}
+
+/// Waits until something is there while the child works.
+#[track_caller]
+fn wait_for(child: &mut Child, path: &Path) {
+    while !path.exists() {
+        assert_eq!(child.try_wait().unwrap(), None, "it was too fast");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn interrupt(child: &Child) {
+    let kill = ["-s", "INT", &child.id().to_string()].map(str::to_owned);
+    assert!(Command::new("kill").args(kill).status().unwrap().success());
+}
+
+/// The exit status and stderr of a child that was told to stop; its stdout is not read before.
+#[track_caller]
+fn ended(mut child: Child) -> (i32, String) {
+    let since = Instant::now();
+    let status = loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
+        }
+        if since.elapsed() > SOON {
+            child.kill().unwrap();
+            panic!("Ctrl-C did not end it");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    let mut stderr = String::new();
+    child.stderr.unwrap().read_to_string(&mut stderr).unwrap();
+    (status.code().unwrap(), stderr)
+}
+
+/// All files below a directory with their contents.
+fn contents(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut waiting = vec![directory.to_owned()];
+    while let Some(next) = waiting.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                waiting.push(path);
+            } else {
+                found.insert(path.clone(), fs::read(path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// `optimize` without `--quiet`, to read the hints.
+fn talking<'a>(further: &[&'a str]) -> Vec<&'a str> {
+    let mut arguments = optimize(further);
+    arguments.retain(|argument| *argument != "--quiet");
+    arguments
+}
+
+const LONG: [&str; 2] = ["--set", "optimizer.generations=100000"];
+const STEPS: [&str; 4] = [
+    "--set",
+    "search.inclination-step-deg=10",
+    "--set",
+    "search.altitude-step-km=300",
+];
+
+/// A finished run is repeated and interrupted: with the same budget nothing changes; with a larger one
+/// the results stay, and the checkpoint goes on.
+#[test]
+fn a_finished_run_outlives_an_interrupted_repetition() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for further in [&[][..], &["--seeds", "2"], &["--certify"]] {
+        let further = [further, &STEPS].concat();
+        let whole = optimize(&[&["--out", "run"], further.as_slice()].concat());
+        assert_eq!(ran(place, &whole).status, 0);
+        let before = contents(place);
+        let run = if further[0] == "--seeds" {
+            place.join("run/seed-1")
+        } else {
+            place.join("run")
+        };
+        for resume in [&[][..], &["--resume"]] {
+            let more = [&["--out", "run"], further.as_slice(), &LONG, resume].concat();
+            let mut child = started(place, &talking(&more));
+            // The mark is there and gone again at the end.
+            wait_for(&mut child, &run.join(".lock"));
+            let checkpoint = fs::read(run.join("checkpoint")).unwrap();
+            while fs::read(run.join("checkpoint")).is_ok_and(|now| now == checkpoint) {
+                assert_eq!(child.try_wait().unwrap(), None);
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            interrupt(&child);
+            let (status, stderr) = ended(child);
+            assert_eq!(status, 130, "{further:?}: {stderr}");
+            let kept = "keeps the results after generation 4 that it had\ncontinue with the same";
+            assert!(stderr.contains(kept), "{further:?}: {stderr}");
+            let mut after = contents(place);
+            let mut expected = before.clone();
+            for files in [&mut after, &mut expected] {
+                files.retain(|path, _| !is_of_progress(path, &run));
+            }
+            assert!(after == expected, "{further:?}");
+        }
+        // The whole is reached from what was left.
+        let resumed = [&["--out", "run", "--resume"], further.as_slice(), &LONG].concat();
+        let mut child = started(place, &talking(&resumed));
+        wait_for(&mut child, &run.join(".lock"));
+        interrupt(&child);
+        let (_, stderr) = ended(child);
+        assert!(stderr.contains("resuming after generation "), "{stderr}");
+        fs::remove_dir_all(place.join("run")).unwrap();
+        let _ = fs::remove_dir_all(place.join("run-sweep"));
+    }
+}
+
+/// Whether a file may change before the end: the checkpoints, and the scenario of a sweep, which is
+/// finished and written anew with the budget that it does not use.
+fn is_of_progress(path: &Path, run: &Path) -> bool {
+    let name = path.file_name().unwrap().to_string_lossy();
+    (path.starts_with(run) && name.starts_with("checkpoint"))
+        || path.ends_with("run-sweep/scenario.toml")
+}
+
+/// With the same budget the repetition has nothing to add, and changes no byte before its end.
+#[test]
+fn a_repetition_that_is_interrupted_changes_nothing() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let longer = ["--out", "run", "--set", "optimizer.generations=300"];
+    assert_eq!(ran(place, &optimize(&longer)).status, 0);
+    let before = contents(place);
+    for shorter in ["optimizer.generations=300", "optimizer.generations=299"] {
+        let mut child = started(place, &talking(&["--out", "run", "--set", shorter]));
+        wait_for(&mut child, &place.join("run/.lock"));
+        interrupt(&child);
+        let (status, stderr) = ended(child);
+        assert_eq!(status, 130, "{stderr}");
+        let kept = "run keeps the results after generation 300 that it had\n";
+        assert!(stderr.ends_with(kept), "{stderr}");
+        assert!(contents(place) == before);
+    }
+    // One that comes to its end replaces the run, checkpoints and all, by what it would be on its own.
+    let short = |out| optimize(&["--out", out, "--set", "optimizer.generations=3"]);
+    assert_eq!(ran(place, &short("run")).status, 0);
+    assert_eq!(ran(place, &short("other")).status, 0);
+    let names = |run: &str| -> Vec<(PathBuf, Vec<u8>)> {
+        let run = place.join(run);
+        let relative = |(path, bytes): (PathBuf, Vec<u8>)| {
+            (path.strip_prefix(&run).unwrap().to_owned(), bytes)
+        };
+        contents(&run).into_iter().map(relative).collect()
+    };
+    assert!(names("run") == names("other"));
+}
+
+/// Two generations of some time each, so that Ctrl-C meets the second, which is the last.
+const SLOW: [&str; 8] = [
+    "--set",
+    "optimizer.generations=2",
+    "--set",
+    "optimizer.population=60",
+    "--set",
+    "time.step-s=120",
+    "--threads",
+    "1",
+];
+
+/// Ctrl-C in the last generation: the results are complete, and the status still says that it was
+/// pressed. No further seed is begun.
+#[test]
+fn ctrl_c_in_the_last_generation_is_not_swallowed() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for (further, run, next) in [
+        (&[][..], "run", "complete results: run\n"),
+        (&["--seeds", "2"], "run/seed-1", "run/seed-1\ncontinue with"),
+    ] {
+        let arguments = [&["--out", "run"], SLOW.as_slice(), further].concat();
+        let mut child = started(place, &talking(&arguments));
+        wait_for(&mut child, &place.join(run).join("checkpoint"));
+        interrupt(&child);
+        let (status, stderr) = ended(child);
+        assert_eq!(status, 130, "{stderr}");
+        let expected = "interrupted after generation 2 of 2; complete results: ";
+        assert!(
+            stderr.contains(expected) && stderr.contains(next),
+            "{stderr}"
+        );
+        assert!(place.join(run).join("front.json").exists());
+        assert!(!place.join("run/seed-2").exists() && !place.join("run/seeds.csv").exists());
+        fs::remove_dir_all(place.join("run")).unwrap();
+    }
+}
+
+/// Ctrl-C after the results are in their place, while they are printed to a reader that does not read.
+#[test]
+fn ctrl_c_after_the_search_ends_the_program() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let large = [
+        "--out",
+        "run",
+        "--format",
+        "json",
+        "--set",
+        "optimizer.population=900",
+        "--set",
+        "objectives.minimize=[\"mean-pdop\", \"launch-cost\"]",
+        "--set",
+        "objectives.hypervolume-reference=[9, 9]",
+    ];
+    let arguments = talking(&large);
+    let mut child = started(place, &arguments);
+    wait_for(&mut child, &place.join("run/front.json"));
+    // More than a pipe holds.
+    let front = fs::metadata(place.join("run/front.json")).unwrap();
+    assert!(front.len() > 70_000, "{}", front.len());
+    std::thread::sleep(Duration::from_millis(200));
+    interrupt(&child);
+    let (status, stderr) = ended(child);
+    assert_eq!(status, 130, "{stderr}");
+    assert!(!stderr.contains("stopping after"), "{stderr}");
+    assert!(!place.join("run/.lock").exists());
+}
