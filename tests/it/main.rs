@@ -6,6 +6,7 @@ mod cli;
 mod evidence;
 mod fire;
 mod gallery;
+mod hostile;
 mod interchange;
 mod look;
 mod names;

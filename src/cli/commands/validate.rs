@@ -6,6 +6,7 @@ use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::ephemeris::Ephemeris;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
+use crate::printable::printable;
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
@@ -96,7 +97,11 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         }
     }
     let model = evaluator.setup().model;
-    let against = args.against.clone();
+    let against = args
+        .against
+        .iter()
+        .map(|target| printable(target).into_owned());
+    let against = against.collect();
     let result = ValidateResult::new(&design, model, against, findings, study.stamp()?);
     output::result(&render(&result, args.format)?)?;
     if let Some(staged) = staged {
@@ -132,15 +137,15 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
     let read_all = |path: &Path| -> Result<Vec<Comparand>> {
         let mut all = Vec::new();
         for (file, imported) in read_constellation::read_each(path, format)? {
-            all.extend(comparands(&file.to_string_lossy(), imported.fleet)?);
+            all.extend(comparands(&output::shown_path(&file), imported.fleet)?);
         }
         if all.is_empty() {
-            bail!("{} has no objects", path.display());
+            bail!("{} has no objects", output::shown_path(path));
         }
         Ok(all)
     };
     let name = path.file_name().unwrap_or(path.as_os_str());
-    let name = name.to_string_lossy().into_owned();
+    let name = output::shown_path(Path::new(name));
     if !path.is_dir() {
         return Ok(vec![(name, read_all(path)?)]);
     }
@@ -198,7 +203,7 @@ fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Res
 fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {
     Ok(match format {
         ReportFormat::Text => validation_text(result),
-        ReportFormat::Json => serde_json::to_string_pretty(result)? + "\n",
+        ReportFormat::Json => crate::printable::json(result)? + "\n",
         ReportFormat::Csv => checks_csv(&result.findings.checks)?,
         ReportFormat::Markdown => validation_markdown(result),
         ReportFormat::Junit => checks_junit(&result.findings.checks),
