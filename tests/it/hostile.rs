@@ -1,6 +1,6 @@
 //! Texts of others are shown, not obeyed: names, paths and messages on their way to a terminal, a report or a table.
 
-use crate::cli::Ran;
+use crate::cli::{Ran, coloured};
 use navwalker::printable::is_obeyed;
 use std::fs;
 use std::path::Path;
@@ -69,21 +69,16 @@ const FORMATS: [(&str, &str, Written); 15] = [
     ("--as yuma", "yuma/beidou-3.alm", Written::Refused),
 ];
 
-/// Runs the program as if both streams were terminals that show colours.
+/// Runs a command line in which `FILE` and `GNSS` stand for a file.
 fn ran(directory: &Path, arguments: &str, file: Option<&str>) -> Ran {
-    let mut command = assert_cmd::Command::cargo_bin("navwalker").unwrap();
-    command.current_dir(directory).env("CLICOLOR_FORCE", "1");
-    command.args(arguments.split(' ').map(|word| match (word, file) {
+    let arguments = arguments.split(' ').map(|word| match (word, file) {
         ("FILE", Some(file)) => file.to_owned(),
         ("GNSS", Some(file)) => format!("gnss.files=[{}]", serde_json::to_string(file).unwrap()),
         (word, _) => word.to_owned(),
-    }));
-    let output = command.output().unwrap();
-    Ran {
-        status: output.status.code().unwrap(),
-        stdout: String::from_utf8(output.stdout).unwrap(),
-        stderr: String::from_utf8(output.stderr).unwrap(),
-    }
+    });
+    let arguments: Vec<String> = arguments.collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    coloured(directory, &arguments)
 }
 
 /// Fails if a text has anything that is obeyed, or a line that a name has begun.

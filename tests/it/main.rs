@@ -5,9 +5,11 @@
 mod cli;
 mod evidence;
 mod fire;
+mod flags;
 mod gallery;
 mod hostile;
 mod interchange;
+mod keys;
 mod look;
 mod names;
 mod reference;
