@@ -395,6 +395,7 @@ mod tests {
             relation: Relation::AtMost,
             bound: 2.0,
         };
+        assert_eq!(at_most.violation(Some(1.0), 1.0), 0.0);
         assert_eq!(at_most.violation(Some(2.0), 1.0), 0.0);
         assert!(at_most.violation(Some(2.0_f64.next_up()), 1.0) > 0.0);
         assert_eq!(at_most.violation(Some(3.0), 1.0), 0.5);
