@@ -6,7 +6,7 @@
 needs cargo-mutants 27 or later (`cargo install cargo-mutants --locked`). It draws a sample of the mutants of the modules
 below, the same for a seed, and works in a copy of the last commit in target/mutants with a target directory of its own.
 Results go to target/mutants/results.jsonl, one line for each mutant; what stands there is not run again, so that a run
-goes on where it was stopped. docs/testing.md says what became of the survivors.
+goes on where it was stopped.
 """
 
 import argparse
