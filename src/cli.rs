@@ -23,8 +23,10 @@ mod run;
 mod run_view;
 mod study;
 
+use crate::printable::printable_lines;
 use args::{Cli, Command};
 use clap::Parser;
+use std::borrow::Cow;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -62,12 +64,19 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 /// Prints what parsing came to: help to stdout with status 0, errors to stderr with status 2.
 fn said(message: &clap::Error) -> ExitCode {
+    let status = u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+    // What was typed is repeated: with colours only if it holds nothing that a terminal would obey.
+    let plain = message.render().to_string();
+    if let Cow::Owned(safe) = printable_lines(&plain) {
+        output::hint(safe.trim_end());
+        return status;
+    }
     match message.print().and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             output::error(&anyhow::Error::new(error).context("cannot print"));
             ExitCode::from(Status::CouldNotRun as u8)
         }
-        _ => u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from),
+        _ => status,
     }
 }
 

@@ -61,6 +61,7 @@ pub mod keyword;
 pub mod models {}
 pub mod optimize;
 pub mod orbit;
+pub mod printable;
 pub mod report;
 pub mod run;
 pub mod scenario;

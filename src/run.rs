@@ -77,11 +77,11 @@ pub fn result_files(
     let objectives = scenario.objectives.minimize.iter();
     let objectives: Vec<String> = objectives.map(ToString::to_string).collect();
     Ok([
-        (FRONT_JSON, serde_json::to_string_pretty(result)? + "\n"),
+        (FRONT_JSON, crate::printable::json(result)? + "\n"),
         (FRONT_CSV, front_csv(&result.front)?),
         (
             HISTORY_JSON,
-            serde_json::to_string_pretty(&result.history)? + "\n",
+            crate::printable::json(&result.history)? + "\n",
         ),
         (HISTORY_CSV, history_csv(&result.history, &objectives)?),
     ])

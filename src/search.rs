@@ -393,7 +393,9 @@ mod tests {
             relation: Relation::AtMost,
             bound: 2.0,
         };
+        assert_eq!(at_most.violation(Some(1.0), 1.0), 0.0);
         assert_eq!(at_most.violation(Some(2.0), 1.0), 0.0);
+        assert!(at_most.violation(Some(2.0_f64.next_up()), 1.0) > 0.0);
         assert_eq!(at_most.violation(Some(3.0), 1.0), 0.5);
         assert_eq!(at_most.violation(None, 0.0), 1.0);
         let at_least = Constraint {
@@ -401,6 +403,8 @@ mod tests {
             relation: Relation::AtLeast,
             bound: 0.75,
         };
+        assert_eq!(at_least.violation(Some(0.75), 1.0), 0.0);
+        assert!(at_least.violation(Some(0.75_f64.next_down()), 1.0) > 0.0);
         // A fraction of all samples, which already includes the unsolved ones.
         assert_eq!(at_least.violation(Some(0.5), 0.5), 0.25);
         let cost: Constraint = "j-cost <= 10".parse().unwrap();

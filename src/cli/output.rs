@@ -1,7 +1,9 @@
 //! stdout carries results; stderr carries everything else.
 
+use crate::printable::{printable, printable_lines};
 use anyhow::Result;
 use std::io::{self, IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether hints and warnings are printed; set once, from the command line.
@@ -30,10 +32,15 @@ pub(crate) fn shows_progress() -> bool {
     !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal()
 }
 
-/// Prints a result.
+/// A path on one line: a directory may come from elsewhere, with names of any characters.
+pub(crate) fn shown_path(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
+}
+
+/// Prints a result: text without what a terminal would obey ([`crate::printable`]).
 pub(crate) fn result(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
+    stdout.write_all(printable_lines(text).as_bytes())?;
     if !text.ends_with('\n') {
         stdout.write_all(b"\n")?;
     }
@@ -43,18 +50,20 @@ pub(crate) fn result(text: &str) -> Result<()> {
 /// Prints a hint, which is not part of the result.
 pub(crate) fn hint(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
-        to_stderr(text);
+        to_stderr("", text);
     }
 }
 
 /// Prints a warning.
 pub(crate) fn warning(text: &str) {
-    hint(&format!("{YELLOW}warning:{PLAIN} {text}"));
+    if !QUIET.load(Ordering::Relaxed) {
+        to_stderr(&format!("{YELLOW}warning:{PLAIN} "), text);
+    }
 }
 
 /// Prints why the command could not run, one cause per line.
 pub(crate) fn error(error: &anyhow::Error) {
-    let mut text = format!("{RED}error:{PLAIN} {error}");
+    let mut text = error.to_string();
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
         // Some errors already include the text of their cause.
@@ -62,12 +71,16 @@ pub(crate) fn error(error: &anyhow::Error) {
             text += &format!("\n  cause: {cause}");
         }
     }
-    to_stderr(&text);
+    to_stderr(&format!("{RED}error:{PLAIN} "), &text);
 }
 
-fn to_stderr(text: &str) {
+fn to_stderr(label: &str, text: &str) {
     // If stderr is closed, nothing can be reported.
-    let _ = writeln!(anstream::stderr().lock(), "{text}");
+    let _ = writeln!(
+        anstream::stderr().lock(),
+        "{label}{}",
+        printable_lines(text)
+    );
 }
 
 /// Whether the reader of stdout has closed the pipe, as `head` does.

@@ -1,6 +1,6 @@
 //! Constellations from files.
 
-use crate::cli::output;
+use crate::cli::output::{self, shown_path};
 use crate::exchange::import::{Fleet, Imported};
 use crate::exchange::lint::Format;
 use crate::exchange::recognise::recognise;
@@ -53,10 +53,10 @@ pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(Path
         }
     }
     if !others.is_empty() {
-        output::warning(&format!("{}: {}", path.display(), left_out(&others)));
+        output::warning(&format!("{}: {}", shown_path(path), left_out(&others)));
     }
     if found.is_empty() {
-        bail!("{} contains no constellation file", path.display());
+        bail!("{} contains no constellation file", shown_path(path));
     }
     Ok(found)
 }
@@ -64,7 +64,7 @@ pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(Path
 /// Warns of the parts of a file that are not read.
 pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     if !left_out.is_empty() {
-        output::warning(&format!("{}: {left_out}", file.display()));
+        output::warning(&format!("{}: {left_out}", shown_path(file)));
     }
 }
 
@@ -80,7 +80,7 @@ fn read_one(file: &Path, format: Option<Format>) -> Result<Imported> {
         let name = file.file_name().map(|name| name.to_string_lossy());
         Ok(Fleet::read(input, format, name.as_deref())?)
     };
-    let imported = read().with_context(|| format!("cannot read {}", file.display()))?;
+    let imported = read().with_context(|| format!("cannot read {}", shown_path(file)))?;
     warn_left_out(file, &imported.left_out);
     Ok(imported)
 }
@@ -92,7 +92,7 @@ fn format_of(file: &Path) -> Result<Option<Format>> {
         let name = file.file_name().map(|name| name.to_string_lossy());
         Ok(recognise(input, name.as_deref())?.content.ok())
     };
-    look().with_context(|| format!("cannot read {}", file.display()))
+    look().with_context(|| format!("cannot read {}", shown_path(file)))
 }
 
 /// The files of a directory in the order of their names, and what else is in it.
@@ -103,14 +103,14 @@ fn entries(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>)> {
         entries.sort();
         Ok(entries)
     };
-    let entries = listed().with_context(|| format!("cannot list {}", path.display()))?;
+    let entries = listed().with_context(|| format!("cannot list {}", shown_path(path)))?;
     Ok(entries.into_iter().partition(|entry| entry.is_file()))
 }
 
 /// `left out: 2 (manifest.json, notes.txt)`.
 fn left_out(others: &[PathBuf]) -> String {
     let name = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let name = shown_path(Path::new(path.file_name().unwrap_or_default()));
         let end = if path.is_dir() { "/" } else { "" };
         format!("{name}{end}")
     };

@@ -32,7 +32,9 @@ use crate::formats::trajectory::{
 use crate::formats::yuma::Almanac;
 use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
 use crate::frames::{Frame, State};
+use crate::printable::printable;
 use nalgebra::Vector3;
+use std::borrow::Cow;
 use std::io::{self, BufRead};
 use thiserror::Error;
 
@@ -93,7 +95,8 @@ pub enum ReadFleetError {
 }
 
 impl Fleet {
-    /// Reads a file in `format`, or in the format detected from its beginning and its name.
+    /// Reads a file in `format`, or in the format detected from its beginning and its name. Names are as they can be
+    /// shown ([`printable`]).
     ///
     /// # Errors
     /// If the file violates its format, or its states are in an unknown frame or time system.
@@ -114,6 +117,7 @@ impl Fleet {
         let mut findings = FindingList::of_reader();
         let mut fleet = Self::read_as((format, kinds), input, file_name, &mut findings)?;
         fleet.name_after_file(file_name);
+        fleet.make_names_printable();
         Ok(Imported {
             format,
             fleet,
@@ -211,7 +215,7 @@ impl Fleet {
                 elements,
             }])),
             None => Err(ReadFleetError::NoTheory {
-                name: message.object_name,
+                name: printable(&message.object_name).into_owned(),
             }),
         }
     }
@@ -228,7 +232,7 @@ impl Fleet {
                 name: name.to_owned(),
                 // Ids start again in each file: across files only names distinguish satellites.
                 id: name.to_owned(),
-                arcs: arcs.ok_or_else(|| ReadFleetError::NoVelocity { name: id.clone() })?,
+                arcs: arcs.ok_or_else(|| ReadFleetError::NoVelocity { name: printable(id).into_owned() })?,
             });
         }
         Ok(Self::Sampled(trajectories))
@@ -271,6 +275,33 @@ impl Fleet {
                 .iter_mut()
                 .for_each(|part| part.name_after_file(Some(file_name))),
             Self::Sets(_) | Self::Elements(_) | Self::Almanacs(_) => {}
+        }
+    }
+
+    /// Writes names and identifiers as they can be shown.
+    fn make_names_printable(&mut self) {
+        let make = |text: &mut String| {
+            if let Cow::Owned(safe) = printable(text) {
+                *text = safe;
+            }
+        };
+        match self {
+            Self::Sets(sets) => {
+                for set in sets {
+                    let texts = [&mut set.object_name, &mut set.international_designator];
+                    texts.into_iter().flatten().for_each(make);
+                }
+            }
+            Self::Elements(rows) => rows.iter_mut().for_each(|row| make(&mut row.name)),
+            Self::Sampled(trajectories) => {
+                for trajectory in trajectories {
+                    make(&mut trajectory.name);
+                    make(&mut trajectory.id);
+                }
+            }
+            // Their names are made from numbers.
+            Self::Almanacs(_) => {}
+            Self::Mixed(parts) => parts.iter_mut().for_each(Self::make_names_printable),
         }
     }
 

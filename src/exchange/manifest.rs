@@ -4,6 +4,7 @@ use crate::earth::{FLATTENING, J2, MU_KM3_S2, RADIUS_KM};
 use crate::formats::WriteError;
 use crate::formats::metadata::{Metadata, frame_comment};
 use crate::frames::Frame;
+use crate::printable::json;
 use crate::time::leap_seconds_note;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -185,8 +186,8 @@ impl Manifest {
     /// # Errors
     /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> Result<(), WriteError> {
-        serde_json::to_writer_pretty(&mut *out, self).map_err(io::Error::from)?;
-        writeln!(out)?;
+        let json = json(self).map_err(io::Error::from)?;
+        writeln!(out, "{json}")?;
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 use super::{GroundError, MAX_POINTS, Site};
 use crate::earth::Surface;
+use crate::printable::printable;
 use csv::{Reader, ReaderBuilder, StringRecord, Trim};
 use std::io::Read;
 
@@ -129,7 +130,10 @@ impl Columns {
         let number = |at: usize, column: &str| {
             let text = field(at);
             let number = text.parse::<f64>();
-            number.map_err(|_| format!("{column}: found \"{text}\", expected a number"))
+            number.map_err(|_| {
+                let text = printable(text);
+                format!("{column}: found \"{text}\", expected a number")
+            })
         };
         let weight = match self.weight.filter(|at| !field(*at).is_empty()) {
             Some(at) => number(at, OPTIONAL[0])?,
@@ -143,7 +147,7 @@ impl Columns {
         if name.is_some_and(|name| name.contains(char::is_control)) {
             return Err("name: found a control character, expected printable text".to_owned());
         }
-        site.name = name.map(Into::into);
+        site.name = name.map(|name| printable(name).into());
         Ok(site)
     }
 }

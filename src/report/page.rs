@@ -14,6 +14,7 @@ use super::figures::NamedFront;
 use super::profile::Profile;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
+use crate::printable::printable_json;
 use crate::run::Run;
 use askama::Template;
 use payload::Payload;
@@ -168,6 +169,7 @@ fn first_script(html: &str) -> &str {
 /// JSON that is safe in a script element, whatever texts it contains.
 fn safe_json(payload: &Payload) -> Result<String, PageError> {
     let json = serde_json::to_string(payload)?;
+    let json = printable_json(&json);
     // These characters occur in JSON only within strings.
     Ok(json
         .replace('<', "\\u003c")

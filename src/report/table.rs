@@ -1,5 +1,6 @@
 //! One table in several notations.
 
+use crate::printable::{markdown, printable};
 use std::fmt::Write;
 
 /// The side to which the cells of a column are aligned.
@@ -33,9 +34,11 @@ impl Table {
         }
     }
 
-    /// Adds a row; missing cells stay empty, surplus ones are dropped.
+    /// Adds a row; missing cells stay empty, surplus ones are dropped. A cell has one line and no markup.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        let mut row: Vec<_> = cells.into_iter().take(self.columns.len()).collect();
+        let shown = |cell: String| printable(&cell).into_owned();
+        let cells = cells.into_iter().take(self.columns.len());
+        let mut row: Vec<_> = cells.map(shown).collect();
         row.resize(self.columns.len(), String::new());
         self.rows.push(row);
     }
@@ -91,7 +94,7 @@ impl Table {
     #[must_use]
     pub fn to_markdown(&self) -> String {
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        let escape = |cell: &String| cell.replace('|', "\\|");
+        let escape = |cell: &String| markdown(cell).into_owned();
         let heading = |(name, _): &(String, Align)| escape(&name.replace('\n', " "));
         let mut text = line(self.columns.iter().map(heading).collect());
         let rule = |(_, align): &(String, Align)| match align {

@@ -2,6 +2,7 @@
 
 use super::{Align, Table};
 use crate::keyword::Keyword;
+use crate::printable::{markdown, printable};
 use crate::run::{Basis, ValidateResult};
 use crate::units::{counted, round_decimal};
 use crate::validate::distribution::Distribution;
@@ -393,11 +394,11 @@ pub fn validation_markdown(result: &ValidateResult) -> String {
         text += &distribution_table(&residuals).to_markdown();
     }
     for comparison in &result.findings.files {
-        let _ = writeln!(text, "\n## File {}\n", comparison.source);
+        let _ = writeln!(text, "\n## File {}\n", markdown(&comparison.source));
         text += &satellite_table(comparison).to_markdown();
         text += "\n";
         for line in comparison_lines(comparison) {
-            let _ = writeln!(text, "- {line}");
+            let _ = writeln!(text, "- {}", markdown(&line));
         }
     }
     text
@@ -469,7 +470,8 @@ pub fn checks_junit(checks: &[Check]) -> String {
             digits(check.value),
             check.unit
         );
-        let (name, message) = (escape(check.name.as_str()), escape(message.as_str()));
+        let (name, message) = (printable(&check.name), printable(&message));
+        let (name, message) = (escape(name.as_ref()), escape(message.as_ref()));
         let reason = escape(check.reason.as_str());
         let _ = write!(text, "<testcase classname=\"navwalker\" name=\"{name}\">");
         let _ = match check.outcome() {

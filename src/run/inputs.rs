@@ -2,6 +2,7 @@
 
 use super::checkpoint::{Identity, hex_sha256};
 use super::{INPUTS, MANIFEST, SCENARIO};
+use crate::printable::is_obeyed;
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -86,7 +87,7 @@ pub fn copy_paths(files: &[&str]) -> Vec<String> {
 /// The last part of a path, with characters that some file systems refuse replaced.
 fn safe_name(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or_default();
-    let refused = |c: char| c.is_control() || "\\:*?\"<>|".contains(c);
+    let refused = |c: char| is_obeyed(c) || "\\:*?\"<>|".contains(c);
     let name = name.replace(refused, "_");
     let is_hidden_or_parent = name.trim_start_matches('.').is_empty();
     if is_hidden_or_parent {
@@ -117,7 +118,7 @@ pub fn first_files(
         identity: identity.clone(),
         inputs: paths.iter().zip(contents).map(copy).collect(),
     };
-    let manifest = serde_json::to_string_pretty(&manifest)? + "\n";
+    let manifest = crate::printable::json(&manifest)? + "\n";
     let toml = scenario.with_files(&paths).to_toml();
     let mut files: Vec<_> = paths.into_iter().zip(contents.iter().cloned()).collect();
     files.push((SCENARIO.to_owned(), toml.into_bytes()));

@@ -1,4 +1,6 @@
-//! Numbers as written to a scenario file.
+//! Numbers and texts as written to a scenario file.
+
+use crate::printable::is_obeyed;
 
 /// Integers up to this value are written without point or exponent; each is exact in an
 /// `f64` and in a TOML integer.
@@ -13,8 +15,15 @@ pub(super) fn toml_number(number: f64) -> String {
     }
 }
 
-/// A basic TOML string. The rules of text values exclude control characters.
+/// A basic TOML string, with escapes for what a terminal would obey.
 pub(super) fn toml_text(text: &str) -> String {
-    let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
-    format!("\"{escaped}\"")
+    let mut written = String::from("\"");
+    for character in text.chars() {
+        match character {
+            '\\' | '"' => written.extend(['\\', character]),
+            obeyed if is_obeyed(obeyed) => written += &format!("\\U{:08X}", u32::from(obeyed)),
+            plain => written.push(plain),
+        }
+    }
+    written + "\""
 }

@@ -1,5 +1,6 @@
 //! The source texts of a scenario, and positions in them.
 
+use crate::printable::is_obeyed;
 use std::fmt;
 use std::ops::Range;
 
@@ -119,9 +120,10 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The characters of a text, with spaces for those that would move the cursor of a terminal.
+/// The characters of a text, with spaces for those that a terminal would obey: unlike escapes they leave each column
+/// where it is.
 pub(super) fn printable(text: &str) -> impl Iterator<Item = char> {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c })
+    text.chars().map(|c| if is_obeyed(c) { ' ' } else { c })
 }
 
 /// The column and the excerpt for `length` bytes at byte `at` of the first line of `text`.

@@ -35,7 +35,18 @@ pub(crate) struct Ran {
 }
 
 pub(crate) fn ran(directory: &Path, arguments: &[&str]) -> Ran {
-    let output = navwalker(directory, arguments).output().unwrap();
+    outcome(navwalker(directory, arguments))
+}
+
+/// As if both streams were terminals that show colours.
+pub(crate) fn coloured(directory: &Path, arguments: &[&str]) -> Ran {
+    let mut command = navwalker(directory, arguments);
+    command.env("CLICOLOR_FORCE", "1");
+    outcome(command)
+}
+
+fn outcome(mut command: Command) -> Ran {
+    let output = command.output().unwrap();
     Ran {
         status: output.status.code().unwrap(),
         stdout: String::from_utf8(output.stdout).unwrap(),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The modules of the library from the lowest level up; a module imports only from levels before
 /// its own, or from its own module.
 const LEVELS: &[&[&str]] = &[
-    &["units", "keyword"],
+    &["units", "keyword", "printable"],
     &["stats", "earth", "time"],
     &["frames"],
     &["orbit"],

@@ -96,7 +96,7 @@ fn run_constellation(
     let setup = evaluator.setup();
     let name = |path: &PathBuf| {
         path.file_name()
-            .map(|name| name.to_string_lossy().into_owned())
+            .map(|name| output::shown_path(Path::new(name)))
     };
     let names: Vec<String> = args.constellation.iter().filter_map(name).collect();
     let name = names.join("+");
@@ -156,7 +156,7 @@ fn print(
 ) -> Result<()> {
     match args.format {
         OutputFormat::Text => output::result(text),
-        OutputFormat::Json => output::result(&serde_json::to_string_pretty(result)?),
+        OutputFormat::Json => output::result(&crate::printable::json(result)?),
         OutputFormat::Csv => {
             output::result(&csv()?)?;
             match dops {

@@ -1,6 +1,7 @@
 //! `navwalker lint`.
 
 use crate::cli::args::{LintArgs, OutputFormat};
+use crate::cli::output::shown_path;
 use crate::cli::{Status, output};
 use crate::exchange::lint::{LintReport, lint};
 use crate::formats::text::finding::Severity;
@@ -38,14 +39,14 @@ pub(crate) fn run(args: &LintArgs) -> Result<Status> {
             }
         };
         if let (Some(format), []) = (report.format, report.findings.as_slice()) {
-            clean += &format!("{}: no findings as {format}\n", path.display());
+            clean += &format!("{}: no findings as {format}\n", shown_path(path));
         }
         rows.extend(rows_of(path, report));
     }
     match args.output {
         OutputFormat::Text if rows.is_empty() && clean.is_empty() => {}
         OutputFormat::Text => output::result(&(text(&rows) + &clean))?,
-        OutputFormat::Json => output::result(&serde_json::to_string_pretty(&rows)?)?,
+        OutputFormat::Json => output::result(&crate::printable::json(&rows)?)?,
         OutputFormat::Csv => output::result(&crate::report::records_csv(&rows)?)?,
     }
     unread.iter().for_each(output::error);
@@ -64,11 +65,11 @@ fn check(path: &Path, args: &LintArgs) -> Result<LintReport> {
         let name = path.file_name().map(|name| name.to_string_lossy());
         lint(input, args.format, name.as_deref(), MOST_FINDINGS)
     };
-    read().with_context(|| format!("cannot read {}", path.display()))
+    read().with_context(|| format!("cannot read {}", shown_path(path)))
 }
 
 fn rows_of(path: &Path, report: LintReport) -> impl Iterator<Item = FindingRow> {
-    let file = path.display().to_string();
+    let file = shown_path(path);
     report.findings.into_iter().map(move |finding| FindingRow {
         file: file.clone(),
         format: report

@@ -82,7 +82,7 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     let result = &ended.result;
     output::result(&match args.format {
         OutputFormat::Text => text(result, &scenario.name),
-        OutputFormat::Json => serde_json::to_string_pretty(result)?,
+        OutputFormat::Json => crate::printable::json(result)?,
         OutputFormat::Csv => front_csv(&result.front)?,
     })?;
     let placed = ended.placed?;

@@ -66,7 +66,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
 fn render(result: &ReproduceResult, format: StudyFormat) -> Result<String> {
     Ok(match format {
         StudyFormat::Text => reproduction_text(result),
-        StudyFormat::Json => serde_json::to_string_pretty(result)? + "\n",
+        StudyFormat::Json => crate::printable::json(result)? + "\n",
         StudyFormat::Csv => reproduction_csv(&result.study.lines)?,
         StudyFormat::Markdown => reproduction_markdown(result),
     })

@@ -15,7 +15,7 @@ pub(crate) fn run(args: &ScenarioArgs) -> Result<Status> {
         }
         ScenarioAction::New => output::result(&template())?,
         ScenarioAction::Schema => {
-            output::result(&serde_json::to_string_pretty(&json_schema())?)?;
+            output::result(&crate::printable::json(&json_schema())?)?;
         }
     }
     Ok(Status::Done)
@@ -58,7 +58,7 @@ fn list(format: OutputFormat) -> Result<()> {
         }
         OutputFormat::Json => {
             let names: Vec<_> = rows.iter().map(|row| &row[0]).collect();
-            output::result(&serde_json::to_string_pretty(&names)?)
+            output::result(&crate::printable::json(&names)?)
         }
         OutputFormat::Csv => {
             let mut writer = csv::Writer::from_writer(Vec::new());

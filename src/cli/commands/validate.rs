@@ -8,6 +8,7 @@ use crate::ephemeris::Ephemeris;
 use crate::exchange::import::Fleet;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
+use crate::printable::printable;
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
@@ -90,7 +91,11 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         });
     }
     let model = evaluator.setup().model;
-    let against = args.against.clone();
+    let against = args
+        .against
+        .iter()
+        .map(|target| printable(target).into_owned());
+    let against = against.collect();
     let result = ValidateResult::new(&design, model, against, findings, study.stamp()?);
     output::result(&render(&result, args.format)?)?;
     if let Some(staged) = staged {
@@ -159,7 +164,7 @@ impl Source {
             .map(|(file, imported)| (file, imported.fleet))
             .collect();
         if files.iter().all(|(_, fleet)| fleet.is_empty()) {
-            bail!("{} has no objects", path.display());
+            bail!("{} has no objects", output::shown_path(path));
         }
         Ok(Self { name, files })
     }
@@ -167,7 +172,7 @@ impl Source {
     fn comparands(&self) -> Result<Vec<Comparand>> {
         let mut all = Vec::new();
         for (file, fleet) in &self.files {
-            all.extend(comparands(&file.to_string_lossy(), fleet.clone())?);
+            all.extend(comparands(&output::shown_path(file), fleet.clone())?);
         }
         Ok(all)
     }
@@ -210,7 +215,7 @@ fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<Source>>>
 /// The comparisons for a path: a file, the formats of an export, or all files in a directory.
 fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
     let name = path.file_name().unwrap_or(path.as_os_str());
-    let name = name.to_string_lossy().into_owned();
+    let name = output::shown_path(Path::new(name));
     let manifest = path.join(FILE_NAME);
     if !path.is_dir() || !manifest.exists() {
         return Ok(vec![Source::read(name, path, format)?]);
@@ -266,7 +271,7 @@ fn write_reports(staged: files::StagedDirectory, result: &ValidateResult) -> Res
 fn render(result: &ValidateResult, format: ReportFormat) -> Result<String> {
     Ok(match format {
         ReportFormat::Text => validation_text(result),
-        ReportFormat::Json => serde_json::to_string_pretty(result)? + "\n",
+        ReportFormat::Json => crate::printable::json(result)? + "\n",
         ReportFormat::Csv => checks_csv(&result.findings.checks)?,
         ReportFormat::Markdown => validation_markdown(result),
         ReportFormat::Junit => checks_junit(&result.findings.checks),

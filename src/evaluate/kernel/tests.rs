@@ -1,4 +1,5 @@
 use super::candidates::Candidates;
+use super::lanes::{MaskTerms, Real};
 use super::propagation::{PatternPropagator, Positions, Turn};
 use super::tiles::{Horizon, Tiles};
 use super::*;
@@ -281,6 +282,25 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+}
+
+/// A satellite exactly at the mask is visible in the lanes too, and one a rounding below is not; what f32 cannot tell is
+/// possible, so that it is decided again.
+#[test]
+fn at_the_mask_is_visible_in_the_lanes() {
+    for mask_deg in [0.0_f64, 7.0, 10.0, 60.0] {
+        let mask = Mask::from_degrees(mask_deg).unwrap();
+        let sine = mask_deg.to_radians().sin();
+        let double = |height: f64| f64::above(&MaskTerms::new(mask), height, 1.0, height);
+        assert_eq!(double(sine), (true, true), "{mask_deg}");
+        let below = sine - f64::from(f32::EPSILON).powi(2);
+        assert_eq!(double(below), (false, false), "{mask_deg}");
+        let single = MaskTerms::new(mask).with_slack(1e-6);
+        for below in [0.0, 5e-7] {
+            let seen = f32::above(&single, 0.0, 1.0, sine as f32 - below);
+            assert_eq!(seen, (false, true), "{mask_deg}");
+        }
+    }
 }
 
 /// No satellite at all, and satellites that never rise.

@@ -23,6 +23,7 @@ use crate::formats::text::timestamp::{SecondDigits, TimeSystem, calendar};
 use crate::formats::trajectory::{Trajectory, TrajectoryError, frame_of_name, time_system_of_name};
 use crate::frames::{Frame, State};
 use crate::keyword::keywords;
+use crate::printable::printable;
 use crate::time::TimeGrid;
 use chrono::NaiveDateTime;
 use nalgebra::Vector3;
@@ -154,8 +155,8 @@ impl Segment {
         let metadata = &self.metadata;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
             return Err(TrajectoryError::Center {
-                name: metadata.object_name.clone(),
-                center: metadata.center_name.clone(),
+                name: printable(&metadata.object_name).into_owned(),
+                center: printable(&metadata.center_name).into_owned(),
             });
         }
         let time_system = time_system_of_name(&metadata.time_system)?;

@@ -1,5 +1,6 @@
 //! Findings in a file: what is wrong, where, and which rule it breaks.
 
+use crate::printable::printable;
 use std::fmt;
 use thiserror::Error;
 
@@ -72,7 +73,7 @@ impl LeftOut {
         };
         kind.count += 1;
         if kind.names.len() < MOST_NAMES {
-            kind.names.push(name.to_owned());
+            kind.names.push(printable(name).into_owned());
         }
     }
 }
@@ -202,7 +203,7 @@ impl FindingList {
                 line,
                 column,
                 rule,
-                message,
+                message: printable(&message).into_owned(),
                 severity,
             });
         }

@@ -66,7 +66,7 @@ pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
     let objectives = &study.scenario.objectives.minimize;
     let result =
         SeedsResult::new(results, sweep.as_deref(), objectives).context("no seed was run")?;
-    let json = serde_json::to_string_pretty(&result)? + "\n";
+    let json = crate::printable::json(&result)? + "\n";
     let contents = [result.to_csv()?, json.clone(), result.joint_csv()?];
     for (name, text) in TABLE.iter().zip(&contents) {
         files::write_atomically(&out.join(name), text.as_bytes())?;

@@ -1,0 +1,605 @@
+//! Every flag of every command has an effect that a user sees: one row each, and none without a row.
+
+use crate::cli::{Ran, coloured, ran};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// What a flag changes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Seen {
+    Stdout,
+    Stderr,
+    /// The exit status.
+    Status,
+    /// What is written to `out`: its names and their contents.
+    Out,
+}
+use Seen::{Out, Status, Stderr, Stdout};
+
+/// A command and one of its flags, the rest of a command line, what the flag adds to it, and what that changes.
+struct Row(&'static str, &'static str, &'static str, &'static str, Seen);
+
+/// In place of these words stand the arguments of a small study.
+const SHORTHANDS: [(&str, &str); 5] = [
+    (
+        "SMALL",
+        "--set region.step-deg=25 --set time.step-s=1200 --set time.duration-h=4",
+    ),
+    ("DESIGN", "--design delta:55:6/3/1@925"),
+    ("OTHER", "--design delta:60:4/2/1@800"),
+    (
+        "SEARCH",
+        "--set optimizer.population=4 --set optimizer.generations=2 --set search.planes=[5,7]",
+    ),
+    (
+        "LITTLE",
+        "--set region.step-deg=30 --set time.step-s=7200 --set optimizer.population=4 --set optimizer.generations=1",
+    ),
+];
+
+/// A flag that is refused without the value that it needs, or with a wrong one, is read; what it changes is told here. Words
+/// before `|` are a command that runs first.
+const ROWS: [Row; 75] = [
+    Row(
+        "optimize",
+        "set",
+        "--out out SMALL SEARCH",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row("optimize", "out", "SMALL SEARCH", "--out out", Out),
+    Row(
+        "optimize",
+        "seed",
+        "--out out SMALL SEARCH",
+        "--seed 5",
+        Stdout,
+    ),
+    Row(
+        "optimize",
+        "seeds",
+        "--out out SMALL SEARCH",
+        "--seeds 2",
+        Out,
+    ),
+    Row(
+        "optimize",
+        "certify",
+        "--out out SMALL SEARCH --set search.satellites-per-plane=[5,7] --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
+        "--certify",
+        Stdout,
+    ),
+    Row(
+        "optimize",
+        "resume",
+        "optimize --out out SMALL SEARCH | --out out SMALL SEARCH --set optimizer.generations=3",
+        "--resume",
+        Stderr,
+    ),
+    Row(
+        "optimize",
+        "force",
+        "optimize --out out SMALL SEARCH | --out out SMALL SEARCH --seed 2",
+        "--force",
+        Status,
+    ),
+    Row(
+        "optimize",
+        "report",
+        "--out out SMALL SEARCH",
+        "--report",
+        Out,
+    ),
+    Row(
+        "optimize",
+        "format",
+        "--out out SMALL SEARCH",
+        "--format csv",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
+        "set",
+        "DESIGN SMALL",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row("evaluate", "design", "SMALL", "DESIGN", Status),
+    Row(
+        "evaluate",
+        "constellation",
+        "SMALL",
+        "--constellation six.csv",
+        Status,
+    ),
+    Row(
+        "evaluate",
+        "input-format",
+        "SMALL --constellation six.csv",
+        "--input-format tle",
+        Status,
+    ),
+    Row(
+        "evaluate",
+        "only",
+        "SMALL --constellation six.csv",
+        "--only NW-P01-*",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
+        "exclude",
+        "SMALL --constellation six.csv",
+        "--exclude NW-P01-S01",
+        Stdout,
+    ),
+    Row("evaluate", "dops", "DESIGN SMALL", "--dops", Stdout),
+    Row("evaluate", "series", "DESIGN SMALL", "--series out", Out),
+    Row(
+        "evaluate",
+        "force",
+        "evaluate DESIGN SMALL --series out | OTHER SMALL --series out",
+        "--force",
+        Status,
+    ),
+    Row(
+        "evaluate",
+        "format",
+        "DESIGN SMALL",
+        "--format json",
+        Stdout,
+    ),
+    Row("lint", "as", "six.tle", "--as sp3", Status),
+    Row("lint", "format", "six.csv six.tle", "--format json", Stdout),
+    Row(
+        "reproduce",
+        "set",
+        "--out out LITTLE",
+        "--set visibility.mask-deg=10",
+        Stdout,
+    ),
+    Row("reproduce", "out", "LITTLE", "--out out", Out),
+    Row("reproduce", "seed", "--out out LITTLE", "--seed 2", Out),
+    Row(
+        "reproduce",
+        "force",
+        "optimize --out out SMALL SEARCH | --out out LITTLE",
+        "--force",
+        Status,
+    ),
+    Row(
+        "reproduce",
+        "format",
+        "--out out LITTLE",
+        "--format csv",
+        Stdout,
+    ),
+    Row(
+        "export",
+        "set",
+        "DESIGN SMALL --as oem --out out",
+        "--set time.step-s=600",
+        Out,
+    ),
+    Row(
+        "export",
+        "design",
+        "SMALL --as tle --out out",
+        "DESIGN",
+        Out,
+    ),
+    Row("export", "run", "--as tle --out out", "--run run", Out),
+    Row(
+        "export",
+        "pick",
+        "--run run --as tle --out out",
+        "--pick 2",
+        Out,
+    ),
+    Row("export", "as", "DESIGN SMALL --out out", "--as tle", Status),
+    Row(
+        "export",
+        "out",
+        "DESIGN SMALL --as tle",
+        "--out out",
+        Status,
+    ),
+    Row(
+        "export",
+        "force",
+        "export DESIGN SMALL --as tle --out out | OTHER SMALL --as tle --out out",
+        "--force",
+        Status,
+    ),
+    Row(
+        "export",
+        "frame",
+        "DESIGN SMALL --as oem --out out",
+        "--frame GCRF",
+        Out,
+    ),
+    Row(
+        "export",
+        "time-system",
+        "DESIGN SMALL --as oem --out out",
+        "--time-system TAI",
+        Out,
+    ),
+    Row(
+        "export",
+        "omm-syntax",
+        "DESIGN SMALL --as omm --out out",
+        "--omm-syntax json",
+        Out,
+    ),
+    Row(
+        "export",
+        "oem-syntax",
+        "DESIGN SMALL --as oem --out out",
+        "--oem-syntax xml",
+        Out,
+    ),
+    Row(
+        "export",
+        "oem-combined",
+        "DESIGN SMALL --as oem --oem-syntax xml --out out",
+        "--oem-combined",
+        Out,
+    ),
+    Row(
+        "export",
+        "tle-theory",
+        "DESIGN SMALL --as tle --out out",
+        "--tle-theory kepler",
+        Out,
+    ),
+    Row(
+        "export",
+        "ccsds-version",
+        "DESIGN SMALL --as oem --out out",
+        "--ccsds-version 3.0",
+        Out,
+    ),
+    Row(
+        "export",
+        "sp3-version",
+        "DESIGN SMALL --as sp3 --out out",
+        "--sp3-version c",
+        Out,
+    ),
+    Row(
+        "export",
+        "check",
+        "DESIGN SMALL --as csv --out out",
+        "--check",
+        Stdout,
+    ),
+    Row(
+        "export",
+        "creation-date",
+        "DESIGN SMALL --as oem --out out",
+        "--creation-date 2025-02-01T00:00:00Z",
+        Out,
+    ),
+    Row(
+        "export",
+        "gnss",
+        "DESIGN SMALL --as sp3 --out out",
+        "--gnss gps",
+        Out,
+    ),
+    Row(
+        "export",
+        "sp3-letter",
+        "DESIGN SMALL --as sp3 --out out",
+        "--sp3-letter X",
+        Out,
+    ),
+    Row(
+        "validate",
+        "set",
+        "DESIGN SMALL --against sgp4",
+        "--set time.duration-h=2",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "design",
+        "SMALL --set reference-design=delta:60:4/2/1@800 --against sgp4",
+        "DESIGN",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "run",
+        "SMALL --set reference-design=delta:60:4/2/1@800 --against analytic",
+        "--run run",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "pick",
+        "--run run --against analytic",
+        "--pick 2",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "against",
+        "DESIGN SMALL",
+        "--against sgp4",
+        Status,
+    ),
+    Row(
+        "validate",
+        "input-format",
+        "DESIGN SMALL --against ./six.tle",
+        "--input-format sp3",
+        Status,
+    ),
+    Row(
+        "validate",
+        "out",
+        "DESIGN SMALL --against sgp4",
+        "--out out",
+        Out,
+    ),
+    Row(
+        "validate",
+        "report",
+        "--run run --against analytic --out out",
+        "--report",
+        Stderr,
+    ),
+    Row(
+        "validate",
+        "force",
+        "export DESIGN SMALL --as tle --out out | DESIGN SMALL --against sgp4 --out out",
+        "--force",
+        Stderr,
+    ),
+    Row(
+        "validate",
+        "format",
+        "DESIGN SMALL --against sgp4",
+        "--format markdown",
+        Stdout,
+    ),
+    Row(
+        "report",
+        "compare",
+        "run --out out",
+        "--compare delta:60:4/2/1@800",
+        Out,
+    ),
+    Row("report", "front", "run --out out", "--front other", Out),
+    Row(
+        "report",
+        "validation",
+        "run --out out",
+        "--validation checks",
+        Out,
+    ),
+    Row("report", "out", "run", "--out out", Out),
+    Row(
+        "plot",
+        "compare",
+        "run --figure pareto",
+        "--compare delta:60:4/2/1@800",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "front",
+        "run --figure pareto",
+        "--front other",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "validation",
+        "run --figure budget",
+        "--validation checks",
+        Status,
+    ),
+    Row("plot", "figure", "run", "--figure pareto", Status),
+    Row(
+        "plot",
+        "measure",
+        "run --figure map",
+        "--measure max-pdop",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "pick",
+        "run --figure map --measure mean-visible",
+        "--pick 2",
+        Stdout,
+    ),
+    Row("plot", "as", "run --figure pareto", "--as csv", Stdout),
+    Row("plot", "out", "run --figure pareto", "--out out", Out),
+    Row(
+        "plot",
+        "force",
+        "plot run --figure pareto --out out.svg | run --figure map --measure mean-visible --out out.svg",
+        "--force",
+        Status,
+    ),
+    Row("scenario list", "format", "", "--format json", Stdout),
+    Row(
+        "scenario show",
+        "set",
+        "",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row("man", "out", "", "--out out", Out),
+    // Of the program, for every command.
+    Row(
+        "",
+        "threads",
+        "evaluate DESIGN SMALL",
+        "--threads 0",
+        Status,
+    ),
+    Row("", "quiet", "evaluate DESIGN SMALL", "--quiet", Stderr),
+    Row("", "no-color", "evaluate", "--no-color", Stderr),
+    Row("", "version", "", "--version", Status),
+];
+
+/// The flags of the program itself, which every command has; `--help` is how the rows are checked.
+const GLOBAL: [&str; 5] = ["threads", "quiet", "no-color", "version", "help"];
+
+fn words(text: &str) -> Vec<String> {
+    let mut text = format!(" {text} ");
+    for (word, arguments) in SHORTHANDS {
+        text = text.replace(&format!(" {word} "), &format!(" {arguments} "));
+        text = text.replace(&format!(" {word} "), &format!(" {arguments} "));
+    }
+    text.split_whitespace().map(str::to_owned).collect()
+}
+
+/// Runs the program as if stderr were a terminal that shows colours.
+fn run(place: &Path, text: &str) -> Ran {
+    let words = words(text);
+    coloured(place, &words.iter().map(String::as_str).collect::<Vec<_>>())
+}
+
+/// A file, or every file below a directory, with its contents.
+fn contents(path: &Path) -> Vec<(String, Vec<u8>)> {
+    if !path.is_dir() {
+        let bytes = fs::read(path).ok();
+        return bytes
+            .into_iter()
+            .map(|bytes| (path.display().to_string(), bytes))
+            .collect();
+    }
+    let entries = fs::read_dir(path).unwrap();
+    let mut entries: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    entries.iter().flat_map(|entry| contents(entry)).collect()
+}
+
+/// The status, stdout, stderr, and what is written.
+type Outcome = (i32, String, String, Vec<(String, Vec<u8>)>);
+
+fn outcome(place: &Path, command: &str, arguments: &str) -> Outcome {
+    for made in ["out", "out.svg", "out.csv", "out-sweep", "runs"] {
+        let made = place.join(made);
+        let _ = if made.is_dir() {
+            fs::remove_dir_all(made)
+        } else {
+            fs::remove_file(made)
+        };
+    }
+    let (first, arguments) = arguments.split_once('|').unwrap_or(("", arguments));
+    if !first.is_empty() {
+        let ran = run(place, first);
+        assert_eq!(ran.status, 0, "{first}: {}", ran.stderr);
+    }
+    let ran = run(place, &format!("{command} {arguments}"));
+    (
+        ran.status,
+        ran.stdout,
+        ran.stderr,
+        contents(&place.join("out")),
+    )
+}
+
+/// The help of a command, which clap writes from its definition.
+fn help(command: &str) -> String {
+    let words = words(&format!("{command} --help"));
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    ran(Path::new("."), &words).stdout
+}
+
+/// Long flags in the help of a command.
+fn flags(command: &str) -> Vec<String> {
+    let text = help(command);
+    let flag = |line: &str| {
+        let line = line.trim_start();
+        let line = line
+            .strip_prefix("-")
+            .filter(|rest| rest.get(1..3) == Some(", "))
+            .map_or(line, |rest| &rest[3..]);
+        let name = line.strip_prefix("--")?;
+        let end = name.find(|c: char| !c.is_ascii_alphanumeric() && c != '-');
+        Some(name[..end.unwrap_or(name.len())].to_owned())
+    };
+    text.lines().filter_map(flag).collect()
+}
+
+/// The commands in a help text.
+fn commands(of: &str) -> Vec<String> {
+    let text = help(of);
+    let lines = text.lines().skip_while(|line| *line != "Commands:").skip(1);
+    let lines = lines.take_while(|line| !line.is_empty());
+    let name = |line: &str| {
+        line.strip_prefix("  ")?
+            .split(' ')
+            .next()
+            .map(str::to_owned)
+    };
+    let names = lines
+        .filter_map(name)
+        .filter(|name| !name.is_empty() && name != "help");
+    names
+        .map(|name| format!("{of} {name}").trim().to_owned())
+        .collect()
+}
+
+#[test]
+fn every_flag_has_a_row() {
+    let mut all = BTreeSet::new();
+    let mut waiting = vec![String::new()];
+    while let Some(command) = waiting.pop() {
+        for flag in flags(&command) {
+            let is_global = GLOBAL.contains(&flag.as_str());
+            if flag != "help" && (command.is_empty() || !is_global) {
+                all.insert((command.clone(), flag));
+            }
+        }
+        waiting.extend(commands(&command));
+    }
+    let rows = ROWS.iter().map(|row| (row.0.to_owned(), row.1.to_owned()));
+    assert_eq!(all, rows.collect());
+}
+
+#[test]
+fn every_flag_has_its_effect() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for first in [
+        "export --quiet DESIGN SMALL --as csv,tle --out six",
+        "optimize --quiet --out run SMALL SEARCH",
+        "optimize --quiet --out other SMALL SEARCH --seed 9",
+        "validate --quiet DESIGN SMALL --against sgp4 --out checks",
+    ] {
+        assert_eq!(run(place, first).status, 0, "{first}");
+    }
+    fs::rename(place.join("six/elements.csv"), place.join("six.csv")).unwrap();
+    fs::rename(place.join("six/constellation.tle"), place.join("six.tle")).unwrap();
+    let mut none = Vec::new();
+    for Row(command, flag, arguments, with, seen) in &ROWS {
+        let written = if *with == "DESIGN" { "--design" } else { with };
+        assert!(
+            written.starts_with(&format!("--{flag}")),
+            "{command} --{flag}"
+        );
+        let before = outcome(place, command, arguments);
+        let after = outcome(place, command, &format!("{arguments} {with}"));
+        let has_effect = match seen {
+            Stdout => before.1 != after.1 && before.0 < 2 && after.0 < 2,
+            Stderr => before.2 != after.2,
+            Status => before.0 != after.0,
+            Out => before.3 != after.3 && after.0 < 2,
+        };
+        if !has_effect {
+            none.push((command, flag, after.0, after.1, after.2));
+        }
+    }
+    assert!(none.is_empty(), "{none:#?}");
+}
