@@ -21,7 +21,7 @@ pub use check::{Check, CheckedQuantity, Outcome, Tally};
 pub use parts::{ModelPropagator, Parts};
 
 use self::sgp4::SweepCell;
-use crate::constellation::{Satellite, Shell, Slot};
+use crate::constellation::{Design, Satellite, Shell, Slot};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::formats::tle::TleFieldError;
@@ -189,6 +189,8 @@ pub struct Subject<'a> {
     pub evaluator: &'a Evaluator,
     /// The parts of the library under test.
     pub parts: Parts,
+    /// Its place among the shells of a design of several.
+    pub number: Option<usize>,
 }
 
 impl<'a> Subject<'a> {
@@ -199,7 +201,20 @@ impl<'a> Subject<'a> {
             shell,
             evaluator,
             parts: Parts::default(),
+            number: None,
         }
+    }
+
+    /// The shells of a design, each with the library's own parts.
+    #[must_use]
+    pub fn of_shells(design: &Design, evaluator: &'a Evaluator) -> Vec<Self> {
+        let among_several = design.only_shell().is_none();
+        let shells = design.shells().iter().enumerate();
+        let subject = |(n, shell): (usize, &Shell)| Self {
+            number: among_several.then_some(n),
+            ..Self::new(*shell, evaluator)
+        };
+        shells.map(subject).collect()
     }
 
     fn setup(&self) -> &'a Setup {
@@ -224,7 +239,19 @@ impl<'a> Subject<'a> {
     }
 
     fn satellites(&self) -> Vec<Satellite> {
-        (self.parts.satellites)(&self.shell)
+        self.numbered((self.parts.satellites)(&self.shell))
+    }
+
+    /// The satellites of the shell by the library, whatever the parts under test.
+    fn nominal_satellites(&self) -> Vec<Satellite> {
+        self.numbered(self.shell.satellites())
+    }
+
+    fn numbered(&self, mut satellites: Vec<Satellite>) -> Vec<Satellite> {
+        for satellite in &mut satellites {
+            satellite.slot.shell = self.number;
+        }
+        satellites
     }
 
     /// The model that the study propagates the design with, which is on trial.
