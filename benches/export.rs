@@ -1,18 +1,18 @@
-//! How fast every format is written and read.
+//! How fast every format is written.
 //!
 //! `cargo bench --bench export`; `DIVAN_SAMPLE_COUNT` sets the samples of each case. One thread;
 //! 24 satellites at 360 instants.
 
+mod written;
+
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
 use navwalker::exchange::export::{Choices, ExportSubject, Product, Request, export};
-use navwalker::exchange::import::Fleet;
 use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
 use navwalker::orbit::Model;
 use navwalker::time::{Epoch, TimeGrid};
 use std::io;
-use std::sync::Mutex;
 
 fn main() {
     divan::main();
@@ -132,41 +132,9 @@ fn case(name: &str) -> (Product, Choices) {
     (*product, choices)
 }
 
-/// A file that is kept.
-struct Kept<'a>(&'a Mutex<Vec<(String, Vec<u8>)>>, String, Vec<u8>);
-
-impl io::Write for Kept<'_> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.2.extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        Ok(())
-    }
-}
-
-impl Drop for Kept<'_> {
-    fn drop(&mut self) {
-        let file = (std::mem::take(&mut self.1), std::mem::take(&mut self.2));
-        self.0.lock().expect(SOUND).push(file);
-    }
-}
-
 fn files(name: &str) -> Vec<(String, Vec<u8>)> {
     let (product, choices) = case(name);
-    let kept = Mutex::new(Vec::new());
-    let sink = |path: &str| Ok(Kept(&kept, path.to_owned(), Vec::new()));
-    let request = Request {
-        subject: &subject(),
-        scene: None,
-        products: &[product],
-        choices,
-    };
-    export(&request, &sink).expect(SOUND);
-    let mut files = kept.into_inner().expect(SOUND);
-    files.retain(|(path, _)| path != "manifest.json");
-    files
+    written::files(&subject(), product, choices)
 }
 
 fn one_thread() -> rayon::ThreadPool {
@@ -193,17 +161,4 @@ fn write(bencher: Bencher, name: &str) {
             };
             pool.install(|| export(&request, &sink).expect(SOUND))
         });
-}
-
-#[divan::bench(args = names())]
-fn read(bencher: Bencher, name: &str) {
-    let files = files(name);
-    let bytes: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
-    bencher.counter(BytesCount::new(bytes)).bench_local(|| {
-        let fleets = files.iter().map(|(path, bytes)| {
-            let read = Fleet::read(bytes.as_slice(), None, Some(path)).expect(SOUND);
-            read.fleet.len()
-        });
-        fleets.sum::<usize>()
-    });
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Seeds of the fuzz targets, by the program's own writers:
+# Seeds of the fuzz targets, by the program's own writers; SEM, which it only reads, begins without any:
 #     sh fuzz/seeds.sh [path/to/navwalker]
 # A corpus that is there is kept; what the fuzzer found stays in it.
 set -eu
@@ -19,9 +19,10 @@ export_to xml --as omm,oem,stk,opm --omm-syntax xml --oem-syntax xml --frame GCR
 export_to ndm --as oem,omm --oem-syntax xml --oem-combined --omm-syntax json --time-system TAI
 export_to v3 --as omm,oem,opm,sp3,stk --omm-syntax csv --ccsds-version 3.0 --sp3-version c --frame ITRF --time-system GPS
 export_to map --as czml --set region.step-deg=90 --set gnss.constellations='[]'
+export_to almanac --as yuma --set region.step-deg=90
 export_to teme --as oem,opm,stk,sp3 --frame TEME --time-system TT --sp3-letter G
 
-for target in tle omm oem opm sp3 stk csv czml lint; do
+for target in tle omm oem opm sp3 stk csv czml yuma sem lint; do
     mkdir -p "fuzz/corpus/$target"
 done
 find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while read -r file; do
@@ -37,6 +38,7 @@ find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while
         *.e) target=stk ;;
         *.csv) target=csv ;;
         *.czml) target=czml ;;
+        *.alm) target=yuma ;;
         *) continue ;;
     esac
     cp "$file" "fuzz/corpus/$target/$name"

@@ -22,7 +22,7 @@ use navwalker::frames::{Frame, State};
 use navwalker::keyword::Keyword;
 use std::fmt::Debug;
 
-pub use sampled::sp3;
+pub use sampled::{sem, sp3, yuma};
 
 /// Writes and reads again, twice: nothing moves after the first time, which it returns.
 fn settled<T: Debug + PartialEq>(

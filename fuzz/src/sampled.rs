@@ -117,3 +117,34 @@ pub fn sp3(bytes: &[u8]) {
         same(&again, &trajectories, (1e-6, 1e-10));
     }
 }
+
+/// Almanacs: what is read propagates to finite states, or is refused with a reason.
+fn almanacs(bytes: &[u8], format: Format) {
+    let Ok(read) = Fleet::read(bytes, Some(format), None) else {
+        return;
+    };
+    let epoch = TimeSystem::Gps.epoch(Default::default());
+    let grid = TimeGrid::new(epoch, 7_200.0, 3_600.0).expect("a valid grid");
+    let Ok(ephemeris) = read.fleet.propagate(grid, Model::J2) else {
+        return;
+    };
+    for satellite in ephemeris.satellites() {
+        for t in grid.iter() {
+            let Ok(state) = ephemeris.state(satellite, t) else {
+                continue;
+            };
+            let numbers = [state.position_km.km(), state.velocity_km_s];
+            assert!(numbers.iter().flatten().all(|number| number.is_finite()));
+        }
+    }
+}
+
+/// YUMA almanacs.
+pub fn yuma(bytes: &[u8]) {
+    almanacs(bytes, Format::Yuma);
+}
+
+/// SEM almanacs.
+pub fn sem(bytes: &[u8]) {
+    almanacs(bytes, Format::Sem);
+}

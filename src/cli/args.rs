@@ -2,9 +2,11 @@
 
 mod products;
 mod run_view;
+mod satellites;
 mod scenario;
 
 pub(crate) use run_view::{PlotArgs, ReportArgs, RunArgs};
+pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
 use crate::cli::constellations::Named;
@@ -278,7 +280,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(
         long,
         value_name = "NOTATION",
-        required_unless_present = "constellation"
+        required_unless_present = "constellation",
+        conflicts_with_all = ["only", "exclude"]
     )]
     pub(crate) design: Option<Design>,
 
@@ -292,14 +295,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FORMAT", requires = "constellation")]
     pub(crate) input_format: Option<crate::exchange::lint::Format>,
 
-    /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
-    /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
-    pub(crate) only: Vec<String>,
-
-    /// Leave these satellites of the files out, named as for `--only`; may be repeated.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
-    pub(crate) exclude: Vec<String>,
+    #[command(flatten)]
+    pub(crate) satellites: SatelliteArgs,
 
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
@@ -480,6 +477,9 @@ pub(crate) struct ValidateArgs {
     /// Read the files of other programs in this format instead of the detected one.
     #[arg(long, value_name = "FORMAT")]
     pub(crate) input_format: Option<crate::exchange::lint::Format>,
+
+    #[command(flatten)]
+    pub(crate) satellites: SatelliteArgs,
 
     /// Also write the report in every format to this directory.
     #[arg(long, value_name = "DIR")]

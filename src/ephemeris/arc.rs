@@ -3,6 +3,7 @@
 //! An arc is a run of samples that may be interpolated: a segment of a message, or the samples between two gaps.
 //! Nothing is interpolated across its ends, and nothing is extrapolated.
 
+use crate::ephemeris::derivative::GAP;
 use crate::ephemeris::hermite::hermite_state;
 use crate::frames::{Frame, Position, State};
 use crate::time::Epoch;
@@ -11,6 +12,10 @@ use nalgebra::Vector3;
 /// Tolerance within which a sample is taken to be at an instant, s: 7 mm along a low orbit, and coarser than
 /// the 10 ns of SP3 and the microseconds of some programs.
 pub const SAME_INSTANT_S: f64 = 1e-6;
+
+/// Largest difference, km, in each coordinate of a position that two open arcs give at an instant they share, if they
+/// continue each other: both are rounded to the six decimals of SP3, the one format whose arcs are open.
+const SAME_POSITION_KM: f64 = 1.001e-6;
 
 /// Maximum number of nodes of a polynomial: with more equidistant nodes, rounding costs more than they gain.
 const MOST_NODES: usize = 24;
@@ -81,7 +86,8 @@ pub struct Arc {
     /// The first and last valid instants of the arc, both included; samples outside only support the
     /// interpolation.
     pub useable: (Epoch, Epoch),
-    /// Whether an arc that begins one sample interval later continues this one, as in daily SP3 files.
+    /// Whether an arc that begins at its last sample, or one sample interval later, continues this one, as in daily SP3
+    /// files.
     pub is_open: bool,
     /// The samples in time order, without repeated instants.
     pub nodes: Vec<(Epoch, State<Frame>)>,
@@ -112,33 +118,55 @@ impl Arc {
         (self.useable.0 <= self.useable.1).then_some(self)
     }
 
-    /// Appends the samples of an arc that continues this one, or returns that arc.
+    /// Whether two arcs have more than an instant in common.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let is_before = |one: Epoch, other: Epoch| other.seconds_since(one) > SAME_INSTANT_S;
+        is_before(self.useable.0, other.useable.1) && is_before(other.useable.0, self.useable.1)
+    }
+
+    /// Appends the samples of an arc that continues this one, or returns that arc. At an instant that both have, the
+    /// sample of this one is kept.
     ///
     /// # Errors
-    /// The other arc, if it does not follow at the spacing of this one.
+    /// The other arc, if it does not follow at the spacing of this one, or has another position at the instant that
+    /// they share.
     pub fn continued_by(&mut self, next: Self) -> Result<(), Self> {
-        let spacing_s = |one: Option<&(Epoch, State<Frame>)>,
-                         other: Option<&(Epoch, State<Frame>)>| {
-            Some(other?.0.seconds_since(one?.0))
+        let shared = match self.seam_km(&next) {
+            Some(apart_km) if apart_km.amax() <= SAME_POSITION_KM => 1,
+            None if self.is_followed_by(&next) => 0,
+            _ => return Err(next),
         };
-        let count = self.nodes.len();
-        let before_s = spacing_s(
-            count.checked_sub(2).map(|k| &self.nodes[k]),
-            self.nodes.last(),
-        );
-        let between_s = spacing_s(self.nodes.last(), next.nodes.first());
-        let follows = before_s
-            .zip(between_s)
-            .is_some_and(|(before_s, between_s)| {
-                between_s > SAME_INSTANT_S && between_s < 1.5 * before_s
-            });
-        let alike = (self.frame, self.interpolation) == (next.frame, next.interpolation);
-        if !(self.is_open && next.is_open && alike && follows) {
-            return Err(next);
-        }
-        self.nodes.extend(next.nodes);
+        self.nodes.extend(next.nodes.into_iter().skip(shared));
         self.useable.1 = next.useable.1;
         Ok(())
+    }
+
+    /// Position of an arc minus that of this one at the instant where this one ends and the other begins, km. `None` if
+    /// there is no such instant, or one of them cannot be continued by the other.
+    #[must_use]
+    pub fn seam_km(&self, next: &Self) -> Option<Vector3<f64>> {
+        let ((end, last), (start, first)) = (self.nodes.last()?, next.nodes.first()?);
+        let is_shared = start.seconds_since(*end).abs() <= SAME_INSTANT_S;
+        (is_shared && self.is_like(next)).then(|| first.position_km - last.position_km)
+    }
+
+    /// Whether an arc begins one sample interval after this one.
+    fn is_followed_by(&self, next: &Self) -> bool {
+        let ([.., (before, _), (end, _)], Some((start, _))) =
+            (self.nodes.as_slice(), next.nodes.first())
+        else {
+            return false;
+        };
+        let between_s = start.seconds_since(*end);
+        let most_s = GAP * end.seconds_since(*before);
+        self.is_like(next) && between_s > SAME_INSTANT_S && between_s < most_s
+    }
+
+    /// Whether both are open, and interpolate alike.
+    fn is_like(&self, next: &Self) -> bool {
+        let alike = (self.frame, self.interpolation) == (next.frame, next.interpolation);
+        alike && self.is_open && next.is_open
     }
 
     /// Whether the arc is valid at an instant.

@@ -7,21 +7,53 @@ use nalgebra::Vector3;
 /// Positions from which a velocity is derived.
 const NEIGHBOURS: usize = 9;
 
+/// An interval is a gap if it is longer than this times each of the intervals around it: records are missing.
+pub(crate) const GAP: f64 = 1.5;
+
 /// Velocities of positions at distinct instants, km/s: at each the derivative of the polynomial
-/// through the nine nearest. None for fewer than two.
+/// through the nine nearest on the same side of every gap. None for fewer than two.
 pub(crate) fn velocities<F>(positions: &[(Epoch, Position<F>)]) -> Option<Vec<Vector3<f64>>> {
     if positions.len() < 2 {
         return None;
     }
-    let count = positions.len().min(NEIGHBOURS);
-    let derivative = |at: usize| {
-        let from = at.saturating_sub(count / 2).min(positions.len() - count);
-        let window = &positions[from..from + count];
-        derivative_at(window, at - from)
-    };
-    let found: Vec<_> = (0..positions.len()).map(derivative).collect();
+    let mut found = Vec::with_capacity(positions.len());
+    for run in runs(positions) {
+        let count = run.len().min(NEIGHBOURS);
+        found.extend((0..run.len()).map(|at| {
+            let from = at.saturating_sub(count / 2).min(run.len() - count);
+            derivative_at(&run[from..from + count], at - from)
+        }));
+    }
     let all_finite = found.iter().flat_map(Vector3::iter).all(|x| x.is_finite());
     all_finite.then_some(found)
+}
+
+/// The positions between gaps, at least two each.
+///
+/// The spacing may change along the file, so an interval is compared with those that share a polynomial with it. The
+/// first and the last are no gaps: they would leave a position alone.
+fn runs<F>(positions: &[(Epoch, Position<F>)]) -> Vec<&[(Epoch, Position<F>)]> {
+    let intervals_s: Vec<f64> = positions
+        .windows(2)
+        .map(|pair| pair[1].0.seconds_since(pair[0].0))
+        .collect();
+    let reach = NEIGHBOURS / 2;
+    let is_gap = |k: usize| {
+        let before = &intervals_s[k.saturating_sub(reach)..k];
+        let after = &intervals_s[k + 1..(k + 1 + reach).min(intervals_s.len())];
+        let longest_s = before.iter().chain(after).copied().fold(0.0, f64::max);
+        intervals_s[k] > GAP * longest_s
+    };
+    let mut found = Vec::new();
+    let mut rest_from = 0;
+    for k in 1..intervals_s.len().saturating_sub(1) {
+        if is_gap(k) {
+            found.push(&positions[rest_from..=k]);
+            rest_from = k + 1;
+        }
+    }
+    found.push(&positions[rest_from..]);
+    found
 }
 
 /// Smallest difference of a velocity from the derivative of the positions that is reported, km/s: above the

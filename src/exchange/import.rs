@@ -31,8 +31,8 @@ use crate::formats::trajectory::{
 };
 use crate::formats::yuma::Almanac;
 use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
-use crate::frames::{Frame, Position, State};
-use crate::time::Epoch;
+use crate::frames::{Frame, State};
+use nalgebra::Vector3;
 use std::io::{self, BufRead};
 use thiserror::Error;
 
@@ -150,7 +150,7 @@ impl Fleet {
             Format::OmmCsv => omm(input, OmmSyntax::Csv, findings),
             Format::Oem => Self::of_oem(&[oem::read(input)?]),
             Format::Opm => Self::of_opm(opm::read(input)?),
-            Format::Sp3 => Self::of_sp3(sp3::read(input)?),
+            Format::Sp3 => Self::of_sp3(whole(findings, |findings| sp3::parse(input, findings))?),
             Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
             Format::ElementsCsv => Ok(Self::Elements(csv::read_elements(input)?)),
             Format::Czml => Ok(Self::Sampled(whole(findings, |findings| {
@@ -222,14 +222,13 @@ impl Fleet {
         let given = file.ids.iter().zip(&file.states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
             let name = file.name_of(id).unwrap_or(id);
-            let states = sp3_states(samples)
-                .ok_or_else(|| ReadFleetError::NoVelocity { name: id.clone() })?;
-            let most_s = file.step_s.map_or(f64::INFINITY, |step_s| 1.5 * step_s);
+            let arcs = file.runs(samples).map(|run| sp3_arc(frame, run));
+            let arcs = arcs.collect::<Option<Vec<Arc>>>();
             trajectories.push(Trajectory {
                 name: name.to_owned(),
                 // Ids start again in each file: across files only names distinguish satellites.
                 id: name.to_owned(),
-                arcs: arcs_without_gaps(frame, states, most_s),
+                arcs: arcs.ok_or_else(|| ReadFleetError::NoVelocity { name: id.clone() })?,
             });
         }
         Ok(Self::Sampled(trajectories))
@@ -360,34 +359,28 @@ fn all<T>(
     }
 }
 
-/// The states of an SP3 file; velocities that are not given for all follow from the positions.
-fn sp3_states(samples: &[sp3::Sp3Sample]) -> Option<Vec<(Epoch, State<Frame>)>> {
-    let positions: Vec<(Epoch, Position<Frame>)> =
-        samples.iter().map(|s| (s.at, s.position_km)).collect();
-    let given: Option<Vec<_>> = samples.iter().map(|s| s.velocity_km_s).collect();
-    let velocities = given.or_else(|| velocities(&positions))?;
-    let state = |((at, position_km), velocity_km_s)| {
-        let state = State {
-            position_km,
-            velocity_km_s,
-        };
-        (at, state)
+/// The arc of a run without gaps; velocities that are not given follow from the positions of the run.
+fn sp3_arc(frame: Frame, run: &[sp3::Sp3Sample]) -> Option<Arc> {
+    let derived = match run.iter().all(|sample| sample.velocity_km_s.is_some()) {
+        true => vec![Vector3::zeros(); run.len()],
+        false => {
+            let positions: Vec<_> = run.iter().map(|s| (s.at, s.position_km)).collect();
+            velocities(&positions)?
+        }
     };
-    Some(positions.into_iter().zip(velocities).map(state).collect())
-}
-
-/// One arc for each run of states that lie at most `most_s` seconds apart.
-fn arcs_without_gaps(frame: Frame, states: Vec<(Epoch, State<Frame>)>, most_s: f64) -> Vec<Arc> {
-    let mut arcs = Vec::new();
-    let follow = |one: &(Epoch, _), other: &(Epoch, _)| other.0.seconds_since(one.0) <= most_s;
-    for run in states.chunk_by(follow) {
-        let arc = Arc::new(frame, SP3_INTERPOLATION, run.to_vec());
-        arcs.extend(arc.map(|arc| Arc {
-            is_open: true,
-            ..arc
-        }));
-    }
-    arcs
+    let state = |(sample, derived): (&sp3::Sp3Sample, Vector3<f64>)| {
+        let state = State {
+            position_km: sample.position_km,
+            velocity_km_s: sample.velocity_km_s.unwrap_or(derived),
+        };
+        (sample.at, state)
+    };
+    let states = run.iter().zip(derived).map(state).collect();
+    let arc = Arc::new(frame, SP3_INTERPOLATION, states)?;
+    Some(Arc {
+        is_open: true,
+        ..arc
+    })
 }
 
 /// The name of a file without its directory and its last extension.

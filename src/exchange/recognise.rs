@@ -76,7 +76,12 @@ pub fn recognise<'a>(
 /// # Errors
 /// A failure of the input.
 pub fn unpacked<'a>(mut input: impl BufRead + 'a) -> io::Result<Box<dyn BufRead + 'a>> {
-    let is_gzip = input.fill_buf()?.starts_with(&gzip::MAGIC);
+    // A pipe may hold the first byte alone.
+    let mut start = Vec::with_capacity(gzip::MAGIC.len());
+    let wanted = gzip::MAGIC.len() as u64;
+    input.by_ref().take(wanted).read_to_end(&mut start)?;
+    let is_gzip = start == gzip::MAGIC;
+    let input = Cursor::new(start).chain(input);
     Ok(match is_gzip {
         true => Box::new(BufReader::new(gzip::Unpacked::new(input))),
         false => Box::new(input),

@@ -11,6 +11,7 @@ pub use read::{parse, read};
 
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::EphemerisSatellite;
+use crate::ephemeris::derivative::GAP;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::{Metadata, Object};
@@ -357,6 +358,15 @@ pub struct Sp3 {
 }
 
 impl Sp3 {
+    /// The samples of a satellite between gaps: at the spacing of the epochs, which is the nominal step.
+    pub(crate) fn runs<'a>(
+        &self,
+        samples: &'a [Sp3Sample],
+    ) -> impl Iterator<Item = &'a [Sp3Sample]> + use<'a> {
+        let most_s = self.step_s.map_or(f64::INFINITY, |step_s| GAP * step_s);
+        samples.chunk_by(move |one, other| other.at.seconds_since(one.at) <= most_s)
+    }
+
     /// The name that a comment `L01 = NAME` gives to an id, as SP3-d files of this program have it for
     /// every satellite.
     #[must_use]

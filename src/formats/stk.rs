@@ -20,6 +20,7 @@ use crate::frames::{Frame, State};
 use crate::time::Epoch;
 use chrono::{Datelike, NaiveDateTime, Timelike};
 use std::io::{self, Write};
+use std::ops::Range;
 
 /// Version of the format that is written.
 pub const FORMAT_VERSION: &str = "12.0";
@@ -93,30 +94,39 @@ impl StkEphemeris {
             Some(StkInterpolation::Hermite) => Interpolation::Hermite(2 * samples_m1 + 1),
             _ => Interpolation::Lagrange(samples_m1),
         };
-        let mut arcs = Vec::new();
-        let mut nodes: Vec<(Epoch, State<Frame>)> = Vec::new();
-        let mut close = |nodes: Vec<_>| arcs.extend(Arc::new(self.frame, interpolation, nodes));
-        for (k, (elapsed_s, state)) in self.states.iter().enumerate() {
-            let node = (epoch.plus_seconds(*elapsed_s), *state);
-            nodes.push(node);
-            let next_s = self.states.get(k + 1).map(|(next_s, _)| *next_s);
-            let at_boundary = is_boundary(&self.boundaries_s, *elapsed_s) && nodes.len() > 1;
-            let before_boundary = next_s.is_some_and(|next_s| {
-                let between =
-                    |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
-                self.boundaries_s.iter().any(between)
-            });
-            if at_boundary || before_boundary {
-                close(std::mem::take(&mut nodes));
-            }
-            // A boundary of one row belongs to both sides; of two, each side has its own.
-            if at_boundary && next_s.is_some_and(|next_s| next_s > *elapsed_s) {
-                nodes.push(node);
-            }
-        }
-        close(nodes);
-        arcs
+        let node =
+            |(elapsed_s, state): &(f64, State<Frame>)| (epoch.plus_seconds(*elapsed_s), *state);
+        segments(&self.states, &self.boundaries_s)
+            .into_iter()
+            .filter_map(|rows| {
+                let nodes = self.states[rows].iter().map(node).collect();
+                Arc::new(self.frame, interpolation, nodes)
+            })
+            .collect()
     }
+}
+
+/// The rows of each segment. A boundary of one row belongs to both sides; of two, each side has its own.
+fn segments(states: &[(f64, State<Frame>)], boundaries_s: &[f64]) -> Vec<Range<usize>> {
+    let mut found = Vec::new();
+    let mut from = 0;
+    for (k, (elapsed_s, _)) in states.iter().enumerate() {
+        let next_s = states.get(k + 1).map(|(next_s, _)| *next_s);
+        let at_boundary = is_boundary(boundaries_s, *elapsed_s) && k > from;
+        let before_boundary = next_s.is_some_and(|next_s| {
+            let between = |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
+            boundaries_s.iter().any(between)
+        });
+        if at_boundary || before_boundary {
+            found.push(from..k + 1);
+            let is_shared = at_boundary && next_s.is_some_and(|next_s| next_s > *elapsed_s);
+            from = if is_shared { k } else { k + 1 };
+        }
+    }
+    if from < states.len() {
+        found.push(from..states.len());
+    }
+    found
 }
 
 /// Writes the states of one satellite on the grid of its ephemeris, line by line.

@@ -1,6 +1,6 @@
 //! A satellite's states as a file gives them, in the library's own terms.
 
-use crate::ephemeris::arc::{Arc, Interpolation};
+use crate::ephemeris::arc::{Arc, Interpolation, SAME_INSTANT_S};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::{Frame, State};
 use crate::keyword::{Keyword, UnknownKeyword};
@@ -41,10 +41,11 @@ impl Trajectory {
         for arc in &self.arcs {
             samples.extend(arc.samples().map(|(at, state)| (*at, arc.frame, *state)));
         }
-        if !samples.is_sorted_by(|one, other| one.0 < other.0) {
+        let is_after = |one: Epoch, other: Epoch| other.seconds_since(one) > SAME_INSTANT_S;
+        if !samples.is_sorted_by(|one, other| is_after(one.0, other.0)) {
             // The sort is stable.
             samples.sort_by_key(|(at, ..)| *at);
-            samples.dedup_by_key(|(at, ..)| *at);
+            samples.dedup_by(|next, one| !is_after(one.0, next.0));
         }
         samples
     }

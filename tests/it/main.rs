@@ -9,6 +9,7 @@ mod gallery;
 mod interchange;
 mod look;
 mod names;
+mod readers;
 mod reference;
 mod runs;
 mod scenes;

@@ -7,7 +7,6 @@ use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
-use crate::exchange::import::SatelliteFilter;
 use crate::report::{
     Align, ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult, Table,
     constellation_csv, dops_csv, metrics_csv, records_csv, shown,
@@ -92,11 +91,7 @@ fn run_constellation(
     series: Option<&StagedDirectory>,
 ) -> Result<()> {
     let (formats, mut fleet) = read_constellation::read(&args.constellation, args.input_format)?;
-    let filter = SatelliteFilter {
-        only: args.only.clone(),
-        exclude: args.exclude.clone(),
-    };
-    fleet.choose(&filter)?;
+    fleet.choose(&args.satellites.filter())?;
     let evaluator = study.evaluator()?;
     let setup = evaluator.setup();
     let name = |path: &PathBuf| {

@@ -5,6 +5,7 @@ use crate::cli::study::{Study, study_and_design};
 use crate::cli::{Status, coincidence, files, output, read_constellation};
 use crate::constellation::shell_letters;
 use crate::ephemeris::Ephemeris;
+use crate::exchange::import::Fleet;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
@@ -146,32 +147,80 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
     Ok(target.each().filter(applies).collect())
 }
 
-/// The comparisons for a path: a file, the formats of an export, or all files in a directory.
-fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<Comparand>)>> {
-    let read_all = |path: &Path| -> Result<Vec<Comparand>> {
-        let mut all = Vec::new();
-        for (file, imported) in read_constellation::read_each(path, format)? {
-            all.extend(comparands(&file.to_string_lossy(), imported.fleet)?);
-        }
-        if all.is_empty() {
+/// Files that are compared together, and their satellites.
+struct Source {
+    name: String,
+    files: Vec<(PathBuf, Fleet)>,
+}
+
+impl Source {
+    fn read(name: String, path: &Path, format: Option<Format>) -> Result<Self> {
+        let read = read_constellation::read_each(path, format)?.into_iter();
+        let files: Vec<_> = read
+            .map(|(file, imported)| (file, imported.fleet))
+            .collect();
+        if files.iter().all(|(_, fleet)| fleet.is_empty()) {
             bail!("{} has no objects", path.display());
         }
+        Ok(Self { name, files })
+    }
+
+    fn comparands(&self) -> Result<Vec<Comparand>> {
+        let mut all = Vec::new();
+        for (file, fleet) in &self.files {
+            all.extend(comparands(&file.to_string_lossy(), fleet.clone())?);
+        }
         Ok(all)
-    };
+    }
+}
+
+/// The sources of each target that is files, with the satellites that are selected.
+fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<Source>>> {
+    let paths = targets.iter().filter_map(Against::path);
+    let mut found = paths
+        .map(|path| comparisons(path, args.input_format))
+        .collect::<Result<Vec<_>>>()?;
+    let filter = args.satellites.filter();
+    if filter.is_empty() {
+        return Ok(found);
+    }
+    if found.is_empty() {
+        bail!("--only and --exclude select satellites of files, and --against names no file");
+    }
+    let files = found
+        .iter_mut()
+        .flatten()
+        .flat_map(|source| &mut source.files);
+    let mut fleets: Vec<&mut Fleet> = files.map(|(_, fleet)| fleet).collect();
+    filter.keep(&mut fleets)?;
+    for sources in &mut found {
+        sources.retain(|source| {
+            let is_left = source.files.iter().any(|(_, fleet)| !fleet.is_empty());
+            if !is_left {
+                output::warning(&format!(
+                    "{}: none of its satellites is selected",
+                    source.name
+                ));
+            }
+            is_left
+        });
+    }
+    Ok(found)
+}
+
+/// The comparisons for a path: a file, the formats of an export, or all files in a directory.
+fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = name.to_string_lossy().into_owned();
-    if !path.is_dir() {
-        return Ok(vec![(name, read_all(path)?)]);
-    }
     let manifest = path.join(FILE_NAME);
-    if !manifest.exists() {
-        return Ok(vec![(name, read_all(path)?)]);
+    if !path.is_dir() || !manifest.exists() {
+        return Ok(vec![Source::read(name, path, format)?]);
     }
     let bytes =
         fs::read(&manifest).with_context(|| format!("cannot read {}", manifest.display()))?;
     let manifest = Manifest::read(bytes.as_slice())
         .with_context(|| format!("{} is not an export manifest", manifest.display()))?;
-    let mut by_format: BTreeMap<String, Vec<Comparand>> = BTreeMap::new();
+    let mut by_format: BTreeMap<String, Vec<(PathBuf, Fleet)>> = BTreeMap::new();
     for file in manifest.files {
         if file.is_of_design() && COMPARED.contains(&file.format.as_str()) {
             if !is_inside(&file.path) {
@@ -181,8 +230,8 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
                     file.path
                 );
             }
-            let found = read_all(&path.join(&file.path))?;
-            by_format.entry(file.format).or_default().extend(found);
+            let found = Source::read(file.format, &path.join(&file.path), format)?;
+            by_format.entry(found.name).or_default().extend(found.files);
         }
     }
     if by_format.is_empty() {
@@ -192,7 +241,8 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<(String, Vec<C
             COMPARED.join(", ")
         );
     }
-    Ok(by_format.into_iter().collect())
+    let source = |(name, files)| Source { name, files };
+    Ok(by_format.into_iter().map(source).collect())
 }
 
 /// Whether a path of a manifest stays in its directory.

@@ -2,7 +2,6 @@
 
 use super::Fleet;
 use crate::constellation::identity::{ObjectIdentity, unique_labels};
-use crate::ephemeris::arc::Arc;
 use crate::formats::trajectory::Trajectory;
 use crate::keyword::nearest;
 use thiserror::Error;
@@ -32,10 +31,8 @@ pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
 
 /// Whether the arcs of two satellites overlap by more than an instant.
 fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
-    let both =
-        |arc: &Arc, next: &Arc| arc.useable.1 > next.useable.0 && next.useable.1 > arc.useable.0;
     let mut arcs = one.arcs.iter();
-    arcs.any(|arc| other.arcs.iter().any(|next| both(arc, next)))
+    arcs.any(|arc| other.arcs.iter().any(|next| arc.overlaps(next)))
 }
 
 /// Merges arcs into those of the same satellite; at an instant that two share, the earlier arc's state is used.
@@ -78,11 +75,7 @@ impl Fleet {
     /// # Errors
     /// If a pattern matches none, or no satellite is left.
     pub fn choose(&mut self, filter: &SatelliteFilter) -> Result<(), NoSuchSatellite> {
-        let mut kept = filter
-            .choose(&self.identities(), &self.labels())?
-            .into_iter();
-        self.retain(&mut || kept.next().unwrap_or(false));
-        Ok(())
+        filter.keep(&mut [self])
     }
 
     fn retain(&mut self, keep: &mut dyn FnMut() -> bool) {
@@ -134,6 +127,23 @@ impl SatelliteFilter {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.only.is_empty() && self.exclude.is_empty()
+    }
+
+    /// Keeps the satellites of several fleets that are selected; each pattern must match in one of them.
+    ///
+    /// # Errors
+    /// If a pattern matches none, or no satellite is left.
+    pub fn keep(&self, fleets: &mut [&mut Fleet]) -> Result<(), NoSuchSatellite> {
+        if self.is_empty() {
+            return Ok(());
+        }
+        let identities: Vec<_> = fleets.iter().flat_map(|fleet| fleet.identities()).collect();
+        let labels = unique_labels(&identities);
+        let mut kept = self.choose(&identities, &labels)?.into_iter();
+        for fleet in fleets {
+            fleet.retain(&mut || kept.next().unwrap_or(false));
+        }
+        Ok(())
     }
 
     /// Whether each satellite is selected.

@@ -37,6 +37,17 @@ pub enum SamplingNote {
         /// Its largest error with every other state omitted, km; `None` if there are too few states.
         left_out_error_km: Option<f64>,
     },
+    /// Arcs that end and begin at one instant with different positions, as the files of two days may.
+    Seams {
+        /// Number of satellites with such arcs.
+        satellites: usize,
+        /// The satellite with the largest difference.
+        worst: String,
+        /// The instant of that difference.
+        at: Epoch,
+        /// That difference, km.
+        apart_km: f64,
+    },
 }
 
 impl fmt::Display for SamplingNote {
@@ -79,6 +90,18 @@ impl fmt::Display for SamplingNote {
                     None => write!(f, "{worst} has too few states to estimate the error"),
                 }
             }
+            Self::Seams {
+                satellites,
+                worst,
+                at,
+                apart_km,
+            } => write!(
+                f,
+                "the positions of {} differ at the instant that two files share, most by {} ({worst} at {at}): \
+                 states are not interpolated across it",
+                counted(*satellites, "satellite"),
+                length(*apart_km)
+            ),
         }
     }
 }
@@ -96,13 +119,14 @@ fn length(km: f64) -> String {
 }
 
 impl Fleet {
-    /// Notes on sampled satellites on a grid: gaps, once per satellite, and the interpolation.
+    /// Notes on sampled satellites on a grid: files that do not continue each other, gaps, once per satellite, and the
+    /// interpolation.
     #[must_use]
     pub fn sampling_notes(&self, grid: TimeGrid) -> Vec<SamplingNote> {
         let labels = self.labels();
         let mut sampled = Vec::new();
         self.collect_sampled(&mut labels.iter(), &mut sampled);
-        let mut notes = Vec::new();
+        let mut notes = Vec::from_iter(seams(&sampled, grid));
         let mut interpolated: Vec<(&Trajectory, &String)> = Vec::new();
         for (trajectory, label) in sampled {
             let look = Coverage::of(trajectory, grid);
@@ -174,6 +198,35 @@ impl Coverage {
             last,
         })
     }
+}
+
+/// The arcs that would be one if they had the same position at the instant that they share.
+fn seams(sampled: &[(&Trajectory, &String)], grid: TimeGrid) -> Option<SamplingNote> {
+    let last = grid.epoch().plus_seconds(grid.elapsed_s(grid.len() - 1));
+    let largest = |trajectory: &Trajectory| {
+        let pairs = trajectory.arcs.windows(2);
+        let found = pairs.filter_map(|pair| {
+            let at = pair[0].useable.1;
+            let apart_km = pair[0].seam_km(&pair[1])?.norm();
+            (grid.epoch() <= at && at <= last).then_some((at, apart_km))
+        });
+        found.reduce(|one, other| if other.1 > one.1 { other } else { one })
+    };
+    let found = sampled.iter().filter_map(|(trajectory, label)| {
+        let (at, apart_km) = largest(trajectory)?;
+        Some((1, *label, at, apart_km))
+    });
+    let (satellites, worst, at, apart_km) = found.reduce(|one, other| {
+        let count = one.0 + other.0;
+        let (_, label, at, apart_km) = if other.3 > one.3 { other } else { one };
+        (count, label, at, apart_km)
+    })?;
+    Some(SamplingNote::Seams {
+        satellites,
+        worst: worst.clone(),
+        at,
+        apart_km,
+    })
 }
 
 fn worst(interpolated: &[(&Trajectory, &String)]) -> Option<SamplingNote> {

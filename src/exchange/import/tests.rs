@@ -5,6 +5,7 @@ use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::Trajectory;
+use crate::frames::Position;
 use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
@@ -207,4 +208,120 @@ fn velocities_follow_from_positions() {
         .unwrap()
         .fleet;
     assert!(apart_km(&fleet.propagate(grid(), Model::J2).unwrap()) < 1e-6);
+}
+
+/// Positions of a satellite at every minute of an hour but for half an hour without records, in each format that may
+/// leave velocities out.
+fn positions_with_a_gap() -> Vec<(&'static str, String)> {
+    let lost = 15..45;
+    let files = exported(&[Product::Sp3], Choices::default());
+    let mut epoch = 0;
+    let mut sp3 = String::new();
+    for line in std::str::from_utf8(&files["sp3/part-01.sp3"])
+        .unwrap()
+        .lines()
+    {
+        epoch += usize::from(line.starts_with("* "));
+        let is_lost = epoch > 0 && lost.contains(&(epoch - 1)) && line.starts_with("PL01");
+        match is_lost {
+            _ if line.starts_with('V') => {}
+            true => sp3 += &format!("PL01{} 999999.999999\n", format!("{:14.6}", 0.0).repeat(3)),
+            false => sp3 += &format!("{line}\n"),
+        }
+    }
+    let truth = Ephemeris::of_design(&design(), Model::J2, grid()).unwrap();
+    let kept = (0..60).filter(|k| !lost.contains(k)).map(|k| {
+        let t = grid().elapsed_s(k);
+        let state = truth.state(&truth.satellites()[0], t).unwrap();
+        (t, state.position_km.km() * 1e3)
+    });
+    let kept: Vec<_> = kept.collect();
+    let rows = kept
+        .iter()
+        .map(|(t, r)| format!("{t} {} {} {}\n", r.x, r.y, r.z));
+    let stk = format!(
+        "stk.v.11.0\nBEGIN Ephemeris\nScenarioEpoch 01 Jan 2025 00:00:00\nCoordinateSystem TEMEOfDate\n\
+         EphemerisTimePos\n{}END Ephemeris\n",
+        rows.collect::<String>()
+    );
+    let fixed = crate::ephemeris::sampled::Sampled::new(&truth, Frame::EarthFixed);
+    let numbers = kept.iter().map(|(t, _)| {
+        let k = (t / 60.0) as usize;
+        let r = fixed
+            .state_at(&truth.satellites()[0], k)
+            .unwrap()
+            .position_km
+            .km()
+            * 1e3;
+        format!("{t},{},{},{}", r.x, r.y, r.z)
+    });
+    let czml = format!(
+        "[{{\"id\":\"document\",\"version\":\"1.0\"}},{{\"id\":\"A\",\"position\":{{\
+         \"epoch\":\"2025-01-01T00:00:00Z\",\"interpolationAlgorithm\":\"LAGRANGE\",\
+         \"interpolationDegree\":7,\"cartesian\":[{}]}}}}]",
+        numbers.collect::<Vec<_>>().join(",")
+    );
+    vec![("sp3", sp3), ("stk", stk), ("czml", czml)]
+}
+
+/// The velocities at the edges of a gap come from their own side of it: across half an hour without records the polynomial
+/// would be off by kilometres per second.
+#[test]
+fn velocities_are_not_derived_across_a_gap() {
+    let truth = Ephemeris::of_design(&design(), Model::J2, grid()).unwrap();
+    for (format, text) in positions_with_a_gap() {
+        let fleet = Fleet::read(text.as_bytes(), None, None).unwrap().fleet;
+        let Fleet::Sampled(trajectories) = &fleet else {
+            panic!("{format}: {}", fleet.content())
+        };
+        let samples = trajectories[0].samples();
+        assert_eq!(samples.len(), 30, "{format}");
+        for (at, frame, state) in samples {
+            let t = at.seconds_since(grid().epoch());
+            let expected = truth.state(&truth.satellites()[0], t).unwrap();
+            let expected = crate::frames::from_teme(expected, frame, grid().epoch(), t);
+            let apart = (state.velocity_km_s - expected.velocity_km_s).norm();
+            // Half a micrometre of SP3 in each of three coordinates, times the sum of the one-sided weights, 78/60 s.
+            assert!(apart < 1.2e-6, "{format} at {t} s: {apart} km/s");
+        }
+    }
+}
+
+/// A position between two gaps has no velocity: it is left out by name, in lint as in the reader.
+#[test]
+fn a_lone_position_without_velocity_is_left_out_by_name() {
+    let (_, text) = positions_with_a_gap().swap_remove(0);
+    let zeros = format!("PL01{} 999999.999999\n", format!("{:14.6}", 0.0).repeat(3));
+    let lone = format!("PL01{:14.6}{}", 7303.0, &zeros[18..]);
+    let second = text.match_indices(&zeros).nth(10).unwrap().0;
+    let text = format!("{}{lone}{}", &text[..second], &text[second + zeros.len()..]);
+    let read = Fleet::read(text.as_bytes(), None, None).unwrap();
+    assert_eq!(
+        read.left_out.to_string(),
+        "left out: 1 (lone position without velocity: L01 at 2025-01-01T00:25:00Z)"
+    );
+    assert_eq!(read.fleet.len(), 6);
+    let findings = crate::exchange::lint::lint(text.as_bytes(), None, None, 10)
+        .unwrap()
+        .findings;
+    assert_eq!(findings.len(), 1, "{findings:?}");
+    assert_eq!(findings[0].rule, "left-out");
+    // One epoch alone: nothing is left to read.
+    let epoch = "*  2025  1  1  0  1 18.00000000";
+    let first = &text[..text.find(epoch).unwrap()];
+    let first = format!(
+        "{}EOF\n",
+        first.replacen("     60 ORBIT", "      1 ORBIT", 1)
+    );
+    let found = crate::exchange::lint::lint(first.as_bytes(), None, None, 100)
+        .unwrap()
+        .findings;
+    assert_eq!(found.last().unwrap().rule, "sp3-velocity", "{found:?}");
+    let error = Fleet::read(first.as_bytes(), None, None)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("too few positions to derive them"),
+        "{error}"
+    );
 }

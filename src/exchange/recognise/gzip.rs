@@ -1,6 +1,6 @@
 //! Gzip decompression with a size limit and clear errors for damaged data.
 
-use flate2::bufread::MultiGzDecoder;
+use flate2::bufread::GzDecoder;
 use std::io::{self, BufRead, Read};
 
 /// Signature of gzip data (RFC 1952, 2.3.1).
@@ -13,17 +13,24 @@ const FREE: u64 = 1 << 26;
 /// exhaust memory by a factor of 1000.
 const MOST_FOLD: u64 = 200;
 
-/// The decompressed bytes of gzip data.
+/// The decompressed bytes of gzip data: of all members, one after the other (RFC 1952, 2.2), up to zeros that fill the
+/// last block of a tape or an archive, which gzip(1) ignores too.
 pub(super) struct Unpacked<R> {
-    decoder: MultiGzDecoder<Counted<R>>,
+    member: Member<R>,
     unpacked: u64,
+}
+
+/// The input, in the middle of a member or behind the last one.
+enum Member<R> {
+    Open(Box<GzDecoder<Counted<R>>>),
+    Ended,
 }
 
 impl<R: BufRead> Unpacked<R> {
     pub(super) fn new(input: R) -> Self {
         let counted = Counted { input, taken: 0 };
         Self {
-            decoder: MultiGzDecoder::new(counted),
+            member: Member::Open(Box::new(GzDecoder::new(counted))),
             unpacked: 0,
         }
     }
@@ -31,27 +38,66 @@ impl<R: BufRead> Unpacked<R> {
 
 impl<R: BufRead> Read for Unpacked<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let damaged =
-            |message: &str| io::Error::new(io::ErrorKind::InvalidData, message.to_owned());
-        let count = self
-            .decoder
-            .read(buffer)
-            .map_err(|error| match error.kind() {
-                io::ErrorKind::UnexpectedEof => damaged("the gzip data are truncated"),
-                io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
-                    damaged("the gzip data are damaged")
-                }
-                _ => error,
-            })?;
-        self.unpacked += count as u64;
-        if self.unpacked > FREE + MOST_FOLD * self.decoder.get_ref().taken {
-            let message = format!(
-                "the gzip data decompress to more than {MOST_FOLD} times their size, which no constellation file does"
-            );
-            return Err(damaged(&message));
+        if buffer.is_empty() {
+            return Ok(0);
         }
-        Ok(count)
+        while let Member::Open(decoder) = &mut self.member {
+            let count = decoder.read(buffer).map_err(explained)?;
+            if count > 0 {
+                self.unpacked += count as u64;
+                return match self.unpacked > FREE + MOST_FOLD * decoder.get_ref().taken {
+                    true => Err(damaged(format!(
+                        "the gzip data decompress to more than {MOST_FOLD} times their size, which no constellation file does"
+                    ))),
+                    false => Ok(count),
+                };
+            }
+            if let Member::Open(decoder) = std::mem::replace(&mut self.member, Member::Ended) {
+                self.member = after(decoder.into_inner())?;
+            }
+        }
+        Ok(0)
     }
+}
+
+/// The member that follows one, if any.
+fn after<R: BufRead>(mut input: Counted<R>) -> io::Result<Member<R>> {
+    let mut padding = 0_u64;
+    loop {
+        let available = input.fill_buf()?;
+        match available.first() {
+            None => return Ok(Member::Ended),
+            Some(first) if *first == MAGIC[0] && padding == 0 => {
+                return Ok(Member::Open(Box::new(GzDecoder::new(input))));
+            }
+            Some(0) => {
+                let zeros = available.iter().take_while(|byte| **byte == 0).count();
+                padding += zeros as u64;
+                input.consume(zeros);
+            }
+            Some(_) => {
+                let at = input.taken + 1;
+                return Err(damaged(format!(
+                    "byte {at} follows the end of the gzip data, and is not the beginning of more"
+                )));
+            }
+        }
+    }
+}
+
+/// An error of the decoder in our words.
+fn explained(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::UnexpectedEof => damaged("the gzip data are truncated"),
+        io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData => {
+            damaged("the gzip data are damaged")
+        }
+        _ => error,
+    }
+}
+
+fn damaged(message: impl Into<String>) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidData, message.into())
 }
 
 /// An input that counts the bytes read from it.

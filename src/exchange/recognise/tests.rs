@@ -197,3 +197,37 @@ fn damaged_gzip_is_told() {
     let error = read(&bomb).unwrap_err().to_string();
     assert!(error.contains("more than 200 times their size"), "{error}");
 }
+
+/// Members one after the other are one file, zeros behind the last one are padding, and anything else is told with its
+/// place, whatever the size of the pieces in which the input comes.
+#[test]
+fn what_follows_gzip_data_is_read_padding_or_told() {
+    let (_, tle) = exported()
+        .into_iter()
+        .find(|(path, _)| path.ends_with(".tle"))
+        .unwrap();
+    let cut = 1 + tle.iter().position(|byte| *byte == b'\n').unwrap();
+    let members = [packed(&tle[..cut]), packed(b""), packed(&tle[cut..])].concat();
+    let read = |bytes: &[u8], capacity: usize| {
+        let input = BufReader::with_capacity(capacity, bytes);
+        let read = Fleet::read(input, None, Some("a.tle.gz"));
+        read.map(|read| read.fleet.len())
+            .map_err(|error| error.to_string())
+    };
+    for capacity in [1, 7, 4096] {
+        for padding in [0, 1, 511, 10_000] {
+            let padded = [&members[..], &vec![0; padding]].concat();
+            assert_eq!(read(&padded, capacity), Ok(4), "{capacity} {padding}");
+        }
+        for (behind, place) in [(&b"end"[..], 1), (b"\0\0x", 3), (b"\0\x1f\x8b", 2)] {
+            let error = read(&[&members[..], behind].concat(), capacity).unwrap_err();
+            let expected = format!(
+                "byte {} follows the end of the gzip data, and is not the beginning of more",
+                members.len() + place
+            );
+            assert_eq!(error, expected);
+        }
+        let error = read(&[&members[..], b"\x1f\x8b\x08"].concat(), capacity).unwrap_err();
+        assert_eq!(error, "the gzip data are truncated");
+    }
+}

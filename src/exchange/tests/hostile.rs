@@ -25,6 +25,13 @@ fn findings(format: Format, bytes: &[u8]) -> Vec<Finding> {
         // A reader stops at its first error; a linter may find an earlier line wrong later on.
         assert!(refused.starts_with("line "), "{format}: {first}; {refused}");
     }
+    if report.findings.is_empty() {
+        let read = Fleet::read(bytes, Some(format), None);
+        assert!(
+            read.is_ok(),
+            "{format}: refused, and lint finds nothing: {read:?}"
+        );
+    }
     report.findings
 }
 

@@ -75,3 +75,59 @@ fn grid() -> TimeGrid {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     TimeGrid::new(epoch, 360.0, 90.0).unwrap()
 }
+
+/// Files that break no rule and are not read: lint says so at the keyword that is the reason.
+#[test]
+fn what_is_valid_and_not_read_is_found_by_lint() {
+    let opm = sample(Format::Opm);
+    let foreign: String = opm
+        .split_inclusive('\n')
+        .filter(|line| !line.starts_with("USER_DEFINED"))
+        .collect();
+    for (format, text, at) in [
+        (
+            Format::Oem,
+            changed(
+                &sample(Format::Oem),
+                "CENTER_NAME = EARTH",
+                "CENTER_NAME = MARS",
+            ),
+            "CENTER_NAME",
+        ),
+        (
+            Format::OemXml,
+            changed(
+                &sample(Format::OemXml),
+                "<CENTER_NAME>EARTH",
+                "<CENTER_NAME>MARS",
+            ),
+            "<CENTER_NAME",
+        ),
+        (Format::Opm, foreign, "EPOCH"),
+        (
+            Format::Opm,
+            changed(&opm, "TIME_SYSTEM = UTC", "TIME_SYSTEM = MET"),
+            "TIME_SYSTEM",
+        ),
+    ] {
+        let line = 1 + text[..text.find(&format!("\n{at}")).unwrap() + 1]
+            .matches('\n')
+            .count();
+        let line = line - usize::from(text.starts_with(at));
+        let found = findings(&text);
+        let [finding] = found.as_slice() else {
+            panic!("{format} {at}: {found:?}")
+        };
+        assert_eq!(
+            (finding.rule, finding.line, finding.severity),
+            ("unsupported", line, Severity::Warning),
+            "{format}: {finding}"
+        );
+        let keyword = at.trim_start_matches('<');
+        assert!(finding.message.starts_with(keyword), "{format}: {finding}");
+        assert!(
+            Fleet::read(text.as_bytes(), None, None).is_err(),
+            "{format} {at}"
+        );
+    }
+}

@@ -297,7 +297,7 @@ impl Sp3Parser {
         }
     }
 
-    fn end(self, number: usize, findings: &mut FindingList) -> Sp3 {
+    fn end(mut self, number: usize, findings: &mut FindingList) -> Sp3 {
         let place = (number, 1);
         if !self.any {
             findings.error(place, "sp3-first-line", "the file is empty");
@@ -330,7 +330,35 @@ impl Sp3Parser {
             findings.error(place, "sp3-count", message);
         }
         self.check_velocities(number, findings);
+        self.leave_out_lone_positions(number, findings);
         self.file
+    }
+
+    /// A position between gaps has no neighbours to derive its velocity from.
+    fn leave_out_lone_positions(&mut self, number: usize, findings: &mut FindingList) {
+        let given = |file: &Sp3| file.states.iter().any(|samples| !samples.is_empty());
+        let had_any = given(&self.file);
+        for index in 0..self.file.ids.len() {
+            let samples = std::mem::take(&mut self.file.states[index]);
+            if samples.is_empty() {
+                findings.pass_over("satellite without positions", &self.file.ids[index]);
+            }
+            let mut kept = Vec::with_capacity(samples.len());
+            for run in self.file.runs(&samples) {
+                match run {
+                    [lone] if lone.velocity_km_s.is_none() => {
+                        let name = format!("{} at {}", self.file.ids[index], lone.at);
+                        findings.leave_out((number, 1), "lone position without velocity", &name);
+                    }
+                    run => kept.extend_from_slice(run),
+                }
+            }
+            self.file.states[index] = kept;
+        }
+        if had_any && !given(&self.file) {
+            let message = "there are no velocities, and too few positions to derive them";
+            findings.error((number, 1), "sp3-velocity", message);
+        }
     }
 
     /// Velocities that are not the derivative of the positions: m/s in place of dm/s, or those of inertial

@@ -3,7 +3,7 @@
 //! Accelerations and covariances are skipped. Segment boundaries are kept, since nothing may be
 //! interpolated across them, and each may have two rows with the same time.
 
-use super::{MONTHS, StkEphemeris, StkInterpolation, is_boundary};
+use super::{MONTHS, StkEphemeris, StkInterpolation, is_boundary, segments};
 use crate::ephemeris::derivative::{velocities, velocity_fault};
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
@@ -306,23 +306,27 @@ impl StkParser {
         }
     }
 
+    /// Each segment has its own velocities; the row that two share has those of the earlier one.
     fn derive_velocities(&mut self, number: usize, findings: &mut FindingList) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
         let position = |(elapsed_s, state): &(f64, State<Frame>)| {
             (epoch.plus_seconds(*elapsed_s), state.position_km)
         };
-        let positions: Vec<_> = self.states.iter().map(position).collect();
-        match velocities(&positions) {
-            Some(velocities) => {
-                for ((_, state), velocity) in self.states.iter_mut().zip(velocities) {
-                    state.velocity_km_s = velocity;
-                }
-            }
-            None => {
+        let mut done = 0;
+        for rows in segments(&self.states, &self.boundaries_s) {
+            let positions: Vec<_> = self.states[rows.clone()].iter().map(position).collect();
+            let Some(velocities) = velocities(&positions) else {
                 let message = "the positions have no velocities and are too few to derive them";
                 findings.error((number, 1), "stk-velocity", message);
+                return;
+            };
+            let skipped = done - rows.start;
+            let derived = self.states[rows.start..rows.end].iter_mut().zip(velocities);
+            for ((_, state), velocity_km_s) in derived.skip(skipped) {
+                state.velocity_km_s = velocity_km_s;
             }
+            done = rows.end;
         }
     }
 

@@ -199,6 +199,27 @@ fn segments_are_arcs_of_their_own() {
     assert_eq!(findings(&three)[0].rule, "stk-time-order");
 }
 
+/// Positions alone: the velocities of a segment come from its own rows, on both sides of a manoeuvre.
+#[test]
+fn velocities_are_not_derived_across_a_boundary() {
+    let block = "BEGIN SegmentBoundaryTimes\n120\nEND SegmentBoundaryTimes\nEphemerisTimePos";
+    let row = |t: f64, x: f64| format!("{t} {x} 0 0\n");
+    let before = [0.0, 60.0, 120.0].map(|t| row(t, 7e6 + 100.0 * t));
+    let after = [180.0, 240.0].map(|t| row(t, 7e6 + 12_000.0 - 200.0 * (t - 120.0)));
+    let shared = row(120.0, 7e6 + 12_000.0);
+    for (boundary, count) in [("", 5), (shared.as_str(), 6)] {
+        let rows = format!("{}{boundary}{}", before.concat(), after.concat());
+        let file = read(changed(block, &rows, "").as_bytes()).unwrap();
+        assert_eq!(file.states.len(), count);
+        for (k, (_, state)) in file.states.iter().enumerate() {
+            let expected = if k < 3 { 0.1 } else { -0.2 };
+            // Both sides are straight lines: rounding of 7012 km over 60 s.
+            let apart = (state.velocity_km_s.x - expected).abs();
+            assert!(apart < 1e-13, "{boundary:?} {k}: {}", state.velocity_km_s.x);
+        }
+    }
+}
+
 #[test]
 fn the_interpolation_is_that_of_the_file() {
     for (keywords, expected) in [

@@ -166,6 +166,12 @@ impl FindingList {
         self.left_out.add(what, name);
     }
 
+    /// Records that the file breaks no rule but cannot be read here: a linter warns of it, and a reader refuses
+    /// the file.
+    pub(crate) fn unsupported(&mut self, place: (usize, usize), message: impl Into<String>) {
+        self.warning(place, "unsupported", message);
+    }
+
     /// Records that a part of the file is skipped because it is not a satellite: a linter does not warn of it,
     /// but a reader reports it at the end.
     pub(crate) fn pass_over(&mut self, what: &'static str, name: &str) {

@@ -128,4 +128,31 @@ fn days_that_follow_each_other_are_one_arc() {
     assert_eq!(arcs([day(4, true), day(0, true)]), 1);
     assert_eq!(arcs([day(0, true), day(5, true)]), 2);
     assert_eq!(arcs([day(0, false), day(4, true)]), 2);
+    // Midnight in both files: with the same position, one digit off, or two.
+    let moved = |km: f64| {
+        let mut next = day(3, true);
+        for (_, state) in &mut next.arcs[0].nodes {
+            state.position_km = state.position_km + Vector3::repeat(km);
+        }
+        next
+    };
+    assert_eq!(arcs([day(0, true), moved(0.0)]), 1);
+    assert_eq!(arcs([moved(1e-6), day(0, true)]), 1);
+    assert_eq!(arcs([day(0, true), moved(2e-6)]), 2);
+    assert_eq!(arcs([day(0, false), moved(0.0)]), 2);
+    let joined = |next: Trajectory| {
+        let mut known = vec![day(0, true)];
+        unite(&mut known, next);
+        known.remove(0)
+    };
+    assert_eq!(joined(moved(0.0)).arcs[0].nodes.len(), 7);
+    assert_eq!(joined(moved(2e-6)).samples().len(), 7);
+    // Half a microsecond earlier is the same instant, also for the overlap.
+    let mut early = moved(0.0);
+    let shift = |at: &mut Epoch| *at = at.plus_seconds(-5e-7);
+    early.arcs[0].nodes.iter_mut().for_each(|(at, _)| shift(at));
+    shift(&mut early.arcs[0].useable.0);
+    shift(&mut early.arcs[0].useable.1);
+    let early = joined(early);
+    assert_eq!((early.arcs.len(), early.samples().len()), (1, 7));
 }

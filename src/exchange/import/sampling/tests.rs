@@ -164,3 +164,55 @@ fn a_satellite_that_ends_early_has_no_state_beyond() {
             .is_err()
     );
 }
+
+/// Two days that share midnight: one arc if they have the same position then, and otherwise two with a note.
+#[test]
+fn days_that_differ_at_midnight_are_told() {
+    let sp3 = text(Product::Sp3);
+    let (head, records) = sp3.split_at(sp3.find("*  2025").unwrap());
+    let records: Vec<&str> = records
+        .trim_end()
+        .strip_suffix("EOF")
+        .unwrap()
+        .split_inclusive("\n*")
+        .collect();
+    assert_eq!(records.len(), 120);
+    let part = |from: usize, to: usize| {
+        let body = records[from..to].concat();
+        let body = body.strip_suffix('*').unwrap_or(&body);
+        let star = if from == 0 { "" } else { "*" };
+        let head = head.replacen("    120 ORBIT", &format!("{:>7} ORBIT", to - from), 1);
+        fleet(&format!("{head}{star}{body}EOF\n"))
+    };
+    let joined = |km: f64| {
+        let (mut first, mut next) = (part(0, 61), part(60, 120));
+        if let Fleet::Sampled(trajectories) = &mut next {
+            for arc in &mut trajectories[2].arcs {
+                let (_, state) = &mut arc.nodes[0];
+                state.position_km = state.position_km + nalgebra::Vector3::x() * km;
+            }
+        }
+        first.append(next);
+        first
+    };
+    let between = grid(630.0, 6_000.0, 60.0);
+    let whole = fleet(&sp3);
+    let arcs = |fleet: &Fleet| match fleet {
+        Fleet::Sampled(trajectories) => trajectories.iter().map(|one| one.arcs.len()).collect(),
+        other => vec![other.len()],
+    };
+    assert_eq!(arcs(&joined(0.0)), [1; 12]);
+    assert_eq!(joined(0.0), whole);
+    let apart = joined(2.3e-5);
+    assert_eq!(arcs(&apart).iter().sum::<usize>(), 13);
+    let notes: Vec<String> = apart
+        .sampling_notes(between)
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    let expected = "the positions of 1 satellite differ at the instant that two files share, most by 23 mm (L03 at 2025-01-01T01:00:00Z): states are not interpolated across it";
+    assert_eq!(notes.len(), 2, "{notes:?}");
+    assert_eq!(notes[0].replace("NW-P01-S03", "L03"), expected);
+    // Beyond the instants of the study nothing depends on it.
+    assert_eq!(apart.sampling_notes(grid(600.0, 1_200.0, 60.0)), []);
+}

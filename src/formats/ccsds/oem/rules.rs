@@ -94,7 +94,12 @@ impl MessageRules {
     ) {
         self.frame = None;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
-            // A valid message, but not an Earth orbit: `Segment::trajectory` refuses it.
+            // `Segment::trajectory` refuses it.
+            let message = format!(
+                "CENTER_NAME: {} is valid, but only orbits about the Earth are read",
+                metadata.center_name
+            );
+            findings.unsupported(block.place("CENTER_NAME"), message);
             return;
         }
         let frame = match frame_of_name(&metadata.ref_frame) {

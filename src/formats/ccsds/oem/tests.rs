@@ -71,7 +71,10 @@ COVARIANCE_STOP
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
     let mut findings = FindingList::of_linter(50);
     parse(text.as_ref(), &mut findings, |_| ()).unwrap();
-    findings.into_vec()
+    let found = findings.into_vec();
+    // These examples are of other orbits than those that are imported.
+    let broken = found.into_iter().filter(|one| one.rule != "unsupported");
+    broken.collect()
 }
 
 fn ephemeris(step_s: f64) -> Ephemeris {
@@ -329,7 +332,11 @@ fn blue_book_xml() -> String {
 fn findings_xml(text: impl AsRef<[u8]>) -> Vec<Finding> {
     let mut findings = FindingList::of_linter(50);
     parse_xml(text.as_ref(), &mut findings, |_| ()).unwrap();
-    findings.into_vec()
+    let found = findings.into_vec();
+    found
+        .into_iter()
+        .filter(|one| one.rule != "unsupported")
+        .collect()
 }
 
 #[test]

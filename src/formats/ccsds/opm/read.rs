@@ -5,6 +5,7 @@ use crate::formats::ReadError;
 use crate::formats::ccsds::keywords::{COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named};
 use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, Pair, item, lines};
 use crate::formats::text::finding::FindingList;
+use crate::formats::trajectory::time_system_of_name;
 use crate::frames::State;
 use crate::orbit::kepler::eccentric_anomaly;
 use crate::units::wrap_360;
@@ -150,7 +151,7 @@ fn message(
     let position = vector(["X", "Y", "Z"]);
     let velocity = vector(["X_DOT", "Y_DOT", "Z_DOT"]);
     let keplerian = keplerian(block, findings);
-    Some(Opm {
+    let message = Opm {
         header: header?,
         object_name: block.text_or_unknown("OBJECT_NAME"),
         object_id: block.text_or_unknown("OBJECT_ID"),
@@ -161,7 +162,22 @@ fn message(
         state: State::new(position?, velocity?),
         keplerian,
         user_defined,
-    })
+    };
+    note_unsupported(&message, block, findings);
+    Some(message)
+}
+
+/// What importing a message needs beyond the standard.
+fn note_unsupported(message: &Opm, block: &KvnBlock, findings: &mut FindingList) {
+    if let Err(unknown) = time_system_of_name(&message.time_system) {
+        let message = format!("TIME_SYSTEM: {unknown}");
+        findings.unsupported(block.place("TIME_SYSTEM"), message);
+    }
+    if message.mean_elements().is_none() {
+        let message = "EPOCH: a state at one instant is valid, but only messages with mean elements, such as \
+                       USER_DEFINED_MEAN_SEMI_MAJOR_AXIS_KM, can be propagated";
+        findings.unsupported(block.place("EPOCH"), message);
+    }
 }
 
 /// Elements are given all or not at all, with one of the anomalies (3.2.4.4).

@@ -46,7 +46,10 @@ USER_DEFINED_NOTE = kept
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
     let mut findings = FindingList::of_linter(50);
     parse(text.as_ref(), &mut findings).unwrap();
-    findings.into_vec()
+    let found = findings.into_vec();
+    // These examples are of other orbits than those that are imported.
+    let broken = found.into_iter().filter(|one| one.rule != "unsupported");
+    broken.collect()
 }
 
 #[test]
