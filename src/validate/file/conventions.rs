@@ -69,7 +69,9 @@ impl Fitted {
         let matching = Matching::of(&expected.reach_km, ours, tracks);
         let pairs = matching.pairs(tracks);
         let orbits = expected.shells.iter().map(Subject::orbit);
-        let largest_km = orbits.map(|orbit| orbit.semi_major_axis_km).fold(0.0, f64::max);
+        let largest_km = orbits
+            .map(|orbit| orbit.semi_major_axis_km)
+            .fold(0.0, f64::max);
         let mut sum = 0.0;
         for (slot, track) in &pairs {
             if let Some((elapsed_s, theirs)) = track.at(0.0) {

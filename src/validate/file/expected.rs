@@ -47,8 +47,8 @@ impl<'a> Expected<'a> {
         let mut reach_km = Vec::new();
         for shell in &shells {
             ephemeris = ephemeris.joined(shell.propagate_model()?);
-            let spacing_km = TAU * shell.orbit().semi_major_axis_km
-                / shell.shell.satellites_per_plane() as f64;
+            let spacing_km =
+                TAU * shell.orbit().semi_major_axis_km / shell.shell.satellites_per_plane() as f64;
             // A third of the distance to the next satellite of the plane.
             let reach = (spacing_km / 3.0).min(MOST_REACH_KM);
             reach_km.resize(ephemeris.satellites().len(), reach);

@@ -50,7 +50,8 @@ impl Matching {
             let Some((elapsed_s, state)) = track.at(0.0) else {
                 continue;
             };
-            for ((slot, satellite), reach_km) in ours.satellites().iter().enumerate().zip(reach_km) {
+            for ((slot, satellite), reach_km) in ours.satellites().iter().enumerate().zip(reach_km)
+            {
                 if let Ok(own) = ours.state(satellite, elapsed_s) {
                     // A satellite that lags on its circle lags in velocity by the same angle.
                     let distance_km = apart_km(&state, &own);
