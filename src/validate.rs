@@ -18,10 +18,11 @@ pub mod residuals;
 pub mod sgp4;
 
 pub use check::{Check, CheckedQuantity, Outcome, Tally};
+pub use paper::against_paper;
 pub use parts::{ModelPropagator, Parts};
 
 use self::sgp4::SweepCell;
-use crate::constellation::{Satellite, Shell, Slot};
+use crate::constellation::{Design, Satellite, Shell, Slot, shell_letters};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite, object_name};
 use crate::evaluate::{Evaluator, Setup};
 use crate::formats::tle::TleFieldError;
@@ -108,16 +109,40 @@ impl Findings {
             .filter(|check| check.outcome() == Outcome::Fail)
     }
 
-    /// The same findings, named after the shell of a design of several that they are about.
+    /// The same findings under names that begin with that of a shell or a constellation.
     #[must_use]
-    pub fn of_shell(mut self, letters: &str) -> Self {
-        let named = |name: &mut String| *name = format!("{letters}/{name}");
+    pub fn of_shell(mut self, name: &str) -> Self {
+        let named = |of: &mut String| *of = format!("{name}/{of}");
         self.checks.iter_mut().for_each(|one| named(&mut one.name));
         self.budget.iter_mut().for_each(|one| named(&mut one.case));
         let distributions = self.distributions.iter_mut();
         distributions.for_each(|one| named(&mut one.name));
         self.files.iter_mut().for_each(|one| named(&mut one.source));
         self
+    }
+
+    /// The findings of each shell of a design, named after it, and the budget of all shells together; those
+    /// of the only shell as they are.
+    #[must_use]
+    pub fn of_design(design: &Design, mut shells: Vec<Self>) -> Self {
+        if shells.len() == 1 {
+            return shells.swap_remove(0);
+        }
+        let mut findings = Self::default();
+        let counts: Vec<usize> = design.shells().iter().map(Shell::satellite_count).collect();
+        let cases = shells.iter().map(|found| found.budget.len()).min();
+        for case in 0..cases.unwrap_or(0) {
+            let lines: Vec<_> = counts
+                .iter()
+                .zip(&shells)
+                .map(|(count, found)| (*count, &found.budget[case]))
+                .collect();
+            findings.budget.extend(BudgetLine::pooled(&lines));
+        }
+        for (n, found) in shells.into_iter().enumerate() {
+            findings.append(found.of_shell(&shell_letters(n)));
+        }
+        findings
     }
 
     /// Adds what another target found.
@@ -189,6 +214,8 @@ pub struct Subject<'a> {
     pub evaluator: &'a Evaluator,
     /// The parts of the library under test.
     pub parts: Parts,
+    /// Its place among the shells of a design of several.
+    pub number: Option<usize>,
 }
 
 impl<'a> Subject<'a> {
@@ -199,7 +226,20 @@ impl<'a> Subject<'a> {
             shell,
             evaluator,
             parts: Parts::default(),
+            number: None,
         }
+    }
+
+    /// The shells of a design, each with the library's own parts.
+    #[must_use]
+    pub fn of_shells(design: &Design, evaluator: &'a Evaluator) -> Vec<Self> {
+        let among_several = design.only_shell().is_none();
+        let shells = design.shells().iter().enumerate();
+        let subject = |(n, shell): (usize, &Shell)| Self {
+            number: among_several.then_some(n),
+            ..Self::new(*shell, evaluator)
+        };
+        shells.map(subject).collect()
     }
 
     fn setup(&self) -> &'a Setup {
@@ -224,7 +264,19 @@ impl<'a> Subject<'a> {
     }
 
     fn satellites(&self) -> Vec<Satellite> {
-        (self.parts.satellites)(&self.shell)
+        self.numbered((self.parts.satellites)(&self.shell))
+    }
+
+    /// The satellites of the shell by the library, whatever the parts under test.
+    fn nominal_satellites(&self) -> Vec<Satellite> {
+        self.numbered(self.shell.satellites())
+    }
+
+    fn numbered(&self, mut satellites: Vec<Satellite>) -> Vec<Satellite> {
+        for satellite in &mut satellites {
+            satellite.slot.shell = self.number;
+        }
+        satellites
     }
 
     /// The model that the study propagates the design with, which is on trial.

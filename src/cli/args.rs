@@ -209,18 +209,27 @@ pub(crate) struct ConstellationArgs {
     #[arg(long, value_name = "[NAME=]FILE")]
     pub(crate) constellation: Vec<Named>,
 
-    /// Read the constellation files in this format instead of the one that their content shows.
-    #[arg(long, value_name = "FORMAT", requires = "constellation")]
+    /// Read the files in this format instead of the one that their content shows.
+    #[arg(long, value_name = "FORMAT")]
     pub(crate) input_format: Option<crate::exchange::lint::Format>,
 
-    /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
-    /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
-    #[arg(long, value_name = "PATTERN", requires = "constellation")]
-    pub(crate) only: Vec<String>,
+    #[command(flatten)]
+    pub(crate) satellites: SatelliteArgs,
+}
 
-    /// Leave these satellites of the files out, named as for `--only`; may be repeated.
-    #[arg(long, value_name = "PATTERN", requires = "constellation")]
-    pub(crate) exclude: Vec<String>,
+/// Constellations given directly, or a design picked from a run.
+#[derive(Debug, Args)]
+pub(crate) struct ChosenArgs {
+    #[command(flatten)]
+    pub(crate) given: ConstellationArgs,
+
+    /// Take the design, and the scenario, from the run in this directory.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["design", "constellation"])]
+    pub(crate) run: Option<PathBuf>,
+
+    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
+    #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
+    pub(crate) pick: Pick,
 }
 
 /// Output format on stdout.
@@ -475,20 +484,13 @@ pub(crate) struct ValidateArgs {
     pub(crate) study: StudyArgs,
 
     #[command(flatten)]
-    pub(crate) design: DesignArgs,
+    pub(crate) chosen: ChosenArgs,
 
     /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
     /// all, or files and directories written by another program (OEM, OMM, TLE, SP3, STK .e; any
     /// target with a `.` or `/` in it is a path).
     #[arg(long, value_name = "TARGETS", value_delimiter = ',', required = true)]
     pub(crate) against: Vec<String>,
-
-    /// Read the files of other programs in this format instead of the detected one.
-    #[arg(long, value_name = "FORMAT")]
-    pub(crate) input_format: Option<crate::exchange::lint::Format>,
-
-    #[command(flatten)]
-    pub(crate) satellites: SatelliteArgs,
 
     /// Also write the report in every format to this directory.
     #[arg(long, value_name = "DIR")]

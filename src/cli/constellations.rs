@@ -1,12 +1,11 @@
 //! The constellations that a command works on, from its arguments.
 
-use crate::cli::args::ConstellationArgs;
+use crate::cli::args::{ChosenArgs, ConstellationArgs, StudyArgs};
 use crate::cli::study::Study;
-use crate::cli::{coincidence, output, read_constellation};
+use crate::cli::{coincidence, output, read_constellation, run};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{Constellation, FileSatellites};
-use crate::exchange::import::SatelliteFilter;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 
@@ -51,6 +50,29 @@ impl ConstellationArgs {
     pub(crate) fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.constellation.iter().map(|one| Path::new(&one.text))
     }
+}
+
+/// The study and the constellations that a command works on: those given, the pick of a run, or else the
+/// reference design.
+pub(crate) fn study_and_constellations(
+    study: &StudyArgs,
+    chosen: &ChosenArgs,
+) -> Result<(Study, Vec<Constellation>)> {
+    if let Some(directory) = &chosen.run {
+        if let Some(name) = &study.scenario {
+            bail!("a run has its own scenario; omit '{name}' or --run");
+        }
+        let loaded = Study::of_run(directory, &study.overrides)?;
+        let (picked, why) = run::pick(directory, chosen.pick)?;
+        output::hint(&format!("{picked} of {}: {why}", directory.display()));
+        return Ok((loaded, vec![Constellation::of_design(picked)]));
+    }
+    let loaded = Study::load(study, &[])?;
+    let mut given = resolve(&chosen.given, &loaded)?;
+    if given.is_empty() {
+        given.push(Constellation::of_design(loaded.reference_design()?));
+    }
+    Ok((loaded, given))
 }
 
 /// The constellations given on the command line: the designs, then the files, each in its order.
@@ -103,10 +125,7 @@ fn of_notation(text: &str, _study: &Study) -> Result<Constellation> {
 fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
     let (formats, mut fleet) =
         read_constellation::read(std::slice::from_ref(path), args.input_format)?;
-    fleet.choose(&SatelliteFilter {
-        only: args.only.clone(),
-        exclude: args.exclude.clone(),
-    })?;
+    fleet.choose(&args.satellites.filter())?;
     let name = path.file_name().unwrap_or(path.as_os_str());
     Ok(Constellation::of_files(FileSatellites {
         names: vec![name.to_string_lossy().into_owned()],

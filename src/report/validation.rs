@@ -281,7 +281,7 @@ fn sweep_table(sweep: &[SweepCell]) -> Table {
 pub fn validation_text(result: &ValidateResult) -> String {
     let mut text = format!(
         "{} in scenario {}, propagation model {}, navwalker {}\n{}\n",
-        result.design.notation,
+        result.subject(),
         result.scenario.name,
         result.model,
         result.version,
@@ -347,7 +347,7 @@ fn reasons(checks: &[Check]) -> Vec<String> {
 pub fn validation_markdown(result: &ValidateResult) -> String {
     let mut text = format!(
         "# Validation of `{}`\n\nScenario {} (`{}`), propagation model `{}`, navwalker {}.\n\n{}.\n\n**{}**\n",
-        result.design.notation,
+        result.subject(),
         result.scenario.name,
         result.scenario.hash,
         result.model,

@@ -1,4 +1,4 @@
-//! The design against an ephemeris that another program made.
+//! A constellation against an ephemeris that another program made.
 //!
 //! Objects of the files are matched to the slots of the design, by name or else by position. Their
 //! states are compared with ours at their own instants, so nothing is interpolated. Where they
@@ -6,17 +6,19 @@
 //! explains the difference. Objects that do not match fail a check; they are never dropped silently.
 
 mod conventions;
+mod expected;
 mod matching;
 mod read;
 mod tracks;
 
 pub use conventions::Explanation;
+pub use expected::Expected;
 pub use read::{Comparand, FileError, comparands, read};
 
 use super::decisions::TrajectoryPair;
 use super::distribution::{Distribution, Residual};
 use super::residuals::Ric;
-use super::{Check, CheckedQuantity, Findings, Subject, ValidateError};
+use super::{Check, CheckedQuantity, Findings, ValidateError};
 use crate::ephemeris::Ephemeris;
 use crate::frames::ric_basis;
 use crate::orbit::Propagator;
@@ -77,30 +79,30 @@ impl FileComparison {
     }
 }
 
-/// Compares a design with what was read from files; `source` names them.
+/// Compares a constellation with what was read from files; `source` names them.
 ///
 /// # Errors
 /// If nothing in the files can be compared: no object has a state, or none within the time span of
 /// the study.
 pub fn against_file(
-    subject: &Subject<'_>,
+    expected: &Expected<'_>,
     source: &str,
     comparands: &[Comparand],
 ) -> Result<Findings, ValidateError> {
-    let tracks = tracks(subject, comparands)?;
-    let ours = subject.propagate_model()?;
-    let matching = Matching::of(subject, &ours, &tracks);
+    let tracks = tracks(expected, comparands)?;
+    let ours = &expected.ephemeris;
+    let matching = Matching::of(&expected.reach_km, ours, &tracks);
     let pairs = matching.pairs(&tracks);
     let satellites = pairs
         .iter()
-        .map(|&(slot, track)| difference(&ours, slot, track))
+        .map(|&(slot, track)| difference(ours, slot, track))
         .collect::<Result<Vec<_>, _>>()?;
     let worst = satellites.iter().map(|one| one.max_km).fold(0.0, f64::max);
     let agrees = matching.is_complete() && worst <= SAME_KM;
     let explanation = if agrees {
         None
     } else {
-        conventions::explanation(subject, &tracks)?
+        conventions::explanation(expected, &tracks)?
     };
     if pairs.is_empty() && explanation.is_none() {
         return Err(FileError::NothingMatches {
@@ -113,20 +115,20 @@ pub fn against_file(
     let mut findings = Findings::default();
     findings
         .checks
-        .extend(coverage_checks(subject, source, &matching, &tracks));
-    let misplaced = matching.misplaced(subject, &ours, &tracks)?;
+        .extend(coverage_checks(expected, source, &matching, &tracks));
+    let misplaced = matching.misplaced(expected, &tracks)?;
     findings.checks.push(misplaced_check(source, misplaced));
     findings.checks.extend(size_checks(source, &satellites));
     findings
         .distributions
-        .extend(distances(&ours, source, &pairs)?);
-    if matching.is_complete() && tracks.iter().all(|track| track.covers(subject)) {
-        findings.append(metrics(subject, source, &ours, &pairs)?);
+        .extend(distances(ours, source, &pairs)?);
+    if matching.is_complete() && tracks.iter().all(|track| track.covers(expected)) {
+        findings.append(metrics(expected, source, &pairs)?);
     }
     findings.files.push(FileComparison {
         source: source.to_owned(),
         matched_by: matching.how().to_owned(),
-        unmatched_slots: matching.unmatched_slots(&ours),
+        unmatched_slots: matching.unmatched_slots(ours),
         unmatched_objects: matching.unmatched_objects(&tracks),
         agrees,
         satellites,
@@ -180,12 +182,12 @@ fn difference(
 }
 
 fn coverage_checks(
-    subject: &Subject<'_>,
+    expected: &Expected<'_>,
     source: &str,
     matching: &Matching,
     tracks: &[Track],
 ) -> Vec<Check> {
-    let slots = subject.shell.satellite_count() as f64;
+    let slots = expected.ephemeris.satellites().len() as f64;
     let matched = matching.count() as f64;
     let count = |name: &str, quantity: &str, value: f64, reason: &str| {
         Check::new(
@@ -202,7 +204,7 @@ fn coverage_checks(
     };
     let shortest = tracks
         .iter()
-        .map(|track| track.covered_share(subject))
+        .map(|track| track.covered_share(expected))
         .fold(1.0, f64::min);
     vec![
         count(
@@ -318,11 +320,11 @@ fn distances(
 
 /// Decisions, passes and metrics when the file replaces the design.
 fn metrics(
-    subject: &Subject<'_>,
+    expected: &Expected<'_>,
     source: &str,
-    ours: &Ephemeris,
     pairs: &[(usize, &Track)],
 ) -> Result<Findings, ValidateError> {
+    let ours = &expected.ephemeris;
     let theirs = pairs
         .iter()
         .map(|&(slot, track)| crate::ephemeris::EphemerisSatellite {
@@ -330,9 +332,9 @@ fn metrics(
             slot: ours.satellites()[slot].slot,
             propagator: Box::new(track.clone()) as Box<dyn Propagator>,
         });
-    let theirs = Ephemeris::new(subject.grid(), theirs.collect());
+    let theirs = Ephemeris::new(expected.grid(), theirs.collect());
     let seen = TrajectoryPair {
-        evaluator: subject.evaluator,
+        evaluator: expected.evaluator,
         first: ours,
         second: &theirs,
     };

@@ -11,7 +11,7 @@ use crate::study::paper::{self, JudgedRow, PaperError, Scheme, Statement};
 ///
 /// # Errors
 /// If a design cannot be propagated under the given setup.
-pub(super) fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
+pub fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
     let rows = paper::judged_table2(setup)?;
     let checks = rows.iter().flat_map(|judged| {
         let visible = Some(visible_check(judged));

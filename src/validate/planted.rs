@@ -52,6 +52,7 @@ fn findings(model: Model, parts: Parts, targets: &[Target]) -> Findings {
         shell: "delta:40:30/6/1@925".parse().unwrap(),
         evaluator: &evaluator,
         parts,
+        number: None,
     };
     let mut findings = Findings::default();
     for target in targets {

@@ -27,6 +27,10 @@ impl Ric {
         [self.radial, self.in_track, self.cross_track]
     }
 
+    fn vector(&self) -> Vector3<f64> {
+        Vector3::new(self.radial, self.in_track, self.cross_track)
+    }
+
     pub(super) fn from_vector(v: Vector3<f64>) -> Self {
         Self {
             radial: v.x,
@@ -66,6 +70,35 @@ pub struct BudgetLine {
     pub worst: Worst,
     /// How the distances are distributed.
     pub distance: Option<Distribution>,
+}
+
+impl BudgetLine {
+    /// The lines of one case for several shells of a design, with their numbers of satellites, as one line for
+    /// all: the sums behind each line are over the same instants, so they add. `None` without a line.
+    #[must_use]
+    pub fn pooled(shells: &[(usize, &Self)]) -> Option<Self> {
+        let (_, first) = shells.first()?;
+        let satellites: usize = shells.iter().map(|(count, _)| count).sum();
+        let mean = |of: fn(&Self) -> Vector3<f64>| {
+            let parts = shells.iter().map(|(count, line)| of(line) * *count as f64);
+            parts.sum::<Vector3<f64>>() / satellites as f64
+        };
+        let squares = mean(|line| line.rms_km.vector().map(|x| x * x));
+        let largest =
+            |one: Vector3<f64>, (_, line): &(usize, &Self)| one.sup(&line.max_km.vector());
+        let worst = shells.iter().map(|(_, line)| &line.worst);
+        let worst = worst.max_by(|a, b| a.distance_km.total_cmp(&b.distance_km))?;
+        Some(Self {
+            rms_km: Ric::from_vector(squares.map(f64::sqrt)),
+            max_km: Ric::from_vector(shells.iter().fold(Vector3::zeros(), largest)),
+            mean_km: Ric::from_vector(mean(|line| line.mean_km.vector())),
+            growth_km_per_day: Ric::from_vector(mean(|line| line.growth_km_per_day.vector())),
+            worst: worst.clone(),
+            // Quantiles do not add.
+            distance: None,
+            ..(*first).clone()
+        })
+    }
 }
 
 /// Maximum number of distances in a distribution; beyond this, instants are thinned out.
@@ -202,12 +235,45 @@ mod tests {
     use super::*;
     use crate::constellation::Shell;
     use crate::ephemeris::EphemerisSatellite;
+    use crate::orbit::Model;
     use crate::orbit::j2::{SecularOrbit, SecularRates};
     use crate::time::{Epoch, TimeGrid};
 
     fn grid() -> TimeGrid {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         TimeGrid::new(epoch, SECONDS_PER_DAY, 600.0).unwrap()
+    }
+
+    /// Lines of two shells, pooled, are the line of all their satellites.
+    #[test]
+    fn pooled_lines_are_those_of_all_satellites() {
+        let propagate = |text: &str, model: Model| {
+            let design = text.parse().unwrap();
+            Ephemeris::of_design(&design, model, grid()).unwrap()
+        };
+        let shells = ["delta:55:6/3/1@925", "star:87:10/5/1@1200"];
+        let pair = |text: &str| [Model::J2, Model::J2Osculating].map(|m| propagate(text, m));
+        let lines = shells.map(|text| {
+            let [first, second] = pair(text);
+            compare("case", "cause", &first, &second).unwrap()
+        });
+        let pooled = BudgetLine::pooled(&[(6, &lines[0]), (10, &lines[1])]).unwrap();
+        let ([a, b], [c, d]) = (pair(shells[0]), pair(shells[1]));
+        let all = compare("case", "cause", &a.joined(c), &b.joined(d)).unwrap();
+        let rics = [
+            (&pooled.rms_km, &all.rms_km),
+            (&pooled.max_km, &all.max_km),
+            (&pooled.mean_km, &all.mean_km),
+            (&pooled.growth_km_per_day, &all.growth_km_per_day),
+        ];
+        for (ours, whole) in rics {
+            // Rounding of sums in another order, on kilometres.
+            assert!(
+                (ours.vector() - whole.vector()).norm() < 1e-9,
+                "{ours:?} {whole:?}"
+            );
+        }
+        assert_eq!(pooled.worst.distance_km, all.worst.distance_km);
     }
 
     /// A mean motion that is off by δ drifts by a δ t: growth, maximum and RMS are those of a ramp.

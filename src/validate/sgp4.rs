@@ -214,7 +214,10 @@ pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     findings.notes.extend(note(subject));
     let scale = GateScale::of(subject);
     findings.checks.extend(scale.budget_checks(&budget));
-    findings.append(sweep::over_inclination_and_altitude(subject)?);
+    // The sweep is the same for every shell of a design.
+    if subject.number.is_none_or(|number| number == 0) {
+        findings.append(sweep::over_inclination_and_altitude(subject)?);
+    }
     findings.checks.extend(rates::checks(subject, &scale)?);
     findings.checks.extend(frozen::checks(subject, &scale)?);
     let written = element_sets::WrittenSets::new(subject)?;

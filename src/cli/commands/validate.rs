@@ -1,10 +1,12 @@
 //! `navwalker validate`.
 
 use crate::cli::args::{ReportFormat, ValidateArgs};
-use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, coincidence, files, output, read_constellation};
-use crate::constellation::shell_letters;
-use crate::ephemeris::Ephemeris;
+use crate::cli::constellations::{propagate, study_and_constellations};
+use crate::cli::study::Study;
+use crate::cli::{Status, files, output, read_constellation};
+use crate::constellation::Design;
+use crate::evaluate::Evaluator;
+use crate::exchange::constellation::Constellation;
 use crate::exchange::import::Fleet;
 use crate::exchange::lint::Format;
 use crate::exchange::manifest::{FILE_NAME, Manifest};
@@ -12,8 +14,8 @@ use crate::printable::printable;
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
-use crate::validate::file::{Comparand, against_file, comparands};
-use crate::validate::{Findings, Subject, Target};
+use crate::validate::file::{Comparand, Expected, against_file, comparands};
+use crate::validate::{Findings, Subject, Target, against_paper};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -59,13 +61,13 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     let targets = targets(&args.against)?;
-    let run = args.design.run.as_deref().filter(|_| args.report);
+    let run = args.chosen.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));
     if let Some(directory) = &out {
         let own = REPORTS.map(|(name, _)| name.to_owned()).into();
         files::require_replaceable(directory, args.force, &own)?;
     }
-    let (study, design) = study_and_design(&args.study, &args.design)?;
+    let (study, constellations) = study_and_constellations(&args.study, &args.chosen)?;
     if let Some(directory) = &out {
         let compared = targets.iter().filter_map(Against::path);
         let inputs = study.inputs();
@@ -77,26 +79,28 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         .map(files::StagedDirectory::new)
         .transpose()?;
     let evaluator = study.evaluator()?;
-    let setup = evaluator.setup();
-    if let Ok(satellites) = Ephemeris::of_design(&design, setup.model, setup.grid) {
-        coincidence::warn(&setup.gnss, setup.grid, Some(&satellites));
-    }
+    let subjects = Subjects {
+        evaluator: &evaluator,
+        targets: &targets,
+        sources: sources(&targets, args)?,
+        study: &study,
+    };
     let mut findings = Findings::default();
-    for (n, shell) in design.shells().iter().enumerate() {
-        let subject = Subject::new(*shell, &evaluator);
-        let found = found(&subject, &targets, args.input_format, &study)?;
-        findings.append(match design.only_shell() {
-            Some(_) => found,
-            None => found.of_shell(&shell_letters(n)),
+    for one in &constellations {
+        let found = subjects.of_constellation(one)?;
+        findings.append(match constellations.len() {
+            1 => found,
+            _ => found.of_shell(&one.name),
         });
     }
+    findings.append(subjects.of_study()?);
     let model = evaluator.setup().model;
     let against = args
         .against
         .iter()
         .map(|target| printable(target).into_owned());
     let against = against.collect();
-    let result = ValidateResult::new(&design, model, against, findings, study.stamp()?);
+    let result = ValidateResult::new(&constellations, model, against, findings, study.stamp()?);
     output::result(&render(&result, args.format)?)?;
     if let Some(staged) = staged {
         write_reports(staged, &result)?;
@@ -112,29 +116,85 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
     })
 }
 
-/// What the targets find about a shell.
-fn found(
-    subject: &Subject<'_>,
-    targets: &[Against],
-    format: Option<Format>,
-    study: &Study,
-) -> Result<Findings> {
-    let mut findings = Findings::default();
-    for target in targets {
-        match target {
-            Against::Standard(target) => {
-                for each in standards_for(*target, study)? {
-                    findings.append(each.findings(subject)?);
-                }
-            }
-            Against::Files(path) => {
-                for (source, comparands) in comparisons(path, format)? {
-                    findings.append(against_file(subject, &source, &comparands)?);
-                }
+/// What constellations are compared with.
+struct Subjects<'a> {
+    evaluator: &'a Evaluator,
+    targets: &'a [Against],
+    /// The files of each target that is files.
+    sources: Vec<Vec<Source>>,
+    study: &'a Study,
+}
+
+impl Subjects<'_> {
+    /// The standards to compare with.
+    fn standards(&self) -> Result<Vec<Target>> {
+        let mut standards = Vec::new();
+        for target in self.targets {
+            if let Against::Standard(target) = target {
+                standards.extend(standards_for(*target, self.study)?);
             }
         }
+        Ok(standards)
     }
-    Ok(findings)
+
+    /// What is found about the study, whatever is propagated in it.
+    fn of_study(&self) -> Result<Findings> {
+        let mut findings = Findings::default();
+        for target in self.standards()? {
+            if target == Target::Paper {
+                findings.append(against_paper(self.evaluator.setup())?);
+            }
+        }
+        Ok(findings)
+    }
+
+    fn of_constellation(&self, one: &Constellation) -> Result<Findings> {
+        let ephemeris = propagate(one, self.evaluator.setup())?;
+        let mut findings = Findings::default();
+        for target in self.standards()? {
+            if target == Target::Paper {
+                continue;
+            }
+            match &one.design {
+                Some(design) => findings.append(self.of_shells(target, design)?),
+                None => bail!(
+                    "{}: {target} checks the propagation of a design; satellites from files have a theory of their \
+                     own and are compared with other files only, as in --against other.oem",
+                    one.name
+                ),
+            }
+        }
+        if one.design.is_some() && one.files.is_some() && !findings.checks.is_empty() {
+            findings.notes.push(format!(
+                "{}: the standards check its shells; its satellites from files have a theory of their own",
+                one.name
+            ));
+        }
+        if self.sources.iter().all(Vec::is_empty) {
+            return Ok(findings);
+        }
+        let expected = match one.only_design() {
+            Some(design) => Expected::of_design(design, self.evaluator)?,
+            None => Expected::of_satellites(ephemeris, self.evaluator)?,
+        };
+        for source in self.sources.iter().flatten() {
+            findings.append(against_file(
+                &expected,
+                &source.name,
+                &source.comparands()?,
+            )?);
+        }
+        Ok(findings)
+    }
+
+    fn of_shells(&self, target: Target, design: &Design) -> Result<Findings> {
+        let subjects = Subject::of_shells(design, self.evaluator);
+        let found = subjects.iter().map(|subject| target.findings(subject));
+        Ok(Findings::of_design(
+            design,
+            found.collect::<Result<_, _>>()?,
+        ))
+    }
 }
 
 /// The standards a target covers; `all` includes the paper's tables only for the paper's own study,
@@ -182,14 +242,17 @@ impl Source {
 fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<Source>>> {
     let paths = targets.iter().filter_map(Against::path);
     let mut found = paths
-        .map(|path| comparisons(path, args.input_format))
+        .map(|path| comparisons(path, args.chosen.given.input_format))
         .collect::<Result<Vec<_>>>()?;
-    let filter = args.satellites.filter();
+    let filter = args.chosen.given.satellites.filter();
     if filter.is_empty() {
         return Ok(found);
     }
     if found.is_empty() {
-        bail!("--only and --exclude select satellites of files, and --against names no file");
+        if args.chosen.given.constellation.is_empty() {
+            bail!("--only and --exclude select satellites of files, and no file is given");
+        }
+        return Ok(found);
     }
     let files = found
         .iter_mut()

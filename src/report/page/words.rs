@@ -312,7 +312,7 @@ pub(super) fn validated(run: &Run) -> Option<String> {
     let validation = run.validation.as_ref()?;
     Some(format!(
         "{}, model {}: {}.",
-        validation.design.notation,
+        validation.subject(),
         validation.model,
         Tally::of(&validation.findings.checks)
     ))

@@ -2,6 +2,7 @@
 
 mod propagators;
 
+use super::expected::Expected;
 use super::matching::Matching;
 use super::tracks::Track;
 use crate::constellation::{Pattern, Satellite, Shell, Slot};
@@ -63,10 +64,14 @@ pub(super) struct Fitted {
 impl Fitted {
     /// The mean excess of the radii at the first samples, before anything has drifted, taken as an
     /// excess of the semi-major axis; zero if some object is not near a slot.
-    fn to(subject: &Subject<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
-        let ours = subject.propagate_model()?;
-        let matching = Matching::of(subject, &ours, tracks);
+    fn to(expected: &Expected<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
+        let ours = &expected.ephemeris;
+        let matching = Matching::of(&expected.reach_km, ours, tracks);
         let pairs = matching.pairs(tracks);
+        let orbits = expected.shells.iter().map(Subject::orbit);
+        let largest_km = orbits
+            .map(|orbit| orbit.semi_major_axis_km)
+            .fold(0.0, f64::max);
         let mut sum = 0.0;
         for (slot, track) in &pairs {
             if let Some((elapsed_s, theirs)) = track.at(0.0) {
@@ -75,7 +80,7 @@ impl Fitted {
             }
         }
         let mean = sum / pairs.len().max(1) as f64;
-        let offset_km = mean * subject.orbit().semi_major_axis_km;
+        let offset_km = mean * largest_km;
         let radius_offset_km = (offset_km / RADIUS_DIGIT_KM).round() * RADIUS_DIGIT_KM;
         Ok(Self { radius_offset_km })
     }
@@ -101,7 +106,7 @@ fn with_elements(
     subject: &Subject<'_>,
     change: impl Fn(&Satellite) -> MeanElements,
 ) -> Vec<(String, OtherPropagator)> {
-    let changed = subject.shell.satellites().into_iter();
+    let changed = subject.nominal_satellites().into_iter();
     j2_of(
         changed
             .map(|satellite| Satellite {
@@ -151,7 +156,7 @@ fn layout(shell: &Shell) -> (f64, f64) {
 
 fn sgp4(subject: &Subject<'_>, slot: MeanMotionSlot) -> Vec<(String, OtherPropagator)> {
     let epoch = subject.epoch();
-    propagate_each(&subject.shell.satellites(), |elements| {
+    propagate_each(&subject.nominal_satellites(), |elements| {
         Sgp4Orbit::from_mean_elements(elements, epoch, slot, ZonalHarmonics::Full).ok()
     })
 }
@@ -164,13 +169,13 @@ const CONVENTIONS: &[Convention] = &[
     Convention {
         name: "mean-j2",
         meaning: "secular J2 on the mean elements, as the model j2 propagates it",
-        propagate: |subject, _| j2_of(subject.shell.satellites()),
+        propagate: |subject, _| j2_of(subject.nominal_satellites()),
     },
     Convention {
         name: "two-body",
         meaning: "two-body motion, without J2",
         propagate: |subject, _| {
-            propagate_each(&subject.shell.satellites(), |e| {
+            propagate_each(&subject.nominal_satellites(), |e| {
                 Some(SecularOrbit::two_body(e))
             })
         },
@@ -179,7 +184,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "j2-without-mean-anomaly",
         meaning: "secular J2 on node and perigee, but dM/dt = n",
         propagate: |subject, _| {
-            propagate_each(&subject.shell.satellites(), |elements| {
+            propagate_each(&subject.nominal_satellites(), |elements| {
                 let rates = SecularRates {
                     mean_anomaly_rad_s: elements.kepler_mean_motion_rad_s(),
                     ..SecularRates::j2(elements)
@@ -192,7 +197,7 @@ const CONVENTIONS: &[Convention] = &[
         name: "osculating-j2",
         meaning: "mean elements propagated with first-order short-period terms",
         propagate: |subject, _| {
-            propagate_each(&subject.shell.satellites(), |e| {
+            propagate_each(&subject.nominal_satellites(), |e| {
                 Some(OsculatingOrbit::new(e))
             })
         },
@@ -319,20 +324,24 @@ const CONVENTIONS: &[Convention] = &[
 /// # Errors
 /// If the design itself cannot be propagated.
 pub(super) fn explanation(
-    subject: &Subject<'_>,
+    expected: &Expected<'_>,
     tracks: &[Track],
 ) -> Result<Option<Explanation>, ValidateError> {
-    let before_km = rms_km(subject, subject.propagate_model()?, tracks);
-    let fitted = Fitted::to(subject, tracks)?;
+    if expected.shells.is_empty() {
+        return Ok(None);
+    }
+    let before_km = rms_km(expected, &expected.ephemeris, tracks);
+    let fitted = Fitted::to(expected, tracks)?;
     let tried = CONVENTIONS.iter().filter_map(|convention| {
-        let propagated = (convention.propagate)(subject, fitted).into_iter();
+        let shells = expected.shells.iter();
+        let propagated = shells.flat_map(|shell| (convention.propagate)(shell, fitted));
         let satellites = propagated.map(|(name, propagator)| EphemerisSatellite {
             name,
             slot: None,
             propagator,
         });
-        let ephemeris = Ephemeris::new(subject.grid(), satellites.collect());
-        Some((convention, rms_km(subject, ephemeris, tracks)?))
+        let ephemeris = Ephemeris::new(expected.grid(), satellites.collect());
+        Some((convention, rms_km(expected, &ephemeris, tracks)?))
     });
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1));
     let enough_km = before_km.map_or(MOST_LEFT_KM, |before_km| {
@@ -354,8 +363,8 @@ pub(super) fn explanation(
 }
 
 /// Root mean square distance of all tracks from an ephemeris; `None` unless all of them match.
-fn rms_km(subject: &Subject<'_>, propagated: Ephemeris, tracks: &[Track]) -> Option<f64> {
-    let matching = Matching::of(subject, &propagated, tracks);
+fn rms_km(expected: &Expected<'_>, propagated: &Ephemeris, tracks: &[Track]) -> Option<f64> {
+    let matching = Matching::of(&expected.reach_km, propagated, tracks);
     let pairs = matching.pairs(tracks);
     let with_states = tracks.iter().filter(|t| !t.states.is_empty()).count();
     if pairs.len() < with_states.min(propagated.satellites().len()) {

@@ -1,9 +1,9 @@
 //! Matching the objects of a file to the slots of a design.
 
+use super::expected::Expected;
 use super::tracks::Track;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{State, Teme};
-use crate::validate::Subject;
 use std::collections::BTreeMap;
 
 /// Pairs of slots and objects.
@@ -16,8 +16,8 @@ pub(super) struct Matching {
 
 impl Matching {
     /// By name if every object has the name of a slot, otherwise by position.
-    pub(super) fn of(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
-        Self::by_name(ours, tracks).unwrap_or_else(|| Self::by_place(subject, ours, tracks))
+    pub(super) fn of(reach_km: &[f64], ours: &Ephemeris, tracks: &[Track]) -> Self {
+        Self::by_name(ours, tracks).unwrap_or_else(|| Self::by_place(reach_km, ours, tracks))
     }
 
     fn by_name(ours: &Ephemeris, tracks: &[Track]) -> Option<Self> {
@@ -43,28 +43,28 @@ impl Matching {
     }
 
     /// Nearest pairs first, as long as they are closer than half the distance to the next slot.
-    fn by_place(subject: &Subject<'_>, ours: &Ephemeris, tracks: &[Track]) -> Self {
+    fn by_place(reach_km: &[f64], ours: &Ephemeris, tracks: &[Track]) -> Self {
         let mut pairs = Vec::new();
         for (object, track) in tracks.iter().enumerate() {
             // Compared at the first sample of the object: differences grow with time.
             let Some((elapsed_s, state)) = track.at(0.0) else {
                 continue;
             };
-            for (slot, satellite) in ours.satellites().iter().enumerate() {
+            for ((slot, satellite), reach_km) in ours.satellites().iter().enumerate().zip(reach_km)
+            {
                 if let Ok(own) = ours.state(satellite, elapsed_s) {
-                    pairs.push((apart_km(subject, &state, &own), slot, object));
+                    // A satellite that lags on its circle lags in velocity by the same angle.
+                    let distance_km = apart_km(&state, &own);
+                    if distance_km <= reach_km * std::f64::consts::SQRT_2 {
+                        pairs.push((distance_km, slot, object));
+                    }
                 }
             }
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // A satellite that lags on its circle lags in velocity by the same angle.
-        let reach_km = reach_km(subject) * std::f64::consts::SQRT_2;
         let mut object_of_slot = vec![None; ours.satellites().len()];
         let mut taken = vec![false; tracks.len()];
-        for (distance_km, slot, object) in pairs {
-            if distance_km > reach_km {
-                break;
-            }
+        for (_, slot, object) in pairs {
             if object_of_slot[slot].is_none() && !taken[object] {
                 object_of_slot[slot] = Some(object);
                 taken[object] = true;
@@ -81,16 +81,16 @@ impl Matching {
     /// position.
     pub(super) fn misplaced(
         &self,
-        subject: &Subject<'_>,
-        ours: &Ephemeris,
+        expected: &Expected<'_>,
         tracks: &[Track],
     ) -> Result<usize, EphemerisError> {
-        let reach_km = reach_km(subject);
+        let ours = &expected.ephemeris;
         let mut misplaced = 0;
         for (slot, track) in self.pairs(tracks) {
             if let Some((elapsed_s, state)) = track.at(0.0) {
                 let own = ours.state(&ours.satellites()[slot], elapsed_s)?;
-                misplaced += usize::from((state.position_km - own.position_km).norm() > reach_km);
+                let apart_km = (state.position_km - own.position_km).norm();
+                misplaced += usize::from(apart_km > expected.reach_km[slot]);
             }
         }
         Ok(misplaced)
@@ -141,19 +141,12 @@ impl Matching {
 
 /// Distance between two states, km, with velocities scaled by the time of one radian along the
 /// orbit: satellites of two crossing planes may share a position but not a direction.
-fn apart_km(subject: &Subject<'_>, theirs: &State<Teme>, own: &State<Teme>) -> f64 {
+fn apart_km(theirs: &State<Teme>, own: &State<Teme>) -> f64 {
     let apart_km = (theirs.position_km - own.position_km).norm();
     if theirs.velocity_km_s.norm() == 0.0 {
         return apart_km;
     }
-    let rate_rad_s = subject.orbit().kepler_mean_motion_rad_s();
+    let momentum = own.position_km.km().cross(&own.velocity_km_s).norm();
+    let rate_rad_s = momentum / own.position_km.km().norm_squared();
     apart_km.hypot((theirs.velocity_km_s - own.velocity_km_s).norm() / rate_rad_s)
-}
-
-/// How far from its slot an object may be: a third of the distance to the next satellite in the
-/// plane, at most 1500 km.
-fn reach_km(subject: &Subject<'_>) -> f64 {
-    let per_plane = subject.shell.satellites_per_plane() as f64;
-    let spacing = std::f64::consts::TAU * subject.orbit().semi_major_axis_km / per_plane;
-    (spacing / 3.0).min(1_500.0)
 }

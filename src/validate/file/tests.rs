@@ -1,5 +1,5 @@
 use super::*;
-use crate::constellation::Shell;
+use crate::constellation::{Design, Shell};
 use crate::evaluate::Evaluator;
 use crate::exchange::export::{Choices, ExportSubject, Product, testing::in_memory};
 use crate::exchange::manifest::ExportedStudy;
@@ -7,7 +7,7 @@ use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, Position, from_teme};
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
-use crate::validate::{Outcome, testing};
+use crate::validate::{Outcome, Subject, testing};
 
 const DESIGN: &str = "delta:40:20/5/1@925";
 
@@ -62,7 +62,8 @@ fn renamed(mut comparands: Vec<Comparand>) -> Vec<Comparand> {
 
 fn compared(comparands: &[Comparand]) -> Result<Findings, ValidateError> {
     let evaluator = evaluator();
-    against_file(&Subject::new(design(), &evaluator), "test", comparands)
+    let expected = Expected::of_design(&design().into(), &evaluator)?;
+    against_file(&expected, "test", comparands)
 }
 
 /// Conventions that move satellites already at the first sample.
@@ -143,9 +144,9 @@ fn an_unknown_difference_is_not_explained() {
 #[test]
 fn satellites_that_meet_are_told_apart_by_their_course() {
     let evaluator = evaluator();
-    let design: Shell = "delta:54.6:24/4/2@925".parse().unwrap();
-    let subject = Subject::new(design, &evaluator);
-    let ours = subject.propagate_model().unwrap();
+    let design: Design = "delta:54.6:24/4/2@925".parse().unwrap();
+    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let ours = &expected.ephemeris;
     let objects = ours.satellites().iter().enumerate().map(|(n, satellite)| {
         let states = grid().iter().map(|t| {
             let state = ours.state(satellite, t + 18.0).unwrap();
@@ -161,12 +162,73 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
         ))
     });
     let objects: Vec<_> = objects.collect();
-    let findings = against_file(&subject, "test", &objects).unwrap();
+    let findings = against_file(&expected, "test", &objects).unwrap();
     for (n, one) in findings.files[0].satellites.iter().enumerate() {
         assert_eq!(one.object, format!("SAT{n}"));
         // 18 s at 7.4 km/s.
         assert!((one.offset_km.in_track - 133.0).abs() < 2.0, "{one:?}");
     }
+}
+
+/// Two shells whose satellites another program propagated, under its own names: matched by place, and the
+/// convention is tried on both. A satellite of the second shell in the place of another is seen.
+#[test]
+fn a_design_of_two_shells_is_compared_as_a_whole() {
+    let evaluator = evaluator();
+    let design: Design = "delta:54.6:24/4/1@925+star:87:12/3/1@1100".parse().unwrap();
+    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let sampled = |convention: &str| -> Vec<Comparand> {
+        let shells = expected.shells.iter();
+        let fitted = conventions::Fitted::default();
+        let all = shells.flat_map(|shell| conventions::propagated(shell, convention, fitted));
+        let one = |(name, propagation): (String, Box<dyn Propagator>)| {
+            let states = grid().iter().map(|t| {
+                let state = propagation.state_at(t).unwrap();
+                (
+                    epoch().plus_seconds(t),
+                    from_teme(state, Frame::Teme, epoch(), t),
+                )
+            });
+            let states = states.collect();
+            Comparand::States(Trajectory::of_states(&name, &name, Frame::Teme, states))
+        };
+        all.map(one).collect()
+    };
+    let found = against_file(&expected, "test", &sampled("mean-j2")).unwrap();
+    let comparison = &found.files[0];
+    assert_eq!(
+        (comparison.matched_by.as_str(), comparison.satellites.len()),
+        ("name", 36)
+    );
+    assert_eq!(comparison.satellites[24].slot, "NW-B-P01-S01");
+    assert!(comparison.agrees && found.passed());
+    let other = against_file(&expected, "test", &renamed(sampled("two-body"))).unwrap();
+    let comparison = &other.files[0];
+    assert_eq!(comparison.matched_by, "place");
+    assert_eq!(
+        comparison.explanation.as_ref().unwrap().convention,
+        "two-body"
+    );
+    let missing = sampled("mean-j2").split_off(1);
+    let missing = against_file(&expected, "test", &missing).unwrap();
+    assert_eq!(missing.files[0].unmatched_slots, ["NW-A-P01-S01"]);
+}
+
+/// Satellites of a file against those of another: the same ones agree, and one moved to another place does not.
+#[test]
+fn satellites_from_files_are_compared_with_other_files() {
+    let evaluator = evaluator();
+    let satellites = || Ephemeris::of_design(&design().into(), Model::J2, grid()).unwrap();
+    let expected = Expected::of_satellites(satellites(), &evaluator).unwrap();
+    assert!(expected.shells.is_empty());
+    let found = against_file(&expected, "test", &renamed(propagated("mean-j2"))).unwrap();
+    assert!(
+        found.files[0].agrees && found.passed(),
+        "{:#?}",
+        found.checks
+    );
+    let other = against_file(&expected, "test", &propagated("two-body")).unwrap();
+    assert!(!other.files[0].agrees && other.files[0].explanation.is_none());
 }
 
 #[test]
@@ -331,8 +393,9 @@ fn one_message_each(file: &[u8]) -> Vec<Comparand> {
 fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
-    let subject = Subject::new("delta:40:8/4/1@925".parse().unwrap(), &evaluator);
-    let findings = against_file(&subject, "orekit", &one_message_each(OREKIT)).unwrap();
+    let design = "delta:40:8/4/1@925".parse().unwrap();
+    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let findings = against_file(&expected, "orekit", &one_message_each(OREKIT)).unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];
     assert_eq!(

@@ -1,13 +1,13 @@
 //! The objects of files as TEME states in the time scale of the study.
 
+use super::expected::Expected;
 use super::read::{Comparand, FileError};
 use crate::ephemeris::hermite::hermite_position;
 use crate::frames::{State, Teme, to_teme};
 use crate::orbit::sgp4::Sgp4Orbit;
 use crate::orbit::{PropagationError, Propagator};
-use crate::validate::{Subject, ValidateError};
+use crate::validate::ValidateError;
 use nalgebra::Vector3;
-use std::f64::consts::TAU;
 
 /// Samples used on either side of an interpolated instant.
 const NODES: usize = 8;
@@ -35,25 +35,25 @@ pub(super) struct Track {
 /// # Errors
 /// If no object has a state in the span, or SGP4 rejects an element set.
 pub(super) fn tracks(
-    subject: &Subject<'_>,
+    expected: &Expected<'_>,
     comparands: &[Comparand],
 ) -> Result<Vec<Track>, ValidateError> {
     let mut tracks = Vec::with_capacity(comparands.len());
     for comparand in comparands {
         tracks.push(match comparand {
-            Comparand::States(trajectory) => sampled(subject, trajectory),
-            Comparand::Elements(set) => of_elements(subject, set)?,
+            Comparand::States(trajectory) => sampled(expected, trajectory),
+            Comparand::Elements(set) => of_elements(expected, set)?,
         });
     }
     if tracks.iter().all(|track| track.states.is_empty()) {
-        return Err(another_epoch(subject, comparands).into());
+        return Err(another_epoch(expected, comparands).into());
     }
     Ok(tracks)
 }
 
-fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Trajectory) -> Track {
-    let epoch = subject.epoch();
-    let last_s = last_s(subject);
+fn sampled(expected: &Expected<'_>, trajectory: &crate::formats::trajectory::Trajectory) -> Track {
+    let epoch = expected.epoch();
+    let last_s = last_s(expected);
     let all: Vec<(f64, State<Teme>)> = trajectory
         .samples()
         .into_iter()
@@ -76,7 +76,7 @@ fn sampled(subject: &Subject<'_>, trajectory: &crate::formats::trajectory::Traje
     }
 }
 
-fn of_elements(subject: &Subject<'_>, set: &::sgp4::Elements) -> Result<Track, ValidateError> {
+fn of_elements(expected: &Expected<'_>, set: &::sgp4::Elements) -> Result<Track, ValidateError> {
     let name = set
         .object_name
         .clone()
@@ -85,8 +85,8 @@ fn of_elements(subject: &Subject<'_>, set: &::sgp4::Elements) -> Result<Track, V
         object: name.clone(),
         source,
     };
-    let propagated = Sgp4Orbit::from_element_set(set, subject.epoch()).map_err(failed)?;
-    let grid = subject.grid();
+    let propagated = Sgp4Orbit::from_element_set(set, expected.epoch()).map_err(failed)?;
+    let grid = expected.grid();
     let stride = grid.len().div_ceil(MOST_SAMPLES);
     let mut states = Vec::new();
     for elapsed_s in grid.iter().step_by(stride) {
@@ -100,12 +100,12 @@ fn of_elements(subject: &Subject<'_>, set: &::sgp4::Elements) -> Result<Track, V
     })
 }
 
-fn last_s(subject: &Subject<'_>) -> f64 {
-    subject.grid().elapsed_s(subject.grid().len() - 1)
+fn last_s(expected: &Expected<'_>) -> f64 {
+    expected.grid().elapsed_s(expected.grid().len() - 1)
 }
 
-fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
-    let at = |elapsed_s: f64| subject.epoch().plus_seconds(elapsed_s).to_string();
+fn another_epoch(expected: &Expected<'_>, comparands: &[Comparand]) -> FileError {
+    let at = |elapsed_s: f64| expected.epoch().plus_seconds(elapsed_s).to_string();
     let instants = comparands.iter().find_map(|comparand| match comparand {
         Comparand::States(trajectory) => {
             let (first, last) = trajectory.span()?;
@@ -117,7 +117,7 @@ fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
     FileError::AnotherEpoch {
         objects: comparands.len(),
         from: at(0.0),
-        to: at(last_s(subject)),
+        to: at(last_s(expected)),
         first,
         last,
     }
@@ -126,15 +126,15 @@ fn another_epoch(subject: &Subject<'_>, comparands: &[Comparand]) -> FileError {
 impl Track {
     /// Fraction of the study's time span that the states cover without a gap too wide to
     /// interpolate.
-    pub(super) fn covered_share(&self, subject: &Subject<'_>) -> f64 {
-        let last_s = last_s(subject);
+    pub(super) fn covered_share(&self, expected: &Expected<'_>) -> f64 {
+        let last_s = last_s(expected);
         if self.propagated.is_some() {
             return 1.0;
         }
         if last_s <= 0.0 {
             return if self.states.is_empty() { 0.0 } else { 1.0 };
         }
-        let most_s = WIDEST_GAP_TURNS * TAU / subject.orbit().kepler_mean_motion_rad_s();
+        let most_s = WIDEST_GAP_TURNS * expected.shortest_period_s;
         let steps = self.all.windows(2).map(|pair| (pair[0].0, pair[1].0));
         let covered_s: f64 = steps
             .filter(|(from, to)| to - from <= most_s)
@@ -144,9 +144,9 @@ impl Track {
     }
 
     /// Whether the states cover the full span and can be interpolated.
-    pub(super) fn covers(&self, subject: &Subject<'_>) -> bool {
+    pub(super) fn covers(&self, expected: &Expected<'_>) -> bool {
         let has_velocity = |(_, state): &(f64, State<Teme>)| state.velocity_km_s.norm() > 0.0;
-        self.covered_share(subject) > 1.0 - 1e-9
+        self.covered_share(expected) > 1.0 - 1e-9
             && (self.propagated.is_some() || self.all.iter().all(has_velocity))
     }
 

@@ -48,7 +48,7 @@ pub(super) fn mislabelled(
     inverse: bool,
 ) -> Vec<(String, OtherPropagator)> {
     let epoch = subject.epoch();
-    propagate_each(&subject.shell.satellites(), |elements| {
+    propagate_each(&subject.nominal_satellites(), |elements| {
         Some(Mislabelled {
             propagation: SecularOrbit::j2(elements),
             epoch,
@@ -80,7 +80,7 @@ impl Propagator for AboutJ2000 {
 
 pub(super) fn about_j2000(subject: &Subject<'_>) -> Vec<(String, OtherPropagator)> {
     let to_j2000 = teme_to_eme2000(subject.epoch());
-    propagate_each(&subject.shell.satellites(), |elements| {
+    propagate_each(&subject.nominal_satellites(), |elements| {
         let plane = crate::frames::OrbitPlane::new(elements.raan_rad, elements.inclination_rad);
         let normal = to_j2000 * plane.node.cross(&plane.ahead);
         let node = to_j2000 * plane.node;
@@ -132,7 +132,7 @@ pub(super) fn taken_as_osculating(subject: &Subject<'_>) -> Vec<(String, OtherPr
     let grid = subject.grid();
     let count = (grid.elapsed_s(grid.len() - 1) / step_s).ceil() as usize + 2;
     let times: Vec<f64> = (0..count).map(|k| k as f64 * step_s).collect();
-    propagate_each(&subject.shell.satellites(), |elements| {
+    propagate_each(&subject.nominal_satellites(), |elements| {
         let start = SecularOrbit::two_body(elements).state(0.0);
         let states = ZonalField::J2
             .integrate(ZonalField::acceleration, &start, &times)

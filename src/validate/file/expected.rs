@@ -1,0 +1,140 @@
+//! What a file is compared with: a constellation in a study.
+
+use crate::constellation::Design;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::Evaluator;
+use crate::frames::{State, Teme};
+use crate::orbit::MeanElements;
+use crate::time::{Epoch, TimeGrid};
+use crate::validate::Subject;
+use nalgebra::Vector3;
+use std::f64::consts::TAU;
+
+/// Largest distance of an object from its slot, km.
+const MOST_REACH_KM: f64 = 1_500.0;
+
+/// A constellation propagated on the grid of a study.
+pub struct Expected<'a> {
+    pub(super) evaluator: &'a Evaluator,
+    pub(super) ephemeris: Ephemeris,
+    /// The shells of a design, on which conventions are tried; empty for satellites from files.
+    pub(super) shells: Vec<Subject<'a>>,
+    /// Of each satellite: how far from it an object may be to be matched with it, km.
+    pub(super) reach_km: Vec<f64>,
+    /// The shortest orbital period, seconds.
+    pub(super) shortest_period_s: f64,
+}
+
+impl<'a> Expected<'a> {
+    /// A design by the model of the study.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn of_design(design: &Design, evaluator: &'a Evaluator) -> Result<Self, EphemerisError> {
+        let shells = Subject::of_shells(design, evaluator);
+        Self::of_shells(shells, evaluator)
+    }
+
+    /// The shells of a design, each with the parts that propagate it.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn of_shells(
+        shells: Vec<Subject<'a>>,
+        evaluator: &'a Evaluator,
+    ) -> Result<Self, EphemerisError> {
+        let mut ephemeris = Ephemeris::new(evaluator.setup().grid, Vec::new());
+        let mut reach_km = Vec::new();
+        for shell in &shells {
+            ephemeris = ephemeris.joined(shell.propagate_model()?);
+            let spacing_km =
+                TAU * shell.orbit().semi_major_axis_km / shell.shell.satellites_per_plane() as f64;
+            // A third of the distance to the next satellite of the plane.
+            let reach = (spacing_km / 3.0).min(MOST_REACH_KM);
+            reach_km.resize(ephemeris.satellites().len(), reach);
+        }
+        let orbits = shells.iter().map(Subject::orbit);
+        let periods = orbits.map(|orbit| TAU / orbit.kepler_mean_motion_rad_s());
+        Ok(Self {
+            evaluator,
+            ephemeris,
+            reach_km,
+            shortest_period_s: periods.fold(f64::INFINITY, f64::min),
+            shells,
+        })
+    }
+
+    /// Any satellites on the grid of the study, such as those of a file. No conventions are tried on them.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn of_satellites(
+        ephemeris: Ephemeris,
+        evaluator: &'a Evaluator,
+    ) -> Result<Self, EphemerisError> {
+        let mut states = Vec::new();
+        for satellite in ephemeris.satellites() {
+            states.push(first_state(&ephemeris, satellite)?);
+        }
+        let periods = states.iter().flatten().filter_map(period_s);
+        let shortest_period_s = periods.fold(f64::INFINITY, f64::min);
+        Ok(Self {
+            evaluator,
+            reach_km: thirds_of_nearest_km(&states),
+            ephemeris,
+            shells: Vec::new(),
+            shortest_period_s,
+        })
+    }
+
+    pub(super) fn grid(&self) -> TimeGrid {
+        self.ephemeris.grid()
+    }
+
+    pub(super) fn epoch(&self) -> Epoch {
+        self.grid().epoch()
+    }
+}
+
+/// The first state that a satellite has on the grid.
+fn first_state(
+    ephemeris: &Ephemeris,
+    satellite: &crate::ephemeris::EphemerisSatellite,
+) -> Result<Option<State<Teme>>, EphemerisError> {
+    for elapsed_s in ephemeris.grid().iter() {
+        if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {
+            return Ok(Some(state));
+        }
+    }
+    Ok(None)
+}
+
+/// The period of the osculating orbit; `None` for an open one.
+fn period_s(state: &State<Teme>) -> Option<f64> {
+    let radius_km = state.position_km.norm();
+    let per_axis = 2.0 / radius_km - state.velocity_km_s.norm_squared() / crate::earth::MU_KM3_S2;
+    let orbit = MeanElements {
+        semi_major_axis_km: 1.0 / per_axis,
+        eccentricity: 0.0,
+        inclination_rad: 0.0,
+        raan_rad: 0.0,
+        arg_perigee_rad: 0.0,
+        mean_anomaly_rad: 0.0,
+    };
+    (per_axis > 0.0).then(|| TAU / orbit.kepler_mean_motion_rad_s())
+}
+
+/// For each satellite, a third of the distance to the nearest other one.
+fn thirds_of_nearest_km(states: &[Option<State<Teme>>]) -> Vec<f64> {
+    let places: Vec<Option<Vector3<f64>>> = states
+        .iter()
+        .map(|state| state.map(|state| state.position_km.km()))
+        .collect();
+    let nearest = |(n, place): (usize, &Option<Vector3<f64>>)| {
+        let Some(place) = place else { return 0.0 };
+        let others = places.iter().enumerate().filter(|(other, _)| *other != n);
+        let distances = others.filter_map(|(_, other)| Some((other.as_ref()? - place).norm()));
+        (distances.fold(f64::INFINITY, f64::min) / 3.0).min(MOST_REACH_KM)
+    };
+    places.iter().enumerate().map(nearest).collect()
+}
