@@ -3,8 +3,11 @@
 mod baseline;
 mod certificate;
 pub mod coastline;
+mod compared;
 mod csv;
 mod diagnostics;
+#[cfg(feature = "figures")]
+mod dominance;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;
@@ -20,6 +23,7 @@ mod table;
 pub(crate) mod validation;
 
 pub use baseline::Baseline;
+pub use compared::Compared;
 pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use reproduction::{

@@ -4,7 +4,7 @@ mod products;
 mod run_view;
 mod scenario;
 
-pub(crate) use run_view::{PlotArgs, ReportArgs, RunArgs};
+pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
 use crate::cli::constellations::Named;
@@ -104,32 +104,40 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Validate(ValidateArgs),
 
-    /// Write one self-contained HTML page about a run.
+    /// Write one self-contained HTML page about a run, or about constellations.
     ///
-    /// The page shows the trade-off and, for the selected design, maps, distributions, time series
-    /// and a globe; it needs no network. It is written to report.html in the run directory. Damaged
-    /// or missing files are named; the rest is shown.
+    /// The page of a run shows the trade-off and, for the selected design, maps, distributions, time
+    /// series and a globe; it needs no network. It is written to report.html in the run directory.
+    /// Damaged or missing files are named; the rest is shown.
     ///
-    /// A validation is included if it is in DIR/validation:
+    /// Constellations given by --design and --constellation are compared with the front and with each
+    /// other: a table with the best of each column, who dominates whom, and each can be selected like
+    /// a design of the front. With a scenario in place of a run, the page shows them alone and is
+    /// written to report.html in the working directory.
+    ///
+    /// A validation is included if it is in RUN/validation:
     ///   navwalker validate --run runs/paper-1 --against sgp4 --report
     ///
-    /// Example: navwalker report runs/paper-1 --compare star:86.4:180/12/1@925
+    /// Examples: navwalker report runs/paper-1 --design star:86.4:180/12/1@925
+    ///           navwalker report paper --design delta:55:182/13/1@925 --design polar=star:90:182/13/1@925
     #[command(verbatim_doc_comment)]
     Report(ReportArgs),
 
-    /// Draw a figure of a run for a paper or a review, with the data behind it.
+    /// Draw a figure of a run, or of constellations, for a paper or a review, with the data behind it.
     ///
-    /// pareto       the front in the plane of the first two objectives
+    /// pareto       the plane of the first two objectives: the front, and the constellations
     /// map          --measure mean-visible, mean-pdop, p95-pdop, max-pdop, availability
     /// cdf          --measure mean-visible, mean-pdop, max-pdop (over time), or pdop with its tail
     /// series       --measure mean-visible, mean-pdop, max-pdop
-    /// convergence  the hypervolume over the evaluations
-    /// budget       the error budget of a validation
+    /// convergence  the hypervolume over the evaluations of a run
+    /// budget       the error budget of a validation of a run
     ///
-    /// With --out, the data is written next to the figure with the extension .csv; without it, the
-    /// figure goes to stdout. The same run always gives the same bytes.
+    /// Constellations given by --design and --constellation are drawn beside a run, or alone with a
+    /// scenario. With --out, the data is written next to the figure with the extension .csv; without
+    /// it, the figure goes to stdout. The same input always gives the same bytes.
     ///
-    /// Example: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    /// Examples: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    ///           navwalker plot paper --figure cdf --design delta:55:182/13/1@925 --out cdf.svg
     #[command(verbatim_doc_comment)]
     Plot(PlotArgs),
 
@@ -184,7 +192,7 @@ impl StudyArgs {
 }
 
 /// Constellations, each given directly.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ConstellationArgs {
     /// A design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG][,raan=DEG][,u=DEG][,node-step=DEG]`, degrees
     /// and km; `+` joins shells. A name before it labels the results, as in `polar=star:90:182/13/1@925`; may be

@@ -142,7 +142,7 @@ impl OptimizeResult {
         diagnostics.extend(shown::unused_reference(&volume));
         let reference = scenario.reference_design().ok();
         let reference =
-            reference.and_then(|design| Baseline::evaluate("reference design", &design, problem));
+            reference.and_then(|design| Baseline::evaluate(Baseline::REFERENCE, &design, problem));
         let pick = front.iter().find(|member| member.chosen);
         diagnostics.extend(reference.zip(pick).and_then(|(r, pick)| r.diagnose(pick)));
         let summary = SearchSummary {
