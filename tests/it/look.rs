@@ -113,7 +113,7 @@ fn with_theirs() -> TempDir {
         "--design",
         "star:86.4:24/6/1@780",
         "--as",
-        "elements-csv",
+        "csv",
         "--out",
         "theirs",
     ];
@@ -133,7 +133,7 @@ fn constellations_are_reported_without_a_run() {
         "<bdi>elements.csv</bdi>",
         "GNSS alone",
         "ours dominates theirs",
-        "step-deg = [20",
+        "step-deg = 20\n",
     ] {
         assert!(page.contains(told), "{told}");
     }
