@@ -93,10 +93,20 @@ fn renamed(one: Constellation, given: &Named) -> Constellation {
     }
 }
 
-/// A design by its notation.
-fn of_notation(text: &str, _study: &Study) -> Result<Constellation> {
-    let design = text.parse().with_context(|| format!("--design {text}"))?;
+/// A constellation by its name in the scenario, or a design by its notation.
+fn of_notation(text: &str, study: &Study) -> Result<Constellation> {
+    if let Some(named) = study.scenario.constellation(text) {
+        return study.constellation(named);
+    }
+    let design = study.scenario.design(text);
+    let design = design.with_context(|| format!("--design {text}"))?;
     Ok(Constellation::of_design(design))
+}
+
+/// The constellations that the scenario names, in its order.
+pub(crate) fn of_scenario(study: &Study) -> Result<Vec<Constellation>> {
+    let named = study.scenario.constellations.iter();
+    named.map(|one| study.constellation(one)).collect()
 }
 
 /// The satellites of a file or a directory that the arguments select.
