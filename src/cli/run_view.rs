@@ -7,7 +7,7 @@ use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
-use crate::report::shown;
+use crate::report::{compared_designs, shown};
 use crate::run::inputs::InputError;
 use crate::run::{
     FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
@@ -26,7 +26,7 @@ pub(crate) struct RunView {
     pub(crate) scenario_toml: Option<String>,
     /// `None` if the scenario can no longer be set up.
     pub(crate) evaluator: Option<Evaluator>,
-    /// The reference design and those of `--compare`, with their names.
+    /// The reference design, the constellations of the scenario and the designs of `--compare`, with their names.
     pub(crate) beside: Vec<(String, Design)>,
     pub(crate) fronts: Vec<NamedFront>,
 }
@@ -142,16 +142,13 @@ fn evaluator(directory: &Path, run: &Run) -> Result<Option<Evaluator>> {
 }
 
 fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
-    let reference = run
-        .scenario
-        .as_ref()
-        .and_then(|s| s.reference_design().ok());
-    let reference = reference.map(|design| ("reference design".to_owned(), design));
+    let of_scenario = run.scenario.as_ref().map(compared_designs);
+    let of_scenario = of_scenario.unwrap_or_default().into_iter();
     let compared = args
         .compare
         .iter()
         .map(|design| (design.to_string(), design.clone()));
-    reference.into_iter().chain(compared).collect()
+    of_scenario.chain(compared).collect()
 }
 
 /// The fronts given by the user, and that of the sweep that certified the run, if any.

@@ -176,7 +176,10 @@ impl Study {
                 format!("{key} is {} there and {} here", shown(value), shown(other))
             })
             .collect();
-        let (theirs, ours) = (run.scenario.computed_files(), self.scenario.computed_files());
+        let (theirs, ours) = (
+            run.scenario.computed_files(),
+            self.scenario.computed_files(),
+        );
         if theirs != ours {
             told.push(format!("it names {theirs} files there and {ours} here"));
         }

@@ -3,6 +3,7 @@
 use crate::constellation::Design;
 use crate::optimize::dominates;
 use crate::run::{Diagnostic, FrontMember};
+use crate::scenario::{NamedConstellation, Scenario};
 use crate::search::{DesignProblem, Quantity};
 
 /// A design shown with the front for comparison.
@@ -20,7 +21,25 @@ pub struct Baseline {
     feasible: Option<Vec<f64>>,
 }
 
+/// The designs that the front of a scenario is compared with, each with its name: the reference design, then the
+/// constellations that are other designs.
+#[must_use]
+pub fn compared_designs(scenario: &Scenario) -> Vec<(String, Design)> {
+    let reference = scenario.reference_design().ok();
+    let named = scenario.constellations.iter();
+    let design = |one: &NamedConstellation| Some((one.name.clone(), one.only_design()?.clone()));
+    let named: Vec<(String, Design)> = named
+        .filter_map(design)
+        .filter(|(_, design)| Some(design) != reference.as_ref())
+        .collect();
+    let reference = reference.map(|design| (Baseline::REFERENCE.to_owned(), design));
+    reference.into_iter().chain(named).collect()
+}
+
 impl Baseline {
+    /// Name of the reference design.
+    const REFERENCE: &'static str = "reference design";
+
     /// Evaluates a design; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
@@ -39,10 +58,14 @@ impl Baseline {
     /// Name and notation for use in a sentence; the notation alone if it is also the name.
     #[must_use]
     pub fn label(&self) -> String {
-        if self.name == self.notation {
-            return self.notation.clone();
+        let Self { name, notation, .. } = self;
+        if name == notation {
+            notation.clone()
+        } else if name == Self::REFERENCE {
+            format!("the {name} {notation}")
+        } else {
+            format!("the constellation {name} {notation}")
         }
-        format!("the {} {}", self.name, self.notation)
     }
 
     /// Whether it meets the constraints and dominates a member of the front: no worse in any

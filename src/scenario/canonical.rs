@@ -7,7 +7,9 @@ use sha2::{Digest, Sha256};
 
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::Rule;
-use super::values::{Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario};
+use super::values::{
+    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
+};
 
 impl Scenario {
     /// The scenario as TOML with every key, including defaults, in a fixed order and spelling. It parses back to the same scenario.

@@ -1,8 +1,8 @@
 //! The constellations of a scenario: what is behind a name, and the satellites of their files.
 
+use super::Scenario;
 use super::setup::SetupError;
 use super::values::{ConstellationParts, NamedConstellation};
-use super::Scenario;
 use crate::constellation::{Design, NotationError};
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::exchange::import::{Fleet, NoSuchSatellite, ReadFleetError, SatelliteFilter};
@@ -84,18 +84,6 @@ impl Scenario {
                 known: named.map(|one| one.name.clone()).collect(),
             }
         })
-    }
-
-    /// The constellations that are designs alone, without another of the reference design.
-    #[must_use]
-    pub fn compared_designs(&self) -> Vec<(String, Design)> {
-        let reference = self.reference_design().ok();
-        let named = self.constellations.iter();
-        let design = |one: &NamedConstellation| Some((one.name.clone(), one.only_design()?.clone()));
-        named
-            .filter_map(design)
-            .filter(|(_, design)| Some(design) != reference.as_ref())
-            .collect()
     }
 }
 
