@@ -22,7 +22,7 @@ mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
 
-pub use baseline::Baseline;
+pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
 pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};

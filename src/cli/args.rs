@@ -195,8 +195,8 @@ impl StudyArgs {
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ConstellationArgs {
     /// A design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG][,raan=DEG][,u=DEG][,node-step=DEG]`, degrees
-    /// and km; `+` joins shells. A name before it labels the results, as in `polar=star:90:182/13/1@925`; may be
-    /// repeated.
+    /// and km; `+` joins shells; or the name of a constellation of the scenario. A name before it labels the
+    /// results, as in `polar=star:90:182/13/1@925`; may be repeated.
     #[arg(long, value_name = "[NAME=]NOTATION")]
     pub(crate) design: Vec<Named>,
 

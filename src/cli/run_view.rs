@@ -29,7 +29,7 @@ pub(crate) struct View {
     pub(crate) scenario_toml: Option<String>,
     /// `None` if the scenario of a run can no longer be set up.
     pub(crate) evaluator: Option<Evaluator>,
-    /// The constellations that are compared; of a run the first is the reference design.
+    /// The constellations that are compared.
     pub(crate) compared: Vec<Compared>,
     pub(crate) fronts: Vec<NamedFront>,
     /// The files and directories that were read.
@@ -72,12 +72,8 @@ impl View {
         }
         let (evaluator, compared) = match study {
             Some((study, evaluator)) => {
-                let reference = study.scenario.reference_design().ok();
-                let reference = reference.map(Constellation::of_design);
-                let reference = reference.map(|one| one.named(Baseline::REFERENCE.to_owned()));
-                let given = given(&args.constellations, &study)?;
-                let all = reference.into_iter().chain(given);
-                let compared = compared(all, &study, &evaluator)?;
+                let beside = beside_front(&args.constellations, &study)?;
+                let compared = compared(beside, &study, &evaluator)?;
                 (Some(evaluator), compared)
             }
             None if !args.constellations.is_empty() => {
@@ -97,7 +93,7 @@ impl View {
         })
     }
 
-    /// The constellations of a scenario, or given with it.
+    /// The constellations given on the command line, or else those that the scenario names.
     fn of_scenario(args: &ViewArgs) -> Result<Self> {
         for (option, is_given) in [
             ("--front", !args.front.is_empty()),
@@ -108,11 +104,14 @@ impl View {
             }
         }
         let study = Study::load(&args.study(), &[]).map_err(|error| neither(args, error))?;
-        let given = given(&args.constellations, &study)?;
+        let given = match args.constellations.is_empty() {
+            true => constellations::of_scenario(&study)?,
+            false => constellations::resolve(&args.constellations, &study)?,
+        };
         if given.is_empty() {
             bail!(
-                "no constellation to show in scenario {}: give --design or --constellation, or a run directory \
-                 in place of the scenario",
+                "scenario {} names no constellations: give --design or --constellation, or a run directory in place \
+                 of the scenario",
                 study.scenario.name
             );
         }
@@ -168,9 +167,21 @@ fn neither(args: &ViewArgs, error: anyhow::Error) -> anyhow::Error {
     }
 }
 
-/// The constellations given on the command line.
-fn given(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
-    constellations::resolve(args, study)
+/// What is shown beside a front: the reference design, the constellations of the scenario, and those given on the
+/// command line; the reference design not if one of the others is the same, nor one of the scenario that is given.
+fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
+    let given = constellations::resolve(args, study)?;
+    let mut all = constellations::of_scenario(study)?;
+    all.retain(|one| !given.contains(one));
+    all.extend(given);
+    constellations::require_different_names(&all)?;
+    if let Ok(design) = study.scenario.reference_design()
+        && !all.iter().any(|one| one.only_design() == Some(&design))
+    {
+        let reference = Constellation::of_design(design);
+        all.insert(0, reference.named(Baseline::REFERENCE.to_owned()));
+    }
+    Ok(all)
 }
 
 /// The constellations, propagated and evaluated.

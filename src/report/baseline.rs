@@ -7,6 +7,7 @@ use crate::evaluate::Metrics;
 use crate::exchange::constellation::Constellation;
 use crate::optimize::{Evaluation, dominates};
 use crate::run::{Diagnostic, FrontMember};
+use crate::scenario::{NamedConstellation, Scenario};
 use crate::search::{DesignProblem, Quantity};
 
 /// A constellation that is compared, and its place among the objectives.
@@ -28,7 +29,25 @@ pub struct Baseline {
     pub(crate) feasible: Option<Vec<f64>>,
 }
 
+/// The designs that the front of a scenario is compared with, each with its name: the reference design, then the
+/// constellations that are other designs.
+#[must_use]
+pub fn compared_designs(scenario: &Scenario) -> Vec<(String, Design)> {
+    let reference = scenario.reference_design().ok();
+    let named = scenario.constellations.iter();
+    let design = |one: &NamedConstellation| Some((one.name.clone(), one.only_design()?.clone()));
+    let named: Vec<(String, Design)> = named
+        .filter_map(design)
+        .filter(|(_, design)| Some(design) != reference.as_ref())
+        .collect();
+    let reference = reference.map(|design| (Baseline::REFERENCE.to_owned(), design));
+    reference.into_iter().chain(named).collect()
+}
+
 impl Baseline {
+    /// Name of the reference design of a scenario.
+    pub const REFERENCE: &'static str = "reference design";
+
     /// Evaluates a design; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
@@ -82,9 +101,6 @@ impl Baseline {
             format!("the constellation {name} {notation}")
         }
     }
-
-    /// Name of the reference design of a scenario.
-    pub const REFERENCE: &'static str = "reference design";
 
     /// Whether it meets the constraints and dominates a member of the front: no worse in any
     /// objective and better in one.

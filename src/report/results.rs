@@ -1,6 +1,6 @@
 //! The objects that `--format json` prints, made from what was computed.
 
-use super::{Baseline, diagnose, dominated_by, shown};
+use super::{Baseline, compared_designs, diagnose, dominated_by, shown};
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
@@ -140,11 +140,12 @@ impl OptimizeResult {
         );
         let mut diagnostics = diagnose(problem, search, &front, &individuals);
         diagnostics.extend(shown::unused_reference(&volume));
-        let reference = scenario.reference_design().ok();
-        let reference =
-            reference.and_then(|design| Baseline::evaluate(Baseline::REFERENCE, &design, problem));
-        let pick = front.iter().find(|member| member.chosen);
-        diagnostics.extend(reference.zip(pick).and_then(|(r, pick)| r.diagnose(pick)));
+        if let Some(pick) = front.iter().find(|member| member.chosen) {
+            let compared = compared_designs(scenario).into_iter();
+            let compared =
+                compared.filter_map(|(name, design)| Baseline::evaluate(&name, &design, problem));
+            diagnostics.extend(compared.filter_map(|one| one.diagnose(pick)));
+        }
         let summary = SearchSummary {
             evaluations: progress.evaluations,
             hypervolume: volume,

@@ -202,7 +202,7 @@ fn what_cannot_be_shown_is_refused() {
     let directory = with_theirs();
     let design = ["--design", "delta:55:36/6/1@900"];
     for (arguments, error) in [
-        (vec!["report"], "no constellation to show in scenario paper"),
+        (vec!["report"], "scenario paper names no constellations"),
         (
             vec!["report", "nowhere/run"],
             "nowhere/run is neither a run directory nor a scenario",

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ViewArgs {
     /// A run directory, whose front is shown; or a scenario file or the name of a built-in scenario, in which
-    /// constellations are shown [default: paper].
+    /// constellations are shown, its own if none are given [default: paper].
     #[arg(value_name = "RUN | SCENARIO")]
     pub(crate) subject: Option<String>,
 
