@@ -1,11 +1,10 @@
 //! A run as `report` and `plot` show it: the contents of its directory and what follows from them.
 
-use crate::cli::args::RunArgs;
+use crate::cli::args::{MemberPick, RunArgs};
 use crate::cli::study::Study;
 use crate::cli::{files, output};
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
 use crate::report::shown;
 use crate::run::inputs::InputError;
@@ -75,17 +74,10 @@ impl RunView {
     }
 
     /// The picked member.
-    pub(crate) fn pick(&self, pick: Pick) -> Result<&FrontMember> {
+    pub(crate) fn pick(&self, pick: &MemberPick) -> Result<&FrontMember> {
         let members = &self.run.front;
-        let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
-        let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| {
-            format!(
-                "cannot pick {}: the front has {} designs",
-                pick.keyword(),
-                members.len()
-            )
-        })
+        let picked = pick.apply(members)?;
+        Ok(&members[picked.place])
     }
 }
 

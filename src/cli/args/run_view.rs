@@ -1,7 +1,7 @@
 //! Arguments of the commands that show a run.
 
+use super::MemberPick;
 use crate::constellation::Design;
-use crate::optimize::Pick;
 use crate::report::figures::draw::Form;
 use crate::report::figures::{Figure, Measure};
 use clap::Args;
@@ -59,9 +59,9 @@ pub(crate) struct PlotArgs {
     #[arg(long)]
     pub(crate) measure: Option<Measure>,
 
-    /// Design of a map, a distribution or a series: fuzzy, sum, topsis, knee, or its index.
+    /// Design of a map, a distribution or a series: fuzzy, sum, topsis, knee, its index, or its name.
     #[arg(long, value_name = "PICK", default_value = "fuzzy")]
-    pub(crate) pick: Pick,
+    pub(crate) pick: MemberPick,
 
     /// File format: svg, png, or csv for the data alone [default: by the extension of --out, or svg].
     #[arg(long = "as", value_name = "FORM")]

@@ -140,7 +140,7 @@ fn profiles(args: &PlotArgs, view: &RunView, with_others: bool) -> Result<Vec<(S
         .evaluator
         .as_ref()
         .context("this figure needs the scenario of the run, which cannot be set up")?;
-    let member = view.pick(args.pick)?;
+    let member = view.pick(&args.pick)?;
     let design: Design = member.design.notation.parse()?;
     let mut wanted = vec![(design.to_string(), design.clone())];
     if with_others {
