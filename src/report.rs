@@ -8,6 +8,7 @@ mod csv;
 mod diagnostics;
 #[cfg(feature = "figures")]
 mod dominance;
+mod evaluated;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;
@@ -24,12 +25,16 @@ pub(crate) mod validation;
 
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
-pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
+pub use csv::{ConstellationColumns, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
+pub use evaluated::{
+    Alone, ConstellationEntry, ConstellationResult, ConstellationSummary, ConstraintCheck,
+    EvaluateResult, Evaluated, GNSS_ONLY,
+};
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,
 };
-pub use results::{ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult};
+pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]

@@ -1,9 +1,11 @@
 //! The arguments of the program.
 
+mod member_pick;
 mod products;
 mod run_view;
 mod scenario;
 
+pub(crate) use member_pick::MemberPick;
 pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
@@ -17,7 +19,6 @@ use crate::formats::sp3::Sp3Version;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::Frame;
-use crate::optimize::Pick;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -64,9 +65,11 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Optimize(OptimizeArgs),
 
-    /// Compute visibility, PDOP with its tail, and cost of one design or of satellites from files.
+    /// Compute visibility, PDOP with its tail, and cost of constellations: designs, or satellites from files.
     ///
-    /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
+    /// Several are compared in one table, with the GNSS alone in its last row.
+    ///
+    /// Example: navwalker evaluate --design delta:55:182/13/1@925 --design polar=star:90:182/13/1@925
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
@@ -282,43 +285,35 @@ pub(crate) struct EvaluateArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
-    /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
-    #[arg(
-        long,
-        value_name = "NOTATION",
-        required_unless_present = "constellation"
-    )]
-    pub(crate) design: Option<Design>,
+    #[command(flatten)]
+    pub(crate) constellations: ConstellationArgs,
 
-    /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM
-    /// almanacs, or a table of elements or states, gzipped or not; a directory means all constellation files
-    /// in it; may be repeated.
-    #[arg(long, value_name = "FILE", conflicts_with = "design")]
-    pub(crate) constellation: Vec<PathBuf>,
-
-    /// Read the constellation files in this format instead of the detected one.
-    #[arg(long, value_name = "FORMAT", requires = "constellation")]
-    pub(crate) input_format: Option<crate::exchange::lint::Format>,
-
-    /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
-    /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
-    pub(crate) only: Vec<String>,
-
-    /// Leave these satellites of the files out, named as for `--only`; may be repeated.
-    #[arg(long, value_name = "PATTERN", conflicts_with = "design")]
-    pub(crate) exclude: Vec<String>,
+    /// Evaluate the designs of a list, of any length: CSV with a column `design` (or `notation`) and perhaps
+    /// `name`, or one notation a line; `-` is stdin.
+    ///
+    /// Blank lines and lines that begin with `#` are skipped. Results are printed in the order of the list as they
+    /// come. A line that cannot be evaluated is named on stderr and left out, and the exit status is 1; it is 2 if
+    /// no line can be. There are no warnings about satellites in one place or on collision course.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out"])]
+    pub(crate) designs: Option<PathBuf>,
 
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,
 
-    /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory.
+    /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
+    /// constellations to a folder each.
     #[arg(long, value_name = "DIR")]
     pub(crate) series: Option<PathBuf>,
 
-    /// Replace a series directory that is not empty.
-    #[arg(long, requires = "series")]
+    /// Write a run directory of these designs, which `report`, `plot`, `export --run` and `validate --run` take
+    /// like that of a search; `--pick` takes their names too.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace a series directory that is not empty, or another run; what this program did not write is never
+    /// deleted.
+    #[arg(long)]
     pub(crate) force: bool,
 
     /// Output format.
@@ -373,9 +368,10 @@ pub(crate) struct DesignArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) run: Option<PathBuf>,
 
-    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
+    /// Which design of the run: fuzzy, sum, topsis, knee, its index on the front, or its name in a run of
+    /// `evaluate`.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
-    pub(crate) pick: Pick,
+    pub(crate) pick: MemberPick,
 }
 
 #[derive(Debug, Args)]

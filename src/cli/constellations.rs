@@ -68,8 +68,8 @@ pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Con
     Ok(found)
 }
 
-/// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated or in
-/// one place.
+/// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated, in one
+/// place or about to collide.
 pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
     let ephemeris = one
         .ephemeris(setup.grid, setup.model)
@@ -83,6 +83,7 @@ pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris>
         }
     }
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
+    coincidence::warn_of_meetings(&one.name, &ephemeris);
     Ok(ephemeris)
 }
 

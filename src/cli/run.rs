@@ -1,13 +1,14 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
+use crate::cli::args::MemberPick;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::constellation::Design;
-use crate::optimize::{Pick, Search, Strategy};
+use crate::optimize::{Search, Strategy};
 use crate::run::checkpoint::{self, Identity};
 use crate::run::{
-    CHECKPOINT, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
-    PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
+    CHECKPOINT, FILES, FRONT_JSON, INPUTS, MANIFEST, OptimizeResult, PREVIOUS_CHECKPOINT, SCENARIO,
+    VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
 use anyhow::{Context, Result, bail};
@@ -61,10 +62,24 @@ impl RunDirectory {
     /// The directory at `path` for a run of `study`, with what a run begins with in it. It is
     /// replaced as at the end, so that a place that cannot be had is found before the work.
     pub(crate) fn open(path: PathBuf, study: &Study, force: bool) -> Result<Self> {
+        Self::open_as(path, study, study.identity()?, force)
+    }
+
+    /// The same for a run of given designs, which `given` names.
+    pub(crate) fn open_for(
+        path: PathBuf,
+        study: &Study,
+        given: Vec<String>,
+        force: bool,
+    ) -> Result<Self> {
+        Self::open_as(path, study, study.identity()?.of_given(given), force)
+    }
+
+    fn open_as(path: PathBuf, study: &Study, identity: Identity, force: bool) -> Result<Self> {
         let mut run = Self {
             path,
-            identity: study.identity()?,
-            first_files: study.first_files()?,
+            first_files: study.first_files(&identity)?,
+            identity,
             lock: None,
             is_holder: false,
         };
@@ -151,6 +166,15 @@ impl RunDirectory {
                 let (theirs, ours) = (found.version, &self.identity.version);
                 format!("a run by version {theirs}; this is version {ours}")
             }
+            Some(found) if found.given != self.identity.given => {
+                let is_search = found.given.is_empty();
+                if is_search {
+                    "a search"
+                } else {
+                    "a run of other designs"
+                }
+                .to_owned()
+            }
             Some(_) => match study.difference_from_run(&self.path) {
                 Some(difference) => format!("a run of another scenario: {difference}"),
                 None => "a run of another scenario".to_owned(),
@@ -225,11 +249,12 @@ impl RunDirectory {
         }
     }
 
-    /// Writes all results to a sibling directory and moves it into place.
+    /// Writes all results, and the state of the search if there was one, to a sibling directory and moves it into
+    /// place.
     pub(crate) fn finish(
         &mut self,
         scenario: &Scenario,
-        search: &Search,
+        search: Option<&Search>,
         result: &OptimizeResult,
     ) -> Result<()> {
         let staged = files::StagedDirectory::new(&self.path)?;
@@ -237,8 +262,17 @@ impl RunDirectory {
         for (name, text) in result_files(scenario, result)? {
             files::write_atomically(&staged.path().join(name), text.as_bytes())?;
         }
+        if let Some(search) = search {
+            self.save_at(staged.path(), search)?;
+        }
+        self.lock = staged.commit_keeping(&self.others()?)?;
+        Ok(())
+    }
+
+    /// Writes the state of a search, and the one before it, to a directory that will replace this one.
+    fn save_at(&self, staged: &Path, search: &Search) -> Result<()> {
         Self {
-            path: staged.path().to_owned(),
+            path: staged.to_owned(),
             identity: self.identity.clone(),
             first_files: Vec::new(),
             lock: None,
@@ -247,10 +281,9 @@ impl RunDirectory {
         .save(search)?;
         let previous = self.path.join(PREVIOUS_CHECKPOINT);
         if previous.exists() {
-            fs::copy(&previous, staged.path().join(PREVIOUS_CHECKPOINT))
+            fs::copy(&previous, staged.join(PREVIOUS_CHECKPOINT))
                 .with_context(|| format!("cannot copy {}", previous.display()))?;
         }
-        self.lock = staged.commit_keeping(&self.others()?)?;
         Ok(())
     }
 }
@@ -265,7 +298,7 @@ impl Drop for RunDirectory {
 }
 
 /// The design that `pick` selects from the front of a run, and why.
-pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
+pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, String)> {
     let path = directory.join(FRONT_JSON);
     let bytes = fs::read(&path).with_context(|| {
         format!(
@@ -275,15 +308,9 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     })?;
     let found = OptimizeResult::read(&bytes)
         .with_context(|| format!("{} is not a front written by this program", path.display()))?;
-    let points: Vec<Vec<f64>> = found.front.iter().map(FrontMember::minimised).collect();
-    let Some(picked) = pick.apply(&points) else {
-        bail!(
-            "cannot pick {}: the front in {} has {} designs",
-            pick.keyword(),
-            path.display(),
-            points.len()
-        );
-    };
+    let picked = pick
+        .apply(&found.front)
+        .with_context(|| format!("cannot pick from {}", path.display()))?;
     let design = found.front[picked.place].design.notation.parse()?;
     Ok((design, picked.reason))
 }

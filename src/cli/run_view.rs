@@ -1,11 +1,10 @@
 //! What `report` and `plot` show: a run, or a scenario, with the constellations that are compared.
 
-use crate::cli::args::{ConstellationArgs, ViewArgs};
+use crate::cli::args::{ConstellationArgs, MemberPick, ViewArgs};
 use crate::cli::study::Study;
 use crate::cli::{constellations, files, output};
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
-use crate::optimize::Pick;
 use crate::report::figures::{Baseline, NamedFront};
 use crate::report::{Compared, shown};
 use crate::run::inputs::InputError;
@@ -23,8 +22,10 @@ use std::path::{Path, PathBuf};
 pub(crate) struct View {
     /// The run; with the scenario alone if it is not one.
     pub(crate) run: Run,
-    /// The study, if it is not a run that is shown.
+    /// The study, if there was no search.
     pub(crate) stamp: Option<ScenarioStamp>,
+    /// The members of a run of given designs, which are shown as constellations: the first of those compared.
+    pub(crate) given: Vec<FrontMember>,
     /// Text of the scenario, for the provenance.
     pub(crate) scenario_toml: Option<String>,
     /// `None` if the scenario of a run can no longer be set up.
@@ -70,10 +71,16 @@ impl View {
         for gap in &run.gaps {
             output::warning(gap);
         }
+        let mut given = Vec::new();
         let (evaluator, compared) = match study {
             Some((study, evaluator)) => {
-                let beside = beside_front(&args.constellations, &study)?;
-                let compared = compared(beside, &study, &evaluator)?;
+                let shown = if run.is_of_given() {
+                    given = std::mem::take(&mut run.front);
+                    beside_given(&given, &args.constellations, &study)?
+                } else {
+                    beside_front(&args.constellations, &study)?
+                };
+                let compared = compared(shown, &study, &evaluator)?;
                 (Some(evaluator), compared)
             }
             None if !args.constellations.is_empty() => {
@@ -82,9 +89,11 @@ impl View {
             None => (None, Vec::new()),
         };
         let scenario_toml = files.scenario.ok();
+        let of_given = run.search.as_ref().filter(|_| !given.is_empty());
         Ok(Self {
+            stamp: of_given.map(|search| search.scenario.clone()),
+            given,
             run,
-            stamp: None,
             scenario_toml: scenario_toml.map(|text| String::from_utf8_lossy(&text).into_owned()),
             evaluator,
             compared,
@@ -119,6 +128,7 @@ impl View {
         let compared = compared(given, &study, &evaluator)?;
         Ok(Self {
             stamp: Some(study.stamp()?),
+            given: Vec::new(),
             scenario_toml: Some(study.scenario.to_toml()),
             inputs: study.inputs(),
             run: Run {
@@ -131,8 +141,8 @@ impl View {
         })
     }
 
-    /// Whether it is a run that is shown.
-    pub(crate) fn is_run(&self) -> bool {
+    /// Whether it is the run of a search that is shown.
+    pub(crate) fn is_of_search(&self) -> bool {
         self.stamp.is_none()
     }
 
@@ -143,17 +153,10 @@ impl View {
     }
 
     /// The picked member.
-    pub(crate) fn pick(&self, pick: Pick) -> Result<&FrontMember> {
+    pub(crate) fn pick(&self, pick: &MemberPick) -> Result<&FrontMember> {
         let members = &self.run.front;
-        let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
-        let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| {
-            format!(
-                "cannot pick {}: the front has {} designs",
-                pick.keyword(),
-                members.len()
-            )
-        })
+        let picked = pick.apply(members)?;
+        Ok(&members[picked.place])
     }
 }
 
@@ -181,6 +184,25 @@ fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constella
         let reference = Constellation::of_design(design);
         all.insert(0, reference.named(Baseline::REFERENCE.to_owned()));
     }
+    Ok(all)
+}
+
+/// What is shown of a run of given designs: these, and the constellations given on the command line.
+fn beside_given(
+    members: &[FrontMember],
+    args: &ConstellationArgs,
+    study: &Study,
+) -> Result<Vec<Constellation>> {
+    let of_member = |member: &FrontMember| -> Result<Constellation> {
+        let one = Constellation::of_design(member.design.notation.parse()?);
+        Ok(match &member.name {
+            Some(name) => one.named(name.clone()),
+            None => one,
+        })
+    };
+    let mut all: Vec<Constellation> = members.iter().map(of_member).collect::<Result<_>>()?;
+    all.extend(constellations::resolve(args, study)?);
+    constellations::require_different_names(&all)?;
     Ok(all)
 }
 

@@ -104,9 +104,8 @@ impl Study {
     }
 
     /// The initial files of a run of this study.
-    pub(crate) fn first_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
-        let identity = self.identity()?;
-        Ok(first_files(&self.scenario, self.contents()?, &identity)?)
+    pub(crate) fn first_files(&self, identity: &Identity) -> Result<Vec<(String, Vec<u8>)>> {
+        Ok(first_files(&self.scenario, self.contents()?, identity)?)
     }
 
     /// Contents of the files that the scenario names, in its order; read once, so that all results and
@@ -355,7 +354,7 @@ pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result
             bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, design.pick)?;
+        let (picked, why) = run::pick(directory, &design.pick)?;
         output::hint(&format!("{picked} of {}: {why}", directory.display()));
         return Ok((loaded, picked));
     }

@@ -182,7 +182,7 @@ pub(super) fn search(
     if let Some(sweep) = sweep {
         result.certify(sweep, &scenario.objectives.minimize);
     }
-    let placed = directory.finish(scenario, &search, &result);
+    let placed = directory.finish(scenario, Some(&search), &result);
     Ok(Ended {
         result,
         placed,

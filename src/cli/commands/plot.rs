@@ -1,6 +1,6 @@
 //! `navwalker plot`.
 
-use crate::cli::args::PlotArgs;
+use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::constellation::Design;
@@ -202,39 +202,42 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
     Ok(shown)
 }
 
-/// The constellation of that name; else that number of the constellations, or of the front of a run.
+/// The constellation of that name; else the design picked from a front, or that number of the constellations.
 fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<Picked<'a>> {
     let compared = &view.compared;
     let named = pick.and_then(|pick| compared.iter().find(|one| one.constellation.name == pick));
     if let Some(one) = named {
         return Ok(Picked::Constellation(one));
     }
-    let method = pick.map(str::parse::<Pick>).transpose();
-    if view.is_run() && (pick.is_some() || !view.run.front.is_empty()) {
-        let method = method.ok().with_context(|| {
-            let names = names(compared);
-            format!(
-                "--pick {}: expected fuzzy, sum, topsis, knee, the index of a design on the front, or a name \
-                 among {names}",
-                pick.unwrap_or_default()
-            )
-        })?;
-        let member = view.pick(method.unwrap_or(Pick::Fuzzy))?;
+    let method = pick.and_then(|pick| pick.parse::<Pick>().ok());
+    if view.is_of_search() {
+        if let (Some(pick), None) = (pick, method) {
+            bail!(
+                "--pick {pick}: expected fuzzy, sum, topsis, knee, the index of a design on the front, or a name \
+                 among {}",
+                names(compared)
+            );
+        }
+        let member = view.pick(&MemberPick::Pick(method.unwrap_or(Pick::Fuzzy)))?;
         return Ok(Picked::Member(member.design.notation.parse()?));
     }
     let place = match (pick, method) {
         (None, _) => Some(0),
-        (Some(_), Ok(Some(Pick::Index(number)))) => Some(number - 1),
-        _ => None,
+        (Some(_), Some(Pick::Index(number))) => number.checked_sub(1),
+        (Some(_), Some(method)) => {
+            let picked = MemberPick::Pick(method).apply(&view.given);
+            picked.ok().map(|picked| picked.place)
+        }
+        (Some(_), None) => None,
     };
     let one = place.and_then(|place| compared.get(place));
-    one.map(Picked::Constellation).with_context(|| match pick {
-        Some(pick) => format!(
-            "--pick {pick}: expected a number from 1 to {}, or a name among {}",
+    one.map(Picked::Constellation).with_context(|| {
+        format!(
+            "--pick {}: expected a number from 1 to {}, or a name among {}",
+            pick.unwrap_or_default(),
             compared.len(),
             names(compared)
-        ),
-        None => "the run has neither a front nor a constellation to compare".to_owned(),
+        )
     })
 }
 

@@ -41,7 +41,8 @@ pub fn pareto(
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Pareto;
     let names = run.objective_names();
-    if run.front.is_empty() && (run.search.is_some() || baselines.is_empty()) {
+    let is_of_search = run.search.is_some() && !run.is_of_given();
+    if run.front.is_empty() && (is_of_search || baselines.is_empty()) {
         let reason = "the front is empty";
         return Err(FigureError::Nothing { figure, reason });
     }

@@ -186,6 +186,10 @@ fn found(run: &Run) -> String {
     let Some(search) = &run.search else {
         return format!("The search found {members}.");
     };
+    if search.is_of_given() {
+        let designs = crate::units::counted(run.front.len(), "design");
+        return format!("{designs} given by name were evaluated, without a search.");
+    }
     let mut text = format!(
         "{} (seed {}) evaluated {} designs and found {members}.",
         shown::algorithm(&search.algorithm),
