@@ -4,6 +4,7 @@ pub mod arc;
 pub mod coincidence;
 pub(crate) mod derivative;
 pub mod hermite;
+pub mod meetings;
 pub mod sampled;
 
 use crate::constellation::gnss::GnssSatellite;

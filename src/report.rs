@@ -3,8 +3,12 @@
 mod baseline;
 mod certificate;
 pub mod coastline;
+mod compared;
 mod csv;
 mod diagnostics;
+#[cfg(feature = "figures")]
+mod dominance;
+mod evaluated;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;
@@ -19,14 +23,19 @@ mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
 
-pub use baseline::Baseline;
-pub use csv::{constellation_csv, dops_csv, metrics_csv, records_csv};
+pub use baseline::{Baseline, compared_designs};
+pub use compared::Compared;
+pub use csv::{ConstellationColumns, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
+pub use evaluated::{
+    Alone, ConstellationEntry, ConstellationResult, ConstellationSummary, ConstraintCheck,
+    EvaluateResult, Evaluated, GNSS_ONLY,
+};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
     reproduction_markdown, reproduction_text,
 };
-pub use results::{ConstellationResult, ConstellationSummary, ConstraintCheck, EvaluateResult};
+pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]

@@ -65,26 +65,28 @@ pub const FILES: [&str; 10] = [
     HISTORY_CSV,
 ];
 
-/// The results of a run: names and contents of their files. A run begins with
-/// [`inputs::first_files`].
+/// The results of a run: names and contents of their files; without a search there is no history. A run begins
+/// with [`inputs::first_files`].
 ///
 /// # Errors
 /// Never for results in memory.
 pub fn result_files(
     scenario: &Scenario,
     result: &OptimizeResult,
-) -> std::io::Result<[(&'static str, String); 4]> {
+) -> std::io::Result<Vec<(&'static str, String)>> {
     let objectives = scenario.objectives.minimize.iter();
     let objectives: Vec<String> = objectives.map(ToString::to_string).collect();
-    Ok([
+    let mut files = vec![
         (FRONT_JSON, crate::printable::json(result)? + "\n"),
         (FRONT_CSV, front_csv(&result.front)?),
-        (
-            HISTORY_JSON,
-            crate::printable::json(&result.history)? + "\n",
-        ),
-        (HISTORY_CSV, history_csv(&result.history, &objectives)?),
-    ])
+    ];
+    if !result.search.is_of_given() {
+        let history = crate::printable::json(&result.history)? + "\n";
+        files.push((HISTORY_JSON, history));
+        let table = history_csv(&result.history, &objectives)?;
+        files.push((HISTORY_CSV, table));
+    }
+    Ok(files)
 }
 
 /// The readable parts of a run.
@@ -130,6 +132,7 @@ impl Run {
         }
         match json(HISTORY_JSON, &files.history) {
             Ok(history) => run.history = history,
+            Err(_) if run.is_of_given() => {}
             Err(gap) => run.gaps.push(gap),
         }
         #[cfg(feature = "validate")]
@@ -142,6 +145,13 @@ impl Run {
         run.sort_objectives();
         run.compare_versions();
         run
+    }
+
+    /// Whether its designs were given, and not found by a search.
+    #[must_use]
+    pub fn is_of_given(&self) -> bool {
+        let search = self.search.as_ref();
+        search.is_some_and(SearchSummary::is_of_given)
     }
 
     /// The fuzzy pick, by position in the members.

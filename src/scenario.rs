@@ -18,6 +18,7 @@
 mod algorithm;
 mod builtin;
 mod canonical;
+mod constellations;
 mod document;
 mod gnss_file;
 mod keys;
@@ -44,14 +45,15 @@ pub use crate::search::{Constraint, ConstraintError, LaunchCost, Quantity, Relat
 pub use algorithm::Algorithm;
 pub use builtin::{builtin, builtin_names};
 pub use canonical::KeyDifference;
+pub use constellations::{ConstellationFileError, NoDesign};
 pub use keys::{KeyDescription, describe_keys};
 pub use problem::{Fault, Problems, ScenarioProblem};
 pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
-    Earth, Export, GnssSetup, Grid, MaskPoint, Objectives, Optimizer, Propagation, Region,
-    Scenario, SearchSpace, TimeSpan, Visibility,
+    ConstellationParts, Earth, Export, GnssSetup, Grid, MaskPoint, NamedConstellation, Objectives,
+    Optimizer, Propagation, Region, Scenario, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;
@@ -91,8 +93,16 @@ impl Scenario {
     ) -> Problems {
         let mut report = ProblemList::default();
         if let Some(document) = document(label, bytes, overrides, &mut report) {
-            let reason = error.reason();
-            document.refuse(&error.keys(), Fault::SetUp { reason }, &mut report);
+            let fault = Fault::SetUp {
+                reason: error.reason(),
+            };
+            match error {
+                SetupError::Constellation { name, .. } => {
+                    let key = keys::key!(Scenario.constellations);
+                    document.refuse_within(key, &[name, "files"], fault, &mut report);
+                }
+                _ => document.refuse(&error.keys(), fault, &mut report),
+            }
         }
         report.into()
     }

@@ -8,6 +8,7 @@ pub use constraint::{Constraint, ConstraintError, Relation};
 pub use quantity::{LaunchCost, Quantity};
 
 use crate::constellation::{Design, DesignError, Pattern, Shell, ShellParameters};
+use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Evaluation, OptimizeError, Problem, Space, Variable, VariableKind};
 use crate::units::round_decimal;
@@ -252,7 +253,7 @@ impl<'a> DesignProblem<'a> {
                 violation: 2.0,
             };
         };
-        self.judge(&design, &metrics)
+        self.judge(design.satellite_count(), Some(&design), &metrics)
     }
 
     /// The metrics of a design, which need not be in the space, and their evaluation for an
@@ -260,12 +261,29 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
         let metrics = self.evaluator.evaluate(design).ok()?;
-        let evaluation = self.judge(design, &metrics);
+        let evaluation = self.judge(design.satellite_count(), Some(design), &metrics);
         Some((metrics, evaluation))
     }
 
-    fn judge(&self, design: &Design, metrics: &Metrics) -> Evaluation {
-        let value = |quantity: Quantity| quantity.value(design, metrics, &self.goals.launch_cost);
+    /// The metrics of any satellites, which are those of a design if there is one, and their evaluation as for
+    /// an optimiser.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn judged_ephemeris(
+        &self,
+        ephemeris: &Ephemeris,
+        design: Option<&Design>,
+    ) -> Result<(Metrics, Evaluation), EphemerisError> {
+        let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;
+        let satellites = ephemeris.satellites().len();
+        let evaluation = self.judge(satellites, design, &metrics);
+        Ok((metrics, evaluation))
+    }
+
+    fn judge(&self, satellites: usize, design: Option<&Design>, metrics: &Metrics) -> Evaluation {
+        let cost = &self.goals.launch_cost;
+        let value = |quantity: Quantity| quantity.value_of(satellites, design, metrics, cost);
         let mut violation: f64 = self
             .goals
             .constraints

@@ -1,11 +1,13 @@
 //! The arguments of the program.
 
+mod member_pick;
 mod products;
 mod run_view;
 mod satellites;
 mod scenario;
 
-pub(crate) use run_view::{PlotArgs, ReportArgs, RunArgs};
+pub(crate) use member_pick::MemberPick;
+pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
@@ -19,7 +21,6 @@ use crate::formats::sp3::Sp3Version;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::Frame;
-use crate::optimize::Pick;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -75,9 +76,11 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Optimize(OptimizeArgs),
 
-    /// Compute visibility, PDOP with its tail, and cost of one design or of satellites from files.
+    /// Compute visibility, PDOP with its tail, and cost of constellations: designs, or satellites from files.
     ///
-    /// Example: navwalker evaluate --design delta:55:182/13/1@925 --set visibility.mask-deg=10
+    /// Several are compared in one table, with the GNSS alone in its last row.
+    ///
+    /// Example: navwalker evaluate --design delta:55:182/13/1@925 --design polar=star:90:182/13/1@925
     #[command(verbatim_doc_comment)]
     Evaluate(EvaluateArgs),
 
@@ -115,32 +118,40 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Validate(ValidateArgs),
 
-    /// Write one self-contained HTML page about a run.
+    /// Write one self-contained HTML page about a run, or about constellations.
     ///
-    /// The page shows the trade-off and, for the selected design, maps, distributions, time series
-    /// and a globe; it needs no network. It is written to report.html in the run directory. Damaged
-    /// or missing files are named; the rest is shown.
+    /// The page of a run shows the trade-off and, for the selected design, maps, distributions, time
+    /// series and a globe; it needs no network. It is written to report.html in the run directory.
+    /// Damaged or missing files are named; the rest is shown.
     ///
-    /// A validation is included if it is in DIR/validation:
+    /// Constellations given by --design and --constellation are compared with the front and with each
+    /// other: a table with the best of each column, who dominates whom, and each can be selected like
+    /// a design of the front. With a scenario in place of a run, the page shows them alone and is
+    /// written to report.html in the working directory.
+    ///
+    /// A validation is included if it is in RUN/validation:
     ///   navwalker validate --run runs/paper-1 --against sgp4 --report
     ///
-    /// Example: navwalker report runs/paper-1 --compare star:86.4:180/12/1@925
+    /// Examples: navwalker report runs/paper-1 --design star:86.4:180/12/1@925
+    ///           navwalker report paper --design delta:55:182/13/1@925 --design polar=star:90:182/13/1@925
     #[command(verbatim_doc_comment)]
     Report(ReportArgs),
 
-    /// Draw a figure of a run for a paper or a review, with the data behind it.
+    /// Draw a figure of a run, or of constellations, for a paper or a review, with the data behind it.
     ///
-    /// pareto       the front in the plane of the first two objectives
+    /// pareto       the plane of the first two objectives: the front, and the constellations
     /// map          --measure mean-visible, mean-pdop, p95-pdop, max-pdop, availability
     /// cdf          --measure mean-visible, mean-pdop, max-pdop (over time), or pdop with its tail
     /// series       --measure mean-visible, mean-pdop, max-pdop
-    /// convergence  the hypervolume over the evaluations
-    /// budget       the error budget of a validation
+    /// convergence  the hypervolume over the evaluations of a run
+    /// budget       the error budget of a validation of a run
     ///
-    /// With --out, the data is written next to the figure with the extension .csv; without it, the
-    /// figure goes to stdout. The same run always gives the same bytes.
+    /// Constellations given by --design and --constellation are drawn beside a run, or alone with a
+    /// scenario. With --out, the data is written next to the figure with the extension .csv; without
+    /// it, the figure goes to stdout. The same input always gives the same bytes.
     ///
-    /// Example: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    /// Examples: navwalker plot runs/paper-1 --figure map --measure max-pdop --out max-pdop.svg
+    ///           navwalker plot paper --figure cdf --design delta:55:182/13/1@925 --out cdf.svg
     #[command(verbatim_doc_comment)]
     Plot(PlotArgs),
 
@@ -195,11 +206,11 @@ impl StudyArgs {
 }
 
 /// Constellations, each given directly.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ConstellationArgs {
     /// A design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG][,raan=DEG][,u=DEG][,node-step=DEG]`, degrees
-    /// and km; `+` joins shells. A name before it labels the results, as in `polar=star:90:182/13/1@925`; may be
-    /// repeated.
+    /// and km; `+` joins shells; or the name of a constellation of the scenario. A name before it labels the
+    /// results, as in `polar=star:90:182/13/1@925`; may be repeated.
     #[arg(long, value_name = "[NAME=]NOTATION")]
     pub(crate) design: Vec<Named>,
 
@@ -294,38 +305,35 @@ pub(crate) struct EvaluateArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
-    /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
-    #[arg(
-        long,
-        value_name = "NOTATION",
-        required_unless_present = "constellation",
-        conflicts_with_all = ["only", "exclude"]
-    )]
-    pub(crate) design: Option<Design>,
-
-    /// Evaluate the satellites in a file instead: TLE, OMM, OEM, OPM, SP3, STK ephemeris, CZML, YUMA and SEM
-    /// almanacs, or a table of elements or states, gzipped or not; a directory means all constellation files
-    /// in it; may be repeated.
-    #[arg(long, value_name = "FILE", conflicts_with = "design")]
-    pub(crate) constellation: Vec<PathBuf>,
-
-    /// Read the constellation files in this format instead of the detected one.
-    #[arg(long, value_name = "FORMAT", requires = "constellation")]
-    pub(crate) input_format: Option<crate::exchange::lint::Format>,
-
     #[command(flatten)]
-    pub(crate) satellites: SatelliteArgs,
+    pub(crate) constellations: ConstellationArgs,
+
+    /// Evaluate the designs of a list, of any length: CSV with a column `design` (or `notation`) and perhaps
+    /// `name`, or one notation a line; `-` is stdin.
+    ///
+    /// Blank lines and lines that begin with `#` are skipped. Results are printed in the order of the list as they
+    /// come. A line that cannot be evaluated is named on stderr and left out, and the exit status is 1; it is 2 if
+    /// no line can be. There are no warnings about satellites in one place or on collision course.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out"])]
+    pub(crate) designs: Option<PathBuf>,
 
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,
 
-    /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory.
+    /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
+    /// constellations to a folder each.
     #[arg(long, value_name = "DIR")]
     pub(crate) series: Option<PathBuf>,
 
-    /// Replace a series directory that is not empty.
-    #[arg(long, requires = "series")]
+    /// Write a run directory of these designs, which `report`, `plot`, `export --run` and `validate --run` take
+    /// like that of a search; `--pick` takes their names too.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    /// Replace a series directory that is not empty, or another run; what this program did not write is never
+    /// deleted.
+    #[arg(long)]
     pub(crate) force: bool,
 
     /// Output format.
@@ -380,9 +388,10 @@ pub(crate) struct DesignArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) run: Option<PathBuf>,
 
-    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
+    /// Which design of the run: fuzzy, sum, topsis, knee, its index on the front, or its name in a run of
+    /// `evaluate`.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
-    pub(crate) pick: Pick,
+    pub(crate) pick: MemberPick,
 }
 
 #[derive(Debug, Args)]

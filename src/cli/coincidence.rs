@@ -1,9 +1,10 @@
-//! The warning about coincident satellites.
+//! The warnings about satellites in one place, and about satellites that meet.
 
 use crate::cli::output;
 use crate::constellation::gnss::System;
 use crate::ephemeris::Ephemeris;
 use crate::ephemeris::coincidence::{COINCIDENT_WITHIN_KM, Member, coincident};
+use crate::ephemeris::meetings::{MEET_WITHIN_KM, Meeting, meetings};
 use crate::time::TimeGrid;
 
 /// Maximum number of groups, and of members of a group, to name.
@@ -22,6 +23,32 @@ pub(crate) fn warn(gnss: &[System], grid: TimeGrid, leo: Option<&Ephemeris>) {
     {
         output::warning(&text(&all, &groups));
     }
+}
+
+/// Warns of satellites of a constellation that meet. One that cannot be propagated is ignored here.
+pub(crate) fn warn_of_meetings(name: &str, ephemeris: &Ephemeris) {
+    let Ok(Some(found)) = meetings(ephemeris) else {
+        return;
+    };
+    let told = |meeting: Meeting| {
+        let [a, b] = meeting
+            .pair
+            .map(|place| &ephemeris.satellites()[place].name);
+        let at = ephemeris.grid().epoch().plus_seconds(meeting.elapsed_s);
+        let distance_km = meeting.distance_km;
+        format!("{a} and {b} are {distance_km:.3} km apart at {at}")
+    };
+    let closest = match found.count {
+        1 => String::new(),
+        count => format!(
+            "; so close {count} times at the samples, closest: {}",
+            told(found.closest)
+        ),
+    };
+    output::warning(&format!(
+        "{name}: satellites come within {MEET_WITHIN_KM} km of each other: {}{closest}",
+        told(found.first)
+    ));
 }
 
 fn text(all: &[&Ephemeris], groups: &[Vec<Member>]) -> String {

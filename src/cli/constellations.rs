@@ -90,8 +90,8 @@ pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Con
     Ok(found)
 }
 
-/// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated or in
-/// one place.
+/// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated, in one
+/// place or about to collide.
 pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
     let ephemeris = one
         .ephemeris(setup.grid, setup.model)
@@ -105,6 +105,7 @@ pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris>
         }
     }
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
+    coincidence::warn_of_meetings(&one.name, &ephemeris);
     Ok(ephemeris)
 }
 
@@ -115,10 +116,20 @@ fn renamed(one: Constellation, given: &Named) -> Constellation {
     }
 }
 
-/// A design by its notation.
-fn of_notation(text: &str, _study: &Study) -> Result<Constellation> {
-    let design = text.parse().with_context(|| format!("--design {text}"))?;
+/// A constellation by its name in the scenario, or a design by its notation.
+fn of_notation(text: &str, study: &Study) -> Result<Constellation> {
+    if let Some(named) = study.scenario.constellation(text) {
+        return study.constellation(named);
+    }
+    let design = study.scenario.design(text);
+    let design = design.with_context(|| format!("--design {text}"))?;
     Ok(Constellation::of_design(design))
+}
+
+/// The constellations that the scenario names, in its order.
+pub(crate) fn of_scenario(study: &Study) -> Result<Vec<Constellation>> {
+    let named = study.scenario.constellations.iter();
+    named.map(|one| study.constellation(one)).collect()
 }
 
 /// The satellites of a file or a directory that the arguments select.
@@ -134,7 +145,8 @@ fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
     }))
 }
 
-fn require_different_names(constellations: &[Constellation]) -> Result<()> {
+/// Refuses constellations that have the same name.
+pub(crate) fn require_different_names(constellations: &[Constellation]) -> Result<()> {
     for (n, one) in constellations.iter().enumerate() {
         if constellations[..n]
             .iter()
@@ -152,6 +164,74 @@ fn require_different_names(constellations: &[Constellation]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::args::StudyArgs;
+    use std::fs;
+
+    const ELEMENTS: &str = "object,epoch_utc,semi_major_axis_km,eccentricity,inclination_deg,raan_deg,arg_perigee_deg,mean_anomaly_deg\n\
+        A-1,2025-01-01T00:00:00Z,7300,0,50,0,0,0\n\
+        A-2,2025-01-01T00:00:00Z,7300,0,50,0,0,180\n";
+
+    /// A study that names a hybrid and a constellation of files.
+    fn study(place: &Path) -> Study {
+        let text = "[constellations]\n\
+            hybrid = \"delta:53:4/2/1@1000+star:90:4/2/1@1100\"\n\
+            mixed = { design = \"delta:55:4/2/1@925\", files = [\"a.csv\"], only = [\"A-2\"] }\n";
+        fs::write(place.join("study.toml"), text).unwrap();
+        fs::write(place.join("a.csv"), ELEMENTS).unwrap();
+        let args = StudyArgs {
+            scenario: Some(place.join("study.toml").to_string_lossy().into_owned()),
+            overrides: Vec::new(),
+        };
+        Study::load(&args, &[]).unwrap()
+    }
+
+    fn designs(texts: &[&str]) -> ConstellationArgs {
+        ConstellationArgs {
+            design: texts.iter().map(|text| text.parse().unwrap()).collect(),
+            constellation: Vec::new(),
+            input_format: None,
+            only: Vec::new(),
+            exclude: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_design_may_be_the_name_of_a_constellation_of_the_scenario() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let study = study(directory.path());
+        let args = designs(&["mixed", "second=hybrid", "star:90:4/2/1@925"]);
+        let found = resolve(&args, &study).unwrap();
+        let told = |one: &Constellation| (one.name.clone(), one.satellite_count());
+        let told: Vec<(String, usize)> = found.iter().map(told).collect();
+        let expected = [("mixed", 5), ("second", 8), ("star:90:4/2/1@925", 4)];
+        assert_eq!(told, expected.map(|(name, count)| (name.to_owned(), count)));
+        let named = of_scenario(&study).unwrap();
+        let names: Vec<&str> = named.iter().map(|one| one.name.as_str()).collect();
+        assert_eq!(names, ["hybrid", "mixed"]);
+        assert_eq!(named[1], found[0]);
+        let unknown = resolve(&designs(&["hybird"]), &study).unwrap_err();
+        let unknown = format!("{unknown:#}");
+        assert!(
+            unknown.starts_with("--design hybird: 'hybird' is not a design; the form is "),
+            "{unknown}"
+        );
+        assert!(
+            unknown.ends_with("did you mean 'hybrid'? (choices: hybrid, mixed)"),
+            "{unknown}"
+        );
+    }
+
+    #[test]
+    fn files_of_constellations_that_are_missing_have_their_line() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let study = study(directory.path());
+        fs::remove_file(directory.path().join("a.csv")).unwrap();
+        let error = format!("{:#}", of_scenario(&study).unwrap_err());
+        assert!(
+            error.contains("study.toml:3: constellations.mixed.files: a.csv: cannot read it: "),
+            "{error}"
+        );
+    }
 
     #[test]
     fn a_name_ends_at_the_first_equals_sign() {

@@ -39,11 +39,14 @@ pub(crate) fn shown_path(path: &Path) -> String {
 
 /// Prints a result: text without what a terminal would obey ([`crate::printable`]).
 pub(crate) fn result(text: &str) -> Result<()> {
+    let end = if text.ends_with('\n') { "" } else { "\n" };
+    part(&format!("{text}{end}"))
+}
+
+/// Prints a part of a result as it is, at once.
+pub(crate) fn part(text: &str) -> Result<()> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(printable_lines(text).as_bytes())?;
-    if !text.ends_with('\n') {
-        stdout.write_all(b"\n")?;
-    }
     Ok(stdout.flush()?)
 }
 

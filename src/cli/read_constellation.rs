@@ -68,12 +68,6 @@ pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     }
 }
 
-/// The formats of a constellation, as results name them.
-pub(crate) fn names(formats: &[Format]) -> String {
-    let names: Vec<String> = formats.iter().map(Format::to_string).collect();
-    names.join("+")
-}
-
 fn read_one(file: &Path, format: Option<Format>) -> Result<Imported> {
     let read = || -> Result<Imported> {
         let input = BufReader::new(File::open(file)?);

@@ -1,13 +1,14 @@
 //! Run directories: results, and the checkpoint that a search resumes from.
 
+use crate::cli::args::MemberPick;
 use crate::cli::interrupt::Removed;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
 use crate::constellation::Design;
-use crate::optimize::{Pick, Search, Strategy};
+use crate::optimize::{Search, Strategy};
 use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::{
-    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
+    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, INPUTS, MANIFEST, OptimizeResult,
     PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
@@ -156,10 +157,24 @@ impl RunDirectory {
     /// The directory at `path` for a run of `study`, with what a run begins with in it. It is
     /// replaced as at the end, so that a place that cannot be had is found before the work.
     pub(crate) fn open(path: PathBuf, study: &Study, force: bool) -> Result<Self> {
+        Self::open_as(path, study, study.identity()?, force)
+    }
+
+    /// The same for a run of given designs, which `given` names.
+    pub(crate) fn open_for(
+        path: PathBuf,
+        study: &Study,
+        given: Vec<String>,
+        force: bool,
+    ) -> Result<Self> {
+        Self::open_as(path, study, study.identity()?.of_given(given), force)
+    }
+
+    fn open_as(path: PathBuf, study: &Study, identity: Identity, force: bool) -> Result<Self> {
         let mut run = Self {
             path,
-            identity: study.identity()?,
-            first_files: study.first_files()?,
+            first_files: study.first_files(&identity)?,
+            identity,
             found: FoundCheckpoints::default(),
             recent: [None, None],
             log: RecordLog::default(),
@@ -245,6 +260,15 @@ impl RunDirectory {
             Some(found) if found.version != self.identity.version => {
                 let (theirs, ours) = (found.version, &self.identity.version);
                 format!("a run by version {theirs}; this is version {ours}")
+            }
+            Some(found) if found.given != self.identity.given => {
+                let is_search = found.given.is_empty();
+                if is_search {
+                    "a search"
+                } else {
+                    "a run of other designs"
+                }
+                .to_owned()
             }
             Some(_) => match study.difference_from_run(&self.path) {
                 Some(difference) => format!("a run of another scenario: {difference}"),
@@ -353,11 +377,7 @@ impl RunDirectory {
                 return Ok(Placed::Nothing);
             }
         }
-        let staged = files::StagedDirectory::new(&self.path)?;
-        files::write_all(staged.path(), &self.first_files)?;
-        for (name, text) in result_files(scenario, result)? {
-            files::write_atomically(&staged.path().join(name), text.as_bytes())?;
-        }
+        let staged = self.staged_results(scenario, result)?;
         let mut log = RecordLog::default();
         let (latest, lines) = checkpoint::write(&self.identity, search, &mut log)?;
         for (name, text) in [(CHECKPOINT, latest), (CHECKPOINT_LOG, lines)] {
@@ -368,6 +388,27 @@ impl RunDirectory {
         }
         self.lock = staged.commit_keeping(&self.others()?)?;
         Ok(Placed::Written)
+    }
+
+    /// Writes the results of given designs to a sibling directory and moves it into place.
+    pub(crate) fn place(&mut self, scenario: &Scenario, result: &OptimizeResult) -> Result<()> {
+        let staged = self.staged_results(scenario, result)?;
+        self.lock = staged.commit_keeping(&self.others()?)?;
+        Ok(())
+    }
+
+    /// A sibling directory with what a run begins with and its results.
+    fn staged_results(
+        &self,
+        scenario: &Scenario,
+        result: &OptimizeResult,
+    ) -> Result<files::StagedDirectory> {
+        let staged = files::StagedDirectory::new(&self.path)?;
+        files::write_all(staged.path(), &self.first_files)?;
+        for (name, text) in result_files(scenario, result)? {
+            files::write_atomically(&staged.path().join(name), text.as_bytes())?;
+        }
+        Ok(staged)
     }
 
     /// The checkpoint before the last one of this search, if there is one.
@@ -397,7 +438,7 @@ impl Drop for RunDirectory {
 }
 
 /// The design that `pick` selects from the front of a run, and why.
-pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
+pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, String)> {
     let path = directory.join(FRONT_JSON);
     let bytes = files::read_run(&path).with_context(|| {
         format!(
@@ -407,15 +448,9 @@ pub(crate) fn pick(directory: &Path, pick: Pick) -> Result<(Design, String)> {
     })?;
     let found = OptimizeResult::read(&bytes)
         .with_context(|| format!("{} is not a front written by this program", path.display()))?;
-    let points: Vec<Vec<f64>> = found.front.iter().map(FrontMember::minimised).collect();
-    let Some(picked) = pick.apply(&points) else {
-        bail!(
-            "cannot pick {}: the front in {} has {} designs",
-            pick.keyword(),
-            path.display(),
-            points.len()
-        );
-    };
+    let picked = pick
+        .apply(&found.front)
+        .with_context(|| format!("cannot pick from {}", path.display()))?;
     let design = found.front[picked.place].design.notation.parse()?;
     Ok((design, picked.reason))
 }

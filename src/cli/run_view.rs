@@ -1,42 +1,66 @@
-//! A run as `report` and `plot` show it: the contents of its directory and what follows from them.
+//! What `report` and `plot` show: a run, or a scenario, with the constellations that are compared.
 
-use crate::cli::args::RunArgs;
+use crate::cli::args::{ConstellationArgs, MemberPick, ViewArgs};
 use crate::cli::study::Study;
-use crate::cli::{files, output};
-use crate::constellation::Design;
+use crate::cli::{constellations, files, output};
 use crate::evaluate::Evaluator;
-use crate::optimize::Pick;
+use crate::exchange::constellation::Constellation;
 use crate::report::figures::{Baseline, NamedFront};
-use crate::report::shown;
+use crate::report::{Compared, shown};
 use crate::run::inputs::InputError;
 use crate::run::{
-    FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, VALIDATION,
-    VALIDATION_REPORT,
+    FRONT_JSON, FrontMember, HISTORY_JSON, OptimizeResult, Run, RunFiles, SCENARIO, ScenarioStamp,
+    VALIDATION, VALIDATION_REPORT,
 };
 use crate::search::DesignProblem;
 use anyhow::{Context, Result, bail};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// A run, with the designs and fronts shown for comparison.
-pub(crate) struct RunView {
+/// A run or a scenario, with the constellations and fronts shown for comparison.
+pub(crate) struct View {
+    /// The run; with the scenario alone if it is not one.
     pub(crate) run: Run,
+    /// The study, if there was no search.
+    pub(crate) stamp: Option<ScenarioStamp>,
+    /// The members of a run of given designs, which are shown as constellations: the first of those compared.
+    pub(crate) given: Vec<FrontMember>,
     /// Text of the scenario, for the provenance.
     pub(crate) scenario_toml: Option<String>,
-    /// `None` if the scenario can no longer be set up.
+    /// `None` if the scenario of a run can no longer be set up.
     pub(crate) evaluator: Option<Evaluator>,
-    /// The reference design and those of `--compare`, with their names.
-    pub(crate) beside: Vec<(String, Design)>,
+    /// The constellations that are compared.
+    pub(crate) compared: Vec<Compared>,
     pub(crate) fronts: Vec<NamedFront>,
+    /// The files and directories that were read.
+    pub(crate) inputs: Vec<PathBuf>,
 }
 
-impl RunView {
+impl View {
+    pub(crate) fn new(args: &ViewArgs) -> Result<Self> {
+        let mut view = match args.run() {
+            Some(directory) => Self::of_run(&directory, args)?,
+            None => Self::of_scenario(args)?,
+        };
+        let further = args.front.iter().chain(&args.validation).cloned();
+        view.inputs.extend(further);
+        view.inputs.extend(args.run().map(|run| sweep(&run)));
+        let constellations = args.constellations.inputs().map(Path::to_owned);
+        view.inputs.extend(constellations);
+        Ok(view)
+    }
+
     /// Reads the files that exist; an error only if there is no run at all.
-    pub(crate) fn at(args: &RunArgs) -> Result<Self> {
-        let files = read(args)?;
+    fn of_run(directory: &Path, args: &ViewArgs) -> Result<Self> {
+        if let Some(key) = args.overrides.first() {
+            bail!(
+                "--set {key}: a run keeps the scenario that it was made with; give a scenario in its place"
+            );
+        }
+        let files = read(directory, args)?;
         let mut run = Run::read(&files);
-        let evaluator = match evaluator(&args.directory, &run) {
-            Ok(evaluator) => evaluator,
+        let study = match study(directory, &run) {
+            Ok(study) => study,
             // Nothing computed from other inputs is shown with the results of the run.
             Err(error) if error.is::<InputError>() => return Err(error),
             Err(error) => {
@@ -47,56 +71,165 @@ impl RunView {
         for gap in &run.gaps {
             output::warning(gap);
         }
-        let beside = beside(args, &run);
-        let fronts = fronts(args)?;
+        let mut given = Vec::new();
+        let (evaluator, compared) = match study {
+            Some((study, evaluator)) => {
+                let shown = if run.is_of_given() {
+                    given = std::mem::take(&mut run.front);
+                    beside_given(&given, &args.constellations, &study)?
+                } else {
+                    beside_front(&args.constellations, &study)?
+                };
+                let compared = compared(shown, &study, &evaluator)?;
+                (Some(evaluator), compared)
+            }
+            None if !args.constellations.is_empty() => {
+                bail!("nothing can be compared with a run whose scenario cannot be set up");
+            }
+            None => (None, Vec::new()),
+        };
         let scenario_toml = files.scenario.ok();
+        let of_given = run.search.as_ref().filter(|_| !given.is_empty());
         Ok(Self {
+            stamp: of_given.map(|search| search.scenario.clone()),
+            given,
             run,
             scenario_toml: scenario_toml.map(|text| String::from_utf8_lossy(&text).into_owned()),
             evaluator,
-            beside,
-            fronts,
+            compared,
+            fronts: fronts(directory, args)?,
+            inputs: vec![directory.to_owned()],
         })
     }
 
-    /// The designs shown for comparison, with their objectives.
+    /// The constellations given on the command line, or else those that the scenario names.
+    fn of_scenario(args: &ViewArgs) -> Result<Self> {
+        for (option, is_given) in [
+            ("--front", !args.front.is_empty()),
+            ("--validation", args.validation.is_some()),
+        ] {
+            if is_given {
+                bail!("{option} is of a run: give its directory in place of the scenario");
+            }
+        }
+        let study = Study::load(&args.study(), &[]).map_err(|error| neither(args, error))?;
+        let given = match args.constellations.is_empty() {
+            true => constellations::of_scenario(&study)?,
+            false => constellations::resolve(&args.constellations, &study)?,
+        };
+        if given.is_empty() {
+            bail!(
+                "scenario {} names no constellations: give --design or --constellation, or a run directory in place \
+                 of the scenario",
+                study.scenario.name
+            );
+        }
+        let evaluator = study.evaluator()?;
+        let compared = compared(given, &study, &evaluator)?;
+        Ok(Self {
+            stamp: Some(study.stamp()?),
+            given: Vec::new(),
+            scenario_toml: Some(study.scenario.to_toml()),
+            inputs: study.inputs(),
+            run: Run {
+                scenario: Some(study.scenario),
+                ..Run::default()
+            },
+            evaluator: Some(evaluator),
+            compared,
+            fronts: Vec::new(),
+        })
+    }
+
+    /// Whether it is the run of a search that is shown.
+    pub(crate) fn is_of_search(&self) -> bool {
+        self.stamp.is_none()
+    }
+
+    /// The places of the compared constellations among the objectives.
     pub(crate) fn baselines(&self) -> Vec<Baseline> {
-        let (Some(evaluator), Some(scenario)) = (&self.evaluator, &self.run.scenario) else {
-            return Vec::new();
-        };
-        let designs = scenario.search.designs;
-        let Ok(problem) = DesignProblem::new(evaluator, designs, scenario.goals()) else {
-            return Vec::new();
-        };
-        let evaluated =
-            |(name, design): &(String, Design)| Baseline::evaluate(name, design, &problem);
-        self.beside.iter().filter_map(evaluated).collect()
+        let each = self.compared.iter();
+        each.map(|one| one.baseline.clone()).collect()
     }
 
     /// The picked member.
-    pub(crate) fn pick(&self, pick: Pick) -> Result<&FrontMember> {
+    pub(crate) fn pick(&self, pick: &MemberPick) -> Result<&FrontMember> {
         let members = &self.run.front;
-        let points: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
-        let found = pick.apply(&points).map(|picked| &members[picked.place]);
-        found.with_context(|| {
-            format!(
-                "cannot pick {}: the front has {} designs",
-                pick.keyword(),
-                members.len()
-            )
-        })
+        let picked = pick.apply(members)?;
+        Ok(&members[picked.place])
     }
 }
 
-fn read(args: &RunArgs) -> Result<RunFiles> {
-    let directory = &args.directory;
+/// The error for an argument that is neither a run nor a scenario.
+fn neither(args: &ViewArgs, error: anyhow::Error) -> anyhow::Error {
+    match &args.subject {
+        Some(name) if !Path::new(name).exists() => {
+            error.context(format!("{name} is neither a run directory nor a scenario"))
+        }
+        _ => error,
+    }
+}
+
+/// What is shown beside a front: the reference design, the constellations of the scenario, and those given on the
+/// command line; the reference design not if one of the others is the same, nor one of the scenario that is given.
+fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
+    let given = constellations::resolve(args, study)?;
+    let mut all = constellations::of_scenario(study)?;
+    all.retain(|one| !given.contains(one));
+    all.extend(given);
+    constellations::require_different_names(&all)?;
+    if let Ok(design) = study.scenario.reference_design()
+        && !all.iter().any(|one| one.only_design() == Some(&design))
+    {
+        let reference = Constellation::of_design(design);
+        all.insert(0, reference.named(Baseline::REFERENCE.to_owned()));
+    }
+    Ok(all)
+}
+
+/// What is shown of a run of given designs: these, and the constellations given on the command line.
+fn beside_given(
+    members: &[FrontMember],
+    args: &ConstellationArgs,
+    study: &Study,
+) -> Result<Vec<Constellation>> {
+    let of_member = |member: &FrontMember| -> Result<Constellation> {
+        let one = Constellation::of_design(member.design.notation.parse()?);
+        Ok(match &member.name {
+            Some(name) => one.named(name.clone()),
+            None => one,
+        })
+    };
+    let mut all: Vec<Constellation> = members.iter().map(of_member).collect::<Result<_>>()?;
+    all.extend(constellations::resolve(args, study)?);
+    constellations::require_different_names(&all)?;
+    Ok(all)
+}
+
+/// The constellations, propagated and evaluated.
+fn compared(
+    all: impl IntoIterator<Item = Constellation>,
+    study: &Study,
+    evaluator: &Evaluator,
+) -> Result<Vec<Compared>> {
+    let designs = study.scenario.search.designs;
+    let problem = DesignProblem::new(evaluator, designs, study.scenario.goals())?;
+    let one = |one: Constellation| {
+        let ephemeris = constellations::propagate(&one, evaluator.setup())?;
+        let name = one.name.clone();
+        Compared::new(one, ephemeris, &problem).with_context(|| format!("cannot evaluate {name}"))
+    };
+    all.into_iter().map(one).collect()
+}
+
+fn read(directory: &Path, args: &ViewArgs) -> Result<RunFiles> {
     files::recovered(directory)?;
     let read = |name: &str| files::read_run(&directory.join(name)).map_err(reason);
     let files = RunFiles {
         scenario: read(SCENARIO),
         front: read(FRONT_JSON),
         history: read(HISTORY_JSON),
-        validation: validation(args)?,
+        validation: validation(directory, args)?,
     };
     if files.scenario.is_err() && files.front.is_err() && files.history.is_err() {
         bail!(
@@ -116,7 +249,7 @@ fn reason(error: io::Error) -> String {
 }
 
 /// The validation given by the user, or the one in the run directory.
-fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
+fn validation(directory: &Path, args: &ViewArgs) -> Result<Option<Vec<u8>>> {
     match &args.validation {
         Some(path) => {
             let file = if path.is_dir() {
@@ -128,34 +261,30 @@ fn validation(args: &RunArgs) -> Result<Option<Vec<u8>>> {
                 .with_context(|| format!("cannot read {}", file.display()))?;
             Ok(Some(bytes))
         }
-        None => Ok(files::read_run(&args.directory.join(VALIDATION).join(VALIDATION_REPORT)).ok()),
+        None => Ok(files::read_run(&directory.join(VALIDATION).join(VALIDATION_REPORT)).ok()),
     }
 }
 
-/// The evaluator of the run's scenario, if it has one.
-fn evaluator(directory: &Path, run: &Run) -> Result<Option<Evaluator>> {
+/// The study of the run's scenario and its evaluator, if it has one.
+fn study(directory: &Path, run: &Run) -> Result<Option<(Study, Evaluator)>> {
     if run.scenario.is_none() {
         return Ok(None);
     }
-    Ok(Some(Study::of_run(directory, &[])?.evaluator()?))
+    let study = Study::of_run(directory, &[])?;
+    let evaluator = study.evaluator()?;
+    Ok(Some((study, evaluator)))
 }
 
-fn beside(args: &RunArgs, run: &Run) -> Vec<(String, Design)> {
-    let reference = run
-        .scenario
-        .as_ref()
-        .and_then(|s| s.reference_design().ok());
-    let reference = reference.map(|design| ("reference design".to_owned(), design));
-    let compared = args
-        .compare
-        .iter()
-        .map(|design| (design.to_string(), design.clone()));
-    reference.into_iter().chain(compared).collect()
+/// The sweep that certified a run, which may not exist.
+fn sweep(directory: &Path) -> PathBuf {
+    let mut name = directory.file_name().unwrap_or_default().to_owned();
+    name.push("-sweep");
+    directory.with_file_name(name)
 }
 
 /// The fronts given by the user, and that of the sweep that certified the run, if any.
-fn fronts(args: &RunArgs) -> Result<Vec<NamedFront>> {
-    let sweep = args.sweep();
+fn fronts(directory: &Path, args: &ViewArgs) -> Result<Vec<NamedFront>> {
+    let sweep = sweep(directory);
     let found = sweep.join(FRONT_JSON).exists().then_some(&sweep);
     let wanted = found.into_iter().chain(&args.front);
     wanted.map(|path| front(path)).collect()

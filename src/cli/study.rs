@@ -4,11 +4,14 @@ use crate::cli::args::{DesignArgs, StudyArgs};
 use crate::cli::{files, limits, output, run};
 use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Setup};
+use crate::exchange::constellation::Constellation;
 use crate::ground::ignored_columns;
 use crate::run::checkpoint::Identity;
 use crate::run::inputs::{RunManifest, copy_paths, first_files};
 use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
-use crate::scenario::{Algorithm, KeyDifference, Region, Scenario, SetupError, builtin};
+use crate::scenario::{
+    Algorithm, KeyDifference, NamedConstellation, Region, Scenario, SetupError, builtin,
+};
 use anyhow::{Context, Result, bail};
 use std::cell::OnceCell;
 use std::io;
@@ -100,9 +103,8 @@ impl Study {
     }
 
     /// The initial files of a run of this study.
-    pub(crate) fn first_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
-        let identity = self.identity()?;
-        Ok(first_files(&self.scenario, self.contents()?, &identity)?)
+    pub(crate) fn first_files(&self, identity: &Identity) -> Result<Vec<(String, Vec<u8>)>> {
+        Ok(first_files(&self.scenario, self.contents()?, identity)?)
     }
 
     /// Contents of the files that the scenario names, in its order; read once, so that all results and
@@ -137,11 +139,16 @@ impl Study {
             return Ok(());
         }
         let run = Self::of_run(directory, &[])?;
-        if run.scenario.files() != paths {
+        let computed = self.scenario.computed_files();
+        let theirs = &run.scenario.files()[..run.scenario.computed_files()];
+        if theirs != &paths[..computed] {
             return Ok(());
         }
-        let copies = run.contents()?;
-        for (file, copy) in self.scenario.files().into_iter().zip(copies) {
+        // The constellations that the run is compared with may be others by now.
+        let same = run.scenario.files() == paths;
+        let taken = if same { paths.len() } else { computed };
+        let mut copies = run.contents()?[..taken].to_vec();
+        for (file, copy) in self.scenario.files().into_iter().zip(&copies) {
             let found = files::read_whole(&self.directory.join(file));
             if !found.is_ok_and(|bytes| bytes == *copy) {
                 output::warning(&format!(
@@ -150,7 +157,10 @@ impl Study {
                 ));
             }
         }
-        self.contents = OnceCell::from(copies.to_vec());
+        for file in self.scenario.files().into_iter().skip(taken) {
+            copies.push(self.read(file)?);
+        }
+        self.contents = OnceCell::from(copies);
         Ok(())
     }
 
@@ -164,13 +174,16 @@ impl Study {
                 format!("{key} is {} there and {} here", shown(value), shown(other))
             })
             .collect();
-        let (theirs, ours) = (run.scenario.files(), self.scenario.files());
-        if theirs.len() != ours.len() {
-            let (theirs, ours) = (theirs.len(), ours.len());
+        let (theirs, ours) = (
+            run.scenario.computed_files(),
+            self.scenario.computed_files(),
+        );
+        if theirs != ours {
             told.push(format!("it names {theirs} files there and {ours} here"));
         }
         let copies = &run.manifest.as_ref()?.inputs;
-        for ((file, bytes), copy) in ours.iter().zip(self.contents().ok()?).zip(copies) {
+        let files = self.scenario.files().into_iter().take(ours);
+        for ((file, bytes), copy) in files.zip(self.contents().ok()?).zip(copies) {
             if !copy.is_of(bytes) {
                 told.push(format!("{file} has other contents"));
             }
@@ -181,13 +194,9 @@ impl Study {
     /// The setup of an evaluation, if it fits into memory.
     pub(crate) fn setup(&self) -> Result<Setup> {
         let contents = self.contents()?;
-        let files = self.scenario.files();
-        let read = |file: &str| {
-            let at = files.iter().position(|known| *known == file);
-            let bytes = at.and_then(|at| contents.get(at)).cloned();
-            bytes.ok_or_else(|| io::ErrorKind::NotFound.into())
-        };
-        let setup = self.scenario.setup_with_notes(&read);
+        let setup = self
+            .scenario
+            .setup_with_notes(&|file| self.content(file, contents));
         let (setup, notes) = setup.map_err(|error| self.placed(&error))?;
         limits::check_memory(&setup)?;
         self.warn_of_columns(contents);
@@ -195,6 +204,26 @@ impl Study {
             output::warning(note);
         }
         Ok(setup)
+    }
+
+    /// The contents of a file that the scenario names, among those of all.
+    fn content(&self, file: &str, contents: &[Vec<u8>]) -> io::Result<Vec<u8>> {
+        let mut files = self.scenario.files().into_iter();
+        let at = files.position(|known| known == file);
+        let bytes = at.and_then(|at| contents.get(at)).cloned();
+        bytes.ok_or_else(|| io::ErrorKind::NotFound.into())
+    }
+
+    /// A constellation of the scenario, with warnings of the parts of its files that are not read.
+    pub(crate) fn constellation(&self, named: &NamedConstellation) -> Result<Constellation> {
+        let contents = self.contents()?;
+        let (constellation, notes) = named
+            .read(&|file| self.content(file, contents))
+            .map_err(|error| self.placed(&error))?;
+        for note in &notes {
+            output::warning(note);
+        }
+        Ok(constellation)
     }
 
     /// Warns of ignored columns of the points file, since one of them may be misspelt.
@@ -294,7 +323,7 @@ pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result
             bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, design.pick)?;
+        let (picked, why) = run::pick(directory, &design.pick)?;
         output::hint(&format!("{picked} of {}: {why}", directory.display()));
         return Ok((loaded, picked));
     }

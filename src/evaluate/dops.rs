@@ -30,23 +30,20 @@ impl DopStatistics {
     /// Each dilution by name: GDOP, PDOP, HDOP, VDOP, and the TDOP of each clock.
     #[must_use]
     pub fn named(&self) -> Vec<(String, Option<Summary>)> {
-        let fixed = [
-            ("GDOP", self.gdop),
-            ("PDOP", self.pdop),
-            ("HDOP", self.hdop),
-            ("VDOP", self.vdop),
-        ];
-        let mut named: Vec<_> = fixed
+        let clocks = self.tdop.iter().map(|clock| clock.system.as_str());
+        let position = [self.gdop, self.pdop, self.hdop, self.vdop];
+        let summaries = position
             .into_iter()
-            .map(|(name, summary)| (name.to_owned(), summary))
-            .collect();
-        named.extend(
-            self.tdop
-                .iter()
-                .map(|clock| (format!("TDOP {}", clock.system), clock.tdop)),
-        );
-        named
+            .chain(self.tdop.iter().map(|clock| clock.tdop));
+        names(clocks).into_iter().zip(summaries).collect()
     }
+}
+
+/// The names of the dilutions: of position, and of each clock.
+fn names<'a>(clocks: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let position = ["GDOP", "PDOP", "HDOP", "VDOP"].map(str::to_owned);
+    let clocks = clocks.map(|system| format!("TDOP {system}"));
+    position.into_iter().chain(clocks).collect()
 }
 
 /// The dilution of precision of one clock.
@@ -92,6 +89,14 @@ impl Evaluator {
             }
         }
         Ok(collected.statistics(clocks, setup.metrics.cvar_level))
+    }
+
+    /// The names of the dilutions of precision, in the order of [`DopStatistics::named`].
+    #[must_use]
+    pub fn dop_names(&self) -> Vec<String> {
+        let mut clocks = self.clock_names();
+        clocks.rotate_right(1);
+        names(clocks.iter().map(String::as_str))
     }
 
     /// The clocks in the order of [`groups`].

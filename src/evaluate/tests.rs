@@ -105,3 +105,27 @@ fn a_higher_mask_sees_less() {
     };
     assert!(at(5.0) > at(10.0) && at(10.0) > at(40.0));
 }
+
+/// Without LEO satellites only the GNSS is in view, on both paths, whatever the clocks.
+#[test]
+fn no_satellites_leave_the_gnss_alone() {
+    for clocks in [Clocks::PerSystem, Clocks::Shared] {
+        let base = setup([3.0, 54.0], Surface::Sphere).with_clocks(clocks);
+        let grid = TimeGrid::new(base.grid.epoch(), 86_400.0, 1200.0).unwrap();
+        let evaluator = Evaluator::new(Setup { grid, ..base }).unwrap();
+        let none = Ephemeris::new(grid, Vec::new());
+        let lanes = evaluator.evaluate_ephemeris(&none).unwrap();
+        let plain = evaluator.evaluate_plain(&none).unwrap();
+        assert_eq!((lanes.mean_visible, lanes.j_cost), (0.0, None));
+        assert_eq!(lanes.solved_fraction, plain.solved_fraction);
+        assert_eq!(lanes.availability, plain.availability);
+        // The project's gate for the lanes against the plain path.
+        let apart = |a: Option<f64>, b: Option<f64>| (a.unwrap() / b.unwrap() - 1.0).abs();
+        assert!(apart(lanes.mean_pdop, plain.mean_pdop) < 1e-7);
+        assert!(apart(lanes.max_pdop, plain.max_pdop) < 1e-7);
+        // BeiDou-3 over the region alone; with it a constellation is better.
+        let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+        let both = evaluator.evaluate(&design).unwrap();
+        assert!(lanes.mean_pdop > both.mean_pdop);
+    }
+}

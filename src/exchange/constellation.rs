@@ -89,6 +89,14 @@ impl Constellation {
         }
     }
 
+    /// What its satellites are: the notation, the files, or both.
+    #[must_use]
+    pub fn made_of(&self) -> String {
+        let mut parts: Vec<String> = self.design.iter().map(Design::to_string).collect();
+        parts.extend(self.files.iter().flat_map(|files| files.names.clone()));
+        parts.join("+")
+    }
+
     /// Number of satellites.
     #[must_use]
     pub fn satellite_count(&self) -> usize {

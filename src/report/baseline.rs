@@ -1,48 +1,105 @@
-//! A design shown with a front for comparison.
+//! A constellation that is compared with a front or with others, and its place among the objectives.
 
+use super::shown;
 use crate::constellation::Design;
-use crate::optimize::dominates;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::Metrics;
+use crate::exchange::constellation::Constellation;
+use crate::optimize::{Evaluation, dominates};
 use crate::run::{Diagnostic, FrontMember};
+use crate::scenario::{NamedConstellation, Scenario};
 use crate::search::{DesignProblem, Quantity};
 
-/// A design shown with the front for comparison.
+/// A constellation that is compared, and its place among the objectives.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
     /// Name.
     pub name: String,
-    /// Walker notation.
+    /// Walker notation, and the names of files.
     pub notation: String,
-    /// The objectives of the run with their original signs; `None` for one without a value.
+    /// Number of satellites.
+    pub satellites: usize,
+    /// Its metrics.
+    pub metrics: Metrics,
+    /// The objectives of the study with their original signs; `None` for one without a value.
     pub objectives: Vec<Option<f64>>,
     /// Constrained quantities that are not objectives; `None` for one without a value.
     pub constraints: Vec<Option<f64>>,
-    /// The objectives as minimised; `None` if the design violates a constraint.
-    feasible: Option<Vec<f64>>,
+    /// The objectives as minimised; `None` if it violates a constraint or lacks a value.
+    pub(crate) feasible: Option<Vec<f64>>,
+}
+
+/// The designs that the front of a scenario is compared with, each with its name: the reference design, then the
+/// constellations that are other designs.
+#[must_use]
+pub fn compared_designs(scenario: &Scenario) -> Vec<(String, Design)> {
+    let reference = scenario.reference_design().ok();
+    let named = scenario.constellations.iter();
+    let design = |one: &NamedConstellation| Some((one.name.clone(), one.only_design()?.clone()));
+    let named: Vec<(String, Design)> = named
+        .filter_map(design)
+        .filter(|(_, design)| Some(design) != reference.as_ref())
+        .collect();
+    let reference = reference.map(|design| (Baseline::REFERENCE.to_owned(), design));
+    reference.into_iter().chain(named).collect()
 }
 
 impl Baseline {
+    /// Name of the reference design of a scenario.
+    pub const REFERENCE: &'static str = "reference design";
+
     /// Evaluates a design; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
-        let (metrics, evaluation) = problem.judged(design)?;
+        let judged = problem.judged(design)?;
+        let named = Constellation::of_design(design.clone()).named(name.to_owned());
+        Some(Self::judged(&named, judged, problem))
+    }
+
+    /// Evaluates a constellation by its satellites.
+    ///
+    /// # Errors
+    /// If one of them cannot be propagated.
+    pub fn of_constellation(
+        one: &Constellation,
+        ephemeris: &Ephemeris,
+        problem: &DesignProblem<'_>,
+    ) -> Result<Self, EphemerisError> {
+        let judged = problem.judged_ephemeris(ephemeris, one.only_design())?;
+        Ok(Self::judged(one, judged, problem))
+    }
+
+    fn judged(
+        one: &Constellation,
+        (metrics, evaluation): (Metrics, Evaluation),
+        problem: &DesignProblem<'_>,
+    ) -> Self {
         let goals = problem.goals();
-        let value = |quantity: &Quantity| quantity.value(design, &metrics, &goals.launch_cost);
-        Some(Self {
-            name: name.to_owned(),
-            notation: design.to_string(),
+        let (satellites, design) = (one.satellite_count(), one.only_design());
+        let cost = &goals.launch_cost;
+        let value = |quantity: &Quantity| quantity.value_of(satellites, design, &metrics, cost);
+        Self {
+            name: shown::name(&one.name),
+            notation: shown::name(&one.made_of()),
+            satellites,
             objectives: goals.objectives.iter().map(value).collect(),
             constraints: goals.constrained().iter().map(value).collect(),
             feasible: (evaluation.violation == 0.0).then_some(evaluation.objectives),
-        })
+            metrics,
+        }
     }
 
     /// Name and notation for use in a sentence; the notation alone if it is also the name.
     #[must_use]
     pub fn label(&self) -> String {
-        if self.name == self.notation {
-            return self.notation.clone();
+        let Self { name, notation, .. } = self;
+        if name == notation {
+            notation.clone()
+        } else if name == Self::REFERENCE {
+            format!("the {name} {notation}")
+        } else {
+            format!("the constellation {name} {notation}")
         }
-        format!("the {} {}", self.name, self.notation)
     }
 
     /// Whether it meets the constraints and dominates a member of the front: no worse in any
@@ -65,9 +122,9 @@ impl Baseline {
                     "{} ({}) dominates the pick {} ({}): take it, or give the search more generations, a \
                      larger population or wider bounds",
                     self.label(),
-                    super::shown::pairs(values),
+                    shown::pairs(values),
                     pick.design.notation,
-                    super::shown::objectives(pick)
+                    shown::objectives(pick)
                 ),
             )
         })
@@ -92,8 +149,10 @@ mod tests {
             ..testing::member(1, "delta:45:225/15/1@1000")
         };
         let beside = |feasible: Option<[f64; 2]>| Baseline {
-            name: "reference design".to_owned(),
+            name: Baseline::REFERENCE.to_owned(),
             notation: "delta:55:182/13/1@925".to_owned(),
+            satellites: 182,
+            metrics: pick.metrics,
             objectives: vec![Some(2.0), Some(9.0)],
             constraints: Vec::new(),
             feasible: feasible.map(|x| x.to_vec()),

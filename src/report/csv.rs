@@ -1,58 +1,116 @@
 //! Results as CSV, with the unit of each column in its header.
 
-use super::{ConstellationResult, ConstellationSummary, EvaluateResult};
+use super::evaluated::ConstellationEntry;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
 use crate::run::columns::{cells, fields, optional};
 use crate::run::tables::text;
+use crate::search::Quantity;
 use crate::stats::Summary;
 use ::csv::Writer;
 use serde::Serialize;
 use std::io;
 
-/// A design and its metrics in one row, with the constrained quantities that are in neither.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn metrics_csv(result: &EvaluateResult) -> io::Result<String> {
-    let (of_design, of_metrics) = (DesignSummary::columns(), fields::<Metrics>());
-    let columns = of_design.iter().chain(of_metrics).copied();
-    let mut header: Vec<String> = columns.map(str::to_owned).collect();
-    let mut row = cells(&result.design, of_design)?;
-    row.extend(cells(&result.metrics, of_metrics)?);
-    for check in &result.constraints {
-        let column = check.quantity.replace('-', "_");
-        if !header.contains(&column) {
-            header.push(column);
-            row.push(optional(check.value));
-        }
-    }
-    let mut writer = Writer::from_writer(Vec::new());
-    writer.write_record(header)?;
-    writer.write_record(row)?;
-    text(writer)
+/// The columns of a table of constellations: name, design, files, metrics, further objectives and constrained
+/// quantities, and dilutions of precision.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConstellationColumns {
+    /// Whether a constellation has satellites from files.
+    has_files: bool,
+    /// Objectives and constrained quantities that are in no other column.
+    quantities: Vec<Quantity>,
+    /// The dilutions of precision, if there are any, as they are named in columns.
+    dops: Vec<String>,
 }
 
-/// The metrics of a constellation from files, in one row.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn constellation_csv(result: &ConstellationResult) -> io::Result<String> {
-    let (of_files, of_metrics) = (fields::<ConstellationSummary>(), fields::<Metrics>());
-    let mut writer = Writer::from_writer(Vec::new());
-    let column = |name: &'static str| {
-        if name == "name" {
-            "constellation"
-        } else {
-            name
+impl ConstellationColumns {
+    /// The columns for constellations evaluated like this one; `has_files` if one of them has satellites from
+    /// files.
+    #[must_use]
+    pub fn of(entry: &ConstellationEntry, has_files: bool) -> Self {
+        let known = [DesignSummary::columns(), fields::<Metrics>()].concat();
+        let quantities = entry.evaluated.quantities.iter().map(|(one, _)| *one);
+        let dops = entry.evaluated.dops.iter().flat_map(DopStatistics::named);
+        Self {
+            has_files,
+            quantities: quantities
+                .filter(|one| !known.contains(&column(&one.to_string()).as_str()))
+                .collect(),
+            dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
         }
-    };
-    let header = of_files.iter().map(|name| column(name));
-    writer.write_record(header.chain(of_metrics.iter().copied()))?;
-    let mut row = cells(&result.constellation, of_files)?;
-    row.extend(cells(&result.metrics, of_metrics)?);
-    writer.write_record(row)?;
+    }
+
+    /// The line of the names.
+    ///
+    /// # Errors
+    /// Never for a table in memory.
+    pub fn header(&self) -> io::Result<String> {
+        let mut names = vec!["name".to_owned()];
+        let own = |names: &[&str]| {
+            names
+                .iter()
+                .map(|name| (*name).to_owned())
+                .collect::<Vec<_>>()
+        };
+        names.extend(own(DesignSummary::columns()));
+        if self.has_files {
+            names.extend(own(&["files", "format", "content"]));
+        }
+        names.extend(own(fields::<Metrics>()));
+        names.extend(self.quantities.iter().map(|one| column(&one.to_string())));
+        for dop in &self.dops {
+            names.extend(fields::<Summary>().iter().map(|one| format!("{dop}_{one}")));
+        }
+        line(&names)
+    }
+
+    /// The line of a constellation.
+    ///
+    /// # Errors
+    /// Never for a table in memory.
+    pub fn row(&self, entry: &ConstellationEntry) -> io::Result<String> {
+        let mut row = vec![entry.name.clone()];
+        row.extend(match &entry.design {
+            Some(design) => cells(design, DesignSummary::columns())?,
+            None => vec![String::new(); DesignSummary::columns().len()],
+        });
+        // Of the shells alone, in the design.
+        let satellites = DesignSummary::columns()
+            .iter()
+            .position(|one| *one == "satellites");
+        if let Some(place) = satellites {
+            row[1 + place] = entry.satellites.to_string();
+        }
+        if self.has_files {
+            let (format, content) = entry.format_and_content.clone().unwrap_or_default();
+            row.extend([entry.files.join("+"), format, content]);
+        }
+        let evaluated = &entry.evaluated;
+        row.extend(cells(&evaluated.metrics, fields::<Metrics>())?);
+        for quantity in &self.quantities {
+            row.push(optional(evaluated.value(*quantity)));
+        }
+        let dops = evaluated.dops.iter().flat_map(DopStatistics::named);
+        let mut dops = dops.map(|(_, summary)| summary);
+        for _ in &self.dops {
+            row.extend(match dops.next().flatten() {
+                Some(summary) => cells(&summary, fields::<Summary>())?,
+                None => vec![String::new(); fields::<Summary>().len()],
+            });
+        }
+        line(&row)
+    }
+}
+
+/// A name as a column.
+fn column(name: &str) -> String {
+    name.replace(['-', ' '], "_")
+}
+
+fn line(cells: &[String]) -> io::Result<String> {
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(cells)?;
     text(writer)
 }
 
@@ -64,20 +122,4 @@ pub fn records_csv(rows: &[impl Serialize]) -> io::Result<String> {
     let mut bytes = Vec::new();
     write_records(&mut bytes, rows)?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
-}
-
-/// The dilutions of precision of a design, one per row: name, mean, quantiles, maximum and tail.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn dops_csv(dops: &DopStatistics) -> io::Result<String> {
-    let mut writer = Writer::from_writer(Vec::new());
-    let statistics = fields::<Summary>();
-    writer.write_record(["dop"].iter().chain(statistics))?;
-    for (name, summary) in dops.named() {
-        let mut row = vec![name.to_owned()];
-        row.extend(cells(&summary, statistics)?);
-        writer.write_record(row)?;
-    }
-    text(writer)
 }

@@ -1,23 +1,26 @@
-//! The page of a run: one self-contained HTML file.
+//! The page of a run, or of constellations that are compared: one self-contained HTML file.
 //!
 //! Texts and tables are in the page itself; the figures are drawn by the script of the plotly crate
 //! from numbers embedded in the page. A click on a design updates everything below it, so the page
-//! contains the cuts of all members, packed: maps, series, quantiles and orbit. If the front is too
-//! large for that, only some members have them and the page says so.
+//! contains the cuts of all members and compared constellations, packed: maps, series, quantiles and
+//! orbit. If there are too many for that, only some have them and the page says so.
 
+mod comparison;
 mod pack;
 mod payload;
 mod words;
 
-use super::Baseline;
+use super::Compared;
 use super::figures::NamedFront;
 use super::profile::Profile;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::printable::printable_json;
-use crate::run::Run;
+use crate::run::{Run, ScenarioStamp};
 use askama::Template;
+use comparison::Comparison;
 use payload::Payload;
+use rayon::prelude::*;
 use std::io::Write;
 use thiserror::Error;
 use words::{Best, CheckRow, MemberRow, PageSummary};
@@ -36,18 +39,45 @@ pub enum PageError {
 /// The content of a page.
 #[derive(Clone, Copy)]
 pub struct Page<'a> {
-    /// The run.
+    /// The run; with a scenario alone if there was no search.
     pub run: &'a Run,
-    /// Its scenario as written.
+    /// The study, if there was no search.
+    pub stamp: Option<&'a ScenarioStamp>,
+    /// The scenario as written.
     pub scenario_toml: Option<&'a str>,
     /// Computes maps and series; without it the page has none.
     pub evaluator: Option<&'a Evaluator>,
-    /// Designs compared with the front, with their objectives.
-    pub baselines: &'a [Baseline],
-    /// The same designs by name.
-    pub beside: &'a [(String, Design)],
+    /// Constellations that are compared with the front and with each other.
+    pub compared: &'a [Compared],
     /// Fronts of other runs.
     pub fronts: &'a [NamedFront],
+}
+
+impl Page<'_> {
+    /// Whether two or more compared constellations have places in the plane of the objectives.
+    fn has_plane_without_front(&self) -> bool {
+        let is_placed = |one: &&Compared| {
+            let values = &one.baseline.objectives;
+            values.len() > 1 && values.iter().all(Option::is_some)
+        };
+        self.compared.iter().filter(is_placed).count() > 1
+    }
+
+    /// The constellations whose cuts are in the page: the first ones.
+    fn compared_with_cuts(&self) -> &[Compared] {
+        let count = self.most_cuts().min(self.compared.len());
+        &self.compared[..count]
+    }
+
+    /// Maximum number of cuts in the page, of members and of compared constellations each.
+    fn most_cuts(&self) -> usize {
+        let Some(evaluator) = self.evaluator else {
+            return 0;
+        };
+        let setup = evaluator.setup();
+        let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
+        (CUTS_BYTES / each).clamp(1, MOST_CUTS)
+    }
 }
 
 /// Maximum bytes for the cuts of the members: with the script for the figures (4.7 MB) the page
@@ -69,6 +99,9 @@ struct Html<'a> {
     data: String,
     scripts: String,
     summary: PageSummary,
+    is_search: bool,
+    has_plane: bool,
+    comparison: Option<Comparison>,
     best: Vec<Best>,
     members: Vec<MemberRow>,
     members_left_out: usize,
@@ -92,16 +125,11 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         .iter()
         .filter_map(|&n| members[n].design.design())
         .collect();
-    let beside: Vec<Design> = page
-        .beside
-        .iter()
-        .map(|(_, design)| design.clone())
-        .collect();
-    let profiles = |designs: &[Design]| match page.evaluator {
-        Some(evaluator) => Profile::of_all(evaluator, designs),
+    let profiles = match page.evaluator {
+        Some(evaluator) => Profile::of_designs(evaluator, &designs),
         None => vec![None; designs.len()],
     };
-    let payload = Payload::new(page, &places, &profiles(&designs), &profiles(&beside));
+    let payload = Payload::new(page, &places, &profiles, &of_compared(page));
     let plotly = plotly::Plot::offline_js_sources();
     let html = Html {
         title: words::title(page.run),
@@ -116,6 +144,9 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         ]
         .concat(),
         summary: PageSummary::new(page, &places),
+        is_search: page.stamp.is_none(),
+        has_plane: !members.is_empty() || page.has_plane_without_front(),
+        comparison: Comparison::new(page),
         best: words::best(page.run),
         members: words::members(page.run, MOST_ROWS),
         members_left_out: members.len().saturating_sub(MOST_ROWS),
@@ -123,27 +154,35 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         constraints: words::further(page.run),
         checks: words::checks(page.run),
         validated: words::validated(page.run),
-        conventions: words::conventions(page.run),
+        conventions: words::conventions(page),
         scenario_toml: page.scenario_toml,
         version: crate::run::VERSION,
     };
     Ok(html.write_into(&mut to)?)
 }
 
+/// The cuts of the compared constellations; `None` for one that has no place in the page.
+fn of_compared(page: &Page<'_>) -> Vec<Option<Profile>> {
+    let Some(evaluator) = page.evaluator else {
+        return vec![None; page.compared.len()];
+    };
+    let one = |one: &Compared| Profile::new(evaluator, &one.ephemeris).ok();
+    let shown = page.compared_with_cuts();
+    let mut profiles: Vec<_> = shown.par_iter().map(one).collect();
+    profiles.resize(page.compared.len(), None);
+    profiles
+}
+
 /// The members whose cuts are in the page, by position: evenly spaced over the front, plus the chosen one.
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
-    let Some(evaluator) = page.evaluator else {
-        return Vec::new();
-    };
     let propagated: Vec<usize> = (0..members.len())
         .filter(|&n| members[n].design.design().is_some())
         .collect();
-    let setup = evaluator.setup();
-    let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
-    let count = (CUTS_BYTES / each)
-        .clamp(1, MOST_CUTS)
-        .min(propagated.len());
+    let count = page.most_cuts().min(propagated.len());
+    if count == 0 {
+        return Vec::new();
+    }
     let at = |k: usize| propagated[k * (propagated.len() - 1) / (count - 1).max(1)];
     let mut places: Vec<usize> = (0..count).map(at).collect();
     if let Some(chosen) = page

@@ -1,4 +1,4 @@
-//! The data of one design for the figures below the front: its cuts through space and time, and the
+//! The data of one constellation for the figures below the front: its cuts through space and time, and the
 //! distribution of PDOP.
 
 use crate::constellation::Design;
@@ -7,11 +7,9 @@ use crate::evaluate::{EpochMetrics, Evaluator, PointMetrics};
 use crate::stats::{Weighted, summarize_weighted, weighted_quantile};
 use rayon::prelude::*;
 
-/// One design under the setup of a study.
+/// One constellation under the setup of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
-    /// The design.
-    pub design: Design,
     /// Instant by instant, over the points.
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, over the instants.
@@ -47,10 +45,19 @@ impl Profile {
     ///
     /// # Errors
     /// If one of its satellites cannot be propagated.
-    pub fn new(evaluator: &Evaluator, design: &Design) -> Result<Self, EphemerisError> {
+    pub fn of_design(evaluator: &Evaluator, design: &Design) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
         let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
-        let mut series = evaluator.series(&ephemeris)?;
+        Self::new(evaluator, &ephemeris)
+    }
+
+    /// Evaluates some satellites, on the grid of the setup.
+    ///
+    /// # Errors
+    /// If one of them cannot be propagated.
+    pub fn new(evaluator: &Evaluator, ephemeris: &Ephemeris) -> Result<Self, EphemerisError> {
+        let setup = evaluator.setup();
+        let mut series = evaluator.series(ephemeris)?;
         let pdop = quantiles(&series.pdop);
         let level = setup.metrics.cvar_level;
         let value_at_risk = weighted_quantile(&mut series.pdop, level);
@@ -61,7 +68,6 @@ impl Profile {
             cvar: summary.cvar,
         });
         Ok(Self {
-            design: design.clone(),
             epochs: series.epochs,
             points: series.points,
             pdop,
@@ -72,8 +78,8 @@ impl Profile {
     /// Evaluates several designs, in parallel and in their order; `None` for one that cannot be
     /// propagated.
     #[must_use]
-    pub fn of_all(evaluator: &Evaluator, designs: &[Design]) -> Vec<Option<Self>> {
-        let one = |design: &Design| Self::new(evaluator, design).ok();
+    pub fn of_designs(evaluator: &Evaluator, designs: &[Design]) -> Vec<Option<Self>> {
+        let one = |design: &Design| Self::of_design(evaluator, design).ok();
         designs.par_iter().map(one).collect()
     }
 }
@@ -164,7 +170,7 @@ mod tests {
             .unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
         let design = "delta:55:42/7/1@925".parse().unwrap();
-        let profile = Profile::new(&evaluator, &design).unwrap();
+        let profile = Profile::of_design(&evaluator, &design).unwrap();
         let metrics = evaluator.evaluate(&design).unwrap();
         // Sums in another order.
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");

@@ -1,118 +1,17 @@
-//! The objects that `--format json` prints, made from what was computed.
+//! The result of a search, made from what was computed.
 
-use super::{Baseline, diagnose, dominated_by, shown};
+use super::{Baseline, ConstellationEntry, compared_designs, diagnose, dominated_by, shown};
 use crate::constellation::Design;
-use crate::evaluate::{DopStatistics, Metrics};
+use crate::evaluate::Metrics;
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Certificate, DesignSummary, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp,
-    SearchSummary, VERSION, VolumeAt,
+    Certificate, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp, SearchSummary, VERSION,
+    VolumeAt,
 };
 use crate::scenario::Scenario;
-use crate::search::{Constraint, DesignProblem, Goals, Quantity};
+use crate::search::{DesignProblem, Goals, Quantity};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
-
-/// The output of `evaluate`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EvaluateResult {
-    /// The design.
-    pub design: DesignSummary,
-    /// Its metrics.
-    pub metrics: Metrics,
-    /// All dilutions of precision, if requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dops: Option<DopStatistics>,
-    /// The constraints of the scenario, and whether the design meets them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub constraints: Vec<ConstraintCheck>,
-    /// The study.
-    pub scenario: ScenarioStamp,
-    /// Version of the program.
-    pub version: &'static str,
-}
-
-/// A constraint of the scenario, checked for a design.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ConstraintCheck {
-    /// The constraint as it is written: `max-pdop <= 2.5`.
-    pub constraint: String,
-    /// The quantity under it.
-    pub quantity: String,
-    /// Its value; `None` if it has none.
-    pub value: Option<f64>,
-    /// Whether the design keeps it.
-    pub met: bool,
-}
-
-impl ConstraintCheck {
-    /// The constraints of `goals`, checked for a design.
-    #[must_use]
-    pub fn of(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<Self> {
-        let check = |constraint: &Constraint| {
-            let value = constraint
-                .quantity
-                .value(design, metrics, &goals.launch_cost);
-            Self {
-                constraint: constraint.to_string(),
-                quantity: constraint.quantity.to_string(),
-                value,
-                met: constraint.violation(value, metrics.solved_fraction) == 0.0,
-            }
-        };
-        goals.constraints.iter().map(check).collect()
-    }
-}
-
-impl EvaluateResult {
-    /// The result of one design.
-    #[must_use]
-    pub fn new(
-        design: &Design,
-        metrics: Metrics,
-        dops: Option<DopStatistics>,
-        goals: &Goals,
-        scenario: ScenarioStamp,
-    ) -> Self {
-        Self {
-            constraints: ConstraintCheck::of(design, &metrics, goals),
-            design: design.into(),
-            metrics,
-            dops,
-            scenario,
-            version: VERSION,
-        }
-    }
-}
-
-/// A constellation read from files.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ConstellationSummary {
-    /// Name of its file or directory, without the path.
-    pub name: String,
-    /// The format of its files.
-    pub format: String,
-    /// Their content.
-    pub content: String,
-    /// Number of satellites.
-    pub satellites: usize,
-}
-
-/// The output of `evaluate --constellation`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ConstellationResult {
-    /// The constellation.
-    pub constellation: ConstellationSummary,
-    /// Its metrics.
-    pub metrics: Metrics,
-    /// All dilutions of precision, if requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dops: Option<DopStatistics>,
-    /// The study.
-    pub scenario: ScenarioStamp,
-    /// Version of the program.
-    pub version: &'static str,
-}
+use thiserror::Error;
 
 impl OptimizeResult {
     /// The current result of a search, with the members of its front evaluated again.
@@ -140,11 +39,12 @@ impl OptimizeResult {
         );
         let mut diagnostics = diagnose(problem, search, &front, &individuals);
         diagnostics.extend(shown::unused_reference(&volume));
-        let reference = scenario.reference_design().ok();
-        let reference =
-            reference.and_then(|design| Baseline::evaluate("reference design", &design, problem));
-        let pick = front.iter().find(|member| member.chosen);
-        diagnostics.extend(reference.zip(pick).and_then(|(r, pick)| r.diagnose(pick)));
+        if let Some(pick) = front.iter().find(|member| member.chosen) {
+            let compared = compared_designs(scenario).into_iter();
+            let compared =
+                compared.filter_map(|(name, design)| Baseline::evaluate(&name, &design, problem));
+            diagnostics.extend(compared.filter_map(|one| one.diagnose(pick)));
+        }
         let summary = SearchSummary {
             evaluations: progress.evaluations,
             hypervolume: volume,
@@ -164,6 +64,73 @@ impl OptimizeResult {
         }
     }
 
+    /// The result of designs that were given, each a member in its order; the memberships are over this set.
+    ///
+    /// # Errors
+    /// If a constellation is no design, or has no value of an objective.
+    pub fn of_given(
+        given: &[ConstellationEntry],
+        scenario: &Scenario,
+        stamp: ScenarioStamp,
+    ) -> Result<Self, NoMember> {
+        let objectives = &scenario.objectives.minimize;
+        let values = given.iter().map(|entry| values_of(entry, objectives));
+        let values: Vec<Vec<f64>> = values.collect::<Result<_, _>>()?;
+        let minimised = |values: &Vec<f64>| -> Vec<f64> {
+            let pairs = objectives.iter().zip(values);
+            pairs.map(|(one, value)| one.minimised(*value)).collect()
+        };
+        let points: Vec<Vec<f64>> = values.iter().map(minimised).collect();
+        let hypervolume = Hypervolume::of(
+            &points,
+            scenario.minimised_reference().as_deref(),
+            None,
+            objectives,
+        );
+        let memberships = fuzzy(&points).map_err(|_| NoMember::NoDesign)?;
+        let chosen = best(&memberships.minimum);
+        let goals = scenario.goals();
+        let mut front = Vec::new();
+        for (n, (entry, values)) in given.iter().zip(values).enumerate() {
+            let name = &entry.name;
+            let design = entry.design.clone().filter(|_| entry.files.is_empty());
+            let design = design.ok_or_else(|| NoMember::Files { name: name.clone() })?;
+            let constrained = goals.constrained().into_iter();
+            let constrained = constrained.map(|one| (one.to_string(), entry.evaluated.value(one)));
+            front.push(FrontMember {
+                index: n + 1,
+                name: Some(name.clone()),
+                design,
+                metrics: entry.evaluated.metrics,
+                objectives: objectives
+                    .iter()
+                    .map(ToString::to_string)
+                    .zip(values)
+                    .collect(),
+                constraints: constrained.collect(),
+                membership: memberships.minimum[n],
+                membership_sum: memberships.share[n],
+                chosen: chosen == Some(n),
+            });
+        }
+        Ok(Self {
+            search: SearchSummary {
+                evaluations: front.len() as u64,
+                hypervolume,
+                seed: scenario.optimizer.seed,
+                algorithm: SearchSummary::GIVEN.to_owned(),
+                generations: [0, 0],
+                diagnostics: Vec::new(),
+                certificate: None,
+                scenario: stamp,
+                version: VERSION.to_owned(),
+            },
+            front,
+            history: Vec::new(),
+            chosen_reference: None,
+        })
+    }
+
     /// Compares the front with a sweep of the same problem.
     pub fn certify(&mut self, sweep: &Self, objectives: &[Quantity]) {
         let points = |result: &Self| -> Vec<Vec<f64>> {
@@ -178,6 +145,42 @@ impl OptimizeResult {
             .extend(dominated_by(&points(self), &points(sweep)));
         self.search.certificate = Some(Certificate::new(self, sweep, objectives));
     }
+}
+
+/// Why a constellation cannot be a member of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum NoMember {
+    /// There is none.
+    #[error("a run needs a design")]
+    NoDesign,
+    /// It has satellites from files.
+    #[error("{name} has satellites from files; a run is made of designs")]
+    Files {
+        /// Its name.
+        name: String,
+    },
+    /// An objective without a value, as for PDOP without solved samples.
+    #[error(
+        "{name} has no value of the objective {objective}; choose another with objectives.minimize"
+    )]
+    NoValue {
+        /// Its name.
+        name: String,
+        /// The objective.
+        objective: Quantity,
+    },
+}
+
+/// The objectives of a constellation, in their own sense.
+fn values_of(entry: &ConstellationEntry, objectives: &[Quantity]) -> Result<Vec<f64>, NoMember> {
+    let value = |objective: &Quantity| {
+        let missing = || NoMember::NoValue {
+            name: entry.name.clone(),
+            objective: *objective,
+        };
+        entry.evaluated.value(*objective).ok_or_else(missing)
+    };
+    objectives.iter().map(value).collect()
 }
 
 impl Hypervolume {
@@ -244,6 +247,7 @@ fn front_members(
         let (design, metrics) = evaluated?;
         Some(FrontMember {
             index: n + 1,
+            name: None,
             design: (&design).into(),
             objectives: objectives(&individuals[n]),
             constraints: constrained(&design, &metrics, problem.goals()),

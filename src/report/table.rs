@@ -46,48 +46,60 @@ impl Table {
     /// Aligned columns for a terminal.
     #[must_use]
     pub fn to_text(&self) -> String {
-        let length = |cell: &str| cell.chars().count();
-        let widths: Vec<usize> = self
-            .columns
-            .iter()
-            .enumerate()
-            .map(|(c, (name, _))| {
-                let cells = self.rows.iter().map(|row| row[c].as_str());
-                cells.chain(name.lines()).map(length).max().unwrap_or(0)
-            })
-            .collect();
-        let mut text = String::new();
-        let mut line = |cells: &[&str]| {
-            let mut out = String::new();
-            for (c, cell) in cells.iter().enumerate() {
-                let pad = " ".repeat(widths[c].saturating_sub(length(cell)));
-                let (before, after) = match self.columns[c].1 {
-                    Align::Left => ("", pad.as_str()),
-                    Align::Right => (pad.as_str(), ""),
-                };
-                let _ = write!(
-                    out,
-                    "{}{before}{cell}{after}",
-                    if c == 0 { "" } else { "  " }
-                );
-            }
-            text.push_str(out.trim_end());
-            text.push('\n');
-        };
+        let mut widths = vec![0; self.columns.len()];
+        self.heading_text(&mut widths) + &self.rows_text(&mut widths)
+    }
+
+    /// The heading alone. `widths` are those of the columns, which grow with the cells, so that a table can be
+    /// printed row by row.
+    #[must_use]
+    pub fn heading_text(&self, widths: &mut [usize]) -> String {
+        let cells = self.rows.iter().flat_map(|row| row.iter().enumerate());
+        let names = self.columns.iter().enumerate();
+        let names = names.flat_map(|(c, (name, _))| name.lines().map(move |line| (c, line)));
+        for (c, cell) in cells.map(|(c, cell)| (c, cell.as_str())).chain(names) {
+            widths[c] = widths[c].max(cell.chars().count());
+        }
         let names = || self.columns.iter().map(|(name, _)| name);
         let height = names().map(|name| name.lines().count()).max().unwrap_or(0);
+        let mut text = String::new();
         for above in (0..height.max(1)).rev() {
             // Headings end on the same line.
-            line(
-                &names()
-                    .map(|name| name.lines().rev().nth(above).unwrap_or(""))
-                    .collect::<Vec<_>>(),
-            );
-        }
-        for row in &self.rows {
-            line(&row.iter().map(String::as_str).collect::<Vec<_>>());
+            let cells = names().map(|name| name.lines().rev().nth(above).unwrap_or(""));
+            self.line(&mut text, &cells.collect::<Vec<_>>(), widths);
         }
         text
+    }
+
+    /// The rows alone, below a heading of these widths.
+    #[must_use]
+    pub fn rows_text(&self, widths: &mut [usize]) -> String {
+        for row in &self.rows {
+            for (width, cell) in widths.iter_mut().zip(row) {
+                *width = (*width).max(cell.chars().count());
+            }
+        }
+        let mut text = String::new();
+        for row in &self.rows {
+            let cells: Vec<&str> = row.iter().map(String::as_str).collect();
+            self.line(&mut text, &cells, widths);
+        }
+        text
+    }
+
+    fn line(&self, text: &mut String, cells: &[&str], widths: &[usize]) {
+        let mut out = String::new();
+        for (c, cell) in cells.iter().enumerate() {
+            let pad = " ".repeat(widths[c].saturating_sub(cell.chars().count()));
+            let (before, after) = match self.columns[c].1 {
+                Align::Left => ("", pad.as_str()),
+                Align::Right => (pad.as_str(), ""),
+            };
+            let between = if c == 0 { "" } else { "  " };
+            let _ = write!(out, "{between}{before}{cell}{after}");
+        }
+        text.push_str(out.trim_end());
+        text.push('\n');
     }
 
     /// GitHub's Markdown.

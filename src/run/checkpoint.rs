@@ -18,6 +18,9 @@ pub struct Identity {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
+    /// The designs of a run without a search, by name: `polar = star:90:182/13/1@925`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub given: Vec<String>,
 }
 
 impl Identity {
@@ -28,7 +31,14 @@ impl Identity {
             scenario_hash: hash,
             seed: scenario.optimizer.seed,
             version: VERSION.to_owned(),
+            given: Vec::new(),
         }
+    }
+
+    /// The identity of a run of given designs, named by what they are.
+    #[must_use]
+    pub fn of_given(self, given: Vec<String>) -> Self {
+        Self { given, ..self }
     }
 
     /// The identity in a checkpoint, whose second line may be damaged.
@@ -176,6 +186,7 @@ mod tests {
                 scenario_hash: "h".to_owned(),
                 seed: 1,
                 version: VERSION.to_owned(),
+                given: Vec::new(),
             },
             sha256: hex_sha256(b"other"),
             records: 0,

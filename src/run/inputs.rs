@@ -160,6 +160,7 @@ mod tests {
                 scenario_hash: "h".to_owned(),
                 seed: 1,
                 version: "v".to_owned(),
+                given: Vec::new(),
             },
             inputs: vec![InputCopy {
                 path: "inputs/1/p.csv".to_owned(),

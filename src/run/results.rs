@@ -114,6 +114,9 @@ pub struct ScenarioStamp {
 pub struct FrontMember {
     /// Place in the front from 1, by the first objective; what `--pick N` takes.
     pub index: usize,
+    /// Its name, in a run of given designs; `--pick` takes it too.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The design.
     pub design: DesignSummary,
     /// Its metrics.
@@ -244,6 +247,17 @@ pub struct SearchSummary {
     pub scenario: ScenarioStamp,
     /// Version of the program.
     pub version: String,
+}
+
+impl SearchSummary {
+    /// The algorithm of a run of designs that were given, without a search.
+    pub const GIVEN: &str = "given";
+
+    /// Whether the designs were given, and not found by a search: then there is no history.
+    #[must_use]
+    pub fn is_of_given(&self) -> bool {
+        self.algorithm == Self::GIVEN
+    }
 }
 
 /// The output of `optimize` and the content of `front.json`.

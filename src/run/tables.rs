@@ -8,14 +8,21 @@ use csv::Writer;
 use std::io;
 
 /// The front of a search, one member per row, including the fields of its design and metrics and the
-/// objectives and constrained quantities that are in neither.
+/// objectives and constrained quantities that are in neither; with names where members have them.
 ///
 /// # Errors
 /// Never for a table in memory.
 pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let further = further_quantities(front);
-    let header = fields::<FrontMember>().iter().flat_map(|name| match *name {
+    let has_names = front.iter().any(|member| member.name.is_some());
+    let is_column = |name: &&&str| has_names || **name != "name";
+    let columns: Vec<&str> = fields::<FrontMember>()
+        .iter()
+        .filter(is_column)
+        .copied()
+        .collect();
+    let header = columns.iter().flat_map(|name| match *name {
         "design" => DesignSummary::columns().iter().map(|n| column(n)).collect(),
         "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
         "objectives" => further.iter().map(|name| column(name)).collect(),
@@ -25,7 +32,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     writer.write_record(header)?;
     for member in front {
         let mut row = Vec::new();
-        for name in fields::<FrontMember>() {
+        for name in &columns {
             row.extend(match *name {
                 "design" => cells(&member.design, DesignSummary::columns())?,
                 "metrics" => cells(&member.metrics, fields::<Metrics>())?,

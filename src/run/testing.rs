@@ -9,6 +9,7 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
     let design: Design = notation.parse().unwrap();
     FrontMember {
         index,
+        name: None,
         design: DesignSummary::from(&design),
         metrics: Metrics {
             mean_visible: 8.0,

@@ -7,7 +7,9 @@ use sha2::{Digest, Sha256};
 
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::Rule;
-use super::values::{Export, GnssSetup, Optimizer, PointsFile, Region, Scenario};
+use super::values::{
+    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
+};
 
 impl Scenario {
     /// The scenario as TOML with every key, including defaults, in a fixed order and spelling. It parses back to the same scenario.
@@ -17,14 +19,15 @@ impl Scenario {
     }
 
     /// Identifies what is computed: SHA-256, in hex, of [`Scenario::to_toml`] and of the SHA-256 of
-    /// each file that the scenario names, whose `contents` are in the order of [`Scenario::files`].
+    /// each file that results depend on; `contents` are in the order of [`Scenario::files`].
     ///
-    /// Not included are names and labels (`name`, `[export]` and the paths of files), and
-    /// `optimizer.generations`, because a search that continues is the same search.
+    /// Not included are names and labels (`name`, `[export]` and the paths of files), `optimizer.generations`,
+    /// because a search that continues is the same search, and `[constellations]` with its files, because what
+    /// a front is compared with does not change it. A `reference-design` given by name counts as its design.
     #[must_use]
     pub fn hash(&self, contents: &[&[u8]]) -> String {
-        let mut hash = Sha256::new_with_prefix(self.canonical(is_computed));
-        for content in contents {
+        let mut hash = Sha256::new_with_prefix(self.resolved().canonical(is_computed));
+        for content in contents.iter().take(self.computed_files()) {
             hash.update(Sha256::digest(content));
         }
         let mut hex = String::new();
@@ -35,19 +38,29 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: the points, then the GNSS
-    /// files in their order.
+    /// The paths of the files that the scenario refers to, as written: the points, the GNSS files in their
+    /// order, then those of each constellation.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
         let points = match &self.region {
             Region::Grid(_) => None,
             Region::Points { file } => Some(file),
         };
+        let compared = self.constellations.iter();
         points
             .into_iter()
             .chain(&self.gnss.files)
+            .chain(compared.flat_map(|one| &one.parts.files))
             .map(String::as_str)
             .collect()
+    }
+
+    /// How many of [`Scenario::files`] results depend on: all but those of constellations, which are the last.
+    #[must_use]
+    pub fn computed_files(&self) -> usize {
+        let compared = self.constellations.iter();
+        let compared: usize = compared.map(|one| one.parts.files.len()).sum();
+        self.files().len() - compared
     }
 
     /// The same scenario with other paths to its files, in the order of [`Scenario::files`]. Its
@@ -60,7 +73,11 @@ impl Scenario {
             Region::Grid(_) => None,
             Region::Points { file } => Some(file),
         };
-        let named = points.into_iter().chain(&mut scenario.gnss.files);
+        let compared = scenario.constellations.iter_mut();
+        let named = points
+            .into_iter()
+            .chain(&mut scenario.gnss.files)
+            .chain(compared.flat_map(|one| &mut one.parts.files));
         for (file, path) in named.zip(&mut paths) {
             *file = path;
         }
@@ -72,7 +89,7 @@ impl Scenario {
     pub fn differences(&self, other: &Self) -> Vec<KeyDifference> {
         let values = |scenario: &Self| {
             let mut values = Values::default();
-            Self::walk(&mut values, Some(scenario));
+            Self::walk(&mut values, Some(&scenario.resolved()));
             values.0
         };
         let (ours, theirs) = (values(self), values(other));
@@ -85,6 +102,16 @@ impl Scenario {
                 other: theirs.get(&key).cloned(),
             })
             .collect()
+    }
+
+    /// The same scenario with its reference design as a notation, if it is given by name.
+    fn resolved(&self) -> Self {
+        let mut scenario = self.clone();
+        let named = self.constellation(&self.reference_design);
+        if let Some(design) = named.and_then(NamedConstellation::only_design) {
+            scenario.reference_design = design.to_string();
+        }
+        scenario
     }
 
     fn canonical(&self, wanted: fn(KeyPath) -> bool) -> String {
@@ -113,6 +140,7 @@ pub struct KeyDifference {
 fn is_computed(path: KeyPath) -> bool {
     let left_out = [
         key!(Scenario.name),
+        key!(Scenario.constellations),
         key!(PointsFile.points),
         key!(GnssSetup.files),
         key!(Optimizer.generations),

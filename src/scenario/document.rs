@@ -13,8 +13,8 @@ use super::keys::{KeyPath, all, key, names, path, paths, sections};
 use super::problem::{Fault, ProblemList};
 use super::reader::{Given, Reader};
 use super::rule::Node;
-use super::source::Source;
-use super::values::{Grid, Objectives, PointsFile};
+use super::source::{Parts, Source};
+use super::values::{ConstellationParts, Grid, Objectives, PointsFile};
 use crate::keyword::nearest;
 
 /// The known keys that were given; the last of several.
@@ -26,6 +26,8 @@ pub(super) struct Document<'a> {
 /// One key as written.
 struct Entry<'a> {
     source: Rc<Source<'a>>,
+    /// What arguments set within a table.
+    parts: Parts<'a>,
     value: Node<'a>,
 }
 
@@ -98,16 +100,40 @@ impl<'a> Document<'a> {
         let Some(key) = find(section, name) else {
             return site.report(report, &path(section, name), unknown(section, name));
         };
+        if key == key!(Scenario.constellations) && !site.source.is_file() {
+            return self.add_constellations(value, site.source);
+        }
         if !site.source.is_file() {
             let rivals = superseded_by(key);
             self.entries
                 .retain(|key, entry| !(entry.source.is_file() && rivals.contains(key)));
         }
-        let entry = Entry {
-            source: Rc::clone(site.source),
-            value,
-        };
-        self.entries.insert(key, entry);
+        self.entries.insert(key, Entry::new(site.source, value));
+    }
+
+    /// Adds the constellations of an argument to those given before; one of the same name replaces it.
+    fn add_constellations(&mut self, value: Node<'a>, source: &Rc<Source<'a>>) {
+        let key = key!(Scenario.constellations);
+        let span = value.span();
+        match value.into_inner() {
+            DeValue::Table(named) => {
+                for (name, value) in named {
+                    self.add_constellation(name.get_ref(), value, source);
+                }
+            }
+            other => {
+                let entry = Entry::new(source, Spanned::new(span, other));
+                self.entries.insert(key, entry);
+            }
+        }
+    }
+
+    /// Sets a constellation by its name, or a key of it by `name.key`.
+    fn add_constellation(&mut self, path: &str, value: Node<'a>, source: &Rc<Source<'a>>) {
+        let key = key!(Scenario.constellations);
+        let nothing = || Entry::new(source, Spanned::new(0..0, DeValue::Table(DeTable::new())));
+        let entry = self.entries.entry(key).or_insert_with(nothing);
+        entry.set(key.name, path, value, source);
     }
 
     /// Applies the `index`-th `--set` argument.
@@ -135,6 +161,9 @@ impl<'a> Document<'a> {
         let Some((section, name)) = key.split_once('.') else {
             return self.enter_top(key, value, &site, report);
         };
+        if section == key!(Scenario.constellations).name {
+            return self.add_constellation(name, value, &source);
+        }
         self.enter(section, name, value, &site, report);
     }
 
@@ -151,6 +180,31 @@ impl<'a> Document<'a> {
         self.reader(report).refuse(keys, fault);
     }
 
+    /// Adds to `report` what is wrong with the value that is found by `names` within the table of a key.
+    pub(super) fn refuse_within(
+        &self,
+        key: KeyPath,
+        names: &[&str],
+        fault: Fault,
+        report: &mut ProblemList,
+    ) {
+        let Some(entry) = self.entries.get(&key) else {
+            return self.refuse(&[key], fault, report);
+        };
+        let mut place = key.to_string();
+        let (mut source, mut node) = (&entry.source, &entry.value);
+        for name in names {
+            let table = node.get_ref().as_table();
+            let Some(inner) = table.and_then(|table| table.get(*name)) else {
+                break;
+            };
+            place = path(&place, name);
+            source = entry.parts.get(&place).unwrap_or(source);
+            node = inner;
+        }
+        report.add(source, node.span(), &place, fault);
+    }
+
     fn reader<'r>(&'r self, report: &'r mut ProblemList) -> Reader<'r> {
         let given = self.entries.iter();
         let given = given.map(|(path, entry)| (*path, entry.given())).collect();
@@ -158,10 +212,47 @@ impl<'a> Document<'a> {
     }
 }
 
-impl Entry<'_> {
+impl<'a> Entry<'a> {
+    fn new(source: &Rc<Source<'a>>, value: Node<'a>) -> Self {
+        Self {
+            source: Rc::clone(source),
+            parts: Parts::new(),
+            value,
+        }
+    }
+
+    /// Sets the value at a dotted path within the table of `key`, whose other values stay.
+    fn set(&mut self, key: &str, names: &str, value: Node<'a>, source: &Rc<Source<'a>>) {
+        let mut place = key.to_owned();
+        let mut node = &mut self.value;
+        for (depth, name) in names.split('.').enumerate() {
+            // A text behind a name is a design.
+            if depth > 0 && node.get_ref().is_str() {
+                *node = as_table_of_design(node);
+            }
+            let DeValue::Table(table) = node.get_mut() else {
+                // What was given before is wrong, and is reported when it is read.
+                return;
+            };
+            place = path(&place, name);
+            let found = table.contains_key(name);
+            let name = Spanned::new(0..0, name.to_owned().into());
+            let nothing = || Spanned::new(0..0, DeValue::Table(DeTable::new()));
+            node = table.entry(name).or_insert_with(nothing);
+            if !found {
+                self.parts.insert(place.clone(), Rc::clone(source));
+            }
+        }
+        *node = value;
+        let within = format!("{place}.");
+        self.parts.retain(|part, _| !part.starts_with(&within));
+        self.parts.insert(place, Rc::clone(source));
+    }
+
     fn given(&self) -> Given<'_> {
         Given {
             source: &self.source,
+            parts: &self.parts,
             node: &self.value,
         }
     }
@@ -186,6 +277,14 @@ fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
     } else {
         Vec::new()
     }
+}
+
+/// The table of a constellation with this design.
+fn as_table_of_design<'a>(design: &Node<'a>) -> Node<'a> {
+    let name = key!(ConstellationParts.design).name;
+    let mut table = DeTable::new();
+    table.insert(Spanned::new(0..0, name.into()), design.clone());
+    Spanned::new(design.span(), DeValue::Table(table))
 }
 
 /// A TOML value, or the text itself if it does not look like one.

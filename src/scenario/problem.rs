@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 
 use super::source::{Place, Source, printable};
+use crate::constellation::NotationError;
 use crate::keyword::UnknownKeyword;
 use crate::search::ConstraintError;
 
@@ -71,6 +72,15 @@ pub enum Fault {
     /// The text is not a constraint.
     #[error(transparent)]
     Constraint(#[from] ConstraintError),
+    /// The text is not a design.
+    #[error(transparent)]
+    Notation(#[from] NotationError),
+    /// A constellation of nothing.
+    #[error("the constellation has no satellites: give `design`, `files` or both")]
+    NoSatellites,
+    /// A key about files where there are none.
+    #[error("this is about satellites from files, but `files` is not given")]
+    NoFiles,
     /// An element appears twice in a list.
     #[error("{found} appears more than once")]
     Repeated {

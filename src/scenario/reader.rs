@@ -2,15 +2,16 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::keys::{Key, KeyPath, Section, Walk};
+use super::keys::{Key, KeyPath, Section, Walk, path};
 use super::problem::{Fault, ProblemList};
 use super::rule::{Node, Reading, Rule};
-use super::source::Source;
+use super::source::{Parts, Source};
 
 /// The value of a key as written.
 #[derive(Clone, Copy)]
 pub(super) struct Given<'r> {
     pub(super) source: &'r Source<'r>,
+    pub(super) parts: &'r Parts<'r>,
     pub(super) node: &'r Node<'r>,
 }
 
@@ -19,6 +20,8 @@ pub(super) struct Reader<'r> {
     given: BTreeMap<KeyPath, Given<'r>>,
     /// Where a problem without a given key is reported.
     file: &'r Source<'r>,
+    /// The key of the table that is read, if it is not the whole scenario.
+    table: Option<String>,
     /// The keys whose values were rejected; they have their defaults.
     wrong: BTreeSet<KeyPath>,
     is_sound: bool,
@@ -34,9 +37,18 @@ impl<'r> Reader<'r> {
         Self {
             given,
             file,
+            table: None,
             wrong: BTreeSet::new(),
             is_sound: true,
             report,
+        }
+    }
+
+    /// The same reader for the keys of a table, which is the value of `key`.
+    pub(super) fn of_table(self, key: &str) -> Self {
+        Self {
+            table: Some(key.to_owned()),
+            ..self
         }
     }
 
@@ -44,6 +56,14 @@ impl<'r> Reader<'r> {
     pub(super) fn read<S: Section>(mut self) -> Option<S> {
         let values = S::walk(&mut self, None);
         self.is_sound.then_some(values)
+    }
+
+    /// A key as named in a problem.
+    fn label(&self, key: KeyPath) -> String {
+        match &self.table {
+            Some(table) => path(table, key.name),
+            None => key.to_string(),
+        }
     }
 
     /// Whether a key was given, valid or not.
@@ -74,12 +94,12 @@ impl<'r> Reader<'r> {
         };
         let argument = given().find(|(_, given)| !given.source.is_file());
         match argument.or_else(|| given().next()) {
-            Some((key, Given { source, node })) => {
-                self.report
-                    .add(source, node.span(), &key.to_string(), fault);
+            Some((key, Given { source, node, .. })) => {
+                let key = self.label(key);
+                self.report.add(source, node.span(), &key, fault);
             }
             None => {
-                let key = keys.first().map(ToString::to_string).unwrap_or_default();
+                let key = keys.first().map(|key| self.label(*key)).unwrap_or_default();
                 self.report.add(self.file, 0..0, &key, fault);
             }
         }
@@ -96,12 +116,18 @@ impl<'r> Reader<'r> {
 
 impl Walk for Reader<'_> {
     fn key<R: Rule>(&mut self, key: Key<R>, _: Option<&R::Value>) -> R::Value {
-        let Some(Given { source, node }) = self.given.get(&key.path).copied() else {
+        let Some(given) = self.given.get(&key.path).copied() else {
             return key.default;
         };
+        let Given {
+            source,
+            parts,
+            node,
+        } = given;
         let mut reading = Reading {
             source,
-            key: key.path.to_string(),
+            parts,
+            key: self.label(key.path),
             accepted: key.accepted(),
             report: self.report,
         };

@@ -1,11 +1,15 @@
 //! Rules: which values a key accepts, and how they are read, written and described.
 
+mod constellations;
 mod list;
 mod number;
+mod table;
 mod text;
 
-pub(super) use list::{Constraints, Numbers, OneOf, Paths, Skyline, SomeOf};
+pub(super) use constellations::{Constellations, Notation};
+pub(super) use list::{Constraints, Numbers, OneOf, Skyline, SomeOf, Texts};
 pub(super) use number::{Eastward, Integer, Interval, Number, Steps};
+pub(super) use table::Table;
 pub(super) use text::{Text, UtcInstant};
 
 use std::ops::Range;
@@ -14,8 +18,9 @@ use serde_json::Value as Json;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use super::keys::path;
 use super::problem::{Fault, ProblemList};
-use super::source::Source;
+use super::source::{Parts, Source};
 
 /// A value with its span in its source.
 pub(super) type Node<'a> = Spanned<DeValue<'a>>;
@@ -75,12 +80,30 @@ impl<R: Rule> Rule for Optional<R> {
 /// One value being read, and its problems.
 pub(super) struct Reading<'r> {
     pub(super) source: &'r Source<'r>,
+    pub(super) parts: &'r Parts<'r>,
     pub(super) key: String,
     pub(super) accepted: String,
     pub(super) report: &'r mut ProblemList,
 }
 
-impl Reading<'_> {
+impl<'r> Reading<'r> {
+    /// The reading of the value with this name in a table.
+    pub(super) fn within(&mut self, name: &str, accepted: String) -> Reading<'_> {
+        Reading {
+            source: self.source_of(name),
+            parts: self.parts,
+            key: path(&self.key, name),
+            accepted,
+            report: self.report,
+        }
+    }
+
+    /// The source of the value with this name in a table.
+    pub(super) fn source_of(&self, name: &str) -> &'r Source<'r> {
+        let part = self.parts.get(&path(&self.key, name));
+        part.map_or(self.source, |source| source)
+    }
+
     pub(super) fn report(&mut self, span: Range<usize>, fault: impl Into<Fault>) {
         self.report.add(self.source, span, &self.key, fault);
     }

@@ -1,11 +1,12 @@
 //! From a validated scenario to the input of the evaluator, the search and the optimisers.
 
+use super::constellations::{ConstellationFileError, NoDesign};
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::PointsFile;
 use super::{Algorithm, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
+use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
-use crate::constellation::{Design, NotationError};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
@@ -66,7 +67,17 @@ pub enum SetupError {
     Level(#[from] LevelError),
     /// The reference design is not a design.
     #[error("reference-design: {0}")]
-    ReferenceDesign(#[from] NotationError),
+    ReferenceDesign(#[from] NoDesign),
+    /// The files of a constellation do not give its satellites.
+    #[error("constellations.{name}: {file}: {source}")]
+    Constellation {
+        /// The name of the constellation.
+        name: String,
+        /// The path as written, or several.
+        file: String,
+        /// What is wrong; boxed, since it is much larger than the others.
+        source: Box<ConstellationFileError>,
+    },
 }
 
 impl SetupError {
@@ -91,6 +102,7 @@ impl SetupError {
             Self::MaskTable(_) => vec![key!(Visibility.mask_table)],
             Self::Level(_) => vec![key!(Objectives.cvar_level)],
             Self::ReferenceDesign(_) => vec![key!(Scenario.reference_design)],
+            Self::Constellation { .. } => vec![key!(Scenario.constellations)],
         }
     }
 
@@ -106,6 +118,7 @@ impl SetupError {
             Self::MaskTable(source) => source.to_string(),
             Self::Level(source) => source.to_string(),
             Self::ReferenceDesign(source) => source.to_string(),
+            Self::Constellation { file, source, .. } => format!("{file}: {source}"),
         }
     }
 }
@@ -150,9 +163,9 @@ impl Scenario {
     /// The design to validate if none is given.
     ///
     /// # Errors
-    /// If its notation is not a design.
+    /// If it is neither a notation nor the name of a constellation that is a design.
     pub fn reference_design(&self) -> Result<Design, SetupError> {
-        Ok(self.reference_design.parse()?)
+        Ok(self.design(&self.reference_design)?)
     }
 
     /// The setup of an evaluation. `read` returns the bytes of a file that the scenario names, by the path
@@ -199,9 +212,14 @@ impl Scenario {
     #[must_use]
     pub fn unreadable(&self, file: &str, source: io::Error) -> SetupError {
         let is_points = matches!(&self.region, Region::Points { file: points } if points == file);
+        let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
+        let named = self.constellations.iter();
+        let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
         if is_points {
             SetupError::PointsFile { file, source }
+        } else if let Some(named) = named.next().filter(|_| !is_gnss) {
+            named.error(&file, source.into())
         } else {
             let source = Box::new(GnssFileError::Io(source));
             SetupError::GnssFile { file, source }

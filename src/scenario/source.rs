@@ -1,8 +1,10 @@
 //! The source texts of a scenario, and positions in them.
 
 use crate::printable::is_obeyed;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
+use std::rc::Rc;
 
 /// Characters of a source line shown around a problem; longer lines are cut.
 const EXCERPT_WIDTH: usize = 96;
@@ -17,6 +19,9 @@ pub(super) struct Source<'a> {
     kind: Kind<'a>,
     text: &'a str,
 }
+
+/// The sources of values within the table of a key, by dotted path, where they are not the source of the table.
+pub(super) type Parts<'a> = BTreeMap<String, Rc<Source<'a>>>;
 
 #[derive(Debug)]
 enum Kind<'a> {

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod built_in;
+mod constellations;
 mod nested;
 mod overrides;
 mod problems;

@@ -1,12 +1,14 @@
 //! The validated scenario: every default filled in, every range checked. The keys of a scenario
 //! file are declared here, each with its field.
 
+mod constellations;
 mod objectives;
 mod region;
 mod search;
 mod setting;
 
 pub use crate::ground::Grid;
+pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
 pub(super) use region::PointsFile;
 pub use region::Region;
@@ -20,7 +22,7 @@ use chrono::{DateTime, Utc};
 use super::Algorithm;
 use super::keys::{key, section};
 use super::reader::Reader;
-use super::rule::{Text, UtcInstant};
+use super::rule::{Constellations, Text, UtcInstant};
 use crate::search::DesignSpace;
 
 /// Lets a duration that is an integer number of steps, up to rounding, end before
@@ -43,8 +45,12 @@ section! {
         /// Name of the study, also part of the default output directory.
         pub name: String = Text::Name, default "scenario".to_owned();
         /// Design to validate if none is given, in Walker notation
-        /// pattern:inclination:T/P/F@altitude.
+        /// pattern:inclination:T/P/F@altitude or by its name in `constellations`.
         pub reference_design: String = Text::Any, default "delta:55:182/13/1@925".to_owned();
+        /// Constellations by name, also written as a section [constellations]: `--design` takes the name in
+        /// place of a notation, and the front of a search is compared with all of them.
+        pub constellations: Vec<NamedConstellation> = Constellations,
+            follows "none", example NamedConstellation::examples();
         /// The sampled time span.
         pub time: TimeSpan;
         /// The surface of the Earth.
@@ -84,6 +90,9 @@ section! {
 fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
     if !reader.is_given(key!(Export.creation_date)) {
         scenario.export.creation_date = scenario.time.epoch;
+    }
+    if !reader.is_given(key!(Scenario.constellations)) {
+        scenario.constellations = Vec::new();
     }
     if reader.is_sound() {
         check_point_samples(scenario, reader);

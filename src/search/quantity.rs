@@ -100,8 +100,25 @@ impl Quantity {
     /// The value of a design; `None` if there is none, as for PDOP without solved samples.
     #[must_use]
     pub fn value(self, design: &Design, metrics: &Metrics, cost: &LaunchCost) -> Option<f64> {
-        let satellites = design.satellite_count() as f64;
-        let planes = design.planes() as f64;
+        self.value_of(design.satellite_count(), Some(design), metrics, cost)
+    }
+
+    /// Whether only the satellites of a design have it: others are in no planes.
+    #[must_use]
+    pub fn needs_design(self) -> bool {
+        matches!(self, Self::Planes | Self::LaunchCost)
+    }
+
+    /// The value of any satellites, which are those of a design if there is one; `None` if there is none.
+    #[must_use]
+    pub fn value_of(
+        self,
+        satellites: usize,
+        design: Option<&Design>,
+        metrics: &Metrics,
+        cost: &LaunchCost,
+    ) -> Option<f64> {
+        let satellites = satellites as f64;
         match self {
             Self::JPos => metrics.j_pos,
             Self::JCost => metrics.j_cost,
@@ -111,12 +128,16 @@ impl Quantity {
             Self::P99Pdop => metrics.p99_pdop,
             Self::MaxPdop => metrics.max_pdop,
             Self::Satellites => Some(satellites),
-            Self::Planes => Some(planes),
+            Self::Planes => Some(design?.planes() as f64),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
             Self::LaunchCost => {
+                let design = design?;
                 let lift = 1.0 + cost.per_1000_km * design.highest_altitude_km() / 1000.0;
-                Some(cost.per_satellite * satellites * lift + cost.per_plane * planes)
+                Some(
+                    cost.per_satellite * satellites * lift
+                        + cost.per_plane * design.planes() as f64,
+                )
             }
         }
     }

@@ -111,6 +111,97 @@ test("the paper's report is light, loads fast and follows a click", async () => 
   await context.close();
 });
 
+test("compared constellations have a mark each and are selected in the plane and in the table", async () => {
+  const { page, context, trouble } = await open("four");
+  await page.waitForSelector("#pareto .scatterlayer .trace", { state: "attached" });
+  const names = ["Proposed", "Polar", "Iridium-like", "Optimised-LFC"];
+  const marks = await page.evaluate(() => document.getElementById("pareto").data.slice(0, 4)
+    .map((trace) => ({ name: trace.name, symbol: trace.marker.symbol, color: trace.marker.color })));
+  assert.deepEqual(marks.map((mark) => mark.name), names);
+  for (const part of ["symbol", "color"]) assert.equal(new Set(marks.map((mark) => mark[part])).size, 4, part);
+  const legend = page.locator("#pareto .legend .traces .legendtext");
+  assert.deepEqual((await legend.allTextContents()).slice(0, 4), names);
+  // The marks of the table are those of the plane.
+  const rgb = (hex) => `rgb(${[1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16)).join(", ")})`;
+  const fills = await page.evaluate(() => [...document.querySelectorAll("#compared .mark path")].map((path) => getComputedStyle(path).fill));
+  assert.deepEqual(fills, marks.map((mark) => rgb(mark.color)));
+  assert.match(await page.locator("#dominance").textContent(), /Proposed dominates Polar/);
+  assert.match(await page.locator("#compared tr.alone").textContent(), /GNSS alone/);
+  for (const of of ["#membership", "#parallel", "#convergence", "#search"]) assert.equal(await page.locator(of).count(), 0, of);
+
+  await scrollThrough(page);
+  const figures = ["map-mean-visible", "map-mean-pdop", "map-p95-pdop", "map-max-pdop"];
+  const values = await Promise.all(figures.map((id) => mapValues(page, id)));
+  const bold = (id) => page.evaluate((figure) => document.getElementById(figure).data.at(-1).name, id);
+  assert.equal(await bold("tail"), "Proposed");
+  await page.locator("#compared button.pick").nth(1).click();
+  assert.equal(await place(page), 1);
+  assert.match(await page.locator("#choose option:checked").textContent(), /^Polar: star:90/);
+  assert.equal(await page.locator("#compared tr.current").getAttribute("data-place"), "1");
+  for (const [n, id] of figures.entries()) assert.notEqual(await mapValues(page, id), values[n], `${id} did not follow`);
+  for (const id of ["cdf-visible", "series-max-pdop", "series-mean-pdop", "tail"]) assert.equal(await bold(id), "Polar", id);
+  const tile = await page.locator("#tiles div").first().textContent();
+  const cell = await page.locator("#compared tr.current td").nth(2).textContent();
+  assert.ok(tile.endsWith(cell), `${tile} ${cell}`);
+
+  await page.locator("#pareto").scrollIntoViewIfNeeded();
+  const box = await page.locator("#pareto .scatterlayer .trace").nth(3).locator("path.point").first().boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2, { steps: 4 });
+  await page.waitForSelector("#pareto .hoverlayer .hovertext");
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForFunction(() => window.navwalker.state.place === 3);
+  assert.deepEqual(trouble, []);
+  await wholePage(page, "four");
+  await context.close();
+
+  for (const [name, options] of [["four-dark", { colorScheme: "dark" }],
+    ["four-phone", { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true }]]) {
+    const other = await open("four", options);
+    await wholePage(other.page, name);
+    const width = await other.page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(width <= (options.viewport?.width ?? 1280), `the page is ${width} px wide`);
+    assert.deepEqual(other.trouble, []);
+    await other.context.close();
+  }
+});
+
+test("a constellation beside a front is selected like its members", async () => {
+  const { page, context, trouble } = await open("paper");
+  await scrollThrough(page);
+  const values = await mapValues(page, "map-mean-pdop");
+  await page.locator("#compared button.pick", { hasText: "star" }).click();
+  assert.match(await page.locator("#choose option:checked").textContent(), /^star: star:86\.4/);
+  assert.equal(await page.locator("#badge").isVisible(), false);
+  assert.notEqual(await mapValues(page, "map-mean-pdop"), values);
+  await page.locator("#previous").click();
+  assert.match(await page.locator("#choose option:checked").textContent(), /^reference design/);
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
+test("the globe draws every shell, and satellites of files with whatever name", async () => {
+  const { page, context, trouble } = await open("files");
+  await page.locator("#play").click();
+  await page.locator("#globe").scrollIntoViewIfNeeded();
+  assert.deepEqual(await page.locator("#shells span").allTextContents(), ["delta:53:72/6/1@1050", "star:90:60/6/1@800"]);
+  const colours = await page.evaluate(() => [...document.querySelectorAll("#shells i")].map((dot) => dot.style.background));
+  assert.equal(new Set(colours).size, 2);
+  await page.waitForFunction(() => window.navwalker.sky().length > 0);
+  await page.screenshot({ path: `${shots}/hybrid.png` });
+  await page.locator("#choose").selectOption("1");
+  assert.equal(await page.locator("#shells").isVisible(), false);
+  assert.match(await page.locator("#drawn-from").textContent(), /positions every 5 min, interpolated/);
+  // The satellites of the file are in low orbits all around the Earth: an order is over any horizon.
+  const sky = await page.evaluate(() => window.navwalker.sky());
+  assert.ok(sky.length >= 2 && sky.length <= 12, `${sky.length} over the horizon`);
+  const option = await page.locator("#choose option").nth(1).textContent();
+  assert.ok(option.includes("<img src=x") && option.includes("\\u{202e}"), option);
+  await wholePage(page, "files");
+  assert.equal(await page.evaluate(() => window.attacked), undefined);
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
 test("the page suits a phone, dark mode and print", async () => {
   const phone = await open("paper", { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
   await wholePage(phone.page, "phone");

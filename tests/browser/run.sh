@@ -24,10 +24,25 @@ mkdir -p "$shots"
 small=(--quiet --set region.step-deg=20 --set time.step-s=1200 --set optimizer.population=8
   --set optimizer.generations=4)
 
-# The paper's study, with a validation and a design beside it.
+# The paper's study, with a validation and a constellation beside it.
 "$program" optimize paper --quiet --out "$work/paper" >/dev/null
 "$program" validate --quiet --run "$work/paper" --against sgp4 --out "$work/paper/validation" >/dev/null
-"$program" report "$work/paper" --compare star:86.4:180/12/1@925 >/dev/null
+"$program" report "$work/paper" --design star=star:86.4:180/12/1@925 >/dev/null
+
+# The paper's four kinds of constellation with 182 satellites (rows 2 of its Table II), without a run.
+mkdir "$work/four"
+"$program" report paper --quiet --design Proposed=delta:55:182/13/1@925 --design Polar=star:90:182/13/1@925 \
+  --design Iridium-like=star:86.4:182/13/1@925 --design Optimised-LFC=lattice:78.2:182/13/12@1000 \
+  --out "$work/four/report.html" >/dev/null
+
+# A hybrid of two shells, and satellites from a file with a hostile name.
+mkdir "$work/files"
+"$program" export --quiet --design star:86.4:66/6/2@780 --as tle --out "$work/iridium" >/dev/null
+hostile=$'<img src=x onerror=window.attacked=1>\u202etle.<b>'
+cp "$work/iridium/constellation.tle" "$work/$hostile"
+"$program" report paper --quiet --set region.step-deg=20 --set time.step-s=1200 \
+  --design hybrid=delta:53:72/6/1@1050+star:90:60/6/1@800 --constellation "$work/$hostile" \
+  --out "$work/files/report.html" >/dev/null
 
 # 300 satellites.
 "$program" optimize "${small[@]}" --set search.planes='[15, 15]' \

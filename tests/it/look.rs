@@ -81,14 +81,200 @@ fn a_report_is_written_and_repeats() {
         "run",
         "--out",
         "other.html",
-        "--compare",
-        "star:86.4:24/6/1@900",
+        "--design",
+        "beside=star:86.4:24/6/1@900",
         "--front",
         "run",
     ];
     stdout(&navwalker(directory.path(), &elsewhere));
     let other = fs::read_to_string(directory.path().join("other.html")).unwrap();
     assert!(other.contains("star:86.4:24/6/1@900") && other.contains("front of NSGA-II"));
+    assert!(other.contains("<bdi>beside</bdi>") && other.contains("<bdi>reference design</bdi>"));
+}
+
+/// Two constellations in a coarse scenario: a design and its satellites from a file, moved to another altitude.
+const TWO: [&str; 8] = [
+    "--set",
+    "region.step-deg=20",
+    "--set",
+    "time.step-s=3600",
+    "--design",
+    "ours=delta:55:36/6/1@900+star:90:12/3/1@800",
+    "--constellation",
+    "theirs=theirs/elements.csv",
+];
+
+/// A directory with the satellites of another constellation in it.
+fn with_theirs() -> TempDir {
+    let directory = TempDir::new().unwrap();
+    let export = [
+        "export",
+        "--quiet",
+        "--design",
+        "star:86.4:24/6/1@780",
+        "--as",
+        "csv",
+        "--out",
+        "theirs",
+    ];
+    stdout(&navwalker(directory.path(), &export));
+    directory
+}
+
+#[test]
+fn constellations_are_reported_without_a_run() {
+    let directory = with_theirs();
+    let report = [&["report", "paper", "--quiet"], &TWO[..]].concat();
+    let printed = stdout(&navwalker(directory.path(), &report));
+    assert_eq!(printed, "report.html\n");
+    let page = fs::read_to_string(directory.path().join("report.html")).unwrap();
+    for told in [
+        "<bdi>ours</bdi>",
+        "<bdi>elements.csv</bdi>",
+        "GNSS alone",
+        "ours dominates theirs",
+        "step-deg = 20\n",
+    ] {
+        assert!(page.contains(told), "{told}");
+    }
+    assert!(!page.contains("id=\"membership\"") && !page.contains("The search"));
+    assert!(!page.contains(directory.path().to_str().unwrap()));
+    stdout(&navwalker(directory.path(), &report));
+    let again = fs::read_to_string(directory.path().join("report.html")).unwrap();
+    assert!(page == again, "the bytes differ");
+}
+
+#[test]
+fn constellations_are_plotted_without_a_run() {
+    let directory = with_theirs();
+    let plot = |further: &[&str]| {
+        let arguments = [&["plot", "--quiet"], &TWO[..], further].concat();
+        navwalker(directory.path(), &arguments)
+    };
+    let table = |further: &[&str]| stdout(&plot(&[further, &["--as", "csv"]].concat()));
+    for figure in ["cdf", "series", "pareto"] {
+        let rows = table(&["--figure", figure]);
+        let named = |name: &str| rows.lines().any(|row| row.ends_with(name));
+        assert!(named(",ours") && named(",theirs"), "{figure}: {rows}");
+        let drawn = stdout(&plot(&["--figure", figure]));
+        assert!(
+            drawn.contains("ours") && drawn.contains("theirs"),
+            "{figure}"
+        );
+    }
+    // A map shows the first, or the one picked by name or number.
+    let map = |pick: &[&str]| table(&[&["--figure", "map"], pick].concat());
+    let (first, second) = (map(&[]), map(&["--pick", "theirs"]));
+    assert_ne!(first, second);
+    assert_eq!(first, map(&["--pick", "1"]));
+    assert_eq!(second, map(&["--pick", "2"]));
+    for (further, error) in [
+        (
+            ["--figure", "map", "--pick", "3"],
+            "--pick 3: expected a number from 1 to 2, or a name among ours, theirs",
+        ),
+        (
+            ["--figure", "map", "--pick", "fuzzy"],
+            "or a name among ours, theirs",
+        ),
+        (
+            ["--figure", "convergence", "--as", "csv"],
+            "figure convergence is of a run",
+        ),
+        (
+            ["--figure", "budget", "--as", "csv"],
+            "figure budget is of a run",
+        ),
+        (
+            ["--figure", "pareto", "--front", "theirs"],
+            "--front is of a run",
+        ),
+    ] {
+        let refused = plot(&further);
+        let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{further:?}");
+        assert!(told.contains(error), "{told}");
+    }
+}
+
+#[test]
+fn what_cannot_be_shown_is_refused() {
+    let directory = with_theirs();
+    let design = ["--design", "delta:55:36/6/1@900"];
+    for (arguments, error) in [
+        (vec!["report"], "scenario paper names no constellations"),
+        (
+            vec!["report", "nowhere/run"],
+            "nowhere/run is neither a run directory nor a scenario",
+        ),
+        (
+            vec!["report", "pape"],
+            "pape is neither a run directory nor a scenario",
+        ),
+        (vec!["report", "theirs"], "theirs is not a run directory"),
+        (
+            [&["report", "--design", "delta:55:36/6/1@900"], &design[..]].concat(),
+            "two constellations are named delta:55:36/6/1@900",
+        ),
+        (
+            [
+                &[
+                    "report",
+                    "--out",
+                    "theirs/elements.csv",
+                    "--constellation",
+                    "theirs/elements.csv",
+                ],
+                &design[..],
+            ]
+            .concat(),
+            "theirs/elements.csv is an input",
+        ),
+        (
+            vec!["report", "--constellation", "absent.tle"],
+            "absent.tle",
+        ),
+    ] {
+        let refused = navwalker(directory.path(), &arguments);
+        let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert_eq!(refused.status.code(), Some(2), "{arguments:?}");
+        assert!(told.contains(error), "{told}");
+    }
+    assert!(!directory.path().join("report.html").exists());
+}
+
+/// The constellations of a run are compared with its front, and picked by name.
+#[test]
+fn a_run_is_plotted_beside_constellations() {
+    let directory = small_run();
+    let plot = |further: &[&str]| {
+        let arguments = [
+            "plot",
+            "run",
+            "--quiet",
+            "--as",
+            "csv",
+            "--design",
+            "ours=delta:55:36/6/1@900",
+        ];
+        navwalker(directory.path(), &[&arguments, further].concat())
+    };
+    let cdf = stdout(&plot(&["--figure", "cdf"]));
+    assert!(cdf.lines().any(|row| row.ends_with(",ours")), "{cdf}");
+    let map = |pick: &str| stdout(&plot(&["--figure", "map", "--pick", pick]));
+    assert_ne!(map("ours"), map("fuzzy"));
+    let refused = plot(&["--figure", "map", "--pick", "theirs"]);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        told.contains("or a name among reference design, ours"),
+        "{told}"
+    );
+    let refused = plot(&["--figure", "map", "--set", "visibility.mask-deg=5"]);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(
+        told.contains("a run keeps the scenario that it was made with"),
+        "{told}"
+    );
 }
 
 #[test]

@@ -122,6 +122,62 @@ fn a_run_needs_none_of_the_files_of_its_scenario() {
 }
 
 #[test]
+fn a_run_keeps_its_constellations_and_is_compared_with_their_designs() {
+    let directory = with_files();
+    let place = directory.path();
+    done(place, "optimize study/study.toml --quiet --out plain");
+    let scenario = place.join("study/study.toml");
+    let text = fs::read_to_string(&scenario).unwrap();
+    let named = "[constellations]\ndense = \"delta:50:144/12/1@2000\"\nfleet = { files = [\"fleet.tle\"] }\n";
+    fs::write(&scenario, text + named).unwrap();
+    let fleet = place.join("study/fleet.tle");
+    fs::copy(place.join("study/gps.tle"), &fleet).unwrap();
+    let line = "optimize study/study.toml --quiet --format json --out run";
+    let result: Value = serde_json::from_str(&done(place, line).stdout).unwrap();
+    let diagnostics = result["diagnostics"].as_array().unwrap();
+    let told = diagnostics
+        .iter()
+        .filter(|one| one["code"] == "pick-dominated");
+    let told: Vec<&str> = told.filter_map(|one| one["message"].as_str()).collect();
+    let dense = "the constellation dense delta:50:144/12/1@2000 (j-pos ";
+    assert!(told.iter().any(|told| told.starts_with(dense)), "{told:?}");
+    // The search is the same with and without them.
+    let hash = |run: &str| -> Value {
+        let manifest = fs::read(place.join(run).join("run.json")).unwrap();
+        let manifest: Value = serde_json::from_slice(&manifest).unwrap();
+        manifest["scenario_hash"].clone()
+    };
+    assert_eq!(hash("run"), hash("plain"));
+    let front = |run: &str| fs::read(place.join(run).join("front.csv")).unwrap();
+    assert_eq!(front("run"), front("plain"));
+    let text = fs::read_to_string(place.join("run/scenario.toml")).unwrap();
+    let copy = "fleet = { files = [\"inputs/3/fleet.tle\"] }";
+    assert!(text.contains(copy), "{text}");
+    let copy = place.join("run/inputs/3/fleet.tle");
+    let bytes = fs::read(&copy).unwrap();
+    fs::write(&copy, &bytes[1..]).unwrap();
+    stopped(place, "report run", "inputs/3/fleet.tle: checksum mismatch");
+    fs::write(&copy, bytes).unwrap();
+    done(place, "report run");
+    // A search goes on with the copies, and without them if the constellations are others by now.
+    fs::remove_file(&fleet).unwrap();
+    let resumed = done(place, "optimize study/study.toml --resume --out run");
+    let gone = "fleet.tle is missing or has changed since the run began";
+    assert!(resumed.stderr.contains(gone), "{}", resumed.stderr);
+    fs::remove_file(place.join("study/gps.tle")).unwrap();
+    let other = "--set constellations.other=delta:55:4/2/1@925 --set constellations.fleet=delta:55:6/2/1@925";
+    done(
+        place,
+        &format!("optimize study/study.toml --quiet --resume --out run {other}"),
+    );
+    let text = fs::read_to_string(place.join("run/scenario.toml")).unwrap();
+    assert!(
+        text.contains("fleet = \"delta:55:6/2/1@925\", other = "),
+        "{text}"
+    );
+}
+
+#[test]
 fn seeds_stand_alone_too() {
     let directory = with_files();
     let place = directory.path();
@@ -259,6 +315,14 @@ fn errors_of_the_setup_have_a_line() {
         ("empty.csv", "latitude_deg,longitude_deg\n"),
         ("gnss.toml", "[gnss]\nfiles = [\n  \"empty.csv\"]\n"),
         ("design.toml", "reference-design = \"delta:55:7/2/1@925\"\n"),
+        (
+            "named.toml",
+            "reference-design = \"fleet\"\n[constellations]\nfleet = { files = [\"empty.csv\"] }\n",
+        ),
+        (
+            "fleet.toml",
+            "[constellations]\nfleet = { files = [\"none.tle\"] }\n",
+        ),
     ];
     for (name, text) in files {
         fs::write(place.join(name), text).unwrap();
@@ -273,6 +337,10 @@ fn errors_of_the_setup_have_a_line() {
             "empty.toml:4: region.points: empty.csv: the list is empty",
         ),
         ("gnss.toml", "gnss.toml:2: gnss.files: empty.csv: "),
+        (
+            "fleet.toml",
+            "fleet.toml:2: constellations.fleet.files: none.tle: cannot read it: ",
+        ),
     ] {
         let design = "--design delta:55:4/2/1@925";
         stopped(place, &format!("evaluate {scenario} {design}"), message);
@@ -287,6 +355,11 @@ fn errors_of_the_setup_have_a_line() {
         place,
         "validate design.toml --against sgp4",
         "design.toml:1: reference-design: ",
+    );
+    stopped(
+        place,
+        "validate named.toml --against sgp4",
+        "named.toml:1: reference-design: the constellation 'fleet' has satellites from files, but this needs a design",
     );
     stopped(
         place,

@@ -1,54 +1,58 @@
-//! Arguments of the commands that show a run.
+//! Arguments of the commands that show a run, or constellations.
 
-use crate::constellation::Design;
-use crate::optimize::Pick;
+use super::{ConstellationArgs, StudyArgs};
 use crate::report::figures::draw::Form;
 use crate::report::figures::{Figure, Measure};
 use clap::Args;
 use std::path::PathBuf;
 
-impl RunArgs {
-    /// What is read.
-    pub(crate) fn inputs(&self) -> impl Iterator<Item = PathBuf> {
-        let own = [self.directory.clone(), self.sweep()];
-        let others = self.front.iter().chain(&self.validation).cloned();
-        own.into_iter().chain(others)
-    }
+/// A run or a scenario, and what to compare with it.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct ViewArgs {
+    /// A run directory, whose front is shown; or a scenario file or the name of a built-in scenario, in which
+    /// constellations are shown, its own if none are given [default: paper].
+    #[arg(value_name = "RUN | SCENARIO")]
+    pub(crate) subject: Option<String>,
 
-    /// The sweep that certified the run, which may not exist.
-    pub(crate) fn sweep(&self) -> PathBuf {
-        let mut name = self.directory.file_name().unwrap_or_default().to_owned();
-        name.push("-sweep");
-        self.directory.with_file_name(name)
-    }
-}
+    /// Override a key of the scenario, as in `--set visibility.mask-deg=10`; may be repeated. A run keeps the
+    /// scenario that it was made with.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
 
-/// A run, and what to compare it with.
-#[derive(Debug, Args)]
-pub(crate) struct RunArgs {
-    /// A run directory.
-    #[arg(value_name = "DIR")]
-    pub(crate) directory: PathBuf,
+    #[command(flatten)]
+    pub(crate) constellations: ConstellationArgs,
 
-    /// Compare the front with this design, in addition to the reference design; may be repeated.
-    #[arg(long, value_name = "NOTATION")]
-    pub(crate) compare: Vec<Design>,
-
-    /// Also show the front of this run, in addition to the sweep of --certify; may be repeated.
+    /// Also show the front of this run, in addition to the sweep of --certify; may be repeated. Only with a run.
     #[arg(long, value_name = "DIR")]
     pub(crate) front: Vec<PathBuf>,
 
-    /// The report.json of a validation, or its directory [default: DIR/validation].
+    /// The report.json of a validation, or its directory [default: RUN/validation]. Only with a run.
     #[arg(long, value_name = "PATH")]
     pub(crate) validation: Option<PathBuf>,
+}
+
+impl ViewArgs {
+    /// The run directory, if it is one that is shown.
+    pub(crate) fn run(&self) -> Option<PathBuf> {
+        let named = PathBuf::from(self.subject.as_ref()?);
+        named.is_dir().then_some(named)
+    }
+
+    /// The scenario, if it is not a run that is shown.
+    pub(crate) fn study(&self) -> StudyArgs {
+        StudyArgs {
+            scenario: self.subject.clone(),
+            overrides: self.overrides.clone(),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
     #[command(flatten)]
-    pub(crate) run: RunArgs,
+    pub(crate) view: ViewArgs,
 
-    /// Page to write [default: DIR/report.html].
+    /// Page to write [default: RUN/report.html, or report.html].
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -56,7 +60,7 @@ pub(crate) struct ReportArgs {
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
     #[command(flatten)]
-    pub(crate) run: RunArgs,
+    pub(crate) view: ViewArgs,
 
     /// Figure to draw: pareto, map, cdf, series, convergence or budget.
     #[arg(long)]
@@ -66,9 +70,11 @@ pub(crate) struct PlotArgs {
     #[arg(long)]
     pub(crate) measure: Option<Measure>,
 
-    /// Design of a map, a distribution or a series: fuzzy, sum, topsis, knee, or its index.
-    #[arg(long, value_name = "PICK", default_value = "fuzzy")]
-    pub(crate) pick: Pick,
+    /// What a map shows, and what comes first in a distribution or a series: of a run fuzzy, sum, topsis, knee or
+    /// the index of a design on the front; otherwise, or beside the front, the name of a constellation or its
+    /// number from 1 [default: fuzzy, or the first constellation].
+    #[arg(long, value_name = "PICK")]
+    pub(crate) pick: Option<String>,
 
     /// File format: svg, png, or csv for the data alone [default: by the extension of --out, or svg].
     #[arg(long = "as", value_name = "FORM")]

@@ -1,9 +1,11 @@
 //! `navwalker plot`.
 
-use crate::cli::args::PlotArgs;
-use crate::cli::run_view::RunView;
+use crate::cli::args::{MemberPick, PlotArgs};
+use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::constellation::Design;
+use crate::optimize::Pick;
+use crate::report::Compared;
 use crate::report::figures::draw::{Form, png, svg};
 use crate::report::figures::{self, Figure, Measure, NamedProfile, Plate};
 use crate::report::profile::Profile;
@@ -15,8 +17,9 @@ use std::path::{Path, PathBuf};
 
 pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     let form = form(args)?;
-    let view = RunView::at(&args.run)?;
-    let table = table_of(args, form)?;
+    refuse_figure_of_search(args)?;
+    let view = View::new(&args.view)?;
+    let table = table_of(args, &view, form)?;
     make_own_place(args)?;
     let staged = args
         .out
@@ -45,17 +48,30 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
     Ok(Status::Done)
 }
 
+/// Refuses a figure that only a run has, before anything is computed.
+fn refuse_figure_of_search(args: &PlotArgs) -> Result<()> {
+    let of_run = matches!(args.figure, Figure::Convergence | Figure::Budget);
+    if of_run && args.view.run().is_none() {
+        bail!(
+            "figure {} is of a run: give its directory in place of the scenario",
+            args.figure
+        );
+    }
+    Ok(())
+}
+
 /// Where the data of a figure goes: next to it.
-fn table_of(args: &PlotArgs, form: Form) -> Result<Option<PathBuf>> {
+fn table_of(args: &PlotArgs, view: &View, form: Form) -> Result<Option<PathBuf>> {
     let Some(out) = &args.out else {
         return Ok(None);
     };
-    files::refuse_inputs(out, args.run.inputs())?;
+    let inputs = || view.inputs.iter().map(PathBuf::as_path);
+    files::refuse_inputs(out, inputs())?;
     if form == Form::Csv {
         return Ok(None);
     }
     let table = out.with_extension("csv");
-    files::refuse_inputs(&table, args.run.inputs())?;
+    files::refuse_inputs(&table, inputs())?;
     Ok(Some(table))
 }
 
@@ -74,7 +90,10 @@ fn require_same(table: &Path, data: &[u8]) -> Result<()> {
 
 /// Makes the directory for figures in the run, if the figure goes there.
 fn make_own_place(args: &PlotArgs) -> Result<()> {
-    let figures = args.run.directory.join("figures");
+    let Some(run) = args.view.run() else {
+        return Ok(());
+    };
+    let figures = run.join("figures");
     if args.out.as_deref().and_then(Path::parent) == Some(&figures) {
         fs::create_dir_all(&figures)
             .with_context(|| format!("cannot create {}", figures.display()))?;
@@ -105,7 +124,7 @@ fn render(plate: &Plate, form: Form) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn plate(args: &PlotArgs, view: &RunView) -> Result<Plate> {
+fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
     let measure = |usual: Measure| args.measure.unwrap_or(usual);
     Ok(match args.figure {
         Figure::Pareto => figures::pareto(&view.run, &view.baselines(), &view.fronts)?,
@@ -113,7 +132,8 @@ fn plate(args: &PlotArgs, view: &RunView) -> Result<Plate> {
         Figure::Budget => figures::budget(view.run.validation.as_ref())?,
         Figure::Map => {
             let profiles = profiles(args, view, false)?;
-            figures::map(&profiles[0].1, measure(Measure::MeanPdop), cell_deg(view))?
+            let first = &named(&profiles)[0];
+            figures::map(first, measure(Measure::MeanPdop), cell_deg(view))?
         }
         Figure::Cdf => {
             let profiles = profiles(args, view, true)?;
@@ -127,36 +147,113 @@ fn plate(args: &PlotArgs, view: &RunView) -> Result<Plate> {
 }
 
 /// The steps of the region's grid, if it is one.
-fn cell_deg(view: &RunView) -> Option<[f64; 2]> {
+fn cell_deg(view: &View) -> Option<[f64; 2]> {
     match view.run.scenario.as_ref()?.region {
         Region::Grid(grid) => Some(grid.step_deg),
         Region::Points { .. } => None,
     }
 }
 
-/// The picked design and those compared with it, evaluated.
-fn profiles(args: &PlotArgs, view: &RunView, with_others: bool) -> Result<Vec<(String, Profile)>> {
+/// A constellation evaluated for a figure.
+struct Shown {
+    name: String,
+    notation: String,
+    profile: Profile,
+}
+
+/// What was picked: a member of the front, or a constellation.
+enum Picked<'a> {
+    Member(Design),
+    Constellation(&'a Compared),
+}
+
+/// The pick, and those compared with it, evaluated.
+fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown>> {
     let evaluator = view
         .evaluator
         .as_ref()
         .context("this figure needs the scenario of the run, which cannot be set up")?;
-    let member = view.pick(args.pick)?;
-    let design: Design = member.design.notation.parse()?;
-    let mut wanted = vec![(design.to_string(), design.clone())];
+    let of_constellation = |one: &Compared| -> Result<Shown> {
+        Ok(Shown {
+            name: one.baseline.name.clone(),
+            notation: one.baseline.notation.clone(),
+            profile: Profile::new(evaluator, &one.ephemeris)?,
+        })
+    };
+    let picked = picked(args.pick.as_deref(), view)?;
+    let first = match &picked {
+        Picked::Member(design) => Shown {
+            name: design.to_string(),
+            notation: design.to_string(),
+            profile: Profile::of_design(evaluator, design)?,
+        },
+        Picked::Constellation(one) => of_constellation(one)?,
+    };
+    let is_first = |other: &&Compared| match &picked {
+        Picked::Member(design) => other.constellation.only_design() == Some(design),
+        Picked::Constellation(one) => std::ptr::eq(*one, *other),
+    };
+    let mut shown = vec![first];
     if with_others {
-        let others = view.beside.iter().filter(|(_, other)| *other != design);
-        wanted.extend(others.cloned());
+        for other in view.compared.iter().filter(|other| !is_first(other)) {
+            shown.push(of_constellation(other)?);
+        }
     }
-    let one = |(name, design): (String, Design)| Ok((name, Profile::new(evaluator, &design)?));
-    wanted.into_iter().map(one).collect()
+    Ok(shown)
 }
 
-fn named(profiles: &[(String, Profile)]) -> Vec<NamedProfile<'_>> {
-    let pairs = profiles.iter();
-    pairs
-        .map(|(name, profile)| NamedProfile {
-            name: name.clone(),
-            profile,
-        })
-        .collect()
+/// The constellation of that name; else the design picked from a front, or that number of the constellations.
+fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<Picked<'a>> {
+    let compared = &view.compared;
+    let named = pick.and_then(|pick| compared.iter().find(|one| one.constellation.name == pick));
+    if let Some(one) = named {
+        return Ok(Picked::Constellation(one));
+    }
+    let method = pick.and_then(|pick| pick.parse::<Pick>().ok());
+    if view.is_of_search() {
+        if let (Some(pick), None) = (pick, method) {
+            bail!(
+                "--pick {pick}: expected fuzzy, sum, topsis, knee, the index of a design on the front, or a name \
+                 among {}",
+                names(compared)
+            );
+        }
+        let member = view.pick(&MemberPick::Pick(method.unwrap_or(Pick::Fuzzy)))?;
+        return Ok(Picked::Member(member.design.notation.parse()?));
+    }
+    let place = match (pick, method) {
+        (None, _) => Some(0),
+        (Some(_), Some(Pick::Index(number))) => number.checked_sub(1),
+        (Some(_), Some(method)) => {
+            let picked = MemberPick::Pick(method).apply(&view.given);
+            picked.ok().map(|picked| picked.place)
+        }
+        (Some(_), None) => None,
+    };
+    let one = place.and_then(|place| compared.get(place));
+    one.map(Picked::Constellation).with_context(|| {
+        format!(
+            "--pick {}: expected a number from 1 to {}, or a name among {}",
+            pick.unwrap_or_default(),
+            compared.len(),
+            names(compared)
+        )
+    })
+}
+
+fn names(compared: &[Compared]) -> String {
+    let names: Vec<&str> = compared
+        .iter()
+        .map(|one| one.baseline.name.as_str())
+        .collect();
+    names.join(", ")
+}
+
+fn named(shown: &[Shown]) -> Vec<NamedProfile<'_>> {
+    let each = shown.iter().map(|one| NamedProfile {
+        name: one.name.clone(),
+        notation: one.notation.clone(),
+        profile: &one.profile,
+    });
+    each.collect()
 }

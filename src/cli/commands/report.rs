@@ -1,16 +1,19 @@
 //! `navwalker report`.
 
-use crate::cli::args::{ReportArgs, RunArgs};
-use crate::cli::run_view::RunView;
+use crate::cli::args::{ReportArgs, ViewArgs};
+use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::report::page::{self, Page};
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
+/// The page in its usual place.
+const PAGE: &str = "report.html";
+
 pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
-    let usual = || args.run.directory.join("report.html");
+    let usual = || args.view.run().unwrap_or_default().join(PAGE);
     let out = args.out.clone().unwrap_or_else(usual);
-    write(&args.run, &out)?;
+    write(&args.view, &out)?;
     output::result(&out.display().to_string())?;
     Ok(Status::Done)
 }
@@ -18,28 +21,27 @@ pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
 /// Writes the page of a run to its directory, with the validation given by `validation` or the one
 /// in the run.
 pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<PathBuf> {
-    let args = RunArgs {
-        directory: directory.to_owned(),
-        compare: Vec::new(),
-        front: Vec::new(),
+    let args = ViewArgs {
+        subject: Some(directory.to_string_lossy().into_owned()),
         validation: validation.map(Path::to_owned),
+        ..ViewArgs::default()
     };
-    let out = directory.join("report.html");
+    let out = directory.join(PAGE);
     write(&args, &out)?;
     Ok(out)
 }
 
-fn write(args: &RunArgs, out: &Path) -> Result<()> {
-    let view = RunView::at(args)?;
-    files::refuse_inputs(out, args.inputs())?;
+fn write(args: &ViewArgs, out: &Path) -> Result<()> {
+    let view = View::new(args)?;
+    files::refuse_inputs(out, view.inputs.iter().map(PathBuf::as_path))?;
     let staged = files::StagedFile::new(out)?;
     let mut html = Vec::new();
     let page = Page {
         run: &view.run,
+        stamp: view.stamp.as_ref(),
         scenario_toml: view.scenario_toml.as_deref(),
         evaluator: view.evaluator.as_ref(),
-        baselines: &view.baselines(),
-        beside: &view.beside,
+        compared: &view.compared,
         fronts: &view.fronts,
     };
     page::write(&page, &mut html)?;

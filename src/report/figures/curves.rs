@@ -12,8 +12,10 @@ use crate::units::{SECONDS_PER_HOUR, round_decimal};
 /// A profile with its name in the legend.
 #[derive(Debug, Clone)]
 pub struct NamedProfile<'a> {
-    /// Name of the design.
+    /// Name of the constellation.
     pub name: String,
+    /// Walker notation, and the names of files.
+    pub notation: String,
     /// Its cuts.
     pub profile: &'a Profile,
 }
@@ -57,15 +59,16 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
         let choices = [OVER_TIME.as_slice(), &[Measure::Pdop]].concat();
         return Err(FigureError::measure(figure, measure, &choices));
     }
-    let mut csv = Csv::new(&["design", "share", measure_column(measure)])?;
+    let mut csv = Csv::new(&["design", "share", measure_column(measure), "name"])?;
     let mut layers = Vec::new();
     for (n, named) in designs.iter().enumerate() {
         let quantiles = distribution(named.profile);
         for q in &quantiles {
             csv.row([
-                named.profile.design.to_string(),
+                named.notation.clone(),
                 q.level.to_string(),
                 q.value.to_string(),
+                named.name.clone(),
             ])?;
         }
         layers.push(Layer {
@@ -154,18 +157,20 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
         "mean_pdop",
         "max_pdop",
         "solved_fraction",
+        "name",
     ];
     let mut csv = Csv::new(&header)?;
     let mut layers = Vec::new();
     for (n, named) in designs.iter().enumerate() {
         for epoch in &named.profile.epochs {
             csv.row([
-                named.profile.design.to_string(),
+                named.notation.clone(),
                 epoch.elapsed_s.to_string(),
                 epoch.mean_visible.to_string(),
                 optional(epoch.mean_pdop),
                 optional(epoch.max_pdop),
                 epoch.solved_fraction.to_string(),
+                named.name.clone(),
             ])?;
         }
         let at = |e: &EpochMetrics| Some((e.elapsed_s / SECONDS_PER_HOUR, at_epoch(measure, e)?));

@@ -16,9 +16,10 @@ pub struct NamedFront {
 }
 
 /// Rows of the plane: name of the set, generation, index, notation, objectives, quantities under
-/// constraints, membership.
+/// constraints, membership, name of a constellation that is compared.
 struct FrontRow<'a> {
     set: &'a str,
+    name: &'a str,
     generation: Option<u64>,
     index: Option<usize>,
     notation: &'a str,
@@ -28,10 +29,11 @@ struct FrontRow<'a> {
 }
 
 /// Figure 2a of the paper: the front in the plane of the first two objectives, with earlier
-/// generations behind it, and designs and fronts for comparison.
+/// generations behind it, and constellations and fronts for comparison; without a front, the
+/// constellations alone.
 ///
 /// # Errors
-/// If the run has no front or only one objective.
+/// If there is neither a front nor a constellation, or only one objective.
 pub fn pareto(
     run: &Run,
     baselines: &[Baseline],
@@ -39,7 +41,8 @@ pub fn pareto(
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Pareto;
     let names = run.objective_names();
-    if run.front.is_empty() {
+    let is_of_search = run.search.is_some() && !run.is_of_given();
+    if run.front.is_empty() && (is_of_search || baselines.is_empty()) {
         let reason = "the front is empty";
         return Err(FigureError::Nothing { figure, reason });
     }
@@ -76,7 +79,7 @@ pub fn pareto(
         Style::Dots(0),
     ));
     for (n, baseline) in baselines.iter().enumerate() {
-        let own = points(&|row| row.set == "baseline" && row.notation == baseline.notation);
+        let own = points(&|row| row.set == "baseline" && row.name == baseline.name);
         layers.push(layer(&baseline.name, own, Style::Marks(n + 1)));
     }
     let chosen = run.chosen().map(|n| &run.front[n]);
@@ -88,7 +91,11 @@ pub fn pareto(
     ));
     layers.retain(|layer| !layer.points.is_empty());
     let chart = PlaneChart {
-        title: "Pareto front".to_owned(),
+        title: if run.front.is_empty() {
+            "Constellations by objectives".to_owned()
+        } else {
+            "Pareto front".to_owned()
+        },
         x: quantity_label(x),
         y: quantity_label(y),
         layers,
@@ -109,6 +116,7 @@ fn rows<'a>(
         let (names, constrained) = (names.to_vec(), run.constraint_names());
         front.iter().map(move |member| FrontRow {
             set,
+            name: "",
             generation: None,
             index: Some(member.index),
             notation: &member.design.notation,
@@ -123,6 +131,7 @@ fn rows<'a>(
     }
     rows.extend(baselines.iter().map(|baseline| FrontRow {
         set: "baseline",
+        name: &baseline.name,
         generation: None,
         index: None,
         notation: &baseline.notation,
@@ -133,6 +142,7 @@ fn rows<'a>(
     for (generation, objectives) in earlier(run, names) {
         rows.push(FrontRow {
             set: "generation",
+            name: "",
             generation: Some(generation),
             index: None,
             notation: "",
@@ -173,7 +183,7 @@ fn table(rows: &[FrontRow<'_>], names: &[String]) -> Result<String, FigureError>
     let columns: Vec<String> = names.iter().map(|name| name.replace('-', "_")).collect();
     let mut header = vec!["set", "generation", "index", "notation"];
     header.extend(columns.iter().map(String::as_str));
-    header.push("membership");
+    header.extend(["membership", "name"]);
     let mut csv = Csv::new(&header)?;
     for row in rows {
         let number = |value: Option<usize>| value.map_or_else(String::new, |n| n.to_string());
@@ -186,6 +196,7 @@ fn table(rows: &[FrontRow<'_>], names: &[String]) -> Result<String, FigureError>
         let quantities = row.objectives.iter().chain(&row.constraints);
         cells.extend(quantities.copied().map(optional));
         cells.push(optional(row.membership));
+        cells.push(row.name.to_owned());
         csv.row(cells)?;
     }
     csv.text()

@@ -1,10 +1,9 @@
 //! A measure over the region.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, MapChart, Measure, Plate};
+use super::{Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate};
 use crate::evaluate::PointMetrics;
 use crate::report::coastline::Bounds;
-use crate::report::profile::Profile;
 
 /// Measures that a map can show.
 const MEASURES: [Measure; 5] = [
@@ -27,12 +26,12 @@ pub(in crate::report) fn at_point(measure: Measure, point: &PointMetrics) -> Opt
     }
 }
 
-/// A design's measure over the points; `cell_deg` are the steps of a grid.
+/// A constellation's measure over the points; `cell_deg` are the steps of a grid.
 ///
 /// # Errors
 /// If the measure has no value at a point.
 pub fn map(
-    profile: &Profile,
+    named: &NamedProfile<'_>,
     measure: Measure,
     cell_deg: Option<[f64; 2]>,
 ) -> Result<Plate, FigureError> {
@@ -40,6 +39,7 @@ pub fn map(
     if !MEASURES.contains(&measure) {
         return Err(FigureError::measure(figure, measure, &MEASURES));
     }
+    let profile = named.profile;
     let places = profile
         .points
         .iter()
@@ -51,7 +51,7 @@ pub fn map(
     };
     let cell = |p: &PointMetrics| (p.longitude_deg, p.latitude_deg, at_point(measure, p));
     let chart = MapChart {
-        title: profile.design.to_string(),
+        title: title(named),
         label: measure.label().to_owned(),
         cells: profile.points.iter().map(cell).collect(),
         cell_deg,
@@ -61,6 +61,14 @@ pub fn map(
         csv: table(&profile.points)?,
         chart: Chart::Map(chart),
     })
+}
+
+/// Name and notation.
+fn title(named: &NamedProfile<'_>) -> String {
+    if named.name == named.notation {
+        return named.name.clone();
+    }
+    format!("{} ({})", named.name, named.notation)
 }
 
 fn table(points: &[PointMetrics]) -> Result<String, FigureError> {

@@ -33,20 +33,46 @@ const Core = (() => {
         tail: cuts.tail,
         tailShown: cuts.tail_shown,
         orbits: cuts.orbits.map((orbit) => ({ ...orbit, meanAnomalyDeg: unpack(orbit.mean_anomaly_deg) })),
+        tracks: cuts.tracks && { ...cuts.tracks, positionsKm: unpack(cuts.tracks.positions_km) },
       });
     }
     return unpacked.get(cuts);
   }
 
+  // What can be selected: the members of the front, then the constellations compared with them.
   const count = data.front.index.length;
-  const withCuts = Object.keys(data.cuts).map(Number);
+  const compared = data.baselines;
+  const total = count + compared.length;
+  const cutsOf = (place) => open(place < count ? data.cuts[place] : compared[place - count]?.cuts);
+  const notationOf = (place) => (place < count ? data.front.notation[place] : compared[place - count].notation);
+  const nameOf = (place) => (place < count ? data.front.notation[place] : compared[place - count].name);
+  const withCuts = [...Array(total).keys()].filter((place) => place >= count ? compared[place - count].cuts : data.cuts[place]);
   const first = data.chosen ?? withCuts[0] ?? 0;
   const listeners = [];
-  const state = { place: count > 0 ? first : null };
+  const state = { place: total > 0 ? first : null };
 
-  /** Selects the design at a place of the front; everything that depends on it follows. */
+  // Colour and mark of a compared constellation. Beside a front, its two colours are not used again. The numbers
+  // of colours and marks have no common divisor, so that few have the same of both.
+  const COLOURS = ["c0", "c1", "c2", "c3", "c4", "c5", "c6"].slice(count > 0 ? 2 : 0);
+  const MARKS = [
+    ["diamond", "M0-9 9 0 0 9-9 0Z"],
+    ["square", "M-7-7H7V7H-7Z"],
+    ["triangle-up", "M0-8 9 7H-9Z"],
+    ["cross", "M-3-9H3V-3H9V3H3V9H-3V3H-9V-3H-3Z"],
+    ["triangle-down", "M0 8 9-7H-9Z"],
+    ["star", "M0-10 2.6-3.2 9.5-3.1 4.2 1.2 5.9 8.1 0 4.3-5.9 8.1-4.2 1.2-9.5-3.1-2.6-3.2Z"],
+  ];
+
+  /** The name of the colour, the symbol and its outline of a compared constellation. */
+  function mark(place) {
+    const n = place - count;
+    const [symbol, path] = MARKS[n % MARKS.length];
+    return { colour: COLOURS[n % COLOURS.length], symbol, path };
+  }
+
+  /** Selects the design or constellation at a place; everything that depends on it follows. */
   function select(place) {
-    if (!(place >= 0 && place < count)) return;
+    if (!(place >= 0 && place < total)) return;
     state.place = place;
     for (const listener of listeners) listener(place);
   }
@@ -66,7 +92,7 @@ const Core = (() => {
   function theme() {
     const style = getComputedStyle(document.documentElement);
     const names = ["paper", "ink", "soft", "line", "panel", "accent", "second", "third", "faint",
-      "land", "sea", "coast", "nothing"];
+      "land", "sea", "coast", "nothing", "c0", "c1", "c2", "c3", "c4", "c5", "c6"];
     return Object.fromEntries(names.map((n) => [n, style.getPropertyValue("--" + n).trim()]));
   }
 
@@ -138,6 +164,6 @@ const Core = (() => {
     };
   }
 
-  return { data, state, count, listeners, withCuts, select, open, unpack, plain, digits, theme, figure,
+  return { data, state, count, total, listeners, withCuts, select, cutsOf, notationOf, nameOf, mark, unpack, plain, digits, theme, figure,
     refresh, layout };
 })();

@@ -1,27 +1,34 @@
 // The figures, from the numbers of the page.
 (() => {
-  const { data, state, count, open, unpack, plain, digits, figure, layout, select } = Core;
+  const { data, state, count, total, cutsOf, nameOf, notationOf, mark, unpack, plain, digits, figure, layout, select } = Core;
   const { front, objectives } = data;
   const shown = { x: 0, y: objectives.length > 1 ? 1 : null };
 
-  const cutsOf = (place) => open(data.cuts[place]);
   // A narrow screen has no room for more than the name.
   const label = (n) => plain(innerWidth < 600 ? objectives[n].name : objectives[n].label);
   const members = [...Array(count).keys()];
 
-  /** The designs compared in curves: the selected one, the fuzzy pick, and the baselines. */
+  /** What is compared in curves: the selected one, the fuzzy pick, and the other constellations. */
   function compared(colours) {
-    const selected = { name: front.notation[state.place], cuts: cutsOf(state.place),
-      line: { color: colours.accent, width: 2.5 } };
-    const list = [selected];
-    if (data.chosen !== null && data.chosen !== state.place) {
-      list.push({ name: "fuzzy pick", cuts: cutsOf(data.chosen),
-        line: { color: colours.second, width: 1.5 } });
+    const list = [];
+    const add = (place, name, color, dash, symbol) => {
+      const selected = place === state.place;
+      list.push({ place, name, cuts: cutsOf(place), selected, line: { color, width: selected ? 2.5 : 1.5, dash },
+        ...(symbol && { marker: { symbol, size: selected ? 9 : 7, color, maxdisplayed: 9 } }) });
+    };
+    if (state.place < count) add(state.place, notationOf(state.place), colours.accent);
+    if (data.chosen !== null && data.chosen !== state.place) add(data.chosen, "fuzzy pick", colours.second);
+    for (let place = count; place < total; place++) {
+      const { colour, symbol } = mark(place);
+      add(place, nameOf(place), colours[colour], count > 0 ? "dash" : "solid", symbol);
     }
-    data.baselines.forEach((b, n) => list.push({ name: b.name, cuts: open(b.cuts),
-      line: { color: n === 0 ? colours.soft : colours.third, width: 1.5, dash: n === 0 ? "dot" : "dash" } }));
-    return list.filter((one) => one.cuts);
+    // The selected one is drawn last, on top.
+    return list.filter((one) => one.cuts).sort((a, b) => a.selected - b.selected);
   }
+
+  /** A curve of one of them. */
+  const curve = (one, more) => ({ type: "scatter", mode: one.marker ? "lines+markers" : "lines", name: plain(one.name),
+    legendrank: 1000 + one.place, line: one.line, ...(one.marker && { marker: one.marker }), ...more });
 
   /** An axis range that contains some values, with a margin. */
   function around(values) {
@@ -30,10 +37,13 @@
     return [lo - margin, hi + margin];
   }
 
+  /** The values of an objective, of the members and then of the constellations; of satellites for null. */
+  const alongAxis = (n) => (n === null ? [...front.variables[0][1], ...data.baselines.map(() => null)]
+    : [...front.objectives[n], ...data.baselines.map((b) => b.objectives[n])]);
+
   function pareto(colours) {
     const { x, y } = shown;
-    const second = y === null ? data.front.variables[0][1] : front.objectives[y];
-    const at = (values) => (y === null ? null : values[y]);
+    const first = alongAxis(x), second = alongAxis(y);
     const traces = [];
     if (data.generations.length > 0 && y !== null) {
       traces.push({ type: "scatter", mode: "markers", name: "earlier generations",
@@ -47,22 +57,27 @@
         y: other.objectives[y], text: other.notation.map(plain), hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>",
         marker: { size: 6, color: colours.third, symbol: "x-thin", line: { width: 1.5, color: colours.third } } });
     }
-    traces.push({ type: "scatter", mode: "markers", name: "front", x: front.objectives[x], y: second,
-      customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + front.memberships_shown[n]),
-      hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: { size: 9, color: colours.accent } });
-    data.baselines.forEach((b, n) => traces.push({ type: "scatter", mode: "markers", name: plain(b.name),
-      x: [b.objectives[x]], y: [at(b.objectives)], text: [plain(b.notation)],
-      hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>",
-      marker: { size: 10, symbol: ["diamond", "square", "triangle-up", "cross"][n % 4], color: colours.soft } }));
+    if (count > 0) {
+      traces.push({ type: "scatter", mode: "markers", name: "front", x: first.slice(0, count), y: second.slice(0, count),
+        customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + front.memberships_shown[n]),
+        hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: { size: 9, color: colours.accent } });
+    }
+    for (let place = count; place < total; place++) {
+      const { colour, symbol } = mark(place);
+      const made = notationOf(place) === nameOf(place) ? "" : "<br>" + plain(notationOf(place));
+      traces.push({ type: "scatter", mode: "markers", name: plain(nameOf(place)), x: [first[place]], y: [second[place]],
+        customdata: [place], text: [plain(nameOf(place)) + made], hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>",
+        marker: { size: 12, symbol, color: colours[colour] } });
+    }
     const ring = (name, place, color, size) => traces.push({ type: "scatter", mode: "markers", name,
-      x: [front.objectives[x][place]], y: [second[place]], hoverinfo: "skip",
+      x: [first[place]], y: [second[place]], hoverinfo: "skip",
       marker: { size, symbol: "circle-open", color, line: { width: 2.5, color } } });
     if (data.chosen !== null) ring("fuzzy pick", data.chosen, colours.second, 16);
     ring("selected", state.place, colours.ink, 22);
-    const close = document.getElementById("close-up").checked;
+    const close = document.getElementById("close-up")?.checked;
     return { data: traces, layout: layout(colours, {
-      xaxis: { title: { text: label(x) }, ...(close && { range: around(front.objectives[x]) }) },
-      yaxis: { title: { text: y === null ? "satellites" : label(y) }, ...(close && { range: around(second) }) } }) };
+      xaxis: { title: { text: label(x) }, ...(close && { range: around(first.slice(0, count)) }) },
+      yaxis: { title: { text: y === null ? "satellites" : label(y) }, ...(close && { range: around(second.slice(0, count)) }) } }) };
   }
 
   function membership(colours) {
@@ -75,7 +90,7 @@
       marker: { color, size: 7 } });
     const traces = [trace("worst-case membership", front.membership, "y", colours.accent, "lines+markers"),
       trace("normalised sum (right)", front.membership_sum, "y2", colours.faint, "lines")];
-    traces.push({ type: "scatter", mode: "markers", name: "selected", x: [x[state.place]],
+    if (state.place < count) traces.push({ type: "scatter", mode: "markers", name: "selected", x: [x[state.place]],
       y: [front.membership[state.place]], hoverinfo: "skip",
       marker: { size: 18, symbol: "circle-open", color: colours.ink, line: { width: 2.5, color: colours.ink } } });
     return { data: traces, layout: layout(colours, { xaxis: { title: { text: label(0) } },
@@ -86,7 +101,7 @@
   const LABELS = { "mean-visible": "satellites", "mean-pdop": "PDOP", "p95-pdop": "PDOP", "max-pdop": "PDOP",
     "availability": "fraction" };
 
-  /** The range of a measure over all designs whose maps the page has. */
+  /** The range of a measure over all maps of it that the page has. */
   function commonRange(measure) {
     let lo = Infinity, hi = -Infinity;
     for (const place of Core.withCuts) {
@@ -154,9 +169,8 @@
   }
 
   function cdfVisible(colours) {
-    const traces = compared(colours).map((one) => ({ type: "scatter", mode: "lines", name: plain(one.name),
-      x: one.cuts.overTime["mean-visible"], y: data.levels, line: { ...one.line, shape: "vh" },
-      hovertemplate: "%{x:.4~g} or less for %{y:.1%} of the time<extra></extra>" }));
+    const traces = compared(colours).map((one) => curve(one, { x: one.cuts.overTime["mean-visible"], y: data.levels,
+      line: { ...one.line, shape: "vh" }, hovertemplate: "%{x:.4~g} or less for %{y:.1%} of the time<extra></extra>" }));
     return { data: traces, layout: layout(colours, { xaxis: { title: { text: "E<sub>g</sub>(N<sub>visible</sub>)" } },
       yaxis: { title: { text: "fraction of the time" }, range: [0, 1.02] } }) };
   }
@@ -165,20 +179,18 @@
 
   function overTime(measure, title) {
     return (colours) => {
-      const traces = compared(colours).map((one) => ({ type: "scatter", mode: "lines", name: plain(one.name),
-        x: hours, y: one.cuts.series[measure], line: { ...one.line, width: one.line.width - 1 },
-        hovertemplate: "%{y:.4~g} at %{x:.2f} h<extra></extra>" })).reverse();
+      const traces = compared(colours).map((one) => curve(one, { x: hours, y: one.cuts.series[measure],
+        line: { ...one.line, dash: "solid", width: one.line.width - 1 }, hovertemplate: "%{y:.4~g} at %{x:.2f} h<extra></extra>" }));
       return { data: traces, layout: layout(colours, { xaxis: { title: { text: "time since the epoch (h)" } },
-        yaxis: { title: { text: title } }, legend: { orientation: "h", y: 1.02, yanchor: "bottom", x: 0, traceorder: "reversed" } }) };
+        yaxis: { title: { text: title } } }) };
     };
   }
 
   function tail(colours) {
     const larger = data.levels.map((level) => Math.max(1 - level, 1e-6));
     const last = data.levels.length - 1;
-    const traces = compared(colours).filter((one) => one.cuts.pdop.length > 0).map((one) => ({ type: "scatter", mode: "lines",
-      name: plain(one.name), x: one.cuts.pdop.slice(0, last), y: larger.slice(0, last), line: one.line,
-      hovertemplate: "PDOP above %{x:.4~g}: fraction %{y:.2~g}<extra></extra>" }));
+    const traces = compared(colours).filter((one) => one.cuts.pdop.length > 0).map((one) => curve(one, {
+      x: one.cuts.pdop.slice(0, last), y: larger.slice(0, last), hovertemplate: "PDOP above %{x:.4~g}: fraction %{y:.2~g}<extra></extra>" }));
     const selected = cutsOf(state.place);
     const shapes = [], annotations = [];
     if (selected?.tail) {
@@ -228,7 +240,7 @@
     };
     const hover = { hovertemplate: "%{text}<extra></extra>" };
     const all = lines(members.filter((n) => n % stride === 0));
-    const one = lines([state.place]);
+    const one = lines(state.place < count ? [state.place] : []);
     const named = (l) => l.customdata.map((n, k) => plain(front.notation[n]) + (l.x[k] === null ? "" : "<br>"
       + plain(columns[l.x[k]].name) + " " + digits(columns[l.x[k]].values[n])));
     const traces = [
@@ -254,7 +266,7 @@
 
   const clicked = (point) => { if (point.customdata !== undefined) select(point.customdata); };
 
-  if (count > 0) {
+  if (total > 0) {
     figure("pareto", { build: pareto, click: clicked });
     figure("membership", { build: membership, click: clicked });
     figure("parallel", { build: parallel, click: clicked });

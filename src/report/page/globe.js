@@ -1,6 +1,6 @@
 // The constellation over a rotating Earth, and the sky above a place.
 const Globe = (() => {
-  const { data, state, open, plain, digits, theme } = Core;
+  const { data, state, cutsOf, digits, theme } = Core;
   const world = data.world;
   const globe = document.getElementById("globe");
   if (!globe || !world) {
@@ -106,6 +106,30 @@ const Globe = (() => {
     return found;
   }
 
+  /** Weights of the cubic through four samples at -1, 0, 1 and 2. */
+  const cubic = (t) => [-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
+    (t + 1) * t * (t - 1) / 6];
+
+  /** Earth-fixed positions of sampled satellites, as for a shell; those in a gap are left out. */
+  function sampled(tracks, elapsed) {
+    const { instants, positionsKm: km } = tracks;
+    const gmst = (world.gmst_deg + world.gmst_rate_deg_s * elapsed) * RAD;
+    const c = Math.cos(gmst) / world.radius_km, s = Math.sin(gmst) / world.radius_km;
+    const first = Math.max(0, Math.min(instants - 4, Math.floor(elapsed / tracks.step_s) - 1));
+    const weights = instants < 4 ? [1] : cubic(elapsed / tracks.step_s - first - 1);
+    const found = [];
+    for (let n = 0; n < km.length; n += 3 * instants) {
+      const at = [0, 0, 0];
+      const isWhole = weights.every((weight, k) => [0, 1, 2].every((axis) => {
+        const value = km[n + 3 * (first + k) + axis];
+        at[axis] += weight * value;
+        return value !== null;
+      }));
+      if (isWhole) found.push(c * at[0] + s * at[1], c * at[1] - s * at[0], at[2] / world.radius_km);
+    }
+    return found;
+  }
+
   /** Position and axes of the place: east, north, up by its vertical. */
   function site() {
     const { latitude: b, longitude: l } = place;
@@ -163,9 +187,12 @@ const Globe = (() => {
 
   let size = { x: 0, y: 0, radius: 1 };
 
-  function drawGlobe(orbits, axes, found, seen) {
+  function drawGlobe(orbits, axes, found, groups, seen) {
     const { context: c, width, height } = fitted(globe);
-    const reach = Math.max(1.1, ...orbits.map((o) => o.semi_major_axis_km * (1 + o.eccentricity) / world.radius_km));
+    let reach = Math.max(1.1, ...orbits.map((o) => o.semi_major_axis_km * (1 + o.eccentricity) / world.radius_km));
+    for (let n = orbits.reduce((sum, o) => sum + 3 * o.meanAnomalyDeg.length, 0); n < found.length; n += 3) {
+      reach = Math.max(reach, Math.hypot(found[n], found[n + 1], found[n + 2]));
+    }
     const radius = 0.47 * Math.min(width, height) / Math.min(reach, 3);
     size = { x: width / 2, y: height / 2, radius };
     const [right, upward, towards] = screenAxes();
@@ -191,8 +218,8 @@ const Globe = (() => {
     };
     strokeFront(coasts, colours.coast, 0.8);
     strokeFront(region, colours.second, 2);
-    drawOrbits(c, axes.flat(), project, radius);
-    drawSatellites(c, found, seen, project, radius);
+    axes.forEach((shell, n) => drawOrbits(c, shell, axes.length > 1 ? groupColour(n) : colours.faint, project, radius));
+    drawSatellites(c, found, groups, seen, project, radius);
     const here = site().up;
     const [x, y, depth] = project(here, 0);
     if (depth > 0) {
@@ -204,7 +231,10 @@ const Globe = (() => {
   /** Whether the Earth hides a point of the screen at a depth. */
   const hidden = (x, y, depth, radius) => depth < 0 && (x - size.x) ** 2 + (y - size.y) ** 2 < radius * radius;
 
-  function drawOrbits(c, axes, project, radius) {
+  /** The colour of a shell among several, or of the satellites from files beside shells. */
+  const groupColour = (n) => colours["c" + n % 7];
+
+  function drawOrbits(c, axes, color, project, radius) {
     const point = [0, 0, 0];
     c.beginPath();
     for (const { x: ax, y: ay } of axes) {
@@ -217,16 +247,16 @@ const Globe = (() => {
         down = true;
       }
     }
-    c.strokeStyle = colours.faint; c.globalAlpha = 0.6; c.lineWidth = 0.7; c.stroke(); c.globalAlpha = 1;
+    c.strokeStyle = color; c.globalAlpha = 0.6; c.lineWidth = 0.7; c.stroke(); c.globalAlpha = 1;
   }
 
-  function drawSatellites(c, found, seen, project, radius) {
+  function drawSatellites(c, found, groups, seen, project, radius) {
     const visible = new Set(seen.filter((s) => s.visible).map((s) => s.n));
     const [px, py] = project(site().position, 0);
-    const dots = (wanted, color, dot, lines) => {
+    const dots = (wanted, group, color, dot, lines) => {
       c.fillStyle = color; c.strokeStyle = color; c.lineWidth = 0.8;
       c.beginPath();
-      for (let n = 0; n < found.length / 3; n++) {
+      for (let n = group.from; n < group.to; n++) {
         if (visible.has(n) !== wanted) continue;
         const [x, y, depth] = project(found, 3 * n);
         if (hidden(x, y, depth, radius)) continue;
@@ -236,11 +266,13 @@ const Globe = (() => {
       c.fill();
       if (lines) { c.globalAlpha = 0.5; c.stroke(); c.globalAlpha = 1; }
     };
-    dots(false, colours.accent, 2.2, false);
-    dots(true, colours.second, 3.6, true);
+    groups.forEach((group, n) => {
+      dots(false, group, groups.length > 1 ? groupColour(n) : colours.accent, 2.2, false);
+      dots(true, group, groups.length > 1 ? groupColour(n) : colours.second, 3.6, true);
+    });
   }
 
-  function drawSky(seen) {
+  function drawSky(seen, groups) {
     const { context: c, width, height } = fitted(sky);
     const radius = 0.42 * Math.min(width, height), x0 = width / 2, y0 = height / 2;
     const ring = (elevation, dash, color) => {
@@ -270,7 +302,8 @@ const Globe = (() => {
     for (const elevation of [30, 60]) c.fillText(elevation + "°", x0, y0 - radius * (1 - elevation / 90) - 8);
     for (const s of seen) {
       const r = radius * (1 - s.elevation / RAD / 90);
-      c.fillStyle = s.visible ? colours.second : colours.faint;
+      const group = groups.findIndex((one) => s.n < one.to);
+      c.fillStyle = !s.visible ? colours.faint : groups.length > 1 ? groupColour(group) : colours.second;
       c.beginPath(); c.arc(x0 + r * Math.sin(s.azimuth), y0 - r * Math.cos(s.azimuth), s.visible ? 5 : 3, 0, 2 * Math.PI); c.fill();
     }
   }
@@ -285,26 +318,51 @@ const Globe = (() => {
   // Dates in a browser have no leap seconds: the clock stands still during one.
   const ofBrowser = (elapsed) => elapsed - world.leap_seconds_s.filter((start) => start <= elapsed).length;
 
-  function tell(seen) {
+  function tell(seen, elapsed) {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
     const side = (value, plus, minus) => digits(Math.abs(value), 4) + "° " + (value < 0 ? minus : plus);
     const text = "Sky at " + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
       + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond;
     if (caption.textContent !== text) caption.textContent = text;
-    const now = new Date(epoch + 1000 * ofBrowser(time.elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
+    const now = new Date(epoch + 1000 * ofBrowser(elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
     if (clock.textContent !== now) clock.textContent = now;
+  }
+
+  /** What the selected satellites are drawn from, and a legend of several shells. */
+  function explain() {
+    const cuts = cutsOf(state.place);
+    const notes = [];
+    if (cuts?.orbits.length > 0) notes.push("Drawn from mean elements and their secular rates.");
+    if (cuts?.tracks) notes.push(cuts.tracks.note);
+    document.getElementById("drawn-from").textContent = notes.join(" ");
+    const names = [...(cuts?.orbits.map((orbit) => orbit.notation) ?? []), ...(cuts?.tracks ? ["satellites from files"] : [])];
+    const legend = document.getElementById("shells");
+    legend.hidden = names.length < 2;
+    legend.replaceChildren(...names.map((name, n) => {
+      const entry = document.createElement("span"), dot = document.createElement("i");
+      dot.style.background = "var(--c" + n % 7 + ")";
+      entry.append(dot, name);
+      return entry;
+    }));
   }
 
   function draw() {
     const start = performance.now();
-    const orbits = open(data.cuts[state.place])?.orbits ?? [];
-    const axes = orbits.map((orbit) => planes(orbit, time.elapsed));
-    const found = orbits.flatMap((orbit, n) => [...positions(orbit, axes[n], time.elapsed)]);
+    const cuts = cutsOf(state.place);
+    const orbits = cuts?.orbits ?? [], tracks = cuts?.tracks;
+    // Samples begin again where they end.
+    const elapsed = tracks ? time.elapsed % Math.max(1, tracks.step_s * (tracks.instants - 1)) : time.elapsed;
+    const axes = orbits.map((orbit) => planes(orbit, elapsed));
+    const parts = orbits.map((orbit, n) => positions(orbit, axes[n], elapsed));
+    if (tracks) parts.push(sampled(tracks, elapsed));
+    const found = parts.flatMap((part) => [...part]);
+    let to = 0;
+    const groups = parts.map((part) => ({ from: to, to: (to += part.length / 3) }));
     const seen = overhead(found);
     drawn = seen;
-    drawGlobe(orbits, axes, found, seen);
-    drawSky(seen);
-    tell(seen);
+    drawGlobe(orbits, axes, found, groups, seen);
+    drawSky(seen, groups);
+    tell(seen, elapsed);
     frames.push(performance.now() - start);
     if (frames.length > 600) frames.shift();
   }
@@ -330,7 +388,8 @@ const Globe = (() => {
     visibleNow = now;
   }).observe(globe);
   document.addEventListener("visibilitychange", () => { if (!document.hidden && visibleNow) requestAnimationFrame(tick); });
-  Core.listeners.push(() => { if (visibleNow) draw(); });
+  Core.listeners.push(() => { explain(); if (visibleNow) draw(); });
+  explain();
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { colours = theme(); draw(); });
   addEventListener("beforeprint", () => { colours = theme(); draw(); });
   addEventListener("afterprint", () => { colours = theme(); draw(); });

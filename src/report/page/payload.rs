@@ -1,22 +1,24 @@
 //! The numbers embedded in the page for its figures.
 
 mod setting;
+mod tracks;
 
 use super::Page;
 use super::pack::{Packed, short};
 use crate::constellation::{Design, Shell};
-use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
+use crate::evaluate::{EpochMetrics, Metrics, PointMetrics};
 use crate::optimize::Record;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
 use crate::report::figures::{Measure, at_epoch, at_point, earlier, quantity_label};
 use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
-use crate::report::shown;
+use crate::report::{Compared, shown};
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
 use serde::Serialize;
 use setting::{RegionData, World};
 use std::collections::BTreeMap;
+use tracks::Tracks;
 
 /// Maximum number of instants of a series in the page; longer series are reduced to intervals.
 const MOST_EPOCHS: usize = 1440;
@@ -78,6 +80,8 @@ struct Beside {
     name: String,
     notation: String,
     objectives: Vec<Option<f64>>,
+    /// The values shown when it is selected, in the order of those of the front.
+    tiles: Vec<String>,
     cuts: Option<Cuts>,
 }
 
@@ -113,11 +117,14 @@ struct Cuts {
     tail_shown: Option<[String; 2]>,
     /// One of each shell.
     orbits: Vec<Orbit>,
+    /// The satellites that are in no shell.
+    tracks: Option<Tracks>,
 }
 
 /// Data for the globe, of one shell: mean elements at the epoch and their rates.
 #[derive(Serialize)]
 struct Orbit {
+    notation: String,
     semi_major_axis_km: f64,
     eccentricity: f64,
     inclination_deg: f64,
@@ -149,14 +156,16 @@ impl Payload {
         page: &Page<'_>,
         places: &[usize],
         members: &[Option<Profile>],
-        beside: &[Option<Profile>],
+        compared: &[Option<Profile>],
     ) -> Self {
         let run = page.run;
         let names = run.objective_names();
         let setup = page.evaluator.map(|evaluator| evaluator.setup());
-        let cuts = |profile: &Profile| setup.map(|setup| Cuts::new(profile, setup));
-        let of_members = places.iter().zip(members);
-        let of_members = of_members.filter_map(|(&n, p)| Some((n, cuts(p.as_ref()?)?)));
+        let of_members = places.iter().zip(members).filter_map(|(&n, profile)| {
+            let cuts = Cuts::new(profile.as_ref()?);
+            let design = run.front[n].design.design()?;
+            Some((n, cuts.with_orbits(&design, setup?.model)))
+        });
         let generations = earlier(run, &names).into_iter();
         Self {
             objectives: names.iter().map(|name| Objective::new(name)).collect(),
@@ -165,7 +174,12 @@ impl Payload {
             generations: generations
                 .map(|(g, x)| (g, x.into_iter().map(short).collect()))
                 .collect(),
-            baselines: baselines(page, beside, &cuts),
+            baselines: page
+                .compared
+                .iter()
+                .zip(compared)
+                .map(|(one, profile)| Beside::new(one, profile.as_ref(), page))
+                .collect(),
             fronts: page
                 .fronts
                 .iter()
@@ -186,22 +200,38 @@ impl Payload {
     }
 }
 
-fn baselines(
-    page: &Page<'_>,
-    profiles: &[Option<Profile>],
-    cuts: &dyn Fn(&Profile) -> Option<Cuts>,
-) -> Vec<Beside> {
-    let of = |notation: &str| {
-        let mut found = profiles.iter().flatten();
-        found.find(|profile| profile.design.to_string() == notation)
-    };
-    let beside = page.baselines.iter().map(|baseline| Beside {
-        name: baseline.name.clone(),
-        notation: baseline.notation.clone(),
-        objectives: baseline.objectives.iter().map(|x| x.map(short)).collect(),
-        cuts: of(&baseline.notation).and_then(cuts),
-    });
-    beside.collect()
+impl Beside {
+    fn new(one: &Compared, profile: Option<&Profile>, page: &Page<'_>) -> Self {
+        let (run, baseline) = (page.run, &one.baseline);
+        let (names, further) = (run.objective_names(), run.constraint_names());
+        let quantity = |name: &str| {
+            let objectives = names.iter().zip(&baseline.objectives);
+            let constraints = further.iter().zip(&baseline.constraints);
+            let mut all = objectives.chain(constraints);
+            *all.find(|(known, _)| *known == name)?.1
+        };
+        let setup = page.evaluator.map(|evaluator| evaluator.setup());
+        let cuts = setup.zip(profile).map(|(setup, profile)| {
+            let cuts = Cuts {
+                tracks: Tracks::new(&one.ephemeris),
+                ..Cuts::new(profile)
+            };
+            match &one.constellation.design {
+                Some(design) => cuts.with_orbits(design, setup.model),
+                None => cuts,
+            }
+        });
+        Self {
+            name: baseline.name.clone(),
+            notation: baseline.notation.clone(),
+            objectives: baseline.objectives.iter().map(|x| x.map(short)).collect(),
+            tiles: tiles(run, &names)
+                .iter()
+                .map(|tile| tile.text(&quantity, &baseline.metrics))
+                .collect(),
+            cuts,
+        }
+    }
 }
 
 fn history(run: &Run) -> Vec<Generation> {
@@ -268,7 +298,7 @@ impl Front {
                 .collect(),
             membership: column(&|m| Some(m.membership)),
             membership_sum: column(&|m| Some(m.membership_sum)),
-            tiles: tiles(run, names),
+            tiles: member_tiles(run, names),
             memberships_shown: members
                 .iter()
                 .map(|m| shown::membership(m.membership))
@@ -297,38 +327,66 @@ impl Front {
     }
 }
 
-/// The values shown for each design: objectives, metrics, and constrained quantities that are
+/// A value shown for a selected constellation.
+enum Tile {
+    /// An objective, or a constrained quantity that has no other tile.
+    Quantity(String),
+    /// Label, and name of the quantity that gives its digits, of a metric.
+    Metric(&'static str, &'static str, fn(&Metrics) -> Option<f64>),
+}
+
+impl Tile {
+    fn label(&self) -> String {
+        match self {
+            Self::Quantity(name) => name.clone(),
+            Self::Metric(label, ..) => (*label).to_owned(),
+        }
+    }
+
+    fn text(&self, quantity: &dyn Fn(&str) -> Option<f64>, metrics: &Metrics) -> String {
+        match self {
+            Self::Quantity(name) => shown::named(name, quantity(name)),
+            Self::Metric(_, digits, value) => shown::named(digits, value(metrics)),
+        }
+    }
+}
+
+/// The values shown for each constellation: objectives, metrics, and constrained quantities that are
 /// neither.
-fn tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
-    let tile = |name: &str, text: &dyn Fn(&FrontMember) -> String| {
-        (name.to_owned(), run.front.iter().map(text).collect())
-    };
-    let quantity = |name: &String| tile(name, &|m| shown::named(name, m.quantity(name)));
-    let mut tiles: Vec<_> = names.iter().map(quantity).collect();
-    type Value = fn(&FrontMember) -> Option<f64>;
-    let metrics: [(&str, &str, Value); 5] = [
-        ("mean visible", "mean-visible", |m| {
-            Some(m.metrics.mean_visible)
-        }),
-        ("mean PDOP", "mean-pdop", |m| m.metrics.mean_pdop),
-        ("CVaR of PDOP", "cvar-pdop", |m| m.metrics.cvar_pdop),
-        ("maximum PDOP", "max-pdop", |m| m.metrics.max_pdop),
-        ("availability", "availability", |m| {
-            Some(m.metrics.availability)
+fn tiles(run: &Run, names: &[String]) -> Vec<Tile> {
+    let mut tiles: Vec<Tile> = names.iter().cloned().map(Tile::Quantity).collect();
+    type Value = fn(&Metrics) -> Option<f64>;
+    let metrics: [(&str, &str, Value); 7] = [
+        ("mean visible", "mean-visible", |m| Some(m.mean_visible)),
+        ("mean PDOP", "mean-pdop", |m| m.mean_pdop),
+        ("CVaR of PDOP", "cvar-pdop", |m| m.cvar_pdop),
+        ("maximum PDOP", "max-pdop", |m| m.max_pdop),
+        ("availability", "availability", |m| Some(m.availability)),
+        ("95 % quantile of PDOP", "p95-pdop", |m| m.p95_pdop),
+        // A fraction has the digits of the availability.
+        ("solved fraction", "availability", |m| {
+            Some(m.solved_fraction)
         }),
     ];
     for (label, name, value) in metrics {
-        if !names.iter().any(|objective| objective == name) {
-            tiles.push(tile(label, &|m| shown::named(name, value(m))));
+        if label == "solved fraction" || !names.iter().any(|objective| objective == name) {
+            tiles.push(Tile::Metric(label, name, value));
         }
     }
-    tiles.push(tile("95 % quantile of PDOP", &|m| {
-        shown::pdop(m.metrics.p95_pdop)
-    }));
-    let solved = |m: &FrontMember| shown::share(Some(m.metrics.solved_fraction));
-    tiles.push(tile("solved fraction", &solved));
-    tiles.extend(super::words::further(run).iter().map(quantity));
+    tiles.extend(super::words::further(run).into_iter().map(Tile::Quantity));
     tiles
+}
+
+/// The values shown for each member of the front, with their labels.
+fn member_tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
+    let of_member = |tile: &Tile, member: &FrontMember| {
+        tile.text(&|name| member.quantity(name), &member.metrics)
+    };
+    let tiles = tiles(run, names).into_iter().map(|tile| {
+        let texts = run.front.iter().map(|member| of_member(&tile, member));
+        (tile.label(), texts.collect())
+    });
+    tiles.collect()
 }
 
 impl OtherFront {
@@ -346,7 +404,7 @@ impl OtherFront {
 }
 
 impl Cuts {
-    fn new(profile: &Profile, setup: &Setup) -> Self {
+    fn new(profile: &Profile) -> Self {
         let map = |measure: Measure| {
             let values = profile
                 .points
@@ -370,7 +428,15 @@ impl Cuts {
             tail_shown: profile
                 .tail
                 .map(|tail| [tail.value_at_risk, tail.cvar].map(|x| shown::pdop(Some(x)))),
-            orbits: Orbit::of_design(&profile.design, setup.model),
+            orbits: Vec::new(),
+            tracks: None,
+        }
+    }
+
+    fn with_orbits(self, design: &Design, model: Model) -> Self {
+        Self {
+            orbits: Orbit::of_design(design, model),
+            ..self
         }
     }
 }
@@ -421,6 +487,7 @@ impl Orbit {
             .iter()
             .map(|s| s.elements.mean_anomaly_rad.to_degrees());
         Self {
+            notation: shell.to_string(),
             semi_major_axis_km: first.semi_major_axis_km,
             eccentricity: first.eccentricity,
             inclination_deg: shell.inclination_deg(),

@@ -1,5 +1,8 @@
 use super::*;
-use crate::report::figures::Baseline;
+use crate::ephemeris::Ephemeris;
+use crate::exchange::constellation::{Constellation, FileSatellites};
+use crate::exchange::import::Fleet;
+use crate::report::Baseline;
 use crate::run::{Diagnostic, FrontMember, RunFiles, testing};
 use crate::scenario::Scenario;
 use crate::search::DesignProblem;
@@ -40,12 +43,36 @@ fn run(scenario: Option<Scenario>, members: usize) -> Run {
 fn page<'a>(run: &'a Run, evaluator: Option<&'a Evaluator>) -> Page<'a> {
     Page {
         run,
+        stamp: None,
         scenario_toml: Some("a = \"<b>\""),
         evaluator,
-        baselines: &[],
-        beside: &[],
+        compared: &[],
         fronts: &[],
     }
+}
+
+fn compared(one: Constellation, scenario: &Scenario, evaluator: &Evaluator) -> Compared {
+    let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals()).unwrap();
+    let setup = evaluator.setup();
+    let ephemeris = one.ephemeris(setup.grid, setup.model).unwrap();
+    Compared::new(one, ephemeris, &problem).unwrap()
+}
+
+fn design(name: &str, notation: &str) -> Constellation {
+    Constellation::of_design(notation.parse().unwrap()).named(name.to_owned())
+}
+
+/// Two satellites in a file of this name.
+fn of_file(name: &str) -> Constellation {
+    let table = "object,epoch_utc,semi_major_axis_km,eccentricity,inclination_deg,raan_deg,arg_perigee_deg,mean_anomaly_deg\n\
+        A,2025-01-01T00:00:00Z,7300,0,50,0,0,0\n\
+        B,2025-01-01T00:00:00Z,7300,0,50,0,0,180\n";
+    let imported = Fleet::read(table.as_bytes(), None, Some("two.csv")).unwrap();
+    Constellation::of_files(FileSatellites {
+        names: vec![name.to_owned()],
+        formats: vec![imported.format],
+        fleet: imported.fleet,
+    })
 }
 
 fn written(page: &Page<'_>) -> String {
@@ -155,16 +182,10 @@ fn every_member_of_the_papers_front_has_its_cuts() {
 fn cuts_are_those_of_the_design() {
     let (scenario, evaluator) = evaluator();
     let run = run(Some(scenario.clone()), 2);
-    let design: Design = "delta:50:12/3/1@900".parse().unwrap();
-    let beside = vec![("beside".to_owned(), design.clone())];
-    let problem =
-        DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals()).unwrap();
-    let baselines: Vec<_> = Baseline::evaluate("beside", &design, &problem)
-        .into_iter()
-        .collect();
+    let beside = design("beside", "delta:50:12/3/1@900");
+    let design = beside.design.clone().unwrap();
     let page = Page {
-        baselines: &baselines,
-        beside: &beside,
+        compared: &[compared(beside, &scenario, &evaluator)],
         ..page(&run, Some(&evaluator))
     };
     let data = data(&written(&page));
@@ -280,20 +301,156 @@ fn constraints_are_shown() {
 #[test]
 fn a_pick_that_is_dominated_is_said_to_be_so() {
     let (scenario, evaluator) = evaluator();
-    let problem =
-        DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals()).unwrap();
-    let design: Design = "delta:50:225/15/1@1000".parse().unwrap();
-    let baselines: Vec<_> = Baseline::evaluate("reference design", &design, &problem)
-        .into_iter()
-        .collect();
+    let reference = design(Baseline::REFERENCE, "delta:50:225/15/1@1000");
+    let reference = [compared(reference, &scenario, &evaluator)];
     let mut run = run(Some(scenario), 2);
     run.front[1].objectives = vec![("j-pos".to_owned(), 99.0), ("j-cost".to_owned(), 99.0)];
     let beside = Page {
-        baselines: &baselines,
+        compared: &reference,
         ..page(&run, Some(&evaluator))
     };
     let html = written(&beside);
     assert!(html.contains("It is dominated by the reference design delta:50:225/15/1@1000."));
     assert!(html.contains("dominates the pick delta:40.001:12/3/1@900"));
     assert!(!written(&page(&run, Some(&evaluator))).contains("dominated by"));
+}
+
+/// The page of constellations without a search.
+fn page_of<'a>(run: &'a Run, evaluator: &'a Evaluator, compared: &'a [Compared]) -> Page<'a> {
+    let stamp = Box::leak(Box::new(ScenarioStamp {
+        name: "paper".to_owned(),
+        hash: "the-hash".to_owned(),
+    }));
+    Page {
+        stamp: Some(stamp),
+        compared,
+        ..page(run, Some(evaluator))
+    }
+}
+
+/// A table, the plane, maps, curves and a globe; nothing of a search.
+#[test]
+fn constellations_need_no_search() {
+    let (scenario, evaluator) = evaluator();
+    let shown = [
+        design("Proposed", "delta:55:182/13/1@925"),
+        design("Polar", "star:90:182/13/1@925"),
+    ];
+    let shown = shown.map(|one| compared(one, &scenario, &evaluator));
+    let run = run(Some(scenario), 0);
+    let html = written(&page_of(&run, &evaluator, &shown));
+    for id in ["pareto", "map-mean-pdop", "tail", "globe", "compared"] {
+        assert!(html.contains(&format!("id=\"{id}\"")), "{id}");
+    }
+    for of_search in [
+        "membership",
+        "convergence",
+        "parallel",
+        "search",
+        "members",
+        "close-up",
+    ] {
+        assert!(
+            !html.contains(&format!("id=\"{of_search}\"")),
+            "{of_search}"
+        );
+    }
+    assert!(!html.contains("The search found") && html.contains("the-hash"));
+    assert!(html.contains("Proposed dominates Polar."));
+    let data = data(&html);
+    let [proposed, polar] = [0, 1].map(|n| data["baselines"][n].clone());
+    assert_eq!(proposed["name"], "Proposed");
+    assert_eq!(polar["notation"], "star:90:182/13/1@925");
+    assert_eq!(
+        proposed["cuts"]["orbits"][0]["notation"],
+        "delta:55:182/13/1@925"
+    );
+    assert_ne!(proposed["cuts"]["maps"], polar["cuts"]["maps"]);
+    // The tiles are those of the members, in their order.
+    let labels = data["front"]["tiles"].as_array().unwrap();
+    assert_eq!(labels.len(), proposed["tiles"].as_array().unwrap().len());
+    let at = labels.iter().position(|tile| tile[0] == "mean visible");
+    let visible = shown[0].baseline.metrics.mean_visible;
+    assert_eq!(proposed["tiles"][at.unwrap()], format!("{visible:.4}"));
+}
+
+/// One row each, the best of a column in bold, and the GNSS alone last.
+#[test]
+fn the_table_marks_the_best_of_each_column() {
+    let (scenario, evaluator) = evaluator();
+    let shown = [
+        design("few", "delta:55:36/6/1@925"),
+        design("many", "delta:55:182/13/1@925"),
+    ];
+    let shown = shown.map(|one| compared(one, &scenario, &evaluator));
+    let run = run(Some(scenario), 0);
+    let table = Comparison::new(&page_of(&run, &evaluator, &shown)).unwrap();
+    let column = |name: &str| table.columns.iter().position(|c| c == name).unwrap();
+    let is_best = |row: usize, name: &str| table.rows[row].cells[column(name)].is_best;
+    for name in [
+        "mean visible",
+        "mean PDOP",
+        "CVaR of PDOP",
+        "maximum PDOP",
+        "j-pos",
+    ] {
+        assert!(is_best(1, name) && !is_best(0, name), "{name}");
+    }
+    // Fewer satellites are no merit unless they are an objective.
+    assert!(!is_best(0, "satellites") && !is_best(1, "satellites"));
+    let names: Vec<&str> = table.rows.iter().map(|row| row.name.as_str()).collect();
+    assert_eq!(names, ["few", "many", "GNSS alone"]);
+    let alone = &table.rows[2];
+    assert_eq!(alone.cells[column("mean visible")].text, "0.0000");
+    let nothing = Ephemeris::new(evaluator.setup().grid, Vec::new());
+    let pdop = evaluator
+        .evaluate_ephemeris(&nothing)
+        .unwrap()
+        .mean_pdop
+        .unwrap();
+    assert_eq!(alone.cells[column("mean PDOP")].text, format!("{pdop:.4}"));
+    assert!(alone.cells.iter().all(|cell| !cell.is_best));
+}
+
+/// Satellites of a file have positions in the page that are those of the ephemeris.
+#[test]
+fn satellites_from_files_are_drawn_from_samples() {
+    let (scenario, evaluator) = evaluator();
+    let shown = [compared(of_file("two.csv"), &scenario, &evaluator)];
+    let run = run(Some(scenario), 0);
+    let html = written(&page_of(&run, &evaluator, &shown));
+    let cuts = &data(&html)["baselines"][0]["cuts"];
+    assert!(cuts["orbits"].as_array().unwrap().is_empty());
+    let tracks = &cuts["tracks"];
+    // A day without its last step of two hours.
+    assert_eq!(
+        (tracks["step_s"].as_f64(), tracks["instants"].as_u64()),
+        (Some(300.0), Some(265))
+    );
+    let highest = (0..265)
+        .flat_map(|n| {
+            let ephemeris = &shown[0].ephemeris;
+            let of = move |one| ephemeris.state(one, 300.0 * f64::from(n)).unwrap();
+            ephemeris.satellites().iter().map(of)
+        })
+        .flat_map(|state| state.position_km.km().iter().copied().collect::<Vec<f64>>())
+        .fold(0.0, f64::max);
+    // A packed row keeps its range in full.
+    assert_eq!(tracks["positions_km"]["hi"].as_f64(), Some(highest));
+    // One constellation has no plane and no best.
+    assert!(!html.contains("id=\"pareto\"") && !html.contains("class=\"number best\""));
+}
+
+/// Names of files are texts of others.
+#[test]
+fn hostile_names_stay_texts() {
+    let (scenario, evaluator) = evaluator();
+    let attack = "</script><img src=x onerror=alert(1)>\u{202e}.tle";
+    let shown = [of_file(attack), design("other", "delta:55:36/6/1@925")];
+    let shown = shown.map(|one| compared(one, &scenario, &evaluator));
+    let run = run(Some(scenario), 0);
+    let html = written(&page_of(&run, &evaluator, &shown));
+    assert!(!html.contains("<img") && !html.contains('\u{202e}'));
+    let name = data(&html)["baselines"][0]["name"].clone();
+    assert_eq!(name, "</script><img src=x onerror=alert(1)>\\u{202e}.tle");
 }

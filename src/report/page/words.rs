@@ -64,15 +64,18 @@ impl PageSummary {
         let run = page.run;
         let mut paragraphs = Vec::new();
         paragraphs.extend(run.scenario.as_ref().map(setting));
-        paragraphs.push(found(run));
+        if page.stamp.is_none() {
+            paragraphs.push(found(run));
+        }
         paragraphs.extend(choice(page));
         let notes = run.search.iter().flat_map(|search| &search.diagnostics);
         // The diagnostics of comparison designs are recomputed for all designs on the page.
-        let beside = !page.baselines.is_empty();
+        let beside = !page.compared.is_empty();
         let notes = notes.filter(|d| !beside || d.code != Baseline::DOMINATES);
         let mut notes: Vec<String> = notes.map(|d| d.message.clone()).collect();
         let pick = run.chosen().map(|n| &run.front[n]);
-        let outdone = page.baselines.iter().filter_map(|b| b.diagnose(pick?));
+        let compared = page.compared.iter();
+        let outdone = compared.filter_map(|one| one.baseline.diagnose(pick?));
         notes.extend(outdone.map(|d| d.message));
         let mut gaps = run.gaps.clone();
         let (cut, all) = (places_with_cuts.len(), run.front.len());
@@ -80,6 +83,13 @@ impl PageSummary {
             gaps.push(format!(
                 "this page has the maps and series of {cut} of the {all} designs on the front; \
                  use navwalker plot --pick N for the others"
+            ));
+        }
+        let (cut, all) = (page.compared_with_cuts().len(), page.compared.len());
+        if page.evaluator.is_some() && cut < all {
+            gaps.push(format!(
+                "this page has the maps and series of the first {cut} of the {all} constellations; use \
+                 navwalker plot --pick NAME for the others"
             ));
         }
         Self {
@@ -176,6 +186,10 @@ fn found(run: &Run) -> String {
     let Some(search) = &run.search else {
         return format!("The search found {members}.");
     };
+    if search.is_of_given() {
+        let designs = crate::units::counted(run.front.len(), "design");
+        return format!("{designs} given by name were evaluated, without a search.");
+    }
     let mut text = format!(
         "{} (seed {}) evaluated {} designs and found {members}.",
         shown::algorithm(&search.algorithm),
@@ -203,8 +217,9 @@ fn choice(page: &Page<'_>) -> Option<String> {
         shown::membership(member.membership),
     );
     let better: Vec<String> = page
-        .baselines
+        .compared
         .iter()
+        .map(|one| &one.baseline)
         .filter(|baseline| baseline.outdoes(member))
         .map(Baseline::label)
         .collect();
@@ -336,7 +351,8 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
 }
 
 /// The conventions behind the numbers.
-pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
+pub(super) fn conventions(page: &Page<'_>) -> Vec<(&'static str, String)> {
+    let run = page.run;
     let mut rows = vec![
         (
             "Constants",
@@ -377,15 +393,18 @@ pub(super) fn conventions(run: &Run) -> Vec<(&'static str, String)> {
     if let Some(scenario) = &run.scenario {
         rows.extend(of_scenario(scenario));
     }
-    if let Some(search) = &run.search {
-        rows.push(("Scenario hash", search.scenario.hash.clone()));
+    let of_search = run.search.as_ref().map(|search| &search.scenario);
+    if let Some(stamp) = of_search.or(page.stamp) {
+        rows.push(("Scenario hash", stamp.hash.clone()));
     }
-    let by = run.search.as_ref();
-    let by = by.map_or("unknown", |search| &search.version);
-    rows.push((
-        "Versions",
-        format!("run by navwalker {by}; this page by navwalker {VERSION}"),
-    ));
+    rows.push(match (&run.search, page.stamp) {
+        (None, Some(_)) => ("Version", format!("this page by navwalker {VERSION}")),
+        (search, _) => {
+            let by = search.as_ref().map_or("unknown", |search| &search.version);
+            let text = format!("run by navwalker {by}; this page by navwalker {VERSION}");
+            ("Versions", text)
+        }
+    });
     rows.push((
         "Credits",
         "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \

@@ -95,22 +95,49 @@ impl<T: Keyword + Hash> Rule for SomeOf<T> {
     }
 }
 
-/// A list of different paths.
-pub(in crate::scenario) struct Paths;
+/// A list of different texts of a kind, such as paths.
+pub(in crate::scenario) struct Texts {
+    /// What the texts are, in the plural.
+    kind: &'static str,
+    least: usize,
+}
 
-impl Rule for Paths {
+impl Texts {
+    pub(in crate::scenario) const fn any(kind: &'static str) -> Self {
+        Self { kind, least: 0 }
+    }
+
+    pub(in crate::scenario) const fn one_or_more(kind: &'static str) -> Self {
+        Self { kind, least: 1 }
+    }
+}
+
+impl Rule for Texts {
     type Value = Vec<String>;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<String>> {
-        read_different(&Text::Any, node, reading)
+        let texts = read_different(&Text::Any, node, reading)?;
+        if texts.len() < self.least {
+            reading.refuse(node);
+            return None;
+        }
+        Some(texts)
     }
 
     fn accepted(&self) -> String {
-        "a list of paths".to_owned()
+        let least = if self.least > 0 { "one or more " } else { "" };
+        format!("a list of {least}{}", self.kind)
     }
 
     fn schema(&self) -> Json {
-        json!({ "type": "array", "items": Text::Any.schema(), "uniqueItems": true })
+        json!({
+            "type": "array", "items": Text::Any.schema(),
+            "minItems": self.least, "uniqueItems": true,
+        })
+    }
+
+    fn is_absent(&self, value: &Vec<String>) -> bool {
+        value.len() < self.least
     }
 
     fn write(&self, value: &Vec<String>) -> String {

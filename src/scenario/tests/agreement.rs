@@ -86,8 +86,8 @@ fn the_hash_moves_with_everything_that_is_computed() {
         .collect();
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, export.originator, export.creation-date; region.points, gnss.files; optimizer.generations
-    let (labels, files, budgets) = (3, 2, 1);
+    // name, constellations, export.originator, export.creation-date; region.points, gnss.files; optimizer.generations
+    let (labels, files, budgets) = (4, 2, 1);
     assert_eq!(
         changes.len() + labels + files + budgets,
         describe_keys().len()
@@ -102,6 +102,7 @@ fn the_hash_stays_when_only_labels_and_budgets_change() {
     let labels = [
         "optimizer.generations=31",
         "name=other",
+        "constellations={ a = 'star:90:4/2/1@925', b = { files = ['b.tle'] } }",
         "export.originator=ME",
         "export.creation-date=2026-01-01T00:00:00Z",
     ];
@@ -120,11 +121,39 @@ fn the_hash_covers_the_contents_of_files() {
     // Not what the files are called.
     let moved = with(&["region.points=q.csv", "gnss.files=[\"c.tle\", \"d.tle\"]"]);
     assert_eq!(moved.hash(&[b"p", b"ab", b""]), one);
+    // Nor those of constellations, which are the last.
+    let compared = with(&[
+        "region.points=p.csv",
+        "gnss.files=['a.tle', 'b.tle']",
+        "constellations.x.files=['x.tle', 'y.tle']",
+    ]);
+    let names = ["p.csv", "a.tle", "b.tle", "x.tle", "y.tle"];
+    assert_eq!(
+        (compared.files(), compared.computed_files()),
+        (names.into(), 3)
+    );
+    assert_eq!(compared.hash(&[b"p", b"ab", b"", b"x", b"y"]), one);
     let grid = with(&["gnss.files=[\"a.tle\"]"]);
     assert_ne!(
         grid.hash(&[b"p"]),
         with(&["region.points=p.csv"]).hash(&[b"p"])
     );
+}
+
+#[test]
+fn a_reference_design_by_name_counts_as_its_design() {
+    let design = "star:90:4/2/1@925";
+    let by_notation = with(&[&format!("reference-design={design}")]);
+    let by_name = |design| {
+        let constellation = format!("constellations.polar={design}");
+        with(&["reference-design=polar", &constellation])
+    };
+    assert_eq!(by_name(design).hash(&[]), by_notation.hash(&[]));
+    assert_eq!(by_name(design).differences(&by_notation), []);
+    let other = by_name("star:90:6/2/1@925");
+    assert_ne!(other.hash(&[]), by_notation.hash(&[]));
+    let differences = other.differences(&by_notation);
+    assert_eq!(differences[0].key, "reference-design");
 }
 
 #[test]

@@ -132,11 +132,14 @@ fn the_template_parses_to_the_defaults() {
 #[test]
 fn the_template_uncommented_is_still_a_scenario() {
     // The lines of keys that follow others are examples, and must be valid ones; points
-    // exclude the grid, so that line stays out.
+    // exclude the grid, and no constellations are the default, so these lines stay out.
     let uncommented: String = template()
         .lines()
         .map(|line| match line.strip_prefix("# ") {
-            Some(key) if key.contains(" = ") && !key.contains("points") => format!("{key}\n"),
+            Some(key) if key.starts_with("points = ") || key.starts_with("constellations = ") => {
+                String::new()
+            }
+            Some(key) if key.contains(" = ") => format!("{key}\n"),
             _ if line.starts_with('#') => String::new(),
             _ => format!("{line}\n"),
         })

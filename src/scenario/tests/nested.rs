@@ -1,20 +1,18 @@
 //! What declarations can carry beyond the present keys: lists of tables, tables with free names, and
 //! values of one type or another. A rule for each is all that it takes; they move to `rule/` with
-//! the first key that needs them.
+//! the first key that needs them, as [`Table`] did.
 
 use std::collections::BTreeMap;
-use std::marker::PhantomData;
 
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Value as Json, json};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::keyword::nearest;
-use crate::scenario::keys::{Key, KeyPath, Section, Walk, list, paths, section};
-use crate::scenario::problem::{Fault, ProblemList, Problems};
-use crate::scenario::reader::{Given, Reader};
-use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule};
-use crate::scenario::source::Source;
+use crate::scenario::keys::{list, paths, section};
+use crate::scenario::problem::{ProblemList, Problems};
+use crate::scenario::reader::Reader;
+use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule, Table};
+use crate::scenario::source::{Parts, Source};
 use crate::scenario::{KeyDescription, Pattern};
 
 section! {
@@ -49,75 +47,6 @@ section! {
         /// A list of words or a single word.
         pub patterns: Either<Vec<Pattern>, Pattern> =
             OneOrOther(ListOf(OneOf::new()), OneOf::new()), default Either::Other(Pattern::Star);
-    }
-}
-
-/// A table with the keys of a section.
-struct Table<S>(PhantomData<fn() -> S>);
-
-impl<S> Table<S> {
-    const fn new() -> Self {
-        Self(PhantomData)
-    }
-}
-
-impl<S: Section> Rule for Table<S> {
-    type Value = S;
-
-    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<S> {
-        let Some(table) = node.get_ref().as_table() else {
-            reading.refuse(node);
-            return None;
-        };
-        let paths = paths::<S>();
-        let known: Vec<&str> = paths.iter().map(|path| path.name).collect();
-        let mut given = BTreeMap::new();
-        for (name, node) in table.iter() {
-            let path = paths.iter().find(|path| path.name == name.get_ref());
-            if let Some(path) = path {
-                let source = reading.source;
-                given.insert(*path, Given { source, node });
-            } else {
-                let nearest = nearest(name.get_ref(), &known).map(str::to_owned);
-                let known = known.clone();
-                reading.report(name.span(), Fault::UnknownKey { nearest, known });
-            }
-        }
-        let all_known = given.len() == table.len();
-        let section = Reader::new(given, reading.source, reading.report).read();
-        section.filter(|_| all_known)
-    }
-
-    fn accepted(&self) -> String {
-        let names: Vec<&str> = paths::<S>().iter().map(|path| path.name).collect();
-        format!("a table of {}", names.join(", "))
-    }
-
-    fn schema(&self) -> Json {
-        let keys = list::<S>().into_iter();
-        let properties: Map<String, Json> = keys
-            .map(|key| (key.path.name.to_owned(), key.schema))
-            .collect();
-        json!({ "type": "object", "additionalProperties": false, "properties": properties })
-    }
-
-    fn write(&self, value: &S) -> String {
-        let mut inline = Inline(Vec::new());
-        S::walk(&mut inline, Some(value));
-        format!("{{ {} }}", inline.0.join(", "))
-    }
-}
-
-/// The walk that writes a table on one line.
-struct Inline(Vec<String>);
-
-impl Walk for Inline {
-    fn key<R: Rule>(&mut self, key: Key<R>, value: Option<&R::Value>) -> R::Value {
-        if let Some(value) = value {
-            let KeyPath { name, .. } = key.path;
-            self.0.push(format!("{name} = {}", key.rule.write(value)));
-        }
-        key.default
     }
 }
 
@@ -233,6 +162,7 @@ fn read(text: &str) -> Result<Nested, Problems> {
     let mut report = ProblemList::default();
     let mut reading = Reading {
         source: &source,
+        parts: &Parts::new(),
         key: "search".to_owned(),
         accepted: rule.accepted(),
         report: &mut report,
@@ -283,9 +213,9 @@ fn nested_problems_are_reported_all_at_once_where_they_are() {
         lines,
         [
             "nested.toml:4: search.shells.planes: found 0, expected an integer >= 1 and <= 40",
-            "nested.toml:5: search.shells: unknown key, did you mean `altitude-km`? \
+            "nested.toml:5: search.shells.altitude: unknown key, did you mean `altitude-km`? \
              (choices: planes, altitude-km)",
-            "nested.toml:9: search.shells.planes: 40040 planes times kilometres, expected at most 40000",
+            "nested.toml:9: search.constellations.planes: 40040 planes times kilometres, expected at most 40000",
         ]
     );
 }

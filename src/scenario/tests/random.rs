@@ -7,9 +7,9 @@ use proptest::sample::{select, subsequence};
 
 use super::parse;
 use crate::scenario::{
-    Algorithm, Constraint, Earth, Export, GnssSetup, Grid, Keyword, LaunchCost, MaskPoint,
-    Objectives, Optimizer, Preset, Propagation, Quantity, Region, Relation, Scenario, SearchSpace,
-    TimeSpan, Visibility, template,
+    Algorithm, ConstellationParts, Constraint, Earth, Export, GnssSetup, Grid, Keyword, LaunchCost,
+    MaskPoint, NamedConstellation, Objectives, Optimizer, Preset, Propagation, Quantity, Region,
+    Relation, Scenario, SearchSpace, TimeSpan, Visibility, template,
 };
 use crate::search::DesignSpace;
 
@@ -103,6 +103,47 @@ fn gnss() -> impl Strategy<Value = GnssSetup> {
             }
         },
     )
+}
+
+fn texts(least: usize) -> impl Strategy<Value = Vec<String>> {
+    vec(file(), least..3).prop_map(|mut texts| {
+        texts.dedup();
+        texts
+    })
+}
+
+fn constellations() -> impl Strategy<Value = Vec<NamedConstellation>> {
+    let design = select(vec![
+        "delta:55:182/13/1@925",
+        "delta:53:160/10/1@1000.5+star:90:40/5/1@1100,raan=10,u=0.5",
+        "lattice:63.4:182/13/5@950,e=0.01,w=270",
+    ]);
+    let design = design.prop_map(|notation| notation.parse().unwrap());
+    let files = (texts(1), proptest::option::of(word()), texts(0), texts(0));
+    let parts = (design, 0..3_u8, files).prop_map(|(design, kind, files)| {
+        let (files, input_format, only, exclude) = files;
+        if kind == 0 {
+            return ConstellationParts::of_design(design);
+        }
+        ConstellationParts {
+            design: (kind == 1).then_some(design),
+            files,
+            input_format,
+            only,
+            exclude,
+        }
+    });
+    let named = ("[A-Za-z0-9_-]{1,8}", parts);
+    let named = named.prop_map(|(name, parts)| NamedConstellation { name, parts });
+    vec(named, 0..4).prop_map(|mut all| {
+        let mut names = Vec::new();
+        all.retain(|one| {
+            let is_new = !names.contains(&one.name);
+            names.push(one.name.clone());
+            is_new
+        });
+        all
+    })
 }
 
 fn objectives() -> impl Strategy<Value = Objectives> {
@@ -242,15 +283,23 @@ fn scenario() -> impl Strategy<Value = Scenario> {
         duration_h,
         step_s,
     });
-    let setting = (word(), word(), region(), visibility(), gnss());
+    let setting = (
+        word(),
+        word(),
+        region(),
+        visibility(),
+        gnss(),
+        constellations(),
+    );
     let purpose = (objectives(), search(), optimizer(), instant());
     (texts, time, setting, purpose).prop_map(|(texts, time, setting, purpose)| {
         let (name, reference_design, originator) = texts;
-        let (surface, model, region, visibility, gnss) = setting;
+        let (surface, model, region, visibility, gnss, constellations) = setting;
         let (objectives, search, optimizer, creation_date) = purpose;
         Scenario {
             name,
             reference_design,
+            constellations,
             time,
             earth: Earth { surface },
             propagation: Propagation { model },

@@ -6,7 +6,7 @@ use super::{JANUARY_2025, STEP_SLACK};
 use crate::dop::MOST_PDOP_CAP;
 use crate::scenario::keys::{key, section};
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Number, OneOf, Paths, Skyline, SomeOf, UtcInstant};
+use crate::scenario::rule::{Number, OneOf, Skyline, SomeOf, Texts, UtcInstant};
 use crate::scenario::{Clocks, Model, ObservationWeights, Preset, Surface};
 
 /// Maximum number of instants: 366 days at every 3.2 seconds.
@@ -102,7 +102,7 @@ section! {
         /// Built-in GNSS constellations that the design augments.
         pub constellations: Vec<Preset> = SomeOf::at_least(0), default vec![Preset::Beidou3];
         /// TLE, OMM, SP3, OEM or almanacs of GNSS satellites, paths relative to this file.
-        pub files: Vec<String> = Paths, default Vec::new();
+        pub files: Vec<String> = Texts::any("paths"), default Vec::new();
         /// Receiver clocks solved for in addition to the position.
         pub clocks: Clocks = OneOf::new(), default Clocks::PerSystem;
     }

@@ -90,7 +90,7 @@ fn corner<'a>(
     }
 }
 
-fn draw_layer(context: &mut Context<'_, '_>, layer: &Layer) -> Drawn {
+fn draw_layer<'a, 'b: 'a>(context: &mut Context<'a, 'b>, layer: &Layer) -> Drawn {
     let points = layer.points.iter().copied();
     match layer.style {
         Style::Line(n) => {
@@ -128,25 +128,52 @@ fn dots(context: &mut Context<'_, '_>, layer: &Layer, (colour, radius): (RGBColo
     Ok(())
 }
 
-/// Large marks: rings for the first set, then triangles and crosses in turn.
-fn marks(context: &mut Context<'_, '_>, layer: &Layer, n: usize) -> Drawn {
+/// Large marks: rings for the first set, then triangles, crosses, squares and diamonds in turn, so that no two of
+/// twelve sets have both colour and form.
+fn marks<'a, 'b: 'a>(context: &mut Context<'a, 'b>, layer: &Layer, n: usize) -> Drawn {
     let style = line(colour(n + 1), 2);
     let (size, half) = (signed(7), signed(9));
     let points = layer.points.iter().copied();
-    if n == 0 {
-        let ring = points.map(|at| Circle::new(at, size, style));
-        let drawn = context.draw_series(ring)?.label(&layer.name);
-        drawn.legend(move |(x, y)| Circle::new((x + half, y), size, style));
-    } else if n % 2 == 1 {
-        let triangle = points.map(|at| TriangleMarker::new(at, size, style.filled()));
-        let drawn = context.draw_series(triangle)?.label(&layer.name);
-        drawn.legend(move |(x, y)| TriangleMarker::new((x + half, y), size, style.filled()));
-    } else {
-        let cross = points.map(|at| Cross::new(at, size, style));
-        let drawn = context.draw_series(cross)?.label(&layer.name);
-        drawn.legend(move |(x, y)| Cross::new((x + half, y), size, style));
+    match n.checked_sub(1).map(|n| n % 4) {
+        None => {
+            let ring = points.map(|at| Circle::new(at, size, style));
+            let drawn = context.draw_series(ring)?.label(&layer.name);
+            drawn.legend(move |(x, y)| Circle::new((x + half, y), size, style));
+        }
+        Some(0) => {
+            let triangle = points.map(|at| TriangleMarker::new(at, size, style.filled()));
+            let drawn = context.draw_series(triangle)?.label(&layer.name);
+            drawn.legend(move |(x, y)| TriangleMarker::new((x + half, y), size, style.filled()));
+        }
+        Some(1) => {
+            let cross = points.map(|at| Cross::new(at, size, style));
+            let drawn = context.draw_series(cross)?.label(&layer.name);
+            drawn.legend(move |(x, y)| Cross::new((x + half, y), size, style));
+        }
+        Some(form) => {
+            let corners = if form == 2 {
+                square(size)
+            } else {
+                diamond(size)
+            };
+            let mark = points
+                .map(|at| EmptyElement::at(at) + Polygon::new(corners.to_vec(), style.filled()));
+            let drawn = context.draw_series(mark)?.label(&layer.name);
+            drawn.legend(move |(x, y)| {
+                EmptyElement::at((x + half, y)) + Polygon::new(corners.to_vec(), style.filled())
+            });
+        }
     }
     Ok(())
+}
+
+fn square(size: i32) -> [(i32, i32); 4] {
+    let side = size * 4 / 5;
+    [(-side, -side), (side, -side), (side, side), (-side, side)]
+}
+
+fn diamond(size: i32) -> [(i32, i32); 4] {
+    [(0, -size), (size, 0), (0, size), (-size, 0)]
 }
 
 fn colour(n: usize) -> RGBColor {

@@ -1,0 +1,265 @@
+//! The designs of a list, evaluated as they are read.
+
+use super::Work;
+use super::print::Printer;
+use crate::cli::{Status, output};
+use crate::constellation::Design;
+use crate::ephemeris::Ephemeris;
+use crate::exchange::constellation::Constellation;
+use crate::report::ConstellationEntry;
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+/// Longest line that is read, bytes: a design of some two thousand shells.
+const MAX_LINE: usize = 1 << 16;
+
+/// Designs per thread that are evaluated before they are printed.
+const BATCH_PER_THREAD: usize = 8;
+
+/// The columns that hold a notation, in order of preference; the second is that of our own tables.
+const NOTATION_COLUMNS: [&str; 2] = ["design", "notation"];
+
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A list of designs that is being read.
+pub(super) struct DesignList {
+    /// Its name in messages.
+    label: String,
+    input: BufReader<Box<dyn Read>>,
+    /// Number of the last line, from 1.
+    number: usize,
+    layout: Layout,
+    /// The first line, if it is a design.
+    first: Option<NumberedLine>,
+}
+
+/// What a line of the list holds.
+enum Layout {
+    /// A notation.
+    Notation,
+    /// The cells of a table.
+    Table {
+        columns: usize,
+        design: usize,
+        name: Option<usize>,
+    },
+}
+
+/// A line that is not blank and no comment, or why it cannot be read.
+type NumberedLine = (usize, Result<String, String>);
+
+impl DesignList {
+    /// The list in a file, or in stdin for `-`.
+    pub(super) fn open(path: &Path) -> Result<Self> {
+        let (label, input): (_, Box<dyn Read>) = if path == Path::new("-") {
+            ("stdin".to_owned(), Box::new(io::stdin()))
+        } else {
+            let label = path.display().to_string();
+            let file = File::open(path).with_context(|| format!("cannot read {label}"))?;
+            (label, Box::new(file))
+        };
+        Self::read(label, input)
+    }
+
+    fn read(label: String, input: Box<dyn Read>) -> Result<Self> {
+        let mut list = Self {
+            label,
+            input: BufReader::new(input),
+            number: 0,
+            layout: Layout::Notation,
+            first: None,
+        };
+        let first = list.next_line()?;
+        if let Some((_, Ok(text))) = &first
+            && let Some(layout) = layout(text, &list.label)?
+        {
+            list.layout = layout;
+        } else {
+            list.first = first;
+        }
+        Ok(list)
+    }
+
+    /// Whether its designs may have names.
+    pub(super) fn has_names(&self) -> bool {
+        matches!(self.layout, Layout::Table { name: Some(_), .. })
+    }
+
+    /// The next line that is not blank and no comment.
+    fn next_line(&mut self) -> Result<Option<NumberedLine>> {
+        if let Some(first) = self.first.take() {
+            return Ok(Some(first));
+        }
+        loop {
+            let mut bytes = Vec::new();
+            let limit = MAX_LINE as u64 + 1;
+            let cannot = || format!("cannot read {}", self.label);
+            let mut line = self.input.by_ref().take(limit);
+            line.read_until(b'\n', &mut bytes).with_context(cannot)?;
+            if bytes.is_empty() {
+                return Ok(None);
+            }
+            self.number += 1;
+            if self.number == 1 && bytes.starts_with(BYTE_ORDER_MARK) {
+                bytes.drain(..BYTE_ORDER_MARK.len());
+            }
+            if bytes.len() > MAX_LINE && !bytes.ends_with(b"\n") {
+                self.input.skip_until(b'\n').with_context(cannot)?;
+                let message = format!("the line is longer than {MAX_LINE} bytes");
+                return Ok(Some((self.number, Err(message))));
+            }
+            let Ok(text) = str::from_utf8(&bytes) else {
+                return Ok(Some((self.number, Err("not UTF-8".to_owned()))));
+            };
+            let text = text.trim();
+            if !text.is_empty() && !text.starts_with('#') {
+                return Ok(Some((self.number, Ok(text.to_owned()))));
+            }
+        }
+    }
+
+    /// The next lines, at most `count`; fewer if the writer of a pipe has not written more yet.
+    fn batch(&mut self, count: usize) -> Result<Vec<NumberedLine>> {
+        let mut lines = Vec::new();
+        while lines.len() < count {
+            match self.next_line()? {
+                Some(line) => lines.push(line),
+                None => break,
+            }
+            if !self.input.buffer().contains(&b'\n') {
+                break;
+            }
+        }
+        Ok(lines)
+    }
+}
+
+/// The layout of a table with this header; `None` if the line is not a header.
+fn layout(line: &str, label: &str) -> Result<Option<Layout>> {
+    let Ok(names) = fields(line) else {
+        return Ok(None);
+    };
+    let column = |wanted: &str| {
+        let is_wanted = |name: &String| name.eq_ignore_ascii_case(wanted);
+        names.iter().position(is_wanted)
+    };
+    if let Some(design) = NOTATION_COLUMNS.into_iter().find_map(column) {
+        return Ok(Some(Layout::Table {
+            columns: names.len(),
+            design,
+            name: column("name"),
+        }));
+    }
+    if names.len() > 1 && !line.contains(':') {
+        bail!(
+            "{label}: the header has no column 'design' (found: {})",
+            names.join(", ")
+        );
+    }
+    Ok(None)
+}
+
+/// The cells of a line of CSV.
+fn fields(line: &str) -> Result<Vec<String>, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .trim(csv::Trim::All)
+        .from_reader(line.as_bytes());
+    match reader.records().next() {
+        Some(Ok(record)) => Ok(record.iter().map(str::to_owned).collect()),
+        Some(Err(error)) => Err(error.to_string()),
+        None => Ok(Vec::new()),
+    }
+}
+
+impl Layout {
+    /// The constellation of a line.
+    fn constellation(&self, line: &str) -> Result<Constellation, String> {
+        let (notation, name) = match self {
+            Self::Notation => (line.to_owned(), None),
+            Self::Table {
+                columns,
+                design,
+                name,
+            } => {
+                let mut cells = fields(line)?;
+                if cells.len() != *columns {
+                    return Err(format!(
+                        "{} cells below a header of {columns}; a notation with a comma needs quotation marks",
+                        cells.len()
+                    ));
+                }
+                let name = name.map(|name| std::mem::take(&mut cells[name]));
+                (cells.swap_remove(*design), name)
+            }
+        };
+        if notation.is_empty() {
+            return Err("no design".to_owned());
+        }
+        let design: Design = notation
+            .parse()
+            .map_err(|error| format!("{notation}: {error}"))?;
+        let one = Constellation::of_design(design);
+        Ok(match name.filter(|name| !name.is_empty()) {
+            Some(name) => one.named(name),
+            None => one,
+        })
+    }
+}
+
+/// Evaluates the designs of a list in parallel and prints them in its order.
+pub(super) fn evaluate(
+    mut list: DesignList,
+    work: &Work<'_>,
+    printer: &mut Printer<'_>,
+) -> Result<Status> {
+    let size = BATCH_PER_THREAD * rayon::current_num_threads();
+    let (mut good, mut bad) = (0_usize, 0_usize);
+    loop {
+        let lines = list.batch(size)?;
+        if lines.is_empty() {
+            break;
+        }
+        let entries: Vec<_> = lines
+            .into_par_iter()
+            .map(|(number, line)| {
+                (
+                    number,
+                    line.and_then(|line| entry(&list.layout, &line, work)),
+                )
+            })
+            .collect();
+        for (number, entry) in entries {
+            match entry {
+                Ok(entry) => {
+                    printer.entry(entry)?;
+                    good += 1;
+                }
+                Err(why) => {
+                    let why = anyhow::anyhow!("{}:{number}: {why}", list.label);
+                    output::error(&why);
+                    bad += 1;
+                }
+            }
+        }
+    }
+    match (good, bad) {
+        (0, 0) => bail!("{} contains no design", list.label),
+        (0, _) => bail!("no design of {} can be evaluated", list.label),
+        (_, 0) => Ok(Status::Done),
+        _ => Ok(Status::Failed),
+    }
+}
+
+fn entry(layout: &Layout, line: &str, work: &Work<'_>) -> Result<ConstellationEntry, String> {
+    let one = layout.constellation(line)?;
+    let setup = work.evaluator.setup();
+    let evaluate = || -> Result<ConstellationEntry> {
+        let ephemeris: Ephemeris = one.ephemeris(setup.grid, setup.model)?;
+        work.entry(&one, &ephemeris)
+    };
+    evaluate().map_err(|error| format!("{}: {error}", one.made_of()))
+}

@@ -1,0 +1,113 @@
+//! The results of `evaluate` on stdout, one constellation after the other.
+
+use super::designs::DesignList;
+use super::table::TextTable;
+use super::{Work, single};
+use crate::cli::args::OutputFormat;
+use crate::cli::output;
+use crate::exchange::constellation::Constellation;
+use crate::report::{ConstellationColumns, ConstellationEntry};
+use crate::run::VERSION;
+use anyhow::Result;
+use serde::Serialize;
+
+/// Prints constellations in the format that is asked for. Nothing of a list is kept.
+pub(super) struct Printer<'a> {
+    work: &'a Work<'a>,
+    form: Form,
+}
+
+enum Form {
+    /// One constellation, printed at the end in the form of its kind.
+    Alone(Option<ConstellationEntry>),
+    /// A table for reading.
+    Text(TextTable),
+    /// The elements of an array.
+    Json { is_begun: bool },
+    /// A table with the columns of its first row.
+    Csv {
+        has_files: bool,
+        columns: Option<ConstellationColumns>,
+    },
+}
+
+impl<'a> Printer<'a> {
+    /// A printer of the constellations given one by one and those of a list.
+    pub(super) fn new(
+        work: &'a Work<'a>,
+        given: &[Constellation],
+        list: Option<&DesignList>,
+    ) -> Self {
+        let is_of_one_kind = |one: &Constellation| one.design.is_none() || one.files.is_none();
+        let is_alone = list.is_none() && matches!(given, [one] if is_of_one_kind(one));
+        let form = match work.args.format {
+            OutputFormat::Csv => Form::Csv {
+                has_files: given.iter().any(|one| one.files.is_some()),
+                columns: None,
+            },
+            _ if is_alone => Form::Alone(None),
+            OutputFormat::Text => Form::Text(TextTable::new(work, given, list)),
+            OutputFormat::Json => Form::Json { is_begun: false },
+        };
+        Self { work, form }
+    }
+
+    /// Prints the next constellation.
+    pub(super) fn entry(&mut self, entry: ConstellationEntry) -> Result<()> {
+        match &mut self.form {
+            Form::Alone(kept) => {
+                *kept = Some(entry);
+                Ok(())
+            }
+            Form::Text(table) => table.row(&entry),
+            Form::Json { is_begun } => {
+                let before = if *is_begun {
+                    ",\n"
+                } else {
+                    "{\n  \"constellations\": [\n"
+                };
+                *is_begun = true;
+                output::part(&format!("{before}{}", indented(&entry, 4)?))
+            }
+            Form::Csv { has_files, columns } => {
+                if let Some(columns) = columns {
+                    return output::part(&columns.row(&entry)?);
+                }
+                let new = ConstellationColumns::of(&entry, *has_files);
+                output::part(&(new.header()? + &new.row(&entry)?))?;
+                *columns = Some(new);
+                Ok(())
+            }
+        }
+    }
+
+    /// Prints what follows the constellations: the GNSS alone, and the study.
+    pub(super) fn end(self) -> Result<()> {
+        let gnss_only = self.work.gnss_only.as_ref();
+        let gnss_row = gnss_only.map(ConstellationEntry::of_gnss);
+        match self.form {
+            Form::Alone(None) => Ok(()),
+            Form::Alone(Some(entry)) => single::print(self.work, entry),
+            Form::Text(table) => table.end(gnss_row.as_ref()),
+            Form::Json { .. } => {
+                let (gnss, stamp) = (indented(&gnss_only, 2)?, &self.work.stamp);
+                output::result(&format!(
+                    "\n  ],\n  \"gnss_only\": {},\n  \"scenario\": {},\n  \"version\": \"{VERSION}\"\n}}",
+                    gnss.trim_start(),
+                    indented(stamp, 2)?.trim_start(),
+                ))
+            }
+            Form::Csv { columns, .. } => match (columns, gnss_row) {
+                (Some(columns), Some(row)) => output::part(&columns.row(&row)?),
+                _ => Ok(()),
+            },
+        }
+    }
+}
+
+/// JSON in lines, indented as a part of a larger object.
+fn indented(value: &impl Serialize, by: usize) -> Result<String> {
+    let text = serde_json::to_string_pretty(value)?;
+    let lines = text.lines().map(|line| format!("{:by$}{line}", ""));
+    Ok(lines.collect::<Vec<_>>().join("\n"))
+}

@@ -1,0 +1,138 @@
+//! The result of a single constellation.
+
+use super::Work;
+use crate::cli::args::OutputFormat;
+use crate::cli::output;
+use crate::evaluate::{DopStatistics, Metrics};
+use crate::report::{Align, Alone, ConstellationEntry, ConstraintCheck, Table, shown};
+use crate::scenario::Scenario;
+use crate::units::counted;
+use anyhow::Result;
+
+/// Prints what was computed of a design, or of the satellites of files.
+pub(super) fn print(work: &Work<'_>, entry: ConstellationEntry) -> Result<()> {
+    let Some(alone) = entry.alone(work.gnss_only.clone(), work.stamp.clone()) else {
+        return Ok(());
+    };
+    if work.args.format == OutputFormat::Json {
+        return output::result(&serde_json::to_string_pretty(&alone)?);
+    }
+    let (title, evaluated) = match &alone {
+        Alone::Design(result) => (result.design.notation.clone(), &result.evaluated),
+        Alone::Files(result) => {
+            let of = &result.constellation;
+            let satellites = counted(of.satellites, "satellite");
+            let title = format!("{} ({satellites}, {})", of.name, of.content);
+            (title, &result.evaluated)
+        }
+    };
+    let dops = evaluated.dops.as_ref();
+    let text = text(work.scenario, &title, &evaluated.metrics, dops);
+    output::result(&(text + &constraint_lines(&evaluated.constraints)))
+}
+
+fn text(
+    scenario: &Scenario,
+    title: &str,
+    metrics: &Metrics,
+    dops: Option<&DopStatistics>,
+) -> String {
+    let mut table = Table::new(&[("", Align::Left), ("", Align::Right), ("", Align::Left)]);
+    let mut row = |name: &str, value: Option<f64>, digits: usize, note: String| {
+        let value = value.map_or_else(|| "none".to_owned(), |v| format!("{v:.digits$}"));
+        table.row([name.to_owned(), value, note]);
+    };
+    let weight = scenario.objectives.cvar_weight;
+    let tail = 100.0 * (1.0 - metrics.cvar_level);
+    let threshold = scenario.objectives.availability_pdop;
+    let seen = "LEO satellites in view, mean over points and instants";
+    row(
+        "mean visible",
+        Some(metrics.mean_visible),
+        4,
+        seen.to_owned(),
+    );
+    row("mean PDOP", metrics.mean_pdop, 4, String::new());
+    row(
+        "CVaR of PDOP",
+        metrics.cvar_pdop,
+        4,
+        format!(
+            "mean of the worst {} %",
+            crate::units::round_decimal(tail, 4)
+        ),
+    );
+    row("median PDOP", metrics.p50_pdop, 4, String::new());
+    row("95 % quantile of PDOP", metrics.p95_pdop, 4, String::new());
+    row("99 % quantile of PDOP", metrics.p99_pdop, 4, String::new());
+    row("maximum PDOP", metrics.max_pdop, 4, String::new());
+    row(
+        "solved fraction",
+        Some(metrics.solved_fraction),
+        5,
+        "of points and instants".to_owned(),
+    );
+    row(
+        "availability",
+        Some(metrics.availability),
+        5,
+        format!("fraction with PDOP <= {threshold}"),
+    );
+    row(
+        "J_pos",
+        metrics.j_pos,
+        4,
+        format!("mean PDOP + {weight} CVaR of PDOP"),
+    );
+    row(
+        "J_cost",
+        metrics.j_cost,
+        4,
+        "satellites / mean visible".to_owned(),
+    );
+    let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
+    format!(
+        "{title} in scenario {}\n{}{dops}",
+        scenario.name,
+        table.to_text()
+    )
+}
+
+/// The constraints of the scenario, one per line: the value, and whether the bound is met.
+fn constraint_lines(checks: &[ConstraintCheck]) -> String {
+    if checks.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(&[
+        ("constraint", Align::Left),
+        ("value", Align::Right),
+        ("", Align::Left),
+    ]);
+    for check in checks {
+        let verdict = check.verdict();
+        let value = shown::named(&check.quantity, check.value);
+        table.row([check.constraint.clone(), value, verdict.to_owned()]);
+    }
+    format!("\n{}", table.to_text())
+}
+
+fn dops_table(dops: &DopStatistics) -> String {
+    let right = Align::Right;
+    let mut table = Table::new(&[
+        ("dilution", Align::Left),
+        ("mean", right),
+        ("median", right),
+        ("95 %", right),
+        ("99 %", right),
+        ("maximum", right),
+        ("CVaR", right),
+    ]);
+    for (name, summary) in dops.named() {
+        let cells = match summary {
+            Some(s) => [s.mean, s.p50, s.p95, s.p99, s.max, s.cvar].map(|x| format!("{x:.4}")),
+            None => std::array::from_fn(|_| "none".to_owned()),
+        };
+        table.row([name].into_iter().chain(cells));
+    }
+    table.to_text()
+}

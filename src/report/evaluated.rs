@@ -1,0 +1,283 @@
+//! What `evaluate` prints of one constellation, and of several side by side.
+
+use crate::constellation::Design;
+use crate::evaluate::{DopStatistics, Metrics};
+use crate::exchange::constellation::Constellation;
+use crate::run::{DesignSummary, ScenarioStamp, VERSION};
+use crate::search::{Constraint, Goals, Quantity};
+use serde::{Deserialize, Serialize};
+
+/// Name of the GNSS alone in tables.
+pub const GNSS_ONLY: &str = "gnss-only";
+
+/// What is computed of some satellites.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evaluated {
+    /// The metrics.
+    pub metrics: Metrics,
+    /// All dilutions of precision, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dops: Option<DopStatistics>,
+    /// The constraints of the scenario, and whether they are met.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub constraints: Vec<ConstraintCheck>,
+    /// The objectives and the constrained quantities, with their values.
+    #[serde(skip)]
+    pub quantities: Vec<(Quantity, Option<f64>)>,
+}
+
+/// A constraint of the scenario, checked for a constellation.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstraintCheck {
+    /// The constraint as it is written: `max-pdop <= 2.5`.
+    pub constraint: String,
+    /// The quantity under it.
+    pub quantity: String,
+    /// Its value; `None` if it has none.
+    pub value: Option<f64>,
+    /// Whether it is met; `None` for a quantity that only designs have.
+    pub met: Option<bool>,
+}
+
+impl ConstraintCheck {
+    /// The verdict in a word.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        match self.met {
+            Some(true) => "met",
+            Some(false) => "violated",
+            None => "not defined",
+        }
+    }
+}
+
+impl Evaluated {
+    /// What was computed of `satellites` satellites, which are those of `design` if there is one, under
+    /// the goals of a scenario.
+    #[must_use]
+    pub fn new(
+        (satellites, design): (usize, Option<&Design>),
+        metrics: Metrics,
+        dops: Option<DopStatistics>,
+        goals: &Goals,
+    ) -> Self {
+        let value = |quantity: Quantity| {
+            quantity.value_of(satellites, design, &metrics, &goals.launch_cost)
+        };
+        let check = |constraint: &Constraint| {
+            let quantity = constraint.quantity;
+            let is_met = || constraint.violation(value(quantity), metrics.solved_fraction) == 0.0;
+            ConstraintCheck {
+                constraint: constraint.to_string(),
+                quantity: quantity.to_string(),
+                value: value(quantity),
+                met: (design.is_some() || !quantity.needs_design()).then(is_met),
+            }
+        };
+        let constraints = goals.constraints.iter().map(check).collect();
+        let quantities = goals.objectives.iter().copied();
+        let quantities = quantities.chain(goals.constrained());
+        let quantities = quantities.map(|one| (one, value(one))).collect();
+        Self {
+            metrics,
+            dops,
+            constraints,
+            quantities,
+        }
+    }
+
+    /// The value of an objective or of a constrained quantity.
+    #[must_use]
+    pub fn value(&self, quantity: Quantity) -> Option<f64> {
+        let known = self.quantities.iter().find(|(one, _)| *one == quantity);
+        known?.1
+    }
+}
+
+/// The output of `evaluate` for one design.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EvaluateResult {
+    /// The design.
+    pub design: DesignSummary,
+    /// What is computed of it.
+    #[serde(flatten)]
+    pub evaluated: Evaluated,
+    /// The GNSS alone; `None` without GNSS.
+    pub gnss_only: Option<Evaluated>,
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// Version of the program.
+    pub version: &'static str,
+}
+
+/// A constellation read from files.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ConstellationSummary {
+    /// Its name.
+    pub name: String,
+    /// The format of its files.
+    pub format: String,
+    /// Their content.
+    pub content: String,
+    /// Number of satellites.
+    pub satellites: usize,
+}
+
+/// The output of `evaluate` for the satellites of files.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstellationResult {
+    /// The constellation.
+    pub constellation: ConstellationSummary,
+    /// What is computed of it.
+    #[serde(flatten)]
+    pub evaluated: Evaluated,
+    /// The GNSS alone; `None` without GNSS.
+    pub gnss_only: Option<Evaluated>,
+    /// The study.
+    pub scenario: ScenarioStamp,
+    /// Version of the program.
+    pub version: &'static str,
+}
+
+/// One of several constellations.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ConstellationEntry {
+    /// Its name.
+    pub name: String,
+    /// The notation of its shells.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub notation: Option<String>,
+    /// The names of its files.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
+    /// The format of its files, and their content.
+    #[serde(skip)]
+    pub format_and_content: Option<(String, String)>,
+    /// Number of satellites.
+    pub satellites: usize,
+    /// Its shells, field by field.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub design: Option<DesignSummary>,
+    /// What is computed of it.
+    #[serde(flatten)]
+    pub evaluated: Evaluated,
+}
+
+impl ConstellationEntry {
+    /// The entry of a constellation.
+    #[must_use]
+    pub fn new(
+        constellation: &Constellation,
+        metrics: Metrics,
+        dops: Option<DopStatistics>,
+        goals: &Goals,
+    ) -> Self {
+        let satellites = constellation.satellite_count();
+        let subject = (satellites, constellation.only_design());
+        let design: Option<DesignSummary> = constellation.design.as_ref().map(Into::into);
+        let files = constellation.files.as_ref();
+        Self {
+            name: constellation.name.clone(),
+            notation: design.as_ref().map(|design| design.notation.clone()),
+            files: files.map_or_else(Vec::new, |files| files.names.clone()),
+            format_and_content: files.map(|files| (files.format(), files.fleet.content())),
+            satellites,
+            design,
+            evaluated: Evaluated::new(subject, metrics, dops, goals),
+        }
+    }
+
+    /// The GNSS alone as a row of a table: no LEO satellite.
+    #[must_use]
+    pub fn of_gnss(evaluated: &Evaluated) -> Self {
+        Self {
+            name: GNSS_ONLY.to_owned(),
+            notation: None,
+            files: Vec::new(),
+            format_and_content: None,
+            satellites: 0,
+            design: None,
+            evaluated: evaluated.clone(),
+        }
+    }
+
+    /// The result of a constellation that was evaluated alone: of a design if it has no other satellites,
+    /// of files if it has no shells.
+    #[must_use]
+    pub fn alone(self, gnss_only: Option<Evaluated>, scenario: ScenarioStamp) -> Option<Alone> {
+        match (self.design, self.format_and_content) {
+            (Some(design), None) => Some(Alone::Design(Box::new(EvaluateResult {
+                design,
+                evaluated: self.evaluated,
+                gnss_only,
+                scenario,
+                version: VERSION,
+            }))),
+            (None, Some((format, content))) => Some(Alone::Files(Box::new(ConstellationResult {
+                constellation: ConstellationSummary {
+                    name: self.name,
+                    format,
+                    content,
+                    satellites: self.satellites,
+                },
+                evaluated: self.evaluated,
+                gnss_only,
+                scenario,
+                version: VERSION,
+            }))),
+            _ => None,
+        }
+    }
+
+    /// What its satellites are: the notation, the files, or both.
+    #[must_use]
+    pub fn made_of(&self) -> String {
+        let parts = self.notation.iter().chain(&self.files);
+        parts.map(String::as_str).collect::<Vec<_>>().join("+")
+    }
+}
+
+/// A constellation that was evaluated alone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Alone {
+    /// The shells of a design.
+    Design(Box<EvaluateResult>),
+    /// The satellites of files.
+    Files(Box<ConstellationResult>),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::testing;
+    use crate::search::LaunchCost;
+
+    fn goals() -> Goals {
+        Goals {
+            objectives: vec![Quantity::JCost],
+            constraints: ["satellites <= 30", "planes <= 4"]
+                .map(|text| text.parse().unwrap())
+                .to_vec(),
+            launch_cost: LaunchCost {
+                per_satellite: 1.0,
+                per_plane: 5.0,
+                per_1000_km: 0.2,
+            },
+        }
+    }
+
+    /// Files have a number of satellites and no planes.
+    #[test]
+    fn a_constraint_that_only_designs_have_is_not_violated_by_files() {
+        let design: Design = "delta:55:30/5/1@925".parse().unwrap();
+        let metrics = testing::member(1, "delta:55:30/5/1@925").metrics;
+        let verdicts = |design: Option<&Design>| {
+            let evaluated = Evaluated::new((30, design), metrics, None, &goals());
+            let checks = evaluated.constraints.iter();
+            checks.map(ConstraintCheck::verdict).collect::<Vec<_>>()
+        };
+        assert_eq!(verdicts(Some(&design)), ["met", "violated"]);
+        assert_eq!(verdicts(None), ["met", "not defined"]);
+    }
+}
