@@ -238,9 +238,9 @@ pub(crate) struct ChosenArgs {
     #[arg(long, value_name = "DIR", conflicts_with_all = ["design", "constellation"])]
     pub(crate) run: Option<PathBuf>,
 
-    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
+    /// Which design of the run: fuzzy, sum, topsis, knee, its index on the front, or its name.
     #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
-    pub(crate) pick: Pick,
+    pub(crate) pick: MemberPick,
 }
 
 /// Output format on stdout.

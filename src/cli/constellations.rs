@@ -63,7 +63,7 @@ pub(crate) fn study_and_constellations(
             bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, chosen.pick)?;
+        let (picked, why) = run::pick(directory, &chosen.pick)?;
         output::hint(&format!("{picked} of {}: {why}", directory.display()));
         return Ok((loaded, vec![Constellation::of_design(picked)]));
     }
@@ -164,7 +164,7 @@ pub(crate) fn require_different_names(constellations: &[Constellation]) -> Resul
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cli::args::StudyArgs;
+    use crate::cli::args::{SatelliteArgs, StudyArgs};
     use std::fs;
 
     const ELEMENTS: &str = "object,epoch_utc,semi_major_axis_km,eccentricity,inclination_deg,raan_deg,arg_perigee_deg,mean_anomaly_deg\n\
@@ -190,8 +190,7 @@ mod tests {
             design: texts.iter().map(|text| text.parse().unwrap()).collect(),
             constellation: Vec::new(),
             input_format: None,
-            only: Vec::new(),
-            exclude: Vec::new(),
+            satellites: SatelliteArgs::default(),
         }
     }
 

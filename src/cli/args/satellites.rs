@@ -4,7 +4,7 @@ use crate::exchange::import::SatelliteFilter;
 use clap::Args;
 
 /// Which satellites of files are used.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct SatelliteArgs {
     /// Keep only these satellites of the files: a name, a designator, a catalogue number, or a pattern in
     /// which `*` stands for any characters and `?` for one, as in 'NW-P01-*'; may be repeated.
