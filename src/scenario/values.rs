@@ -47,8 +47,8 @@ section! {
         /// Design to validate if none is given, in Walker notation
         /// pattern:inclination:T/P/F@altitude or by its name in `constellations`.
         pub reference_design: String = Text::Any, default "delta:55:182/13/1@925".to_owned();
-        /// Constellations by name, also written as a section [constellations]: `--design` takes the name in
-        /// place of a notation, and the front of a search is compared with all of them.
+        /// Constellations by name (letters, digits, - and _), also written as a section `[constellations]`:
+        /// `--design` takes the name in place of a notation, and the front of a search is compared with them.
         pub constellations: Vec<NamedConstellation> = Constellations,
             follows "none", example NamedConstellation::examples();
         /// The sampled time span.

@@ -79,11 +79,7 @@ impl Rule for Constellations {
     }
 
     fn accepted(&self) -> String {
-        format!(
-            "a table by {}, each with {}",
-            Self::accepted_name(),
-            Self::accepted_parts()
-        )
+        format!("a table of names, each with {}", Self::accepted_parts())
     }
 
     fn schema(&self) -> Json {

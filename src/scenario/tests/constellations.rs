@@ -154,7 +154,7 @@ fn problems_are_where_they_are_with_their_key() {
         panic!("{whole:?}");
     };
     assert!(
-        whole.starts_with("study.toml:2: constellations: found [1], expected a table by "),
+        whole.starts_with("study.toml:2: constellations: found [1], expected a table of names, "),
         "{whole}"
     );
     let twice = problems("[constellations]\na = \"x\"\na = \"y\"", &[]);
@@ -185,7 +185,7 @@ fn problems_of_arguments_name_them_and_replaced_values_have_none() {
         ),
         (
             "constellations=3",
-            "constellations: found 3, expected a table by a name",
+            "constellations: found 3, expected a table of names",
         ),
         ("constellations.=3", "constellations."),
     ] {

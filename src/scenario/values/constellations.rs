@@ -20,7 +20,7 @@ section! {
     pub struct ConstellationParts in "constellations" {
         /// Shells, in Walker notation.
         pub design: Option<Design> = Optional(Notation), follows "no shells", example None;
-        /// Files of satellites in any format that `evaluate --constellation` reads, paths relative to this file.
+        /// Files, not directories, in any format that `evaluate --constellation` reads; paths relative to this file.
         pub files: Vec<String> = Texts::one_or_more("paths"), follows "no files", example Vec::new();
         /// Format of the files instead of the one that their content shows.
         pub input_format: Option<Format> = Optional(OneOf::new()), follows "by content", example None;
