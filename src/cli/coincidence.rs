@@ -40,8 +40,11 @@ pub(crate) fn warn_of_meetings(name: &str, ephemeris: &Ephemeris) {
     };
     let closest = match found.count {
         1 => String::new(),
+        count if found.closest == found.first => {
+            format!(", the closest of {count} meetings at the samples")
+        }
         count => format!(
-            "; so close {count} times at the samples, closest: {}",
+            "; the closest of {count} meetings at the samples: {}",
             told(found.closest)
         ),
     };

@@ -13,15 +13,23 @@ pub(crate) fn dominance(compared: &[&Baseline], objectives: &[String]) -> Option
     }
     let judged: Vec<(&str, &[f64])> = compared
         .iter()
-        .filter_map(|one| Some((one.name.as_str(), one.feasible.as_deref()?)))
+        .filter_map(|one| Some((name(one), one.feasible.as_deref()?)))
         .collect();
     let mut text = format!("By {}, ", listed(objectives.iter().map(String::as_str)));
     text += &relations(&judged);
     text.push('.');
     for one in compared.iter().filter(|one| one.feasible.is_none()) {
-        text += &format!(" {} is not judged: {}.", one.name, reason(one, objectives));
+        text += &format!(" {} is not judged: {}.", name(one), reason(one, objectives));
     }
     Some(text)
+}
+
+/// The name in a sentence.
+fn name(one: &Baseline) -> &str {
+    if one.name == Baseline::REFERENCE {
+        return "the reference design";
+    }
+    &one.name
 }
 
 fn relations(judged: &[(&str, &[f64])]) -> String {
@@ -128,6 +136,12 @@ mod tests {
             told(&[a.clone(), twin])
                 .unwrap()
                 .contains("A and twin do not")
+        );
+        let reference = place(Baseline::REFERENCE, Some([0.0, 5.0]));
+        assert!(
+            told(&[a.clone(), reference])
+                .unwrap()
+                .contains("the reference design dominates A.")
         );
         assert_eq!(told(&[a]), None);
         assert!(b.feasible.is_some());

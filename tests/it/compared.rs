@@ -315,10 +315,10 @@ fn constellations_that_cannot_be_told_apart_or_found_are_refused() {
 fn satellites_that_meet_are_named_with_the_time() {
     let directory = TempDir::new().unwrap();
     let warned = |design: &str| evaluate(directory.path(), &["--design", design]).stderr;
-    let text = warned("delta:53:20/5/1@1000+star:90:8/2/0@1000,u=0.005");
+    let text = warned("delta:53:20/5/1@1000+star:90:8/2/1@1000,u=0.005");
     let told = "NW-A-P01-S01 and NW-B-P01-S01 are 0.644 km apart at 2025-01-01T00:00:00Z";
     assert!(text.contains(told), "{text}");
-    let apart = warned("delta:53:20/5/1@1000+star:90:8/2/0@1100,u=0.005");
+    let apart = warned("delta:53:20/5/1@1000+star:90:8/2/1@1100,u=0.005");
     assert!(!apart.contains("warning"), "{apart}");
 }
 

@@ -465,3 +465,90 @@ fn a_terminal_has_colours_unless_told_otherwise() {
         assert!(!coloured(arguments, true), "{arguments}");
     }
 }
+
+/// A run of given designs is shown like constellations with a scenario.
+#[test]
+fn a_run_of_given_designs_is_shown_as_constellations() {
+    let directory = TempDir::new().unwrap();
+    let evaluate = [
+        "evaluate",
+        "--quiet",
+        "--set",
+        "region.step-deg=20",
+        "--set",
+        "time.step-s=3600",
+        "--design",
+        "few=delta:55:36/6/1@900",
+        "--design",
+        "many=delta:55:64/8/1@900",
+        "--out",
+        "given",
+    ];
+    stdout(&navwalker(directory.path(), &evaluate));
+    let report = navwalker(directory.path(), &["report", "given"]);
+    assert_eq!(stdout(&report), "given/report.html\n");
+    assert!(report.stderr.is_empty(), "{report:?}");
+    let page = fs::read_to_string(directory.path().join("given/report.html")).unwrap();
+    for told in ["<bdi>few</bdi>", "<bdi>many</bdi>", "By j-pos and j-cost, "] {
+        assert!(page.contains(told), "{told}");
+    }
+    for absent in [
+        "id=\"membership\"",
+        "The search",
+        "What is missing",
+        "reference design",
+    ] {
+        assert!(!page.contains(absent), "{absent}");
+    }
+    let plot = |further: &[&str]| {
+        let arguments = [&["plot", "given", "--quiet", "--as", "csv"], further].concat();
+        stdout(&navwalker(directory.path(), &arguments))
+    };
+    let map = |pick: &[&str]| plot(&[&["--figure", "map"], pick].concat());
+    assert_eq!(map(&[]), map(&["--pick", "few"]));
+    assert_eq!(map(&["--pick", "2"]), map(&["--pick", "many"]));
+    assert!(
+        [map(&["--pick", "few"]), map(&["--pick", "many"])].contains(&map(&["--pick", "fuzzy"]))
+    );
+    assert!(plot(&["--figure", "pareto"]).contains(",many\n"));
+}
+
+/// The constellations of a scenario are shown if none are given, and beside the front of a run.
+#[test]
+fn the_constellations_of_a_scenario_are_shown() {
+    let directory = with_theirs();
+    let scenario = "[region]\nstep-deg = 20\n[time]\nstep-s = 3600\n[constellations]\n\
+        hybrid = \"delta:55:36/6/1@900+star:90:12/3/1@800\"\n\
+        theirs = { files = [\"theirs/elements.csv\"] }\n";
+    fs::write(directory.path().join("study.toml"), scenario).unwrap();
+    let run = |arguments: &[&str]| stdout(&navwalker(directory.path(), arguments));
+    let page = |path: &str| fs::read_to_string(directory.path().join(path)).unwrap();
+    run(&["report", "study.toml", "--quiet"]);
+    let all = page("report.html");
+    assert!(all.contains("<bdi>hybrid</bdi>") && all.contains("<bdi>theirs</bdi>"));
+    run(&["report", "study.toml", "--quiet", "--design", "hybrid"]);
+    let one = page("report.html");
+    assert!(one.contains("<bdi>hybrid</bdi>") && !one.contains("<bdi>theirs</bdi>"));
+    let optimize = [
+        "optimize",
+        "study.toml",
+        "--quiet",
+        "--set",
+        "optimizer.population=8",
+        "--set",
+        "optimizer.generations=2",
+        "--out",
+        "run",
+    ];
+    run(&optimize);
+    // A constellation of the scenario that is also given is shown once.
+    run(&["report", "run", "--quiet", "--design", "hybrid"]);
+    let beside = page("run/report.html");
+    for name in ["reference design", "hybrid", "theirs"] {
+        assert_eq!(
+            beside.matches(&format!("<bdi>{name}</bdi>")).count(),
+            1,
+            "{name}"
+        );
+    }
+}

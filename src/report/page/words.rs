@@ -188,7 +188,7 @@ fn found(run: &Run) -> String {
     };
     if search.is_of_given() {
         let designs = crate::units::counted(run.front.len(), "design");
-        return format!("{designs} given by name were evaluated, without a search.");
+        return format!("{designs} were evaluated as given, without a search.");
     }
     let mut text = format!(
         "{} (seed {}) evaluated {} designs and found {members}.",

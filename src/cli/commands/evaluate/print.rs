@@ -19,7 +19,7 @@ pub(super) struct Printer<'a> {
 
 enum Form {
     /// One constellation, printed at the end in the form of its kind.
-    Alone(Option<ConstellationEntry>),
+    Alone(Option<Box<ConstellationEntry>>),
     /// A table for reading.
     Text(TextTable),
     /// The elements of an array.
@@ -56,7 +56,7 @@ impl<'a> Printer<'a> {
     pub(super) fn entry(&mut self, entry: ConstellationEntry) -> Result<()> {
         match &mut self.form {
             Form::Alone(kept) => {
-                *kept = Some(entry);
+                *kept = Some(Box::new(entry));
                 Ok(())
             }
             Form::Text(table) => table.row(&entry),
@@ -87,7 +87,7 @@ impl<'a> Printer<'a> {
         let gnss_row = gnss_only.map(ConstellationEntry::of_gnss);
         match self.form {
             Form::Alone(None) => Ok(()),
-            Form::Alone(Some(entry)) => single::print(self.work, entry),
+            Form::Alone(Some(entry)) => single::print(self.work, *entry),
             Form::Text(table) => table.end(gnss_row.as_ref()),
             Form::Json { .. } => {
                 let (gnss, stamp) = (indented(&gnss_only, 2)?, &self.work.stamp);
