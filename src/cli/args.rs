@@ -89,7 +89,11 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
-    /// Export a design to files for other tools, with a manifest of what each file contains and loses.
+    /// Export a constellation to files for other tools, with a manifest of what each file contains and loses.
+    ///
+    /// The constellation is a design, a design of a run, or the satellites of files, which are converted: their
+    /// states by the theory of their format (SGP4 for element sets, interpolation for states), element sets to TLE
+    /// and OMM unchanged. What a product cannot express is an error.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
     #[command(verbatim_doc_comment, after_help = products::help())]
@@ -370,13 +374,28 @@ pub(crate) struct DesignArgs {
     pub(crate) pick: Pick,
 }
 
+/// One constellation: given directly, or picked from a run.
+#[derive(Debug, Args)]
+pub(crate) struct OneConstellationArgs {
+    #[command(flatten)]
+    pub(crate) given: ConstellationArgs,
+
+    /// Take the design, and the scenario, from the run in this directory.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["design", "constellation"])]
+    pub(crate) run: Option<PathBuf>,
+
+    /// Which design of the run: fuzzy, sum, topsis, knee, or its index on the front.
+    #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
+    pub(crate) pick: Pick,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
 
     #[command(flatten)]
-    pub(crate) design: DesignArgs,
+    pub(crate) constellation: OneConstellationArgs,
 
     /// Products to write, separated by commas; listed below.
     #[arg(
@@ -416,7 +435,8 @@ pub(crate) struct ExportArgs {
     pub(crate) oem_combined: bool,
 
     /// How element sets are derived: kozai (from the J2 mean elements), fit (SGP4 fitted to the
-    /// trajectory by least squares), or kepler (Keplerian mean motion, a common mistake, for comparison).
+    /// trajectory by least squares), or kepler (Keplerian mean motion, a common mistake, for comparison). Element
+    /// sets of files are written as they are; states and almanacs of files need fit.
     #[arg(long, value_name = "THEORY", default_value = "kozai")]
     pub(crate) tle_theory: ElementChoice,
 
@@ -429,7 +449,7 @@ pub(crate) struct ExportArgs {
     pub(crate) sp3_version: Sp3Version,
 
     /// Read every product back, evaluate the scenario with it, and print the difference from the
-    /// design; exit status 1 if it is more than the file's digits and theory explain.
+    /// constellation; exit status 1 if it is more than the file's digits and theory explain.
     #[arg(long)]
     pub(crate) check: bool,
 

@@ -14,6 +14,7 @@ mod sampling;
 
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
+pub(crate) use propagation::interpolated;
 pub use sampling::SamplingNote;
 
 use crate::ephemeris::arc::{Arc, Interpolation};

@@ -142,7 +142,7 @@ products! {
     }
     /// GMAT: a script that propagates the design under J2 alone.
     Gmat = "gmat" {
-        help: &["GMAT script of the design under J2 alone, with its gravity field file"],
+        help: &["GMAT script of the satellites under J2 alone, with its gravity field file"],
         has_frame: false,
         read_back: Err("a script has no states until GMAT runs it"),
         write: ProductWriter::Design(|source, files| source.gmat(files)),
@@ -174,7 +174,7 @@ products! {
     }
     /// YUMA almanacs of the nominal GNSS.
     Yuma = "yuma" {
-        help: &["YUMA almanacs of the nominal GNSS; a LEO design has none"],
+        help: &["YUMA almanacs of the nominal GNSS; a LEO constellation has none"],
         has_frame: false,
         read_back: Err("the almanacs are of the GNSS, not of the design"),
         write: ProductWriter::Scenario(|source, files, scene| source.yuma(files, scene)),
