@@ -161,3 +161,70 @@ fn unique(
     let free = candidates.find(|candidate| taken.insert(key(candidate)));
     free.unwrap_or(text)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exchange::members::Origin;
+
+    fn member(set: &sgp4::Elements, number: u64, designator: &str, name: &str) -> Object {
+        let member = Member {
+            slot: None,
+            origin: Origin::Set(set),
+            identity: ObjectIdentity::new(number, designator, name),
+        };
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let mut objects = Naming::default().objects(&[member], epoch).unwrap();
+        objects.remove(0)
+    }
+
+    fn set() -> sgp4::Elements {
+        let line1 = b"1 25544U 98067A   25001.00000000  .00000000  00000-0  00000-0 0  9990";
+        let line2 = b"2 25544  51.6400  10.0000 0001000  20.0000  30.0000 15.50000000    00";
+        let fixed = |line: &[u8; 69]| {
+            let digit = |byte: &u8| match byte {
+                b'0'..=b'9' => u32::from(byte - b'0'),
+                b'-' => 1,
+                _ => 0,
+            };
+            let mut line = *line;
+            line[68] = b'0' + (line[..68].iter().map(digit).sum::<u32>() % 10) as u8;
+            line
+        };
+        sgp4::Elements::from_tle(None, &fixed(line1), &fixed(line2)).unwrap()
+    }
+
+    #[test]
+    fn what_a_file_has_is_kept_and_the_rest_is_synthetic() {
+        let set = set();
+        let own = member(&set, 25_544, "1998-067A", "ISS (ZARYA)");
+        assert_eq!(
+            (own.catalog_number.number(), own.id.as_str()),
+            (25_544, "1998-067A")
+        );
+        assert_eq!(own.name, "ISS (ZARYA)");
+        let nothing = member(&set, 0, "", "");
+        assert_eq!(
+            (nothing.catalog_number.number(), nothing.id.as_str()),
+            (90_001, "2025-900A")
+        );
+        assert_eq!(nothing.name, "satellite 1");
+        let long = member(&set, 799_500_123, "", "Ω 1");
+        assert_eq!(
+            (long.catalog_number.number(), long.name.as_str()),
+            (90_001, "_ 1")
+        );
+    }
+
+    /// No path leads out of the directory, and no two are the same file anywhere.
+    #[test]
+    fn files_have_safe_names() {
+        let set = set();
+        let names = ["../up", "a/b", "A-B", "a_b", ".hidden", "IRIDIUM 7 [+]"];
+        let objects: Vec<Object> = names.iter().map(|name| member(&set, 0, "", name)).collect();
+        assert_eq!(
+            stems(&objects),
+            ["___up", "a_b", "A-B_2", "a_b_3", "_hidden", "IRIDIUM_7____"]
+        );
+    }
+}

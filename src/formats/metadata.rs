@@ -256,7 +256,7 @@ impl fmt::Display for Theory {
                 "SGP4 elements fitted to the propagated trajectory"
             }
             Self::SourceSets => "SGP4 elements of the source",
-            Self::Sgp4OfSource => "sgp4 from the elements of the source",
+            Self::Sgp4OfSource => "SGP4 from the elements of the source",
             Self::Interpolated => "states of the source, interpolated",
             Self::Almanac => "almanac of the source",
         })

@@ -4,6 +4,7 @@
 
 mod cli;
 mod evidence;
+mod exports;
 mod fire;
 mod gallery;
 mod interchange;

@@ -11,6 +11,7 @@ use crate::exchange::manifest::{FileEntry, Loss};
 use crate::exchange::members::{Member, Origin};
 use crate::formats::maps::palette::Palette;
 use crate::formats::maps::scene::Scene;
+use crate::formats::metadata::Theory;
 use crate::formats::stk::connect::{ConnectItem, ConnectScenario, Setting, WalkerShell, by_hand};
 use crate::formats::yuma::{self, Almanac, Applicability, NoAlmanac, radius_shift_km};
 use crate::formats::{WriteError, gmat, stk};
@@ -47,6 +48,7 @@ impl ExportSource<'_> {
         }
         let mut entries = self.gnss_files(files, &gnss)?;
         let mut items = self.connect_items();
+        let of_constellation = items.len();
         items.extend(
             gnss.iter()
                 .map(|one| ConnectItem::Satellite(one.name.clone(), one.setting.clone())),
@@ -80,7 +82,7 @@ impl ExportSource<'_> {
             .iter()
             .any(|item| matches!(item, ConnectItem::Satellite(_, Setting::File(_))));
         let mut told = scene.assumptions();
-        told.extend(by_hand(one_mask, with_files, &items));
+        told.extend(by_hand(one_mask, with_files, &items[..of_constellation]));
         entries.push(commands.assuming(told));
         entries.push(files.add(
             &in_scenario("points.pnt"),
@@ -147,7 +149,8 @@ impl ExportSource<'_> {
     /// The ephemerides of the GNSS satellites for which STK has no theory.
     fn gnss_files(&self, files: &Files<'_>, gnss: &[InStk]) -> ProductFiles {
         let mut entries = Vec::new();
-        let mut metadata = self.propagated_metadata(self.choices.frame);
+        let theory = Theory::EphemerisSatellite(self.subject.model);
+        let mut metadata = self.metadata(self.choices.frame, theory);
         metadata
             .subject
             .push("GNSS satellite of the scenario".to_owned());
@@ -242,17 +245,18 @@ impl ExportSource<'_> {
                 Ok(Loss::default())
             },
         )?;
-        let mut told = gmat_assumptions(integrated);
-        if !self.members.iter().all(is_mean) {
-            told.insert(
-                0,
-                format!(
-                    "satellites of files start from their osculating state at the epoch; the theory of the states \
-                     ({}) is not that of GMAT, which differs from it afterwards",
-                    metadata.theory
-                ),
-            );
+        let mut told = Vec::new();
+        if self.members.iter().any(is_mean) {
+            told.push(gmat_start(integrated).to_owned());
         }
+        if !self.members.iter().all(is_mean) {
+            told.push(format!(
+                "satellites of files start from their osculating state at the epoch; the theory of the states ({}) is \
+                 not that of GMAT, which differs from it afterwards",
+                metadata.theory
+            ));
+        }
+        told.extend(GMAT_ASSUMPTIONS.map(str::to_owned));
         Ok(vec![script.assuming(told), field])
     }
 
@@ -353,25 +357,24 @@ fn in_scenario(name: &str) -> String {
     format!("{STK_SCENARIO_DIRECTORY}{name}")
 }
 
-fn gmat_assumptions(model: Model) -> Vec<String> {
-    let start = match model {
+/// What the starting states of mean elements are.
+fn gmat_start(model: Model) -> &'static str {
+    match model {
         Model::TwoBody => "states follow from the elements around a point mass",
         _ => {
             "states are osculating: the mean elements with first-order short-period terms; GMAT's \
              trajectory includes those terms (some kilometres from secular J2) and drifts in-track by \
              the second order of J2, 1 to 3 km a day"
         }
-    };
-    vec![
-        start.to_owned(),
-        "mu, R and J2 are in navwalker-j2.cof, which must be in the same directory as the script"
-            .to_owned(),
-        "GMAT orients the field with its own precession, nutation and Earth-orientation data"
-            .to_owned(),
-        "the constellation alone: GMAT has no region, mask or PDOP, and the GNSS is left out"
-            .to_owned(),
-    ]
+    }
 }
+
+/// What holds for every script.
+const GMAT_ASSUMPTIONS: [&str; 3] = [
+    "mu, R and J2 are in navwalker-j2.cof, which must be in the same directory as the script",
+    "GMAT orients the field with its own precession, nutation and Earth-orientation data",
+    "the constellation alone: GMAT has no region, mask or PDOP, and the GNSS is left out",
+];
 
 fn reason(why: NoAlmanac) -> &'static str {
     match why {

@@ -202,7 +202,7 @@ impl<'a> ExportSource<'a> {
         let of_files = || self.members.iter().filter(|member| member.slot.is_none());
         let theory = Theory::of_all(of_files().map(|member| self.theory(member)));
         Some(format!(
-            "{} of {} ({}: {}); their states are those of: {theory}",
+            "{} from {} ({}: {}); theory of their states: {theory}",
             counted(of_files().count(), "satellite"),
             files.names.join(", "),
             files.format(),

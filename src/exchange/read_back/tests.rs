@@ -191,7 +191,7 @@ fn planted_mistakes_fail() {
         .unwrap_err();
     assert_eq!(
         error.to_string(),
-        "11 satellites were read back; the design has 12"
+        "11 satellites were read back; the constellation has 12"
     );
 }
 

@@ -26,7 +26,12 @@ fn names_are_safe_in_a_path() {
     }
     for wrong in ["0", "340000", "-1", "1.5", "\"1\""] {
         let line = format!("first-catalog-number = {wrong}");
-        refuses("export", &line, "first-catalog-number", "1 to 339999");
+        refuses(
+            "export",
+            &line,
+            "first-catalog-number",
+            "an integer >= 1 and <= 339999",
+        );
     }
     refuses(
         "export",
