@@ -7,7 +7,9 @@ mod written;
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use navwalker::exchange::export::{Choices, ExportSubject, Product, Request, export};
+use navwalker::exchange::constellation::Constellation;
+use navwalker::exchange::export::{Choices, ExportSubject, Naming, Product};
+use navwalker::exchange::import::Fleet;
 use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
 use navwalker::orbit::Model;
@@ -105,9 +107,12 @@ fn names() -> impl Iterator<Item = &'static str> {
 fn subject() -> ExportSubject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
     ExportSubject {
-        design: format!("delta:55:{SATELLITES}/6/1@925")
-            .parse()
-            .expect(SOUND),
+        constellation: Constellation::of_design(
+            format!("delta:55:{SATELLITES}/6/1@925")
+                .parse()
+                .expect(SOUND),
+        ),
+        naming: Naming::default(),
         model: Model::J2,
         grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
         study: ExportedStudy {
@@ -155,7 +160,7 @@ fn write(bencher: Bencher, name: &str) {
         .bench_local(|| {
             let request = Request {
                 subject: &subject,
-                scene: None,
+                shown: None,
                 products: &[product],
                 choices,
             };

@@ -153,6 +153,11 @@ impl Ephemeris {
         &self.satellites
     }
 
+    /// The satellites, to give them other names or other states of the same orbits.
+    pub(crate) fn satellites_mut(&mut self) -> &mut [EphemerisSatellite] {
+        &mut self.satellites
+    }
+
     /// The whole shells among the satellites, in their order.
     #[must_use]
     pub fn shells(&self) -> &[ShellSpan] {
@@ -213,10 +218,13 @@ impl Ephemeris {
     }
 }
 
+/// What the names of a design's satellites begin with unless a scenario says otherwise.
+pub const NAME_PREFIX: &str = "NW";
+
 /// The name of the satellite in a slot of a design: `NW-P01-S01`, and `NW-A-P01-S01` in one of several shells.
 #[must_use]
 pub fn object_name(slot: Slot) -> String {
-    format!("NW-{slot}")
+    format!("{NAME_PREFIX}-{slot}")
 }
 
 #[cfg(test)]

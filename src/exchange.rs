@@ -2,10 +2,13 @@
 //! read back, and files checked against their standards.
 
 pub mod constellation;
+mod element_sets;
 pub mod export;
+mod identities;
 pub mod import;
 pub mod lint;
 pub mod manifest;
+mod members;
 pub mod read_back;
 pub mod recognise;
 

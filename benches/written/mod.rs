@@ -37,7 +37,7 @@ pub(crate) fn files(
     let sink = |path: &str| Ok(Kept(&kept, path.to_owned(), Vec::new()));
     let request = Request {
         subject,
-        scene: None,
+        shown: None,
         products: &[product],
         choices,
     };

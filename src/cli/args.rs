@@ -1,6 +1,7 @@
 //! The arguments of the program.
 
 mod evaluate;
+mod export;
 mod member_pick;
 mod products;
 mod run_view;
@@ -8,21 +9,13 @@ mod satellites;
 mod scenario;
 
 pub(crate) use evaluate::EvaluateArgs;
+pub(crate) use export::ExportArgs;
 pub(crate) use member_pick::MemberPick;
 pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 
 use crate::cli::constellations::Named;
-use crate::constellation::Design;
-use crate::constellation::gnss::Preset;
-use crate::exchange::export::Product;
-use crate::formats::ccsds::{CcsdsVersion, oem, omm};
-use crate::formats::metadata::ElementChoice;
-use crate::formats::sp3::Sp3Version;
-use crate::formats::text::timestamp::TimeSystem;
-use crate::formats::trajectory::{frame_of_name, time_system_of_name};
-use crate::frames::Frame;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -105,7 +98,11 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
-    /// Export a design to files for other tools, with a manifest of what each file contains and loses.
+    /// Export a constellation to files for other tools, with a manifest of what each file contains and loses.
+    ///
+    /// The constellation is a design, a design of a run, or the satellites of files, which are converted: their
+    /// states by the theory of their format (SGP4 for element sets, interpolation for states), element sets to TLE
+    /// and OMM unchanged. What a product cannot express is an error.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
     #[command(verbatim_doc_comment, after_help = products::help())]
@@ -335,102 +332,6 @@ pub(crate) struct ReproduceArgs {
     /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: StudyFormat,
-}
-
-/// One design: given directly, or picked from a run.
-#[derive(Debug, Args)]
-#[group(required = false, multiple = true)]
-pub(crate) struct DesignArgs {
-    /// The design as `pattern:inclination:T/P/F@altitude[,e=E][,w=DEG]`, degrees and km.
-    #[arg(long, value_name = "NOTATION", conflicts_with = "run")]
-    pub(crate) design: Option<Design>,
-
-    /// Take the design, and the scenario, from the run in this directory.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) run: Option<PathBuf>,
-
-    /// Which design of the run: fuzzy, sum, topsis, knee, its index on the front, or its name in a run of
-    /// `evaluate`.
-    #[arg(long, value_name = "PICK", default_value = "fuzzy", requires = "run")]
-    pub(crate) pick: MemberPick,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    #[command(flatten)]
-    pub(crate) study: StudyArgs,
-
-    #[command(flatten)]
-    pub(crate) design: DesignArgs,
-
-    /// Products to write, separated by commas; listed below.
-    #[arg(
-        long = "as",
-        value_name = "PRODUCTS",
-        value_delimiter = ',',
-        required = true
-    )]
-    pub(crate) products: Vec<Product>,
-
-    /// Output directory, empty or new.
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-
-    /// Replace a directory that is not empty.
-    #[arg(long)]
-    pub(crate) force: bool,
-
-    /// Frame of OEM, OPM and STK states: EME2000, GCRF, ITRF, or TEME [default: EME2000].
-    #[arg(long, value_name = "FRAME", value_parser = frame_of_name)]
-    pub(crate) frame: Option<Frame>,
-
-    /// Time system of OEM and OPM: UTC, TAI, GPS, TT or BDT (BeiDou time).
-    #[arg(long, value_name = "SYSTEM", default_value = "UTC", value_parser = time_system_of_name)]
-    pub(crate) time_system: TimeSystem,
-
-    /// Syntax of OMM files: kvn, xml, json or csv.
-    #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
-    pub(crate) omm_syntax: omm::OmmSyntax,
-
-    /// Syntax of OEM files: kvn or xml.
-    #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
-    pub(crate) oem_syntax: oem::OemSyntax,
-
-    /// Combine the OEMs of all satellites in one XML file; needs `--oem-syntax xml`.
-    #[arg(long)]
-    pub(crate) oem_combined: bool,
-
-    /// How element sets are derived: kozai (from the J2 mean elements), fit (SGP4 fitted to the
-    /// trajectory by least squares), or kepler (Keplerian mean motion, a common mistake, for comparison).
-    #[arg(long, value_name = "THEORY", default_value = "kozai")]
-    pub(crate) tle_theory: ElementChoice,
-
-    /// Version of CCSDS messages: 2.0 or 3.0.
-    #[arg(long, value_name = "VERSION", default_value = "2.0")]
-    pub(crate) ccsds_version: CcsdsVersion,
-
-    /// Version of SP3: c or d.
-    #[arg(long, value_name = "VERSION", default_value = "d")]
-    pub(crate) sp3_version: Sp3Version,
-
-    /// Read every product back, evaluate the scenario with it, and print the difference from the
-    /// design; exit status 1 if it is more than the file's digits and theory explain.
-    #[arg(long)]
-    pub(crate) check: bool,
-
-    /// Creation date of CCSDS messages, such as 2025-01-01T00:00:00Z; the same as
-    /// `--set export.creation-date=...` [default: the epoch of the study].
-    #[arg(long, value_name = "UTC")]
-    pub(crate) creation_date: Option<String>,
-
-    /// Also write SP3 files of these nominal constellations, one file each, under gnss/:
-    /// beidou-3 (ids C01 ...), gps (G01 ...), galileo (E01 ...), glonass (R01 ...).
-    #[arg(long, value_name = "SYSTEMS", value_delimiter = ',')]
-    pub(crate) gnss: Vec<Preset>,
-
-    /// Letter of satellite identifiers in SP3.
-    #[arg(long, value_name = "LETTER", default_value = "L")]
-    pub(crate) sp3_letter: char,
 }
 
 /// Output format of a validation on stdout.

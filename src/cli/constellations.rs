@@ -6,6 +6,7 @@ use crate::cli::{coincidence, output, read_constellation, run};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{Constellation, FileSatellites};
+use crate::time::TimeGrid;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 
@@ -96,17 +97,21 @@ pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris>
     let ephemeris = one
         .ephemeris(setup.grid, setup.model)
         .with_context(|| format!("cannot propagate {}", one.name))?;
-    if let Some(files) = &one.files {
-        if let Some(stale) = files.fleet.stale(&one.name, setup.grid) {
-            output::warning(&stale.to_string());
-        }
-        for note in files.fleet.sampling_notes(setup.grid) {
-            output::warning(&note.to_string());
-        }
-    }
+    warn_of_files(one, setup.grid);
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     coincidence::warn_of_meetings(&one.name, &ephemeris);
     Ok(ephemeris)
+}
+
+/// Warns of old element sets and of interpolated states.
+pub(crate) fn warn_of_files(one: &Constellation, grid: TimeGrid) {
+    let Some(files) = &one.files else { return };
+    if let Some(stale) = files.fleet.stale(&one.name, grid) {
+        output::warning(&stale.to_string());
+    }
+    for note in files.fleet.sampling_notes(grid) {
+        output::warning(&note.to_string());
+    }
 }
 
 fn renamed(one: Constellation, given: &Named) -> Constellation {

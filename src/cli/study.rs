@@ -1,7 +1,7 @@
 //! From the command line to a scenario and its inputs.
 
-use crate::cli::args::{DesignArgs, StudyArgs};
-use crate::cli::{files, limits, output, run};
+use crate::cli::args::StudyArgs;
+use crate::cli::{files, limits, output};
 use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Setup};
 use crate::exchange::constellation::Constellation;
@@ -12,7 +12,7 @@ use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
 use crate::scenario::{
     Algorithm, KeyDifference, NamedConstellation, Region, Scenario, SetupError, builtin,
 };
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use std::cell::OnceCell;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -314,23 +314,4 @@ fn read_scenario(name: &str) -> Result<(Vec<u8>, PathBuf)> {
         files::read_whole(path).with_context(|| format!("cannot read the scenario {name}"))?;
     let directory = path.parent().map_or_else(PathBuf::new, Path::to_owned);
     Ok((bytes, directory))
-}
-
-/// The study and the design that a command works on.
-pub(crate) fn study_and_design(study: &StudyArgs, design: &DesignArgs) -> Result<(Study, Design)> {
-    if let Some(directory) = &design.run {
-        if let Some(name) = &study.scenario {
-            bail!("a run has its own scenario; omit '{name}' or --run");
-        }
-        let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, &design.pick)?;
-        output::hint(&format!("{picked} of {}: {why}", directory.display()));
-        return Ok((loaded, picked));
-    }
-    let loaded = Study::load(study, &[])?;
-    let design = match &design.design {
-        Some(design) => design.clone(),
-        None => loaded.reference_design()?,
-    };
-    Ok((loaded, design))
 }

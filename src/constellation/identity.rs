@@ -52,6 +52,24 @@ impl ObjectIdentity {
         )
     }
 
+    /// The catalogue number, if given.
+    #[must_use]
+    pub fn catalogue_number(&self) -> Option<u64> {
+        self.catalogue_number
+    }
+
+    /// The international designator, if given.
+    #[must_use]
+    pub fn designator(&self) -> Option<&str> {
+        self.designator.as_deref()
+    }
+
+    /// The name, if given.
+    #[must_use]
+    pub fn name(&self) -> Option<&str> {
+        self.name.as_deref()
+    }
+
     /// Whether both refer to the same object.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {

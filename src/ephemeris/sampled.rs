@@ -64,6 +64,20 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
         Ok(FromTeme::to(self.frame, self.grid().epoch(), elapsed_s).apply(teme))
     }
 
+    /// The state of a satellite that may have none at an instant, as outside the span of its file.
+    ///
+    /// # Errors
+    /// Names the satellite whose propagation fails.
+    pub fn state_or_gap(
+        &self,
+        satellite: &EphemerisSatellite,
+        elapsed_s: f64,
+    ) -> Result<Option<State<F>>, EphemerisError> {
+        let teme = self.ephemeris.state_or_gap(satellite, elapsed_s)?;
+        let rotation = || FromTeme::to(self.frame, self.grid().epoch(), elapsed_s);
+        Ok(teme.map(|teme| rotation().apply(teme)))
+    }
+
     /// The TEME state of sample `k` in the frame.
     #[must_use]
     pub fn rotated(&self, k: usize, teme: State<Teme>) -> State<F> {

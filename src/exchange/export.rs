@@ -3,12 +3,16 @@
 mod products;
 mod scenario_products;
 mod scenes;
+mod sets;
 mod size;
 mod source;
 mod table;
 
-use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
+use crate::earth::Surface;
+use crate::ephemeris::EphemerisError;
+use crate::evaluate::Evaluator;
+use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::exchange::manifest::{
     ExportedStudy, FILE_NAME, FileEntry, HashingWriter, Loss, Manifest,
 };
@@ -20,12 +24,15 @@ use crate::formats::metadata::{ElementChoice, Metadata};
 use crate::formats::sp3;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
+use crate::ground::Grid;
 use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use source::ExportSource;
 use std::io::{self, BufWriter, Write};
+use thiserror::Error;
 
+pub use crate::exchange::identities::Naming;
 pub use size::{ExportSize, export_size};
 pub use table::{Product, ProductRow};
 
@@ -54,9 +61,11 @@ impl<W: Write, F: Fn(&str) -> io::Result<W> + Sync> Sink for F {
 /// The study that is exported.
 #[derive(Debug, Clone)]
 pub struct ExportSubject {
-    /// The design.
-    pub design: Design,
-    /// The model that propagates it.
+    /// The constellation.
+    pub constellation: Constellation,
+    /// How its satellites are called that have no names or numbers of their own.
+    pub naming: Naming,
+    /// The model that propagates its shells and mean elements.
     pub model: Model,
     /// The instants of sampled products; its epoch is that of the elements.
     pub grid: TimeGrid,
@@ -110,13 +119,51 @@ impl Default for Choices {
     }
 }
 
+/// The parts of a scenario that a constellation is shown in.
+#[derive(Clone, Copy)]
+pub struct ShownScenario<'a> {
+    /// Evaluates it.
+    pub evaluator: &'a Evaluator,
+    /// The surface that ground points lie on.
+    pub surface: Surface,
+    /// The region, unless its points are a list.
+    pub grid: Option<Grid>,
+}
+
+/// Why there is no export.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The constellation cannot be propagated.
+    #[error(transparent)]
+    Constellation(#[from] ConstellationError),
+    /// A satellite whose file does not cover the study.
+    #[error(
+        "{name} has no state at {at}: leave it out with --exclude, or export a span that its file covers"
+    )]
+    Gap {
+        /// The satellite.
+        name: String,
+        /// The first instant without a state.
+        at: Epoch,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl From<EphemerisError> for ExportError {
+    fn from(error: EphemerisError) -> Self {
+        Self::Write(error.into())
+    }
+}
+
 /// The request for an export.
 #[derive(Clone, Copy)]
 pub struct Request<'a> {
     /// The study.
     pub subject: &'a ExportSubject,
-    /// The scenario of the design, for the products that show it.
-    pub scene: Option<&'a Scene<'a>>,
+    /// The scenario around the constellation, for the products that show it.
+    pub shown: Option<ShownScenario<'a>>,
     /// The products, in the order in which they are written.
     pub products: &'a [Product],
     /// Their options.
@@ -126,14 +173,28 @@ pub struct Request<'a> {
 /// Writes the products and then the manifest, which it also returns.
 ///
 /// # Errors
-/// If a satellite cannot be propagated or named, an element or the scenario cannot be expressed in
-/// a format, a file cannot be written, or a product needs the scenario.
-pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, WriteError> {
+/// If a satellite cannot be propagated or named, an element, the constellation or the scenario cannot be expressed
+/// in a format, a file cannot be written, or a product needs the scenario. What a product cannot express is an error
+/// before anything is written.
+pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, ExportError> {
     let source = ExportSource::new(request.subject, request.choices)?;
+    for product in request.products {
+        source.require_expressible(*product)?;
+    }
+    let shown = request.shown.map(|shown| source.scene(shown));
+    Ok(write(&source, request.products, shown.as_ref(), sink)?)
+}
+
+fn write(
+    source: &ExportSource<'_>,
+    products: &[Product],
+    scene: Option<&Scene<'_>>,
+    sink: &impl Sink,
+) -> Result<Manifest, WriteError> {
     let files = Files { sink };
     let mut entries = Vec::new();
-    for product in request.products {
-        entries.extend(product.write(&source, &files, request.scene)?);
+    for product in products {
+        entries.extend(product.write(source, &files, scene)?);
     }
     let manifest = source.manifest(entries);
     let mut out = BufWriter::new(sink.create(FILE_NAME)?);

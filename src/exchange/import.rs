@@ -14,6 +14,7 @@ mod sampling;
 
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
+pub(crate) use propagation::interpolated;
 pub use sampling::SamplingNote;
 
 use crate::ephemeris::arc::{Arc, Interpolation};
@@ -232,7 +233,9 @@ impl Fleet {
                 name: name.to_owned(),
                 // Ids start again in each file: across files only names distinguish satellites.
                 id: name.to_owned(),
-                arcs: arcs.ok_or_else(|| ReadFleetError::NoVelocity { name: printable(id).into_owned() })?,
+                arcs: arcs.ok_or_else(|| ReadFleetError::NoVelocity {
+                    name: printable(id).into_owned(),
+                })?,
             });
         }
         Ok(Self::Sampled(trajectories))

@@ -25,8 +25,15 @@ pub struct Manifest {
     pub version: String,
     /// The study.
     pub scenario: ExportedStudy,
-    /// The design, in Walker's notation.
-    pub design: String,
+    /// The design, in Walker's notation; none for satellites from files alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design: Option<String>,
+    /// Name of the constellation, unless it is a design.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub constellation: Option<String>,
+    /// Where satellites come from that are not of the design, and by which theory their states are made.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub converted: Option<String>,
     /// First instant, UTC.
     pub epoch: String,
     /// Spacing of the samples, s.
@@ -139,7 +146,7 @@ pub struct Loss {
 }
 
 impl FileEntry {
-    /// Whether the file is of the design, not of a GNSS.
+    /// Whether the file is of the constellation, not of a GNSS.
     #[must_use]
     pub fn is_of_design(&self) -> bool {
         !self.path.starts_with(GNSS_DIRECTORY)

@@ -1,7 +1,7 @@
 //! Products of an export, read back and evaluated again under the scenario.
 //!
-//! A file is compared with the design under the theory of the file: states and mean elements with the
-//! propagated design, element sets with SGP4 from the unrounded sets. Only the digits of a format can
+//! A file is compared with the constellation under the theory of the file: states and mean elements with the
+//! propagated constellation, element sets with SGP4 from the unrounded sets. Only the digits of a format can
 //! therefore cause a difference, and the gates follow from them; the distance between SGP4 and the model
 //! of the study is reported separately. A satellite displaced by d km moves its footprint by as much; at
 //! 400 km the footprint's radius is 1600 km and its relative area changes by less than d/500 km, which
@@ -9,14 +9,15 @@
 
 pub(crate) mod gates;
 
-use crate::constellation::{Design, Satellite, Shell};
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
+use crate::exchange::constellation::{Constellation, ConstellationError};
+use crate::exchange::element_sets::ElementSetRule;
+use crate::exchange::identities::Naming;
 use crate::exchange::import::{Fleet, FleetError};
-use crate::formats::element_set;
+use crate::exchange::members::{Member, Origin};
 use crate::formats::metadata::{ElementChoice, IdentityError, Object};
 use crate::orbit::Model;
-use crate::orbit::j2::SecularOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::time::Epoch;
 use gates::Extent;
@@ -48,15 +49,18 @@ pub enum RecheckError {
     /// A satellite has no state.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
+    /// The constellation cannot be propagated.
+    #[error(transparent)]
+    Constellation(#[from] ConstellationError),
     /// A satellite cannot be named.
     #[error(transparent)]
     Identity(#[from] IdentityError),
-    /// The satellites are not those of the design.
-    #[error("{found} satellites were read back; the design has {expected}")]
+    /// The satellites are not those of the constellation.
+    #[error("{found} satellites were read back; the constellation has {expected}")]
     Satellites {
         /// In the file.
         found: usize,
-        /// In the design.
+        /// In the constellation.
         expected: usize,
     },
 }
@@ -64,7 +68,7 @@ pub enum RecheckError {
 /// A difference and the bound on its magnitude; without a bound it is only reported.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference {
-    /// File minus design.
+    /// File minus constellation.
     pub value: f64,
     /// Bound on its magnitude.
     pub gate: Option<f64>,
@@ -78,12 +82,12 @@ impl Difference {
     }
 }
 
-/// The comparison of a product with the design.
+/// The comparison of a product with the constellation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Recheck {
     /// Largest distance of a satellite from its position under the theory of the file, km.
     pub position_km: Difference,
-    /// Largest distance between the theory of the file and the propagated design, km; none where they
+    /// Largest distance between the theory of the file and the propagated constellation, km; none where they
     /// are the same.
     pub theory_km: Option<f64>,
     /// Mean visible.
@@ -102,10 +106,10 @@ impl Recheck {
     }
 }
 
-/// The design that products are checked against.
+/// The constellation that products are checked against.
 pub struct Original<'a> {
     evaluator: &'a Evaluator,
-    design: Design,
+    members: Vec<Member<'a>>,
     propagated: Rescored,
 }
 
@@ -116,59 +120,67 @@ struct Rescored {
 }
 
 impl<'a> Original<'a> {
-    /// Evaluates the design.
+    /// Evaluates the constellation.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
-    pub fn new(evaluator: &'a Evaluator, design: &Design) -> Result<Self, EphemerisError> {
+    pub fn new(
+        evaluator: &'a Evaluator,
+        constellation: &'a Constellation,
+    ) -> Result<Self, RecheckError> {
         let setup = evaluator.setup();
+        let ephemeris = constellation.ephemeris(setup.grid, setup.model)?;
         Ok(Self {
             evaluator,
-            design: design.clone(),
+            members: constellation.members(setup.grid.epoch()),
             propagated: Rescored {
-                ephemeris: Ephemeris::of_design(design, setup.model, setup.grid)?,
-                metrics: evaluator.evaluate(design)?,
+                metrics: evaluator.evaluate_ephemeris(&ephemeris)?,
+                ephemeris,
             },
         })
     }
 
-    /// The design propagated by SGP4 from its unrounded element sets at `epoch`.
-    fn by_sgp4(&self, epoch: Epoch) -> Result<Rescored, RecheckError> {
-        let grid = self.evaluator.setup().grid;
-        let since_s = epoch.seconds_since(grid.epoch());
-        let satellites = self.propagated.ephemeris.satellites();
-        let objects = Object::all(satellites, grid.epoch())?;
-        let propagate =
-            |((satellite, object), propagated): ((&Satellite, &Object), &EphemerisSatellite)| {
-                let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
-                let set = element_set(&elements, object, epoch, MeanMotionSlot::Kozai);
-                let orbit = Sgp4Orbit::from_element_set(&set, grid.epoch());
-                Ok(EphemerisSatellite {
-                    name: propagated.name.clone(),
-                    slot: propagated.slot,
-                    propagator: Box::new(orbit.map_err(|source| EphemerisError {
-                        name: propagated.name.clone(),
-                        source,
-                    })?),
-                })
-            };
-        let of_design = self.design.satellites();
-        let propagated = of_design
-            .iter()
-            .zip(&objects)
-            .zip(satellites)
-            .map(propagate);
+    /// The constellation propagated by SGP4 from its unrounded element sets; none if a satellite has none.
+    fn by_sgp4(&self, rounding: fn(Epoch) -> Epoch) -> Result<Option<Rescored>, RecheckError> {
+        let setup = self.evaluator.setup();
+        let grid = setup.grid;
+        let rule = ElementSetRule {
+            model: setup.model,
+            epoch: grid.epoch(),
+            slot: MeanMotionSlot::Kozai,
+            rounding,
+        };
+        // Names make no difference to an orbit.
+        let objects = Naming::default().objects(&self.members, grid.epoch())?;
+        let sets = self.members.iter().zip(&objects);
+        let sets = sets.map(|(member, object): (&Member<'_>, &Object)| rule.set(member, object));
+        let Some(sets) = sets.collect::<Option<Vec<_>>>() else {
+            return Ok(None);
+        };
+        let propagate = |(set, known): (&sgp4::Elements, &EphemerisSatellite)| {
+            let orbit = Sgp4Orbit::from_element_set(set, grid.epoch());
+            Ok(EphemerisSatellite {
+                name: known.name.clone(),
+                slot: known.slot,
+                propagator: Box::new(orbit.map_err(|source| EphemerisError {
+                    name: known.name.clone(),
+                    source,
+                })?),
+            })
+        };
+        let known = self.propagated.ephemeris.satellites();
+        let propagated = sets.iter().zip(known).map(propagate);
         let ephemeris = Ephemeris::new(grid, propagated.collect::<Result<_, EphemerisError>>()?);
         let metrics = self.evaluator.evaluate_ephemeris(&ephemeris)?;
-        Ok(Rescored { ephemeris, metrics })
+        Ok(Some(Rescored { ephemeris, metrics }))
     }
 
-    /// Propagates what was read back and compares it; satellites are in the order of the design.
+    /// Propagates what was read back and compares it; satellites are in the order of the constellation.
     /// `product` gives the digits and theory of the files, `sets` how their element sets, if any, are
     /// derived.
     ///
     /// # Errors
-    /// If the satellites do not propagate the study, or are not those of the design.
+    /// If the satellites do not propagate the study, or are not those of the constellation.
     pub fn check(
         &self,
         product: &ReadBack,
@@ -180,16 +192,17 @@ impl<'a> Original<'a> {
         if found != expected {
             return Err(RecheckError::Satellites { found, expected });
         }
-        // A fitted set follows the propagated design, not the one that it started from.
-        let epoch = match sets {
+        // A fitted set follows the propagated orbit, not the one that it started from.
+        let rounding = match sets {
             ElementChoice::Fit => None,
-            _ => product.theory.epoch_of_sets(setup.grid.epoch()),
+            _ => product.theory.rounding_of_sets(),
         };
-        let by_sgp4 = epoch.map(|epoch| self.by_sgp4(epoch)).transpose()?;
+        let by_sgp4 = rounding.map(|rounding| self.by_sgp4(rounding));
+        let by_sgp4 = by_sgp4.transpose()?.flatten();
         let reference = by_sgp4.as_ref().unwrap_or(&self.propagated);
         let read_back = fleet.propagate(setup.grid, setup.model)?;
         let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
-        let gate_km = self.position_gate_km(product, sets);
+        let gate_km = self.position_gate_km(product, sets)?;
         let relative = gate_km.map(|km| km / SCALE_KM);
         let flips = FLIPS / setup.sample_count() as f64;
         let of = |value: f64| relative.map(|relative| value * relative + flips);
@@ -218,30 +231,40 @@ impl<'a> Original<'a> {
 
     /// How far the satellites of a product may be from their positions under its theory, km; none for
     /// sets fitted to a theory that SGP4 does not approximate.
-    fn position_gate_km(&self, product: &ReadBack, sets: ElementChoice) -> Option<f64> {
-        let extent = Extent::new(&self.design, self.evaluator.setup().grid);
+    fn position_gate_km(
+        &self,
+        product: &ReadBack,
+        sets: ElementChoice,
+    ) -> Result<Option<f64>, EphemerisError> {
+        let extent = Extent::new(&self.members, &self.propagated.ephemeris)?;
         let digits_km = (product.digits_km)(extent);
-        match product.theory {
+        Ok(match product.theory {
             ReadBackTheory::Study => Some(digits_km),
             ReadBackTheory::Sgp4 | ReadBackTheory::Sgp4OfTle => {
                 let theory_km = self.theory_gate_km(sets, extent.days);
                 theory_km.map(|km| km + digits_km)
             }
-        }
+        })
     }
 
-    /// How far SGP4 may take element sets from the trajectory they are compared with, km.
+    /// How far SGP4 may take element sets from the trajectory they are compared with, km; none where there is no
+    /// bound, as for states whose forces are not known.
     fn theory_gate_km(&self, sets: ElementChoice, days: f64) -> Option<f64> {
-        match (sets, self.evaluator.setup().model) {
-            (ElementChoice::Kozai | ElementChoice::Kepler, _) => Some(0.0),
-            (ElementChoice::Fit, Model::Sgp4) => Some(0.0),
-            (ElementChoice::Fit, Model::J2 | Model::J2Osculating) => {
-                let largest = self.design.shells().iter().map(Shell::eccentricity);
-                let eccentric = 1.0 + 8.0 * largest.fold(0.0, f64::max);
+        if sets != ElementChoice::Fit {
+            return Some(0.0);
+        }
+        let gate_km = |member: &Member<'_>| match (&member.origin, self.evaluator.setup().model) {
+            (Origin::Set(_), _) | (Origin::Mean { .. }, Model::Sgp4) => Some(0.0),
+            (Origin::Mean { elements, .. }, Model::J2 | Model::J2Osculating) => {
+                let eccentric = 1.0 + 8.0 * elements.eccentricity;
                 Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
             }
-            (ElementChoice::Fit, Model::TwoBody) => None,
-        }
+            (Origin::Mean { .. }, Model::TwoBody) | (Origin::Sampled(_) | Origin::Almanac, _) => {
+                None
+            }
+        };
+        let gates: Option<Vec<f64>> = self.members.iter().map(gate_km).collect();
+        Some(gates?.into_iter().fold(0.0, f64::max))
     }
 }
 

@@ -1,5 +1,6 @@
 //! Tests of every reader: damaged files, and files as other programs write them.
 
+mod constellations;
 mod foreign;
 mod hostile;
 mod kinds;

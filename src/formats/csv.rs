@@ -9,13 +9,14 @@ mod table;
 pub use read::{ElementsRow, parse_elements, parse_states, read_elements, read_states};
 pub(super) use table::CsvTable;
 
-use crate::constellation::Satellite;
+use crate::constellation::{Slot, shell_letters};
 use crate::ephemeris::Ephemeris;
 use crate::ephemeris::sampled::Sampled;
 use crate::formats::WriteError;
 use crate::formats::metadata::Object;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::{EarthFixed, State};
+use crate::orbit::MeanElements;
 use crate::orbit::sgp4::MeanMotionSlot;
 use crate::time::Epoch;
 use serde::Serialize;
@@ -33,13 +34,14 @@ pub fn write_records(out: &mut impl Write, rows: &[impl Serialize]) -> io::Resul
     writer.flush()
 }
 
+/// Columns of the table of elements before the place of a satellite.
+const OBJECT: [&str; 3] = ["object", "object_id", "catalog_number"];
+
+/// Columns of the place of a satellite in a design; without the first if the design has one shell.
+const PLACE: [&str; 3] = ["shell", "plane", "slot"];
+
 /// Columns of the table of elements: mean elements at the epoch, in TEME.
-const ELEMENTS: [&str; 14] = [
-    "object",
-    "object_id",
-    "catalog_number",
-    "plane",
-    "slot",
+const ELEMENTS: [&str; 9] = [
     "epoch_utc",
     "semi_major_axis_km",
     "eccentricity",
@@ -70,21 +72,39 @@ const STATES: [&str; 15] = [
     "itrf_vz_km_s",
 ];
 
-/// Writes the mean elements of a design, all digits.
+/// A row of the table of elements.
+#[derive(Debug, Clone, Copy)]
+pub struct ElementsOf<'a> {
+    /// Place in a design.
+    pub slot: Option<Slot>,
+    /// Mean elements, TEME.
+    pub elements: MeanElements,
+    /// Identity.
+    pub object: &'a Object,
+}
+
+/// Writes mean elements at an epoch, all digits; with the letters of shells if there are several.
 ///
 /// # Errors
 /// If writing fails.
-pub fn write_elements<'a>(
+pub fn write_elements(
     out: &mut impl Write,
-    satellites: impl Iterator<Item = (&'a Satellite, &'a Object)>,
+    satellites: &[ElementsOf<'_>],
     epoch: Epoch,
 ) -> Result<(), WriteError> {
+    let has_shells = |one: &ElementsOf<'_>| one.slot.is_some_and(|slot| slot.shell.is_some());
+    let place = usize::from(!satellites.iter().any(has_shells));
     let mut table = ::csv::Writer::from_writer(out);
-    table.write_record(ELEMENTS).map_err(io_error)?;
+    let header = OBJECT.iter().chain(&PLACE[place..]).chain(&ELEMENTS);
+    table.write_record(header).map_err(io_error)?;
     let stamp = epoch.utc().naive_utc();
     let stamp = calendar(stamp, SecondDigits::of_stamp(stamp));
-    for (satellite, object) in satellites {
-        let elements = &satellite.elements;
+    for ElementsOf {
+        slot,
+        elements,
+        object,
+    } in satellites
+    {
         let numbers = [
             elements.semi_major_axis_km,
             elements.eccentricity,
@@ -99,15 +119,22 @@ pub fn write_elements<'a>(
             object.name.clone(),
             object.id.clone(),
             object.catalog_number.number().to_string(),
-            (satellite.slot.plane + 1).to_string(),
-            (satellite.slot.index + 1).to_string(),
-            stamp.clone(),
         ];
+        row.extend(place_of(*slot).into_iter().skip(place));
+        row.push(stamp.clone());
         row.extend(numbers.map(|number| number.to_string()));
         table.write_record(&row).map_err(io_error)?;
     }
     table.flush()?;
     Ok(())
+}
+
+/// Shell, plane and place in it, from 1; empty outside a design.
+fn place_of(slot: Option<Slot>) -> [String; 3] {
+    let shell = slot.and_then(|slot| slot.shell).map(shell_letters);
+    let plane = slot.map(|slot| (slot.plane + 1).to_string());
+    let index = slot.map(|slot| (slot.index + 1).to_string());
+    [shell, plane, index].map(Option::unwrap_or_default)
 }
 
 /// Writes the states of an ephemeris, satellite by satellite.

@@ -9,12 +9,11 @@
 //! short-period terms, in `EarthMJ2000Eq`. Its trajectory differs from secular J2 by those
 //! terms and by an in-track drift of second order in J2, 1 to 3 km a day.
 
-use crate::constellation::Satellite;
 use crate::earth::{J2, MU_KM3_S2, RADIUS_KM};
 use crate::frames::{Eme2000, State, from_teme};
-use crate::orbit::Model;
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::osculating::OsculatingOrbit;
+use crate::orbit::{MeanElements, Model};
 use crate::time::{Epoch, TimeGrid};
 use chrono::{Datelike, Timelike};
 use std::io::{self, Write};
@@ -31,11 +30,15 @@ pub const REPORT_NAME: &str = "gmat-report.txt";
 /// Digits of states: a micrometre.
 const DIGITS: usize = 9;
 
-/// What an object of a script is called: letters, digits and underscores.
+/// What an object of a script is called: letters, digits and underscores, a letter first.
 #[must_use]
 pub fn script_name(name: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-    name.chars().map(plain).collect()
+    let text: String = name.chars().map(plain).collect();
+    match text.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        true => text,
+        false => format!("S{text}"),
+    }
 }
 
 /// An instant as GMAT writes it in UTC, to a millisecond; none if that would round it.
@@ -83,16 +86,25 @@ fn exponent(value: f64, digits: usize) -> String {
     format!("{mantissa}e{sign}{:02}", power.abs())
 }
 
-/// The starting state of a satellite: osculating under J2.
+/// The starting state of mean elements at the epoch: osculating under J2.
 #[must_use]
-pub fn start(satellite: &Satellite, model: Model, epoch: Epoch) -> State<Eme2000> {
+pub fn start(elements: &MeanElements, model: Model, epoch: Epoch) -> State<Eme2000> {
     let teme = match model {
-        Model::TwoBody => SecularOrbit::two_body(&satellite.elements).state(0.0),
-        Model::J2 | Model::J2Osculating | Model::Sgp4 => {
-            OsculatingOrbit::new(&satellite.elements).state(0.0)
-        }
+        Model::TwoBody => SecularOrbit::two_body(elements).state(0.0),
+        Model::J2 | Model::J2Osculating | Model::Sgp4 => OsculatingOrbit::new(elements).state(0.0),
     };
     from_teme(teme, Eme2000, epoch, 0.0)
+}
+
+/// A spacecraft of a script.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spacecraft {
+    /// Its name, as [`script_name`] gives it.
+    pub name: String,
+    /// Its osculating state at the epoch.
+    pub state: State<Eme2000>,
+    /// The colour of its orbit, if it is not GMAT's own choice.
+    pub colour: Option<[u8; 3]>,
 }
 
 /// Writes the script; `start_text` is the epoch as [`calendar`] gives it.
@@ -102,7 +114,7 @@ pub fn start(satellite: &Satellite, model: Model, epoch: Epoch) -> State<Eme2000
 pub fn write_script(
     out: &mut impl Write,
     comments: &[String],
-    satellites: &[(String, Satellite)],
+    satellites: &[Spacecraft],
     model: Model,
     grid: TimeGrid,
     start_text: &str,
@@ -110,9 +122,8 @@ pub fn write_script(
     for comment in comments {
         writeln!(out, "% {comment}")?;
     }
-    for (name, satellite) in satellites {
-        let state = start(satellite, model, grid.epoch());
-        spacecraft(out, name, start_text, &state)?;
+    for satellite in satellites {
+        spacecraft(out, satellite, start_text)?;
     }
     write_propagation(out, model)?;
     writeln!(out, "\nCreate ReportFile Report1")?;
@@ -126,7 +137,7 @@ pub fn write_script(
     report(out, satellites)?;
     if grid.len() > 1 {
         writeln!(out, "For Sample = 1:1:{}", grid.len() - 1)?;
-        let all: Vec<&str> = satellites.iter().map(|(name, _)| name.as_str()).collect();
+        let all: Vec<&str> = satellites.iter().map(|one| one.name.as_str()).collect();
         if let Some(first) = all.first() {
             writeln!(
                 out,
@@ -141,12 +152,12 @@ pub fn write_script(
     Ok(())
 }
 
-fn spacecraft(
-    out: &mut impl Write,
-    name: &str,
-    start: &str,
-    state: &State<Eme2000>,
-) -> io::Result<()> {
+fn spacecraft(out: &mut impl Write, satellite: &Spacecraft, start: &str) -> io::Result<()> {
+    let Spacecraft {
+        name,
+        state,
+        colour,
+    } = satellite;
     writeln!(out, "\nCreate Spacecraft {name}")?;
     writeln!(out, "{name}.DateFormat = UTCGregorian")?;
     writeln!(out, "{name}.Epoch = '{start}'")?;
@@ -165,6 +176,9 @@ fn spacecraft(
         // Three digits more for the velocity: its error grows with the day.
         let digits = if key.len() > 1 { DIGITS + 3 } else { DIGITS };
         writeln!(out, "{name}.{key} = {value:.digits$}")?;
+    }
+    if let Some([red, green, blue]) = colour {
+        writeln!(out, "{name}.OrbitColor = [{red} {green} {blue}]")?;
     }
     Ok(())
 }
@@ -202,9 +216,9 @@ fn write_propagation(out: &mut impl Write, model: Model) -> io::Result<()> {
     Ok(())
 }
 
-fn report(out: &mut impl Write, satellites: &[(String, Satellite)]) -> io::Result<()> {
+fn report(out: &mut impl Write, satellites: &[Spacecraft]) -> io::Result<()> {
     write!(out, "Report Report1 Elapsed")?;
-    for (name, _) in satellites {
+    for Spacecraft { name, .. } in satellites {
         for axis in ["X", "Y", "Z"] {
             write!(out, " {name}.EarthMJ2000Eq.{axis}")?;
         }
@@ -245,9 +259,13 @@ mod tests {
     #[test]
     fn the_script_propagates_all_satellites() {
         let design: Design = "delta:55:4/2/1@925".parse().unwrap();
-        let name = |one: Satellite| (script_name(&format!("NW-{}", one.slot)), one);
-        let satellites: Vec<_> = design.satellites().into_iter().map(name).collect();
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let spacecraft = |one: crate::constellation::Satellite| Spacecraft {
+            name: script_name(&format!("NW-{}", one.slot)),
+            state: start(&one.elements, Model::J2, epoch),
+            colour: (one.slot.plane == 1).then_some([255, 128, 0]),
+        };
+        let satellites: Vec<_> = design.satellites().into_iter().map(spacecraft).collect();
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         let mut bytes = Vec::new();
         let start = "01 Jan 2025 00:00:00.000";
@@ -255,6 +273,8 @@ mod tests {
         write_script(&mut bytes, &comments, &satellites, Model::J2, grid, start).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         assert_eq!(text.matches("Create Spacecraft").count(), 4);
+        assert_eq!(text.matches(".OrbitColor = [255 128 0]\n").count(), 2);
+        assert!(text.contains("\nNW_P02_S01.OrbitColor"));
         assert!(text.contains("For Sample = 1:1:9"));
         let fleet =
             "J2Prop(NW_P01_S01, NW_P01_S02, NW_P02_S01, NW_P02_S02) {NW_P01_S01.ElapsedSecs = 60}";

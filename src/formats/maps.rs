@@ -3,5 +3,6 @@
 pub mod czml;
 pub mod geojson;
 pub mod kml;
+pub(crate) mod palette;
 pub mod scene;
 pub mod tracks;

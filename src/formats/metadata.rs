@@ -30,11 +30,17 @@ pub enum IdentityError {
         "'{0}' is not a catalogue number; Alpha-5 is a digit or a letter (not I or O) and four digits"
     )]
     Alpha5(String),
-    /// More satellites than synthetic designators.
-    #[error("satellite {index} has no designator: only {} exist", Object::MOST)]
-    Designator {
-        /// Place of the satellite in its constellation, from 0.
-        index: usize,
+    /// Fewer catalogue numbers than satellites.
+    #[error(
+        "export.first-catalog-number: from {first} on there are too few numbers for {satellites} satellites; \
+         the last of Alpha-5 is {}",
+        CatalogNumber::LAST
+    )]
+    TooFewNumbers {
+        /// The first number.
+        first: u32,
+        /// Satellites that need a number.
+        satellites: usize,
     },
 }
 
@@ -52,7 +58,7 @@ impl CatalogNumber {
     /// The last number that Alpha-5 can write: `Z9999`.
     pub const LAST: u32 = 339_999;
 
-    /// The first number that designs are given.
+    /// The first number that designs are given unless the scenario says otherwise.
     pub const FIRST_OF_DESIGNS: u32 = 90_001;
 
     /// The number, if a TLE can hold it.
@@ -122,30 +128,32 @@ pub struct Object {
 }
 
 impl Object {
-    /// Number of satellites that one constellation can hold: ten launches of as many pieces
-    /// as one to three letters name.
-    pub const MOST: usize = LAUNCHES * PIECES;
-
-    /// The satellite at place `index` (from 0) of its constellation.
-    ///
-    /// The catalogue number counts from 90001. The designator is synthetic and unique: the year
-    /// of `epoch`, launches from 900, which no year has reached, and pieces A to ZZZ
-    /// without I and O. The same place has the same identity in every export.
+    /// The satellite at place `index` (from 0) of a design, numbered from 90001.
     ///
     /// # Errors
-    /// If the formats cannot tell so many satellites apart.
+    /// If the number is past Alpha-5.
     pub fn numbered(name: &str, index: usize, epoch: Epoch) -> Result<Self, IdentityError> {
-        if index >= Self::MOST {
-            return Err(IdentityError::Designator { index });
-        }
-        let number = CatalogNumber::FIRST_OF_DESIGNS + index as u32;
-        let launch = FIRST_LAUNCH + index / PIECES;
-        let piece = piece_letters(index % PIECES);
-        Ok(Self {
+        let number = u32::try_from(index).unwrap_or(u32::MAX);
+        let number = CatalogNumber::FIRST_OF_DESIGNS.saturating_add(number);
+        Ok(Self::synthetic(name, CatalogNumber::new(number)?, epoch))
+    }
+
+    /// A satellite with a number and nothing else of its own.
+    ///
+    /// The designator follows from the number, so that it is as unique: the year of `epoch`, launches from
+    /// 900, which no year has reached, and pieces A to ZZZ without I and O; 90001 is 900A. The same number has the
+    /// same designator in every export.
+    #[must_use]
+    pub fn synthetic(name: &str, number: CatalogNumber, epoch: Epoch) -> Self {
+        let numbers = CatalogNumber::LAST + 1;
+        let place = (number.number() + numbers - CatalogNumber::FIRST_OF_DESIGNS) % numbers;
+        let launch = FIRST_LAUNCH + place as usize / PIECES;
+        let piece = piece_letters(place as usize % PIECES);
+        Self {
             name: name.to_owned(),
-            catalog_number: CatalogNumber::new(number)?,
+            catalog_number: number,
             id: format!("{:04}-{launch:03}{piece}", epoch.utc().year()),
-        })
+        }
     }
 
     /// The identities of satellites in their order.
@@ -164,11 +172,8 @@ impl Object {
     }
 }
 
-/// First launch number of the synthetic designators.
+/// First launch number of the synthetic designators; those of all catalogue numbers end at 923.
 const FIRST_LAUNCH: usize = 900;
-
-/// Launch numbers in use, from [`FIRST_LAUNCH`].
-const LAUNCHES: usize = 10;
 
 /// Pieces of a launch that one to three of 24 letters name.
 const PIECES: usize = 24 + 24 * 24 + 24 * 24 * 24;
@@ -198,28 +203,63 @@ keywords! {
 }
 
 /// What the numbers of a file were computed with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Theory {
     /// States of the propagation model of the scenario.
     EphemerisSatellite(Model),
     /// An SGP4 element set made from the design.
     Sgp4Elements(ElementChoice),
+    /// Element sets of another file, as they are.
+    SourceSets,
+    /// States by SGP4 from the element sets of another file.
+    Sgp4OfSource,
+    /// States of another file, interpolated.
+    Interpolated,
+    /// States from the almanac of another file.
+    Almanac,
+    /// Different ones for different satellites.
+    Several(Vec<Theory>),
+}
+
+impl Theory {
+    /// The theory of a file whose satellites have these.
+    #[must_use]
+    pub fn of_all(theories: impl IntoIterator<Item = Self>) -> Self {
+        let mut different: Vec<Self> = Vec::new();
+        for theory in theories {
+            if !different.contains(&theory) {
+                different.push(theory);
+            }
+        }
+        match different.len() {
+            1 => different.remove(0),
+            _ => Self::Several(different),
+        }
+    }
 }
 
 impl fmt::Display for Theory {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::EphemerisSatellite(model) => model.fmt(formatter),
+        formatter.pad(match self {
+            Self::EphemerisSatellite(model) => return model.fmt(formatter),
+            Self::Several(theories) => {
+                let texts: Vec<String> = theories.iter().map(Self::to_string).collect();
+                return formatter.pad(&texts.join("; "));
+            }
             Self::Sgp4Elements(ElementChoice::Kozai) => {
-                formatter.pad("SGP4 elements, Kozai mean motion dM/dt of secular J2")
+                "SGP4 elements, Kozai mean motion dM/dt of secular J2"
             }
             Self::Sgp4Elements(ElementChoice::Kepler) => {
-                formatter.pad("SGP4 elements, Kepler mean motion sqrt(mu/a^3) in the Kozai slot")
+                "SGP4 elements, Kepler mean motion sqrt(mu/a^3) in the Kozai slot"
             }
             Self::Sgp4Elements(ElementChoice::Fit) => {
-                formatter.pad("SGP4 elements fitted to the propagated trajectory")
+                "SGP4 elements fitted to the propagated trajectory"
             }
-        }
+            Self::SourceSets => "SGP4 elements of the source",
+            Self::Sgp4OfSource => "SGP4 from the elements of the source",
+            Self::Interpolated => "states of the source, interpolated",
+            Self::Almanac => "almanac of the source",
+        })
     }
 }
 
@@ -244,6 +284,8 @@ pub struct Metadata {
     pub subject: Vec<String>,
     /// A note on the frame: its distance from the frame that it is labelled as.
     pub frame_note: Option<String>,
+    /// Whether satellites come from other files, with identities of their own.
+    pub from_files: bool,
 }
 
 impl Metadata {
@@ -259,8 +301,16 @@ impl Metadata {
         ));
         lines.push(frame_comment(self.frame).to_owned());
         lines.extend(self.frame_note.clone());
-        lines.push("Simulated objects: OBJECT_ID and catalogue numbers are synthetic".to_owned());
+        lines.push(self.identities().to_owned());
         lines
+    }
+
+    fn identities(&self) -> &'static str {
+        if self.from_files {
+            "Identities: those of the source files, synthetic where these have none"
+        } else {
+            "Simulated objects: OBJECT_ID and catalogue numbers are synthetic"
+        }
     }
 }
 
@@ -388,7 +438,22 @@ mod tests {
         assert_eq!(numbers.len(), ids.len());
         assert!(ids.contains("2025-900A") && ids.contains("2025-900AA"));
         assert!(ids.contains("2025-901A"));
-        assert!(Object::numbered("NW", Object::MOST, epoch()).is_err());
+        assert!(Object::numbered("NW", 249_998, epoch()).is_ok());
+        assert!(Object::numbered("NW", 249_999, epoch()).is_err());
+    }
+
+    /// Every number that a TLE can hold has a designator of its own, which fits a TLE.
+    #[test]
+    fn designators_are_as_unique_as_numbers() {
+        let object = |number| Object::synthetic("A", CatalogNumber::new(number).unwrap(), epoch());
+        let ids: HashSet<String> = (0..=CatalogNumber::LAST).map(|n| object(n).id).collect();
+        assert_eq!(ids.len(), CatalogNumber::LAST as usize + 1);
+        assert_eq!(object(90_001).id, "2025-900A");
+        assert_eq!(
+            object(90_000).id.len(),
+            11,
+            "the last of them, in launch 923"
+        );
     }
 
     #[test]
@@ -402,6 +467,7 @@ mod tests {
                 theory: Theory::Sgp4Elements(ElementChoice::Kepler),
                 subject: vec!["Design: delta:55:182/13/1@925".to_owned()],
                 frame_note: None,
+                from_files: false,
             };
             for line in metadata.comments() {
                 assert!(line.len() <= 200 && line.bytes().all(|b| (b' '..=b'~').contains(&b)));

@@ -153,6 +153,11 @@ fn checksum(line: &[u8]) -> u32 {
     line.iter().map(value).sum::<u32>() % 10
 }
 
+/// Whether a TLE can hold an international designator.
+pub(crate) fn holds_designator(designator: &str) -> bool {
+    designator_field(Some(designator)).is_ok()
+}
+
 /// A name that begins with what marks a name line is marked itself.
 fn name_field(name: &str) -> Result<String, TleFieldError> {
     let printable = name.bytes().all(|byte| (b' '..=b'~').contains(&byte));

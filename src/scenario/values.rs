@@ -22,7 +22,9 @@ use chrono::{DateTime, Utc};
 use super::Algorithm;
 use super::keys::{key, section};
 use super::reader::Reader;
-use super::rule::{Constellations, Text, UtcInstant};
+use super::rule::{Constellations, Integer, Text, UtcInstant};
+use crate::ephemeris::NAME_PREFIX;
+use crate::formats::metadata::CatalogNumber;
 use crate::search::DesignSpace;
 
 /// Lets a duration that is an integer number of steps, up to rounding, end before
@@ -75,7 +77,7 @@ section! {
 }
 
 section! {
-    /// The origin stated in exported files.
+    /// The origin stated in exported files, and what their satellites are called.
     #[derive(Debug, Clone, PartialEq, Eq)]
     pub struct Export in "export" {
         /// Originator of exported files (CCSDS ORIGINATOR).
@@ -83,6 +85,12 @@ section! {
         /// Creation date of exported files (CCSDS CREATION_DATE); never the wall clock, so that the
         /// same run gives the same bytes.
         pub creation_date: DateTime<Utc> = UtcInstant, follows "time.epoch", example JANUARY_2025;
+        /// Beginning of the names of a design's satellites, as in `NW-P01-S01`; with another prefix and other
+        /// catalogue numbers, two exports can be read together.
+        pub name_prefix: String = Text::Prefix, default NAME_PREFIX.to_owned();
+        /// Catalogue number of the first satellite that has none of its own; the others follow.
+        pub first_catalog_number: u32 = Integer { low: 1, high: CatalogNumber::LAST },
+            default CatalogNumber::FIRST_OF_DESIGNS;
     }
 }
 

@@ -7,6 +7,7 @@ mod compared;
 #[cfg(unix)]
 mod ctrl_c;
 mod evidence;
+mod exports;
 mod fire;
 mod flags;
 mod gallery;

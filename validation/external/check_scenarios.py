@@ -232,31 +232,54 @@ def check_yuma(folder, manifest, found, report):
         report.number(f"almanac of {system} by IS-GPS-200", worst, YUMA_KM, "km")
 
 
+def place_of(elements):
+    """Where mean elements are at their epoch, km, TEME."""
+    a, e, i, w, node, m = elements
+    i, w, node, m = map(radians, (i, w, node, m))
+    anomaly = m
+    for _ in range(50):
+        anomaly = m + e * sin(anomaly)
+    x, y = a * (cos(anomaly) - e), a * sqrt(1 - e * e) * sin(anomaly)
+    p, q = x * cos(w) - y * sin(w), x * sin(w) + y * cos(w)
+    return np.array([
+        p * cos(node) - q * cos(i) * sin(node), p * sin(node) + q * cos(i) * cos(node), q * sin(i)
+    ]) / 1000
+
+
+def walker(seed, kind, planes, per_plane, phasing):
+    """The satellites that Walker makes of a circular seed, plane by plane, as STK's documentation has it."""
+    spread = {"Delta": 360, "Star": 180}[kind]
+    a, e, i, w, node, m = seed
+    for k in range(planes):
+        for j in range(per_plane):
+            ahead = 360 * j / per_plane + 360 * phasing * k / (planes * per_plane)
+            yield a, e, i, w, node + spread * k / planes, m + ahead
+
+
 def check_connect(folder, report):
-    """The elements of the commands, flown to their place at the epoch: states.csv, TEME."""
+    """The elements of the commands, and those that Walker makes of a seed, at the epoch: states.csv, TEME."""
     lines = (folder / "stk-scenario" / "connect.txt").read_text(encoding="ascii").splitlines()
     rows = {name: np.array(samples[0][2]) for name, samples in states(folder).items()}
-    worst, count = 0.0, 0
-    pattern = re.compile(
+    state = re.compile(
         r'SetState \*/Satellite/(\S+) Classical J2Perturbation UseScenarioInterval \S+ TEMEOfEpoch "[^"]+" (.*) "'
     )
+    shell = re.compile(
+        r"Walker \*/Satellite/(\S+) Type (Delta|Star) NumPlanes (\d+) NumSatsPerPlane (\d+) InterPlanePhaseIncrement (\d+) "
+    )
+    given, found = {}, {}
     for line in lines:
-        match = pattern.match(line)
-        if not match or match[1] not in rows:
-            continue
-        a, e, i, w, node, m = map(float, match[2].split())
-        i, w, node, m = map(radians, (i, w, node, m))
-        anomaly = m
-        for _ in range(50):
-            anomaly = m + e * sin(anomaly)
-        x, y = a * (cos(anomaly) - e), a * sqrt(1 - e * e) * sin(anomaly)
-        p, q = x * cos(w) - y * sin(w), x * sin(w) + y * cos(w)
-        place = np.array([
-            p * cos(node) - q * cos(i) * sin(node), p * sin(node) + q * cos(i) * cos(node), q * sin(i)
-        ]) / 1000
-        worst = max(worst, float(np.linalg.norm(place - rows[match[1]])))
-        count += 1
-    report.check("Connect sets every satellite", count == len(rows), f"{count} of {len(rows)}")
+        if match := state.match(line):
+            given[match[1]] = tuple(map(float, match[2].split()))
+            if match[1] in rows:
+                found[match[1]] = place_of(given[match[1]])
+        elif match := shell.match(line):
+            planes, per_plane, phasing = map(int, match.groups()[2:])
+            # Names in states.csv go on plane by plane after the prefix of the shell.
+            names = [name for name in rows if re.fullmatch(re.escape(match[1]) + r"-P\d+-S\d+", name)]
+            made = walker(given[match[1]], match[2], planes, per_plane, phasing)
+            found.update(zip(names, map(place_of, made), strict=True))
+    worst = max(float(np.linalg.norm(place - rows[name])) for name, place in found.items())
+    report.check("Connect sets every satellite", found.keys() == rows.keys(), f"{len(found)} of {len(rows)}")
     report.number("elements of Connect at the epoch", worst, 1e-6, "km")
 
 

@@ -21,5 +21,6 @@ Settings the other program needs are listed in manifest.json under assumptions.
 
 Examples:
   navwalker export --design delta:55:182/13/1@925 --as czml,geojson,kml --out maps
-  navwalker export regional --design star:86.4:66/6/2@780 --as stk,gmat --out scenario"
+  navwalker export regional --design star:86.4:66/6/2@780 --as stk,gmat --out scenario
+  navwalker export --constellation iridium.tle --as oem,sp3,stk --out iridium"
 }

@@ -1,18 +1,18 @@
 //! `navwalker export`.
 
-use crate::cli::args::ExportArgs;
+use crate::cli::args::{ChosenArgs, ExportArgs, StudyArgs};
 use crate::cli::progress::FileCount;
-use crate::cli::study::{Study, study_and_design};
-use crate::cli::{Status, coincidence, files, limits, output, read_constellation};
-use crate::constellation::Design;
+use crate::cli::study::Study;
+use crate::cli::{Status, coincidence, constellations, files, limits, output, read_constellation};
 use crate::constellation::gnss::Preset;
-use crate::ephemeris::Ephemeris;
-use crate::exchange::export::{Choices, ExportSubject, Product, Request, export, export_size};
+use crate::exchange::constellation::Constellation;
+use crate::exchange::export::{
+    Choices, ExportSubject, Naming, Product, Request, ShownScenario, export, export_size,
+};
 use crate::exchange::lint::Format as LintFormat;
 use crate::exchange::manifest::{ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
 use crate::formats::ccsds::oem;
-use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::ElementChoice;
 use crate::frames::Frame;
 use crate::keyword::Keyword;
@@ -32,11 +32,17 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         let key = format!("export.creation-date=\"{date}\"");
         asked.overrides.push(key);
     }
-    let (study, design) = study_and_design(&asked, &args.design)?;
-    files::refuse_inputs(&args.out, study.inputs().iter().map(PathBuf::as_path))?;
+    let (study, constellation) = study_and_constellation(&asked, &args.chosen)?;
+    let inputs = study.inputs();
+    let read = args.chosen.given.inputs();
+    files::refuse_inputs(&args.out, inputs.iter().map(PathBuf::as_path).chain(read))?;
     let scenario = &study.scenario;
     let subject = ExportSubject {
-        design,
+        constellation,
+        naming: Naming {
+            prefix: scenario.export.name_prefix.clone(),
+            first_catalog_number: scenario.export.first_catalog_number,
+        },
         model: scenario.propagation.model,
         grid: scenario.time_grid()?,
         study: ExportedStudy {
@@ -46,7 +52,8 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         originator: scenario.export.originator.clone(),
         creation: Epoch::from_utc(scenario.export.creation_date),
     };
-    if let Ok(satellites) = Ephemeris::of_design(&subject.design, subject.model, subject.grid) {
+    constellations::warn_of_files(&subject.constellation, subject.grid);
+    if let Ok(satellites) = subject.constellation.ephemeris(subject.grid, subject.model) {
         coincidence::warn(&[], subject.grid, Some(&satellites));
     }
     let products = products(args);
@@ -76,13 +83,14 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         .any(|product| product.row().uses_scenario())
         .then(|| study.evaluator())
         .transpose()?;
-    let scene = evaluator.as_ref().map(|evaluator| {
-        let (surface, grid) = (scenario.earth.surface, scenario.ground_grid());
-        Scene::new(evaluator, subject.design.clone(), surface, grid)
+    let shown = evaluator.as_ref().map(|evaluator| ShownScenario {
+        evaluator,
+        surface: scenario.earth.surface,
+        grid: scenario.ground_grid(),
     });
     let request = Request {
         subject: &subject,
-        scene: scene.as_ref(),
+        shown,
         products: &products,
         choices,
     };
@@ -93,9 +101,32 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     output::result(&text(args, &manifest))?;
     warn(args);
     if args.check {
-        return check(args, &study, &subject.design, &manifest);
+        return check(args, &study, &subject.constellation, &manifest);
     }
     Ok(Status::Done)
+}
+
+/// The study, and the one constellation to export.
+fn study_and_constellation(
+    study: &StudyArgs,
+    chosen: &ChosenArgs,
+) -> Result<(Study, Constellation)> {
+    let (study, mut chosen) = constellations::study_and_constellations(study, chosen)?;
+    match (chosen.pop(), chosen.as_slice()) {
+        (Some(one), []) => Ok((study, one)),
+        (one, others) => {
+            let names: Vec<&str> = others
+                .iter()
+                .chain(&one)
+                .map(|one| one.name.as_str())
+                .collect();
+            bail!(
+                "an export is of one constellation, not of {} ({}); export each to a directory of its own",
+                names.len(),
+                names.join(", ")
+            );
+        }
+    }
 }
 
 /// The files of the previous export, from its manifest.
@@ -121,9 +152,21 @@ fn warn(args: &ExportArgs) {
 }
 
 /// Reads the products back and prints the metrics from each.
-fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest) -> Result<Status> {
+fn check(
+    args: &ExportArgs,
+    study: &Study,
+    constellation: &Constellation,
+    manifest: &Manifest,
+) -> Result<Status> {
     let evaluator = study.evaluator()?;
-    let original = Original::new(&evaluator, design)?;
+    let original = Original::new(&evaluator, constellation)?;
+    let setup = evaluator.setup();
+    let has_elements = constellation.has_mean_elements(setup.grid.epoch(), setup.model);
+    if !has_elements && args.products.contains(&Product::Opm) {
+        output::hint(
+            "opm is not read back: it has states at the epoch alone, without a theory to propagate them",
+        );
+    }
     let mut table = Table::new(&[
         ("read back", Align::Left),
         ("position (m)", Align::Right),
@@ -140,7 +183,7 @@ fn check(args: &ExportArgs, study: &Study, design: &Design, manifest: &Manifest)
         name,
         paths,
         read_back,
-    } in groups(args, manifest)
+    } in groups(args, manifest, has_elements)
     {
         let (formats, mut fleet) = read_constellation::read(&paths, None)?;
         if formats == [LintFormat::Sp3] {
@@ -176,13 +219,16 @@ struct FileGroup {
     read_back: ReadBack,
 }
 
-/// The files of the design to read back, grouped as their products require.
-fn groups(args: &ExportArgs, manifest: &Manifest) -> Vec<FileGroup> {
+/// The files of the constellation to read back, grouped as their products require.
+fn groups(args: &ExportArgs, manifest: &Manifest, has_elements: bool) -> Vec<FileGroup> {
     let mut groups: Vec<FileGroup> = Vec::new();
     for file in &manifest.files {
         let Some(read_back) = Product::read_back_of(file) else {
             continue;
         };
+        if file.format == Product::Opm.keyword() && !has_elements {
+            continue;
+        }
         let name = match read_back.files {
             Grouping::Together => file.format.clone(),
             Grouping::Each => file.path.clone(),
@@ -275,8 +321,18 @@ fn text(args: &ExportArgs, manifest: &Manifest) -> String {
     }
     format!(
         "{} in {}\n\n{}",
-        manifest.design,
+        title(manifest),
         args.out.display(),
         table.to_text()
     )
+}
+
+/// The notation of a design, or the name of the constellation and what was converted.
+fn title(manifest: &Manifest) -> String {
+    let name = manifest.constellation.as_ref().or(manifest.design.as_ref());
+    let name = name.map_or("", String::as_str);
+    match &manifest.converted {
+        Some(converted) => format!("{name}: {converted}"),
+        None => name.to_owned(),
+    }
 }

@@ -2,12 +2,12 @@
 
 use super::source::{ExportSource, failed};
 use super::{Contents, Files, Product, ProductVersion};
-use crate::constellation::Satellite;
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
+use crate::exchange::members::Member;
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::opm::Opm;
 use crate::formats::ccsds::{oem, omm};
@@ -18,8 +18,8 @@ use crate::formats::{WriteError, csv};
 use crate::formats::{sp3, stk, tle};
 use crate::frames::{EarthFixed, Frame, from_teme};
 use crate::keyword::Keyword;
-use crate::orbit::Model;
 use crate::orbit::sgp4::Sgp4Orbit;
+use crate::orbit::{MeanElements, Model};
 use rayon::prelude::*;
 
 /// The files of a product, or why one is not written.
@@ -47,11 +47,19 @@ struct Sp3Part<'a> {
 
 impl ExportSource<'_> {
     fn sgp4_metadata(&self) -> Metadata {
-        self.metadata(Frame::Teme, Theory::Sgp4Elements(self.choices.elements))
+        self.metadata(Frame::Teme, self.theory_of_sets())
     }
 
     pub(super) fn propagated_metadata(&self, frame: Frame) -> Metadata {
-        self.metadata(frame, Theory::EphemerisSatellite(self.subject.model))
+        self.metadata(frame, self.theory_of_all())
+    }
+
+    /// The metadata of a file of one satellite, from those of the files of all.
+    fn of_one(&self, metadata: &Metadata, member: &Member<'_>) -> Metadata {
+        Metadata {
+            theory: self.theory(member),
+            ..metadata.clone()
+        }
     }
 
     /// Version of a CCSDS message and its notation: `2.0 KVN`.
@@ -60,16 +68,12 @@ impl ExportSource<'_> {
         format!("{version} {}", notation.to_uppercase())
     }
 
-    /// One file for each satellite, by several threads concurrently.
+    /// One file for each satellite, given by its place, by several threads concurrently.
     fn each(
         &self,
-        write: impl Fn(&EphemerisSatellite, &Object) -> Result<FileEntry, WriteError> + Sync,
+        write: impl Fn(usize) -> Result<FileEntry, WriteError> + Send + Sync,
     ) -> ProductFiles {
-        let satellites = self.ephemeris.satellites().par_iter();
-        satellites
-            .zip(&self.objects)
-            .map(|(satellite, object)| write(satellite, object))
-            .collect()
+        (0..self.objects.len()).into_par_iter().map(write).collect()
     }
 
     pub(super) fn tle(&self, files: &Files<'_>) -> ProductFiles {
@@ -103,25 +107,25 @@ impl ExportSource<'_> {
             product: Product::Omm,
             version: version.as_str(),
         };
-        let sets = self.element_sets(self.subject.grid.epoch())?;
+        let sets = self.element_sets(|epoch| epoch)?;
         let loss = self.loss_of_sets(&sets, false)?;
         if notation == OmmSyntax::Kvn {
-            let one = |(set, object): (&sgp4::Elements, &Object)| {
-                let path = format!("omm/{}.omm", object.name);
-                files.add(
-                    &path,
-                    format,
-                    Contents {
-                        objects: 1,
-                        metadata: &metadata,
-                    },
-                    |out| {
-                        omm::write_kvn(out, &header, set)?;
-                        Ok(loss.clone())
-                    },
-                )
-            };
-            return sets.par_iter().zip(&self.objects).map(one).collect();
+            return self.each(|k| {
+                let path = format!("omm/{}.omm", self.stems[k]);
+                let metadata = Metadata {
+                    theory: self.theory_of_set(&self.members[k]),
+                    ..metadata.clone()
+                };
+                let header = omm::header(self.choices.ccsds_version, &metadata);
+                let contents = Contents {
+                    objects: 1,
+                    metadata: &metadata,
+                };
+                files.add(&path, format, contents, |out| {
+                    omm::write_kvn(out, &header, &sets[k])?;
+                    Ok(loss.clone())
+                })
+            });
         }
         let path = format!("omm.{notation}");
         let entry = files.add(
@@ -171,12 +175,23 @@ impl ExportSource<'_> {
         Ok(vec![entry])
     }
 
-    /// The satellites of a design are propagated in the same way, so the first represents all.
-    fn hermite(&self, sampled: &Sampled<'_, Frame>) -> Result<Option<Hermite>, WriteError> {
-        Ok(match self.ephemeris.satellites() {
-            [first, ..] => Hermite::measured(sampled, first)?,
-            [] => None,
-        })
+    /// The interpolation for each satellite. Those of a shell are propagated in the same way, so the first
+    /// represents all; others are measured one by one.
+    fn hermites(&self, sampled: &Sampled<'_, Frame>) -> Result<Vec<Option<Hermite>>, WriteError> {
+        let satellites = self.ephemeris.satellites();
+        let shells = self.ephemeris.shells();
+        let in_shells = shells.iter().map(|span| span.shell.satellite_count()).sum();
+        let mut hermites = Vec::with_capacity(satellites.len());
+        for span in shells {
+            let measured = Hermite::measured(sampled, &satellites[span.first])?;
+            hermites.extend(std::iter::repeat_n(measured, span.shell.satellite_count()));
+        }
+        let others: Vec<Option<Hermite>> = satellites[in_shells..]
+            .par_iter()
+            .map(|satellite| Hermite::measured(sampled, satellite))
+            .collect::<Result<_, _>>()?;
+        hermites.extend(others);
+        Ok(hermites)
     }
 
     pub(super) fn oem(&self, files: &Files<'_>) -> ProductFiles {
@@ -184,8 +199,8 @@ impl ExportSource<'_> {
         let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
         let sampled = Sampled::new(&self.ephemeris, choices.frame);
-        let hermite = self.hermite(&sampled)?;
-        let loss = Loss {
+        let hermites = self.hermites(&sampled)?;
+        let loss = |hermite: Option<Hermite>| Loss {
             interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
             note: joined([
                 (choices.frame == Frame::Teme).then_some(oem::TEME_NOTE),
@@ -198,30 +213,43 @@ impl ExportSource<'_> {
             product: Product::Oem,
             version: version.as_str(),
         };
-        let writer = oem::OemWriter {
-            version: choices.ccsds_version,
-            metadata: &metadata,
-            sampled: &sampled,
-            hermite,
-        };
         if choices.oem == oem::OemSyntax::Xml && choices.oem_combined {
             let contents = Contents {
                 objects: self.objects.len(),
                 metadata: &metadata,
             };
+            let satellites = self.satellites().zip(&self.objects).zip(&hermites);
+            let messages = satellites.map(|(((satellite, member), object), hermite)| {
+                let metadata = self.of_one(&metadata, member);
+                oem::OemMessage {
+                    satellite,
+                    object,
+                    metadata,
+                    hermite: *hermite,
+                }
+            });
             let entry = files.add("oem.xml", format, contents, |out| {
-                let satellites = self.ephemeris.satellites().iter();
-                writer.combined_xml(out, satellites.zip(&self.objects))?;
-                Ok(loss)
+                oem::write_combined_xml(out, choices.ccsds_version, &sampled, messages)?;
+                let measured = hermites.iter().flatten().copied();
+                let worst = measured.max_by(|a, b| a.max_error_km.total_cmp(&b.max_error_km));
+                Ok(loss(worst))
             })?;
             return Ok(vec![entry]);
         }
-        self.each(|satellite, object| {
+        self.each(|k| {
+            let (satellite, object) = (&self.ephemeris.satellites()[k], &self.objects[k]);
             let extension = match choices.oem {
                 oem::OemSyntax::Kvn => "oem",
                 oem::OemSyntax::Xml => "xml",
             };
-            let path = format!("oem/{}.{extension}", satellite.name);
+            let path = format!("oem/{}.{extension}", self.stems[k]);
+            let metadata = self.of_one(&metadata, &self.members[k]);
+            let writer = oem::OemWriter {
+                version: choices.ccsds_version,
+                metadata: &metadata,
+                sampled: &sampled,
+                hermite: hermites[k],
+            };
             files.add(
                 &path,
                 format,
@@ -234,7 +262,7 @@ impl ExportSource<'_> {
                         oem::OemSyntax::Kvn => writer.kvn(out, satellite, object)?,
                         oem::OemSyntax::Xml => writer.xml(out, satellite, object)?,
                     }
-                    Ok(loss.clone())
+                    Ok(loss(hermites[k]))
                 },
             )
         })
@@ -246,76 +274,64 @@ impl ExportSource<'_> {
         metadata.time_system = choices.time_system;
         let version = self.ccsds_version("kvn");
         let epoch = self.subject.grid.epoch();
-        let satellites = self.ephemeris.satellites();
-        let one =
-            |((propagated, satellite), object): ((&EphemerisSatellite, &Satellite), &Object)| {
-                let path = format!("opm/{}.opm", object.name);
-                let format = ProductVersion {
-                    product: Product::Opm,
-                    version: version.as_str(),
-                };
-                files.add(
-                    &path,
-                    format,
-                    Contents {
-                        objects: 1,
-                        metadata: &metadata,
-                    },
-                    |out| {
-                        let teme = self.ephemeris.state(propagated, 0.0)?;
-                        let state = from_teme(teme, choices.frame, epoch, 0.0);
-                        let elements = &satellite.elements;
-                        let version = choices.ccsds_version;
-                        Opm::new(version, &metadata, object, elements, epoch, state).write(out)?;
-                        Ok(Loss {
-                            note: joined([bdt_note(choices.time_system)]),
-                            ..Loss::default()
-                        })
-                    },
-                )
+        self.each(|k| {
+            let object = &self.objects[k];
+            let path = format!("opm/{}.opm", self.stems[k]);
+            let format = ProductVersion {
+                product: Product::Opm,
+                version: version.as_str(),
             };
-        satellites
-            .par_iter()
-            .zip(&self.satellites)
-            .zip(&self.objects)
-            .map(one)
-            .collect()
+            let metadata = self.of_one(&metadata, &self.members[k]);
+            let contents = Contents {
+                objects: 1,
+                metadata: &metadata,
+            };
+            files.add(&path, format, contents, |out| {
+                let teme = self.ephemeris.state(&self.ephemeris.satellites()[k], 0.0)?;
+                let state = from_teme(teme, choices.frame, epoch, 0.0);
+                let elements = self.members[k]
+                    .origin
+                    .mean_elements(epoch, self.subject.model);
+                let version = choices.ccsds_version;
+                Opm::new(version, &metadata, object, elements.as_ref(), epoch, state).write(out)?;
+                let state_only =
+                    "the state at the epoch, without mean elements: the source has none of J2";
+                Ok(Loss {
+                    note: joined([
+                        bdt_note(choices.time_system),
+                        elements.is_none().then_some(state_only),
+                    ]),
+                    ..Loss::default()
+                })
+            })
+        })
     }
 
     pub(super) fn stk(&self, files: &Files<'_>) -> ProductFiles {
         let frame = self.choices.frame;
         let metadata = self.propagated_metadata(frame);
         let sampled = Sampled::new(&self.ephemeris, frame);
-        let hermite = self.hermite(&sampled)?;
-        let loss = Loss {
-            interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
-            ..Loss::default()
-        };
-        self.each(|satellite, _| {
-            let path = format!("stk/{}.e", satellite.name);
+        let hermites = self.hermites(&sampled)?;
+        self.each(|k| {
+            let path = format!("stk/{}.e", self.stems[k]);
             let format = ProductVersion {
                 product: Product::Stk,
                 version: stk::FORMAT_VERSION,
             };
-            files.add(
-                &path,
-                format,
-                Contents {
-                    objects: 1,
-                    metadata: &metadata,
-                },
-                |out| {
-                    stk::write(
-                        out,
-                        &satellite.name,
-                        &metadata,
-                        &sampled,
-                        satellite,
-                        hermite,
-                    )?;
-                    Ok(loss.clone())
-                },
-            )
+            let metadata = self.of_one(&metadata, &self.members[k]);
+            let contents = Contents {
+                objects: 1,
+                metadata: &metadata,
+            };
+            files.add(&path, format, contents, |out| {
+                let satellite = &self.ephemeris.satellites()[k];
+                let (name, hermite) = (&satellite.name, hermites[k]);
+                stk::write(out, name, &metadata, &sampled, satellite, hermite)?;
+                Ok(Loss {
+                    interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
+                    ..Loss::default()
+                })
+            })
         })
     }
 
@@ -439,31 +455,38 @@ impl ExportSource<'_> {
             objects: self.objects.len(),
             metadata: &metadata,
         };
-        let elements = files.add(
-            "elements.csv",
-            ProductVersion {
-                product: Product::Csv,
-                version: "1",
-            },
-            contents,
-            |out| {
-                let rows = self.satellites.iter().zip(&self.objects);
-                csv::write_elements(out, rows, self.subject.grid.epoch())?;
+        let format = ProductVersion {
+            product: Product::Csv,
+            version: "1",
+        };
+        let (epoch, model) = (self.subject.grid.epoch(), self.subject.model);
+        let elements = self
+            .members
+            .iter()
+            .map(|one| one.origin.mean_elements(epoch, model));
+        let elements: Option<Vec<MeanElements>> = elements.collect();
+        let mut entries = Vec::new();
+        if let Some(elements) = &elements {
+            let rows = self.members.iter().zip(elements).zip(&self.objects);
+            let rows = rows.map(|((member, elements), object)| csv::ElementsOf {
+                slot: member.slot,
+                elements: *elements,
+                object,
+            });
+            entries.push(files.add("elements.csv", format, contents, |out| {
+                csv::write_elements(out, &rows.collect::<Vec<_>>(), epoch)?;
                 Ok(Loss::default())
-            },
-        )?;
-        let states = files.add(
-            "states.csv",
-            ProductVersion {
-                product: Product::Csv,
-                version: "1",
-            },
-            contents,
-            |out| {
-                csv::write_states(out, &self.ephemeris)?;
-                Ok(Loss::default())
-            },
-        )?;
-        Ok(vec![elements, states])
+            })?);
+        }
+        let none =
+            "there is no table of elements: the source has no mean elements of J2 at the epoch";
+        entries.push(files.add("states.csv", format, contents, |out| {
+            csv::write_states(out, &self.ephemeris)?;
+            Ok(Loss {
+                note: elements.is_none().then(|| none.to_owned()),
+                ..Loss::default()
+            })
+        })?);
+        Ok(entries)
     }
 }

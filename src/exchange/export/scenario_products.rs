@@ -3,18 +3,21 @@
 use super::products::ProductFiles;
 use super::source::ExportSource;
 use super::{Contents, Files, Product, ProductVersion};
-use crate::constellation::Satellite;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
+use crate::constellation::shell_letters;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, Loss};
+use crate::exchange::members::{Member, Origin};
+use crate::formats::maps::palette::Palette;
 use crate::formats::maps::scene::Scene;
-use crate::formats::stk::connect::{ConnectScenario, Setting, by_hand};
+use crate::formats::metadata::Theory;
+use crate::formats::stk::connect::{ConnectItem, ConnectScenario, Setting, WalkerShell, by_hand};
 use crate::formats::yuma::{self, Almanac, Applicability, NoAlmanac, radius_shift_km};
 use crate::formats::{WriteError, gmat, stk};
-use crate::frames::Frame;
+use crate::frames::{Eme2000, Frame, from_teme};
 use crate::keyword::Keyword;
-use crate::orbit::Model;
+use crate::orbit::{MeanElements, Model};
 use std::io::Write;
 
 /// Directory of the files that build the scenario in STK, including its GNSS.
@@ -44,17 +47,15 @@ impl ExportSource<'_> {
             gnss.extend(satellites.into_iter().map(|one| in_stk(system, one)));
         }
         let mut entries = self.gnss_files(files, &gnss)?;
-        let of_design = self.satellites.iter().zip(&self.objects);
-        let mut satellites: Vec<(String, Setting)> = of_design
-            .map(|(satellite, object)| (object.name.clone(), self.setting(satellite, &object.name)))
-            .collect();
-        satellites.extend(
+        let mut items = self.connect_items();
+        let of_constellation = items.len();
+        items.extend(
             gnss.iter()
-                .map(|one| (one.name.clone(), one.setting.clone())),
+                .map(|one| ConnectItem::Satellite(one.name.clone(), one.setting.clone())),
         );
         let scenario = ConnectScenario {
             grid: self.subject.grid,
-            satellites: &satellites,
+            items: &items,
             sites: &setup.sites,
             step_deg: scene.grid().map(|grid| grid.step_deg),
             mask_deg: setup.mask.degrees(),
@@ -69,7 +70,7 @@ impl ExportSource<'_> {
             ..Loss::default()
         };
         let contents = Contents {
-            objects: satellites.len(),
+            objects: self.objects.len() + gnss.len(),
             metadata: &metadata,
         };
         let commands = files.add(&in_scenario("connect.txt"), format, contents, |out| {
@@ -77,11 +78,11 @@ impl ExportSource<'_> {
             Ok(noted("STK Connect commands; not tested in STK"))
         })?;
         let one_mask = setup.mask == setup.gnss_mask && setup.skyline.is_none();
-        let with_files = satellites
+        let with_files = items
             .iter()
-            .any(|(_, setting)| matches!(setting, Setting::File(_)));
+            .any(|item| matches!(item, ConnectItem::Satellite(_, Setting::File(_))));
         let mut told = scene.assumptions();
-        told.extend(by_hand(one_mask, with_files));
+        told.extend(by_hand(one_mask, with_files, &items[..of_constellation]));
         entries.push(commands.assuming(told));
         entries.push(files.add(
             &in_scenario("points.pnt"),
@@ -98,19 +99,58 @@ impl ExportSource<'_> {
         Ok(entries)
     }
 
-    /// A satellite of the design: elements if STK has the theory, otherwise its ephemeris.
-    fn setting(&self, satellite: &Satellite, name: &str) -> Setting {
-        match self.subject.model {
-            Model::J2 => Setting::J2(satellite.elements),
-            Model::TwoBody => Setting::TwoBody(satellite.elements),
-            Model::J2Osculating | Model::Sgp4 => Setting::File(format!("../stk/{name}.e")),
+    /// The constellation in STK: a shell by one command where STK has one, otherwise every satellite.
+    fn connect_items(&self) -> Vec<ConnectItem> {
+        let theory = match self.subject.model {
+            Model::J2 => Some(Setting::J2 as fn(MeanElements) -> Setting),
+            Model::TwoBody => Some(Setting::TwoBody as fn(MeanElements) -> Setting),
+            Model::J2Osculating | Model::Sgp4 => None,
+        };
+        let single = |k: usize| {
+            let stem = &self.stems[k];
+            let setting = self.setting(&self.members[k], stem, theory);
+            ConnectItem::Satellite(stem.clone(), setting)
+        };
+        let mut items = Vec::new();
+        let mut done = 0;
+        let shells = self.ephemeris.shells();
+        for (n, span) in shells.iter().enumerate() {
+            let prefix = &self.subject.naming.prefix;
+            let name = match shells.len() {
+                1 => prefix.clone(),
+                _ => format!("{prefix}-{}", shell_letters(n)),
+            };
+            let walker = theory.and_then(|theory| WalkerShell::new(name, &span.shell, theory));
+            match walker {
+                Some(walker) => items.push(ConnectItem::Walker(walker)),
+                None => items.extend(span.places().map(single)),
+            }
+            done = span.places().end;
+        }
+        items.extend((done..self.members.len()).map(single));
+        items
+    }
+
+    /// A satellite by itself: elements if STK has the theory, otherwise its ephemeris.
+    fn setting(
+        &self,
+        member: &Member<'_>,
+        stem: &str,
+        theory: Option<fn(MeanElements) -> Setting>,
+    ) -> Setting {
+        let epoch = self.subject.grid.epoch();
+        let elements = member.origin.mean_elements(epoch, self.subject.model);
+        match theory.zip(elements) {
+            Some((theory, elements)) => theory(elements),
+            None => Setting::File(format!("../stk/{stem}.e")),
         }
     }
 
     /// The ephemerides of the GNSS satellites for which STK has no theory.
     fn gnss_files(&self, files: &Files<'_>, gnss: &[InStk]) -> ProductFiles {
         let mut entries = Vec::new();
-        let mut metadata = self.propagated_metadata(self.choices.frame);
+        let theory = Theory::EphemerisSatellite(self.subject.model);
+        let mut metadata = self.metadata(self.choices.frame, theory);
         metadata
             .subject
             .push("GNSS satellite of the scenario".to_owned());
@@ -152,7 +192,8 @@ impl ExportSource<'_> {
             instead,
         };
         let (model, grid) = (self.subject.model, self.subject.grid);
-        if model == Model::Sgp4 {
+        let is_mean = |member: &Member<'_>| matches!(member.origin, Origin::Mean { .. });
+        if model == Model::Sgp4 && self.members.iter().any(is_mean) {
             let what = "propagation.model = \"sgp4\": the script integrates J2".to_owned();
             return Err(cannot(
                 what,
@@ -175,14 +216,21 @@ impl ExportSource<'_> {
             product: Product::Gmat,
             version: gmat::FORMAT_VERSION,
         };
-        let named: Vec<(String, Satellite)> = self
-            .satellites
-            .iter()
-            .zip(&self.objects)
-            .map(|(satellite, object)| (gmat::script_name(&object.name), *satellite))
-            .collect();
+        let spacecraft = self.gmat_spacecraft()?;
+        let integrated = match self.subject.constellation.design {
+            Some(_) => model,
+            // The theories of files are none of GMAT's: it integrates J2 from their first states.
+            None => Model::J2,
+        };
         let script = files.add("gmat/navwalker.script", format, contents, |out| {
-            gmat::write_script(out, &metadata.comments(), &named, model, grid, &start)?;
+            gmat::write_script(
+                out,
+                &metadata.comments(),
+                &spacecraft,
+                integrated,
+                grid,
+                &start,
+            )?;
             Ok(Loss::default())
         })?;
         let field = files.add(
@@ -197,7 +245,39 @@ impl ExportSource<'_> {
                 Ok(Loss::default())
             },
         )?;
-        Ok(vec![script.assuming(gmat_assumptions(model)), field])
+        let mut told = Vec::new();
+        if self.members.iter().any(is_mean) {
+            told.push(gmat_start(integrated).to_owned());
+        }
+        if !self.members.iter().all(is_mean) {
+            told.push(format!(
+                "satellites of files start from their osculating state at the epoch; the theory of the states ({}) is \
+                 not that of GMAT, which differs from it afterwards",
+                metadata.theory
+            ));
+        }
+        told.extend(GMAT_ASSUMPTIONS.map(str::to_owned));
+        Ok(vec![script.assuming(told), field])
+    }
+
+    /// The satellites with their states at the epoch; the shells of several in colours of their own.
+    fn gmat_spacecraft(&self) -> Result<Vec<gmat::Spacecraft>, WriteError> {
+        let (model, epoch) = (self.subject.model, self.subject.grid.epoch());
+        let several = self.ephemeris.shells().len() > 1;
+        let palette = Palette::of(&self.ephemeris);
+        let mut spacecraft = Vec::with_capacity(self.members.len());
+        for ((satellite, member), stem) in self.satellites().zip(&self.stems) {
+            let state = match member.origin.mean_elements(epoch, model) {
+                Some(elements) => gmat::start(&elements, model, epoch),
+                None => from_teme(self.ephemeris.state(satellite, 0.0)?, Eme2000, epoch, 0.0),
+            };
+            spacecraft.push(gmat::Spacecraft {
+                name: gmat::script_name(stem),
+                state,
+                colour: several.then(|| palette.colour(member.slot)),
+            });
+        }
+        Ok(spacecraft)
     }
 
     pub(super) fn yuma(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
@@ -277,24 +357,24 @@ fn in_scenario(name: &str) -> String {
     format!("{STK_SCENARIO_DIRECTORY}{name}")
 }
 
-fn gmat_assumptions(model: Model) -> Vec<String> {
-    let start = match model {
+/// What the starting states of mean elements are.
+fn gmat_start(model: Model) -> &'static str {
+    match model {
         Model::TwoBody => "states follow from the elements around a point mass",
         _ => {
             "states are osculating: the mean elements with first-order short-period terms; GMAT's \
              trajectory includes those terms (some kilometres from secular J2) and drifts in-track by \
              the second order of J2, 1 to 3 km a day"
         }
-    };
-    vec![
-        start.to_owned(),
-        "mu, R and J2 are in navwalker-j2.cof, which must be in the same directory as the script"
-            .to_owned(),
-        "GMAT orients the field with its own precession, nutation and Earth-orientation data"
-            .to_owned(),
-        "the design alone: GMAT has no region, mask or PDOP, and the GNSS is left out".to_owned(),
-    ]
+    }
 }
+
+/// What holds for every script.
+const GMAT_ASSUMPTIONS: [&str; 3] = [
+    "mu, R and J2 are in navwalker-j2.cof, which must be in the same directory as the script",
+    "GMAT orients the field with its own precession, nutation and Earth-orientation data",
+    "the constellation alone: GMAT has no region, mask or PDOP, and the GNSS is left out",
+];
 
 fn reason(why: NoAlmanac) -> &'static str {
     match why {

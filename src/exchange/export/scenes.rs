@@ -3,7 +3,6 @@
 use super::products::ProductFiles;
 use super::source::ExportSource;
 use super::{Contents, Files, Product, ProductVersion};
-use crate::ephemeris::EphemerisError;
 use crate::exchange::manifest::Loss;
 use crate::formats::maps::scene::{MAX_SHOWN_POINTS, Scene};
 use crate::formats::maps::tracks::Ground;
@@ -11,18 +10,8 @@ use crate::formats::maps::{czml, geojson, kml};
 use crate::formats::{WriteError, csv};
 use crate::frames::Frame;
 use crate::keyword::Keyword;
-use std::f64::consts::TAU;
 
 impl ExportSource<'_> {
-    fn period_s(&self) -> f64 {
-        let first = self.satellites.first();
-        first.map_or(0.0, |one| TAU / one.elements.kepler_mean_motion_rad_s())
-    }
-
-    fn ground(&self, scene: &Scene<'_>) -> Result<Vec<Ground>, EphemerisError> {
-        Ground::of(scene, &self.ephemeris, self.period_s())
-    }
-
     pub(super) fn metrics(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         let metadata = self.propagated_metadata(Frame::EarthFixed);
         let contents = Contents {
@@ -60,8 +49,7 @@ impl ExportSource<'_> {
             version: czml::FORMAT_VERSION,
         };
         let entry = files.add("scene.czml", format, contents, |out| {
-            let design = &self.subject.design;
-            let error_km = czml::write(out, scene, design, &self.ephemeris)?;
+            let error_km = czml::write(out, scene)?;
             Ok(Loss {
                 interpolation_max_km: Some(error_km),
                 note: Some(
@@ -97,7 +85,7 @@ impl ExportSource<'_> {
                 ))
             },
         )?;
-        let ground = self.ground(scene)?;
+        let ground = Ground::of(scene)?;
         let contents = Contents {
             objects: ground.len(),
             metadata: &metadata,
@@ -121,7 +109,7 @@ impl ExportSource<'_> {
     pub(super) fn kml(&self, files: &Files<'_>, scene: &Scene<'_>) -> ProductFiles {
         check_points(Product::Kml, scene)?;
         let metadata = self.propagated_metadata(Frame::EarthFixed);
-        let ground = self.ground(scene)?;
+        let ground = Ground::of(scene)?;
         let contents = Contents {
             objects: ground.len(),
             metadata: &metadata,
@@ -131,7 +119,7 @@ impl ExportSource<'_> {
             version: kml::FORMAT_VERSION,
         };
         let entry = files.add("scene.kml", format, contents, |out| {
-            kml::write(out, scene, &self.subject.design, &ground)?;
+            kml::write(out, scene, &ground)?;
             Ok(Loss {
                 note: Some(
                     "ground tracks are one revolution from the epoch, footprints those of the epoch"

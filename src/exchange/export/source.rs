@@ -1,161 +1,230 @@
 //! The data from which the products of an export are made.
 
-use super::{Choices, ExportSubject};
-use crate::constellation::Satellite;
+use super::{Choices, ExportError, ExportSubject, ShownScenario};
+use crate::constellation::{Design, shell_letters};
 use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
-use crate::exchange::manifest::{Conventions, FileEntry, Loss, Manifest};
-use crate::formats::metadata::{ElementChoice, Metadata, Object, Theory, distance_from_itrf};
+use crate::exchange::identities::stems;
+use crate::exchange::import::interpolated;
+use crate::exchange::manifest::{Conventions, FileEntry, Manifest};
+use crate::exchange::members::{Member, Origin};
+use crate::formats::maps::scene::{Scene, ShownConstellation};
+use crate::formats::metadata::{Metadata, Object, Theory, distance_from_itrf};
 use crate::formats::text::timestamp::TimeSystem;
-use crate::formats::{WriteError, element_set, tle};
 use crate::frames::Frame;
-use crate::orbit::PropagatorDistance;
-use crate::orbit::fit::{Fit, fit};
-use crate::orbit::j2::SecularOrbit;
-use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
-use crate::orbit::{PropagationError, Propagator};
-use crate::time::{Epoch, TimeGrid};
+use crate::orbit::PropagationError;
+use crate::units::counted;
+
+/// Longest name of a constellation or a file in a comment.
+const LONGEST_NAME: usize = 120;
 
 /// The data of an export.
 pub(super) struct ExportSource<'a> {
     pub(super) subject: &'a ExportSubject,
     pub(super) choices: Choices,
-    pub(super) satellites: Vec<Satellite>,
+    /// The satellites, in the order of the ephemeris.
+    pub(super) members: Vec<Member<'a>>,
     pub(super) objects: Vec<Object>,
+    /// Names of files for each satellite.
+    pub(super) stems: Vec<String>,
     pub(super) ephemeris: Ephemeris,
+    /// Largest distance of a satellite from the centre of the Earth, km: of shells, their semi-major axes.
+    radius_km: f64,
 }
 
 impl<'a> ExportSource<'a> {
-    pub(super) fn new(subject: &'a ExportSubject, choices: Choices) -> Result<Self, WriteError> {
-        let ephemeris = Ephemeris::of_design(&subject.design, subject.model, subject.grid)?;
-        Ok(Self {
+    pub(super) fn new(subject: &'a ExportSubject, choices: Choices) -> Result<Self, ExportError> {
+        let (grid, constellation) = (subject.grid, &subject.constellation);
+        let members = constellation.members(grid.epoch());
+        let objects = subject.naming.objects(&members, grid.epoch());
+        let objects = objects.map_err(crate::formats::WriteError::from)?;
+        let mut ephemeris = constellation.ephemeris(grid, subject.model)?;
+        for ((satellite, member), object) in ephemeris
+            .satellites_mut()
+            .iter_mut()
+            .zip(&members)
+            .zip(&objects)
+        {
+            satellite.name.clone_from(&object.name);
+            if let Origin::Sampled(trajectory) = member.origin {
+                satellite.propagator = interpolated(trajectory, grid.epoch());
+            }
+        }
+        let mut source = Self {
             subject,
             choices,
-            satellites: subject.design.satellites(),
-            objects: Object::all(ephemeris.satellites(), subject.grid.epoch())?,
+            stems: stems(&objects),
+            members,
+            objects,
             ephemeris,
-        })
+            radius_km: 0.0,
+        };
+        source.require_states()?;
+        source.radius_km = source.largest_radius_km()?;
+        Ok(source)
+    }
+
+    /// Sampled satellites need a state at every instant: no format here writes gaps.
+    fn require_states(&self) -> Result<(), ExportError> {
+        let sampled = self.satellites().filter_map(|(satellite, member)| {
+            matches!(member.origin, Origin::Sampled(_)).then_some(satellite)
+        });
+        for satellite in sampled {
+            for elapsed_s in self.subject.grid.iter() {
+                if self.ephemeris.state_or_gap(satellite, elapsed_s)?.is_none() {
+                    return Err(ExportError::Gap {
+                        name: satellite.name.clone(),
+                        at: self.subject.grid.epoch().plus_seconds(elapsed_s),
+                    });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn largest_radius_km(&self) -> Result<f64, EphemerisError> {
+        let design = self.subject.constellation.design.as_ref();
+        let highest_km = design.map(Design::highest_altitude_km);
+        let mut radius_km = highest_km.map_or(0.0, |altitude_km| RADIUS_KM + altitude_km);
+        for (satellite, _) in self
+            .satellites()
+            .filter(|(_, member)| member.slot.is_none())
+        {
+            let state = self.ephemeris.state(satellite, 0.0)?;
+            radius_km = radius_km.max(state.position_km.km().norm());
+        }
+        Ok(radius_km)
+    }
+
+    /// The satellites with what describes them.
+    pub(super) fn satellites(&self) -> impl Iterator<Item = (&EphemerisSatellite, &Member<'a>)> {
+        self.ephemeris.satellites().iter().zip(&self.members)
+    }
+
+    /// Whether satellites come from files.
+    pub(super) fn has_files(&self) -> bool {
+        self.subject.constellation.files.is_some()
+    }
+
+    /// The theory of the states of one satellite.
+    pub(super) fn theory(&self, member: &Member<'_>) -> Theory {
+        member.origin.theory(self.subject.model)
+    }
+
+    /// The theory of a file with the states of all satellites.
+    pub(super) fn theory_of_all(&self) -> Theory {
+        Theory::of_all(self.members.iter().map(|member| self.theory(member)))
     }
 
     pub(super) fn metadata(&self, frame: Frame, theory: Theory) -> Metadata {
         let study = &self.subject.study;
+        let mut subject = self.description();
+        subject.push(format!("Scenario: {}, hash {}", study.name, study.hash));
         Metadata {
             originator: self.subject.originator.clone(),
             creation: self.subject.creation,
             frame,
             time_system: TimeSystem::Utc,
             theory,
-            subject: vec![
-                format!("Design: {}", self.subject.design),
-                format!("Scenario: {}, hash {}", study.name, study.hash),
-            ],
+            subject,
             frame_note: (frame == Frame::EarthFixed).then(|| self.distance_from_itrf()),
+            from_files: self.has_files(),
         }
     }
 
-    /// The distance of the design's satellites from their positions in an ITRF.
-    fn distance_from_itrf(&self) -> String {
-        let radius_km = RADIUS_KM + self.subject.design.highest_altitude_km();
-        distance_from_itrf(self.subject.grid.epoch(), radius_km)
-    }
-
-    /// The unrounded element sets at an epoch, with their satellites.
-    pub(super) fn element_sets(&self, epoch: Epoch) -> Result<Vec<sgp4::Elements>, WriteError> {
-        let since_s = epoch.seconds_since(self.subject.grid.epoch());
-        let slot = match self.choices.elements {
-            ElementChoice::Kepler => MeanMotionSlot::Kepler,
-            ElementChoice::Kozai | ElementChoice::Fit => MeanMotionSlot::Kozai,
-        };
-        let set = |(satellite, object): (&Satellite, &Object)| {
-            let elements = SecularOrbit::j2(&satellite.elements).elements_at(since_s);
-            element_set(&elements, object, epoch, slot)
-        };
-        let sets = self.satellites.iter().zip(&self.objects).map(set);
-        if self.choices.elements != ElementChoice::Fit {
-            return Ok(sets.collect());
+    /// What the constellation is, in lines of a comment.
+    fn description(&self) -> Vec<String> {
+        let constellation = &self.subject.constellation;
+        let mut lines = Vec::new();
+        match constellation.only_design() {
+            Some(design) if design.only_shell().is_some() => {
+                lines.push(format!("Design: {design}"))
+            }
+            Some(_) => {}
+            None => lines.push(format!("Constellation: {}", short(&constellation.name))),
         }
-        let fitted = |(set, propagated): (sgp4::Elements, &EphemerisSatellite)| {
-            Ok(self.fit(&set, propagated)?.set)
-        };
-        sets.zip(self.ephemeris.satellites()).map(fitted).collect()
-    }
-
-    /// A set fitted to at most 200 samples of the trajectory.
-    fn fit(
-        &self,
-        start: &sgp4::Elements,
-        propagated: &EphemerisSatellite,
-    ) -> Result<Fit, EphemerisError> {
-        let grid = self.subject.grid;
-        let stride = grid.len().div_ceil(200);
-        let mut positions = Vec::new();
-        for k in (0..grid.len()).step_by(stride) {
-            let elapsed_s = grid.elapsed_s(k);
-            let state = self.ephemeris.state(propagated, elapsed_s)?;
-            positions.push((elapsed_s, state.position_km));
-        }
-        fit(start, &positions, grid.epoch()).map_err(|source| failed(propagated, source))
-    }
-
-    /// The sets as rounded in a TLE, and unrounded, at the TLE epoch nearest to that of the study.
-    pub(super) fn tle_sets(&self) -> Result<Vec<sgp4::Elements>, WriteError> {
-        self.element_sets(tle::rounded_epoch(self.subject.grid.epoch()))
-    }
-
-    /// The loss of the sets, sampled about once an hour, for the satellite that loses most: from their
-    /// digits in a TLE, and from SGP4 relative to the propagated model.
-    pub(super) fn loss_of_sets(
-        &self,
-        sets: &[sgp4::Elements],
-        tle: bool,
-    ) -> Result<Loss, WriteError> {
-        let grid = self.subject.grid;
-        let span_s = grid.elapsed_s(grid.len() - 1) + 1.0;
-        let hourly = TimeGrid::new(grid.epoch(), span_s, 3_577.0).unwrap_or(grid);
-        let (mut digits, mut theory) =
-            (PropagatorDistance::default(), PropagatorDistance::default());
-        for (set, propagated) in sets.iter().zip(self.ephemeris.satellites()) {
-            let of_set = |set: &sgp4::Elements| {
-                Sgp4Orbit::from_element_set(set, grid.epoch()).map_err(|e| failed(propagated, e))
-            };
-            let exact = of_set(set)?;
-            theory.widen(&self.apart(
-                propagated,
-                &exact,
-                propagated.propagator.as_ref(),
-                hourly,
-            )?);
-            if tle {
-                let rounded = of_set(&tle::as_written(set)?)?;
-                digits.widen(&self.apart(propagated, &exact, &rounded, hourly)?);
+        let shells = constellation.design.iter().flat_map(Design::shells);
+        let several = constellation
+            .design
+            .as_ref()
+            .is_some_and(|design| design.only_shell().is_none());
+        for (n, shell) in shells.enumerate() {
+            if several {
+                lines.push(format!("Shell {}: {shell}", shell_letters(n)));
+            } else if self.has_files() {
+                lines.push(format!("Design: {shell}"));
             }
         }
-        Ok(Loss {
-            quantisation_max_km: tle.then_some(digits.max_km),
-            quantisation_rms_km: tle.then_some(digits.rms_km),
-            theory_max_km: Some(theory.max_km),
-            theory_rms_km: Some(theory.rms_km),
-            ..Loss::default()
-        })
+        if let Some(files) = &constellation.files {
+            let names = short(&files.names.join(", "));
+            lines.push(format!("Source: {names} ({})", files.format()));
+        }
+        lines
     }
 
-    fn apart(
-        &self,
-        propagated: &EphemerisSatellite,
-        one: &dyn Propagator,
-        other: &dyn Propagator,
-        grid: TimeGrid,
-    ) -> Result<PropagatorDistance, EphemerisError> {
-        PropagatorDistance::between(one, other, grid).map_err(|source| failed(propagated, source))
+    /// The distance of the satellites from their positions in an ITRF.
+    fn distance_from_itrf(&self) -> String {
+        distance_from_itrf(self.subject.grid.epoch(), self.radius_km)
+    }
+
+    /// The constellation in its scenario.
+    pub(super) fn scene<'s>(&'s self, shown: ShownScenario<'s>) -> Scene<'s> {
+        let constellation = &self.subject.constellation;
+        let notation = constellation.only_design().map(Design::to_string);
+        let propagated = format!("propagated by {}", self.subject.model);
+        let told = match &notation {
+            Some(notation) => {
+                format!(
+                    "design: {notation}, mean elements in TEME at the first sample, {propagated}"
+                )
+            }
+            None => {
+                let design = constellation.design.as_ref();
+                let shells = design.map(|design| format!("; shells: {design}, {propagated}"));
+                let converted = self.converted().unwrap_or_default();
+                format!("constellation: {converted}{}", shells.unwrap_or_default())
+            }
+        };
+        let of = ShownConstellation {
+            ephemeris: &self.ephemeris,
+            title: notation
+                .clone()
+                .unwrap_or_else(|| constellation.name.clone()),
+            is_design: notation.is_some(),
+            told,
+        };
+        Scene::new(shown.evaluator, of, shown.surface, shown.grid)
+    }
+
+    /// Where satellites come from that are no slots of a shell, and what was made of them.
+    fn converted(&self) -> Option<String> {
+        let files = self.subject.constellation.files.as_ref()?;
+        let of_files = || self.members.iter().filter(|member| member.slot.is_none());
+        let theory = Theory::of_all(of_files().map(|member| self.theory(member)));
+        Some(format!(
+            "{} from {} ({}: {}); theory of their states: {theory}",
+            counted(of_files().count(), "satellite"),
+            files.names.join(", "),
+            files.format(),
+            files.fleet.content(),
+        ))
     }
 
     pub(super) fn manifest(&self, files: Vec<FileEntry>) -> Manifest {
-        let ExportSubject { grid, study, .. } = self.subject;
+        let ExportSubject {
+            grid,
+            study,
+            constellation,
+            ..
+        } = self.subject;
+        let is_design = constellation.only_design().is_some();
         Manifest {
             program: env!("CARGO_PKG_NAME").to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario: study.clone(),
-            design: self.subject.design.to_string(),
+            design: constellation.design.as_ref().map(Design::to_string),
+            constellation: (!is_design).then(|| constellation.name.clone()),
+            converted: self.converted(),
             epoch: grid.epoch().to_string(),
             step_s: grid.step_s(),
             samples: grid.len(),
@@ -163,6 +232,12 @@ impl<'a> ExportSource<'a> {
             files,
         }
     }
+}
+
+/// The first characters of a name, in printable ASCII.
+fn short(name: &str) -> String {
+    let plain = |c: char| if (' '..='~').contains(&c) { c } else { '_' };
+    name.chars().take(LONGEST_NAME).map(plain).collect()
 }
 
 pub(super) fn failed(satellite: &EphemerisSatellite, source: PropagationError) -> EphemerisError {

@@ -151,7 +151,7 @@ products! {
     }
     /// GMAT: a script that propagates the design under J2 alone.
     Gmat = "gmat" {
-        help: &["GMAT script of the design under J2 alone, with its gravity field file"],
+        help: &["GMAT script of the satellites under J2 alone, with its gravity field file"],
         has_frame: false,
         read_back: Err("a script has no states until GMAT runs it"),
         size: ProductSize { each: false, satellite: 560, state: 0, day: 0 },
@@ -187,7 +187,7 @@ products! {
     }
     /// YUMA almanacs of the nominal GNSS.
     Yuma = "yuma" {
-        help: &["YUMA almanacs of the nominal GNSS; a LEO design has none"],
+        help: &["YUMA almanacs of the nominal GNSS; a LEO constellation has none"],
         has_frame: false,
         read_back: Err("the almanacs are of the GNSS, not of the design"),
         size: ProductSize { each: false, satellite: 0, state: 0, day: 0 },

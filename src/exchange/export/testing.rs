@@ -1,11 +1,11 @@
 //! Exports into memory, for tests.
 
-use super::{Choices, ExportSubject, Product, Request, export};
+use super::{Choices, ExportSubject, Naming, Product, Request, ShownScenario, export};
 use crate::constellation::Design;
 use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};
+use crate::exchange::constellation::Constellation;
 use crate::exchange::manifest::{ExportedStudy, Manifest};
-use crate::formats::maps::scene::Scene;
 use crate::ground::{Grid, PointWeights};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
@@ -23,8 +23,14 @@ pub(crate) const GRID: Grid = Grid {
 
 /// A subject for tests: a design of the study `paper`, propagated by J2.
 pub(crate) fn subject(design: Design, grid: TimeGrid) -> ExportSubject {
+    subject_of(Constellation::of_design(design), grid)
+}
+
+/// The same for any constellation.
+pub(crate) fn subject_of(constellation: Constellation, grid: TimeGrid) -> ExportSubject {
     ExportSubject {
-        design,
+        constellation,
+        naming: Naming::default(),
         model: Model::J2,
         grid,
         study: ExportedStudy {
@@ -71,17 +77,16 @@ pub(crate) fn in_memory(
     let contents = Contents::default();
     let sink = |path: &str| Ok(Kept(Arc::clone(&contents), path.to_owned()));
     let evaluator = Evaluator::new(setup(subject)).unwrap();
-    let scene = Scene::new(
-        &evaluator,
-        subject.design.clone(),
-        Surface::Wgs84,
-        Some(GRID),
-    );
+    let scenario = ShownScenario {
+        evaluator: &evaluator,
+        surface: Surface::Wgs84,
+        grid: Some(GRID),
+    };
     // The ephemerides of STK alone have none.
     let shown = products.iter().any(|one| one.row().needs_scenario());
     let request = Request {
         subject,
-        scene: Some(&scene).filter(|_| shown),
+        shown: shown.then_some(scenario),
         products,
         choices,
     };

@@ -37,7 +37,7 @@ fn the_manifest_names_every_file_with_its_hash() {
         Manifest::read(files[FILE_NAME].as_slice()).unwrap(),
         manifest
     );
-    assert_eq!(manifest.design, "delta:55:14/7/1@925");
+    assert_eq!(manifest.design.as_deref(), Some("delta:55:14/7/1@925"));
     let of = |format: &'static str| {
         manifest
             .files
@@ -111,7 +111,7 @@ fn a_failing_sink_is_an_error() {
     let sink = |_: &str| -> io::Result<Vec<u8>> { Err(io::Error::other("disk full")) };
     let request = Request {
         subject: &subject(),
-        scene: None,
+        shown: None,
         products: &[Product::Tle],
         choices: Choices::default(),
     };

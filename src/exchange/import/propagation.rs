@@ -71,6 +71,35 @@ impl Propagator for Samples {
     }
 }
 
+/// A satellite's states at any instant that its file covers.
+struct Interpolated {
+    trajectory: Trajectory,
+    /// Epoch of the study.
+    epoch: Epoch,
+}
+
+impl Propagator for Interpolated {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
+        let at = self.epoch.plus_seconds(elapsed_s);
+        let found = self
+            .trajectory
+            .arc_at(at)
+            .and_then(|arc| Some((arc.frame, arc.state(at)?.0)));
+        let (frame, state) = found.ok_or(PropagationError::NotSampled { elapsed_s })?;
+        check_state(frame, &state)
+            .map_err(|problem| PropagationError::Implausible { at, problem })?;
+        Ok(FromTeme::to(frame, self.epoch, elapsed_s).undo(state))
+    }
+}
+
+/// The states of a file at any instant that it covers, not only at those of a grid.
+pub(crate) fn interpolated(trajectory: &Trajectory, epoch: Epoch) -> Box<dyn Propagator> {
+    Box::new(Interpolated {
+        trajectory: trajectory.clone(),
+        epoch,
+    })
+}
+
 /// A propagator whose elements hold at another instant than the epoch of the study.
 struct Shifted {
     propagator: Box<dyn Propagator>,

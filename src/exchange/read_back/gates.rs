@@ -1,7 +1,7 @@
 //! How a product is read back: its files, its theory and its digits.
 
-use crate::constellation::Design;
-use crate::earth::RADIUS_KM;
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::exchange::members::{Member, Origin};
 use crate::formats::tle;
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
@@ -49,12 +49,12 @@ pub enum ReadBackTheory {
 }
 
 impl ReadBackTheory {
-    /// The epoch of the element sets, if there are any.
-    pub(super) fn epoch_of_sets(self, study: Epoch) -> Option<Epoch> {
+    /// What rounds the epoch of the element sets, if there are any.
+    pub(super) fn rounding_of_sets(self) -> Option<fn(Epoch) -> Epoch> {
         match self {
             Self::Study => None,
-            Self::Sgp4 => Some(study),
-            Self::Sgp4OfTle => Some(tle::rounded_epoch(study)),
+            Self::Sgp4 => Some(|epoch| epoch),
+            Self::Sgp4OfTle => Some(tle::rounded_epoch),
         }
     }
 }
@@ -62,19 +62,42 @@ impl ReadBackTheory {
 /// The quantities on which the effect of a digit depends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
-    /// Largest semi-major axis of the design, km.
+    /// Largest semi-major axis, km; of satellites without elements, their distance from the centre of the Earth.
     pub semi_major_axis_km: f64,
-    /// Span of the study, days.
+    /// Span of the study, days; longer where element sets are older than that.
     pub days: f64,
 }
 
 impl Extent {
-    pub(super) fn new(design: &Design, grid: TimeGrid) -> Self {
-        Self {
-            semi_major_axis_km: RADIUS_KM + design.highest_altitude_km(),
+    pub(super) fn new(
+        members: &[Member<'_>],
+        ephemeris: &Ephemeris,
+    ) -> Result<Self, EphemerisError> {
+        let grid = ephemeris.grid();
+        let mut extent = Self {
+            semi_major_axis_km: 0.0,
             days: grid.elapsed_s(grid.len() - 1) / SECONDS_PER_DAY,
+        };
+        for (member, satellite) in members.iter().zip(ephemeris.satellites()) {
+            let size_km = match member.origin.semi_major_axis_km() {
+                Some(size_km) => size_km,
+                None => ephemeris.state(satellite, 0.0)?.position_km.norm(),
+            };
+            extent.semi_major_axis_km = extent.semi_major_axis_km.max(size_km);
+            if let Origin::Set(set) = member.origin {
+                let days = days_from(Epoch::from_utc(set.datetime.and_utc()), grid);
+                extent.days = extent.days.max(days);
+            }
         }
+        Ok(extent)
     }
+}
+
+/// Days from an instant to the farther end of a grid.
+fn days_from(epoch: Epoch, grid: TimeGrid) -> f64 {
+    let ends = [0, grid.len() - 1].map(|k| grid.epoch().plus_seconds(grid.elapsed_s(k)));
+    let apart = ends.map(|end| end.seconds_since(epoch).abs() / SECONDS_PER_DAY);
+    apart[0].max(apart[1])
 }
 
 /// States and elements as the tables, the OEM and the STK ephemerides write them.

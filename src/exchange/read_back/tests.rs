@@ -1,4 +1,5 @@
 use super::*;
+use crate::constellation::Design;
 use crate::earth::Surface;
 use crate::evaluate::testing;
 use crate::exchange::export::testing::{in_memory, subject};
@@ -75,8 +76,8 @@ fn as_it_is(text: String) -> String {
 /// Exports pass, with a gate in metres that the digits of the format explain.
 #[test]
 fn exports_pass_gates_of_their_digits() {
-    let evaluator = evaluator();
-    let original = Original::new(&evaluator, &design()).unwrap();
+    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
+    let original = Original::new(&evaluator, &constellation).unwrap();
     for product in CHECKED {
         let fleet = read_back(product, Choices::default(), &as_it_is).unwrap();
         let found = original
@@ -148,8 +149,8 @@ type Mistake = fn(&mut Fleet);
 
 #[test]
 fn planted_mistakes_fail() {
-    let evaluator = evaluator();
-    let original = Original::new(&evaluator, &design()).unwrap();
+    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
+    let original = Original::new(&evaluator, &constellation).unwrap();
     let teme = Choices {
         frame: Frame::Teme,
         ..Choices::default()
@@ -190,15 +191,15 @@ fn planted_mistakes_fail() {
         .unwrap_err();
     assert_eq!(
         error.to_string(),
-        "11 satellites were read back; the design has 12"
+        "11 satellites were read back; the constellation has 12"
     );
 }
 
 /// The same in the text of a file, as another program would have written it.
 #[test]
 fn a_frame_that_is_misnamed_in_the_file_fails() {
-    let evaluator = evaluator();
-    let original = Original::new(&evaluator, &design()).unwrap();
+    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
+    let original = Original::new(&evaluator, &constellation).unwrap();
     for (notation, from, to) in [
         (
             oem::OemSyntax::Kvn,
@@ -230,8 +231,8 @@ fn a_frame_that_is_misnamed_in_the_file_fails() {
 
 #[test]
 fn fitted_sets_are_held_against_the_propagated_design() {
-    let evaluator = evaluator();
-    let original = Original::new(&evaluator, &design()).unwrap();
+    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
+    let original = Original::new(&evaluator, &constellation).unwrap();
     let fit = Choices {
         elements: ElementChoice::Fit,
         ..Choices::default()

@@ -11,7 +11,7 @@ mod write;
 mod xml;
 
 pub use read::{parse, read};
-pub use write::OemWriter;
+pub use write::{OemMessage, OemWriter, write_combined_xml};
 pub(super) use xml::OemXmlMessage;
 pub use xml::{parse_xml, read_xml};
 

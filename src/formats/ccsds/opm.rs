@@ -67,30 +67,17 @@ pub struct Opm {
 }
 
 impl Opm {
-    /// The message of a satellite with TEME mean elements, whose state at `epoch` is given in the
-    /// frame of `metadata`.
+    /// The message of a satellite whose state at `epoch` is given in the frame of `metadata`, with its mean elements
+    /// in TEME if it has any.
     #[must_use]
     pub fn new(
         version: CcsdsVersion,
         metadata: &Metadata,
         object: &Object,
-        elements: &MeanElements,
+        elements: Option<&MeanElements>,
         epoch: Epoch,
         state: State<Frame>,
     ) -> Self {
-        let angles = [
-            elements.inclination_rad,
-            elements.raan_rad,
-            elements.arg_perigee_rad,
-            elements.mean_anomaly_rad,
-        ];
-        let mut values = vec![
-            format!("{:.9}", elements.semi_major_axis_km),
-            format!("{:.15}", elements.eccentricity),
-        ];
-        values.extend(angles.map(|rad| format!("{:.12}", rad.to_degrees())));
-        let mean = MEAN.map(str::to_owned).into_iter().zip(values);
-        let theory = (THEORY.0.to_owned(), THEORY.1.to_owned());
         // Elements in a rotating frame would mean nothing.
         let is_inertial = metadata.frame != Frame::EarthFixed;
         let keplerian = || Keplerian::of_state(&state, MU_KM3_S2);
@@ -104,7 +91,7 @@ impl Opm {
             epoch: metadata.time_system.stamp(epoch),
             state,
             keplerian: is_inertial.then(keplerian).flatten(),
-            user_defined: std::iter::once(theory).chain(mean).collect(),
+            user_defined: elements.map_or_else(Vec::new, mean_parameters),
         }
     }
 
@@ -167,6 +154,24 @@ impl Opm {
         };
         elements.checked().ok()
     }
+}
+
+/// What the mean elements are, and their values.
+fn mean_parameters(elements: &MeanElements) -> Vec<(String, String)> {
+    let angles = [
+        elements.inclination_rad,
+        elements.raan_rad,
+        elements.arg_perigee_rad,
+        elements.mean_anomaly_rad,
+    ];
+    let mut values = vec![
+        format!("{:.9}", elements.semi_major_axis_km),
+        format!("{:.15}", elements.eccentricity),
+    ];
+    values.extend(angles.map(|rad| format!("{:.12}", rad.to_degrees())));
+    let mean = MEAN.map(str::to_owned).into_iter().zip(values);
+    let theory = (THEORY.0.to_owned(), THEORY.1.to_owned());
+    std::iter::once(theory).chain(mean).collect()
 }
 
 #[cfg(test)]

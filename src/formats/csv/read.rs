@@ -284,9 +284,21 @@ mod tests {
         let epoch = ephemeris.grid().epoch();
         let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
         let (mut elements, mut states) = (Vec::new(), Vec::new());
-        let satellites = design.satellites();
-        super::super::write_elements(&mut elements, satellites.iter().zip(&objects), epoch)
-            .unwrap();
+        let row = |(satellite, object)| {
+            let satellite: crate::constellation::Satellite = satellite;
+            super::super::ElementsOf {
+                slot: Some(satellite.slot),
+                elements: satellite.elements,
+                object,
+            }
+        };
+        let rows: Vec<_> = design
+            .satellites()
+            .into_iter()
+            .zip(&objects)
+            .map(row)
+            .collect();
+        super::super::write_elements(&mut elements, &rows, epoch).unwrap();
         super::super::write_states(&mut states, &ephemeris).unwrap();
         [elements, states].map(|bytes| String::from_utf8(bytes).unwrap())
     }

@@ -10,6 +10,7 @@
 
 mod packet;
 mod read;
+mod spacing;
 mod value;
 mod write;
 

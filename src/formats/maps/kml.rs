@@ -4,12 +4,11 @@
 //! `longitude,latitude` in degrees of WGS 84 (16.10), outer boundaries counterclockwise (10.8), colours
 //! as `aabbggrr` (16.5). Areas and lines are cut at the antimeridian, since viewers differ in how they do it.
 
-use crate::constellation::Design;
+use crate::constellation::shell_letters;
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
-use crate::formats::maps::scene::{
-    ColourScale, Scene, UNSOLVED, colour_of, plane_colour, point_place, shown,
-};
+use crate::formats::maps::palette::{Palette, place_text};
+use crate::formats::maps::scene::{ColourScale, Scene, UNSOLVED, colour_of, point_place, shown};
 use crate::formats::maps::tracks::Ground;
 use crate::ground::shapes::{LonLat, cell_rings};
 use quick_xml::escape::escape;
@@ -26,12 +25,7 @@ const CELL_OPACITY: u8 = 0x90;
 ///
 /// # Errors
 /// If a satellite has no state, or the output fails.
-pub fn write(
-    out: &mut impl Write,
-    scene: &Scene<'_>,
-    design: &Design,
-    ground: &[Ground],
-) -> Result<(), WriteError> {
+pub fn write(out: &mut impl Write, scene: &Scene<'_>, ground: &[Ground]) -> Result<(), WriteError> {
     writeln!(out, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>")?;
     writeln!(
         out,
@@ -40,20 +34,22 @@ pub fn write(
     writeln!(
         out,
         "<name>{}</name>",
-        escape(format!("navwalker {design}"))
+        escape(format!("navwalker {}", scene.title()))
     )?;
     let points = scene.points()?;
     let scale = ColourScale::of(points);
     description(out, scene, scale.as_ref())?;
-    for plane in 0..design.planes() {
-        let colour = hex(plane_colour(plane, design.planes()), 0xff);
+    let palette = Palette::of(scene.ephemeris());
+    let groups = palette.groups();
+    for (id, colour) in &groups {
+        let colour = hex(*colour, 0xff);
         writeln!(
             out,
-            "<Style id=\"plane{}\"><LineStyle><color>{colour}</color><width>1</width></LineStyle>\
-             <PolyStyle><fill>0</fill></PolyStyle></Style>",
-            plane + 1
+            "<Style id=\"{id}\"><LineStyle><color>{colour}</color><width>1</width></LineStyle>\
+             <PolyStyle><fill>0</fill></PolyStyle></Style>"
         )?;
     }
+    let group = |one: &Ground| groups[palette.group(one.slot)].0.as_str();
     folder(out, "Mean PDOP", true, points, |out, point| {
         place(out, scene, scale.as_ref(), point)
     })?;
@@ -69,12 +65,12 @@ pub fn write(
                     coordinates(line)
                 )
             });
-            satellite(out, one, &lines.collect::<String>())
+            satellite(out, one, group(one), &lines.collect::<String>())
         },
     )?;
     folder(out, "Footprints at the epoch", false, ground, |out, one| {
         let areas: String = one.footprint.iter().map(|ring| polygon(ring)).collect();
-        satellite(out, one, &areas)
+        satellite(out, one, group(one), &areas)
     })?;
     writeln!(out, "</Document>\n</kml>")?;
     Ok(())
@@ -156,17 +152,26 @@ fn place(
     writeln!(out, "{}</Placemark>", grouped(&geometry))
 }
 
-fn satellite(out: &mut impl Write, one: &Ground, geometry: &str) -> io::Result<()> {
-    let [plane, index] = one.slot.unwrap_or([1, 1]);
+fn satellite(out: &mut impl Write, one: &Ground, group: &str, geometry: &str) -> io::Result<()> {
     write!(
         out,
-        "<Placemark><name>{}</name><visibility>0</visibility><styleUrl>#plane{plane}</styleUrl>",
+        "<Placemark><name>{}</name><visibility>0</visibility>",
         escape(one.name.as_str())
     )?;
-    extended(
-        out,
-        &[("plane", plane.to_string()), ("slot", index.to_string())],
-    )?;
+    let shell = one.slot.and_then(|slot| Some((slot, slot.shell?)));
+    if let Some((slot, _)) = shell {
+        write!(out, "<description>{}</description>", place_text(slot))?;
+    }
+    write!(out, "<styleUrl>#{group}</styleUrl>")?;
+    let shell = shell.map(|(_, shell)| ("shell", shell_letters(shell)));
+    let mut data = Vec::from_iter(shell);
+    if let Some(slot) = one.slot {
+        data.push(("plane", (slot.plane + 1).to_string()));
+        data.push(("slot", (slot.index + 1).to_string()));
+    }
+    if !data.is_empty() {
+        extended(out, &data)?;
+    }
     writeln!(out, "{}</Placemark>", grouped(geometry))
 }
 

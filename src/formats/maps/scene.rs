@@ -1,7 +1,6 @@
 //! The parts of a scenario other than the satellites of the design: the region with its
 //! metrics, the GNSS, masks and conventions, for the programs that rebuild or show it.
 
-use crate::constellation::Design;
 use crate::constellation::gnss::{GnssSatellite, System};
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -14,28 +13,40 @@ use std::sync::OnceLock;
 /// Most ground points of a file that a viewer loads whole.
 pub const MAX_SHOWN_POINTS: usize = 20_000;
 
-/// A scenario around a design.
+/// The constellation that a scene shows.
+pub struct ShownConstellation<'a> {
+    /// Its satellites.
+    pub ephemeris: &'a Ephemeris,
+    /// Its notation, or its name.
+    pub title: String,
+    /// Whether the title is the notation of a design.
+    pub is_design: bool,
+    /// What it is and how it is propagated, in a sentence.
+    pub told: String,
+}
+
+/// A scenario around a constellation.
 pub struct Scene<'a> {
     evaluator: &'a Evaluator,
-    design: Design,
+    constellation: ShownConstellation<'a>,
     surface: Surface,
     grid: Option<Grid>,
     points: OnceLock<Vec<PointMetrics>>,
 }
 
 impl<'a> Scene<'a> {
-    /// The scenario of an evaluator around a design. `grid` is the region whose points the evaluator
+    /// The scenario of an evaluator around a constellation. `grid` is the region whose points the evaluator
     /// has; none if they are a list.
     #[must_use]
     pub fn new(
         evaluator: &'a Evaluator,
-        design: Design,
+        constellation: ShownConstellation<'a>,
         surface: Surface,
         grid: Option<Grid>,
     ) -> Self {
         Self {
             evaluator,
-            design,
+            constellation,
             surface,
             grid,
             points: OnceLock::new(),
@@ -46,6 +57,26 @@ impl<'a> Scene<'a> {
     #[must_use]
     pub fn setup(&self) -> &'a crate::evaluate::Setup {
         self.evaluator.setup()
+    }
+
+    /// The satellites of the constellation.
+    #[must_use]
+    pub fn ephemeris(&self) -> &'a Ephemeris {
+        self.constellation.ephemeris
+    }
+
+    /// The notation or the name of the constellation.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.constellation.title
+    }
+
+    /// What the title is: `design` or `constellation`.
+    pub(crate) fn title_key(&self) -> &'static str {
+        match self.constellation.is_design {
+            true => "design",
+            false => "constellation",
+        }
     }
 
     /// The surface that ground points lie on.
@@ -71,9 +102,7 @@ impl<'a> Scene<'a> {
 
     /// The metrics by ground point and by instant.
     pub(crate) fn series(&self) -> Result<Series, EphemerisError> {
-        let setup = self.setup();
-        let ephemeris = Ephemeris::of_design(&self.design, setup.model, setup.grid)?;
-        self.evaluator.series(&ephemeris)
+        self.evaluator.series(self.ephemeris())
     }
 
     /// The satellites of each system.
@@ -104,15 +133,13 @@ impl<'a> Scene<'a> {
                 grid.epoch(),
                 grid.step_s()
             ),
-            format!(
-                "design: {}, mean elements in TEME at the first sample, propagated by {}",
-                self.design, setup.model
-            ),
+            self.constellation.told.clone(),
         ];
         told.extend(self.region_assumptions());
         told.push(format!(
-            "masks: {}° for the design, {}° for the GNSS{}",
+            "masks: {}° for the {}, {}° for the GNSS{}",
             setup.mask.degrees(),
+            self.title_key(),
             setup.gnss_mask.degrees(),
             if setup.skyline.is_some() {
                 ", and a mask by azimuth (visibility.mask-table)"
@@ -247,9 +274,9 @@ pub(crate) fn colour_of(scale: Option<&ColourScale>, pdop: Option<f64>) -> [u8; 
     }
 }
 
-/// The colour of plane `k` of `planes`: equal steps around the circle of hues.
-pub(crate) fn plane_colour(k: usize, planes: usize) -> [u8; 3] {
-    let hue = 6.0 * k as f64 / planes.max(1) as f64;
+/// The colour of group `k` of `groups`: equal steps around the circle of hues.
+pub(crate) fn group_colour(k: usize, groups: usize) -> [u8; 3] {
+    let hue = 6.0 * k as f64 / groups.max(1) as f64;
     let channel = |offset: f64| {
         let at = (hue + offset) % 6.0;
         let level = (at.min(4.0 - at)).clamp(0.0, 1.0);

@@ -1,7 +1,9 @@
 //! Where satellites are over the ground: tracks and footprints for maps.
 
+use crate::constellation::{Slot, shell_letters};
 use crate::ephemeris::sampled::Sampled;
-use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
+use crate::ephemeris::{EphemerisError, EphemerisSatellite};
+use crate::formats::maps::palette::period_s;
 use crate::formats::maps::scene::Scene;
 use crate::frames::EarthFixed;
 use crate::ground::shapes::{LonLat, footprint, lines, place_below, rings};
@@ -15,9 +17,9 @@ const STEPS: usize = 120;
 pub struct Ground {
     /// Its name.
     pub(crate) name: String,
-    /// Its plane and its place in it, from 1.
-    pub(crate) slot: Option<[usize; 2]>,
-    /// The first revolution, cut at the antimeridian.
+    /// Its place in a design.
+    pub(crate) slot: Option<Slot>,
+    /// The first revolution, cut at the antimeridian; less where its states end before.
     pub(crate) track: Vec<Vec<LonLat>>,
     /// Where it is above the mask at the epoch.
     pub(crate) footprint: Vec<Vec<LonLat>>,
@@ -26,27 +28,28 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Every satellite of an ephemeris, over one revolution of `period_s`.
+    /// Every satellite of a scene, over one revolution of its own.
     ///
     /// # Errors
     /// If a satellite has no state.
-    pub fn of(
-        scene: &Scene<'_>,
-        ephemeris: &Ephemeris,
-        period_s: f64,
-    ) -> Result<Vec<Self>, EphemerisError> {
+    pub fn of(scene: &Scene<'_>) -> Result<Vec<Self>, EphemerisError> {
+        let ephemeris = scene.ephemeris();
         let sampled = Sampled::new(ephemeris, EarthFixed);
         let mask_rad = scene.setup().mask.degrees().to_radians();
         let one = |propagated: &EphemerisSatellite| {
-            let position = |t: f64| Ok(sampled.state(propagated, t)?.position_km);
-            let place = |t: f64| Ok(place_below(scene.surface(), position(t)?));
+            let period_s = period_s(ephemeris, propagated)?.unwrap_or(0.0);
             let times = (0..=STEPS).map(|k| period_s * k as f64 / STEPS as f64);
-            let track: Vec<LonLat> = times.map(place).collect::<Result<_, EphemerisError>>()?;
-            let start = position(0.0)?;
+            let mut track: Vec<LonLat> = Vec::new();
+            for t in times {
+                if let Some(state) = sampled.state_or_gap(propagated, t)? {
+                    track.push(place_below(scene.surface(), state.position_km));
+                }
+            }
+            let start = sampled.state(propagated, 0.0)?.position_km;
             Ok(Self {
                 name: propagated.name.clone(),
-                slot: propagated.slot.map(|slot| [slot.plane + 1, slot.index + 1]),
-                below: track[0],
+                slot: propagated.slot,
+                below: place_below(scene.surface(), start),
                 track: lines(&track),
                 footprint: rings(&footprint(scene.surface(), start, mask_rad)),
             })
@@ -56,12 +59,16 @@ impl Ground {
 
     pub(crate) fn properties(&self) -> Value {
         let [longitude, latitude] = self.below;
-        json!({
+        let mut properties = json!({
             "name": self.name,
-            "plane": self.slot.map(|[plane, _]| plane),
-            "slot": self.slot.map(|[_, index]| index),
+            "plane": self.slot.map(|slot| slot.plane + 1),
+            "slot": self.slot.map(|slot| slot.index + 1),
             "epoch_latitude_deg": crate::units::round_decimal(latitude, 6),
             "epoch_longitude_deg": crate::units::round_decimal(longitude, 6),
-        })
+        });
+        if let Some(shell) = self.slot.and_then(|slot| slot.shell) {
+            properties["shell"] = Value::from(shell_letters(shell));
+        }
+        properties
     }
 }

@@ -26,6 +26,7 @@ fn written(ephemeris: &Ephemeris, version: Sp3Version, letter: char) -> Result<S
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:20/5/1@925".to_owned()],
         frame_note: None,
+        from_files: false,
     };
     let objects = Object::all(ephemeris.satellites(), epoch).unwrap();
     let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();

@@ -5,11 +5,13 @@
 //! "SetConstraint", "Cov Grid" (`AreaOfInterest LatLonRegion`, `PointGranularity LatLon`,
 //! `GridConstraint`), "Cov Asset", "Cov Access", "Cov FOMDefine"; *STK Help*, "Point Files (*.pnt)".
 //!
-//! Every satellite has its own `SetState`, which works for any pattern and number and keeps our names;
-//! `Walker` allows at most 999 satellites and no lattice, and names them itself. The file contains only
-//! commands; settings that commands cannot make are in [`by_hand`].
+//! A circular Walker shell is one `Walker` command on a seed satellite ("Walker (Satellites)"), which STK names its
+//! satellites after. `Walker` has no lattice, no node step, true anomalies in place of mean ones, and at most 999
+//! satellites: every other satellite has its own `SetState`, which keeps its name. The file contains only commands;
+//! settings that commands cannot make are in [`by_hand`].
 
 use super::{FORMAT_VERSION, MONTHS};
+use crate::constellation::{Orientation, Pattern, Shell, Slot};
 use crate::formats::maps::scene::wrapped;
 use crate::ground::Site;
 use crate::orbit::MeanElements;
@@ -29,12 +31,73 @@ pub enum Setting {
     File(String),
 }
 
+/// Satellites that are made together.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ConnectItem {
+    /// One satellite under its name.
+    Satellite(String, Setting),
+    /// A shell by one `Walker`.
+    Walker(WalkerShell),
+}
+
+/// Most satellites of `Walker`.
+const MOST_WALKER: usize = 999;
+
+/// A shell that `Walker` makes from a seed, whose orbit is that of its first satellite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WalkerShell {
+    /// Name of the seed, to which STK adds the numbers of plane and satellite, and of STK's constellation of the shell.
+    pub name: String,
+    /// The seed.
+    pub seed: Setting,
+    shell: Shell,
+}
+
+impl WalkerShell {
+    /// The shell under a name and a setting of its elements, if `Walker` can express it.
+    #[must_use]
+    pub fn new(
+        name: String,
+        shell: &Shell,
+        setting: impl Fn(MeanElements) -> Setting,
+    ) -> Option<Self> {
+        let is_walker = matches!(shell.pattern(), Pattern::Delta | Pattern::Star)
+            && shell.eccentricity() == 0.0
+            && shell.orientation() == Orientation::default()
+            && shell.satellite_count() <= MOST_WALKER;
+        is_walker.then(|| Self {
+            name,
+            seed: setting(shell.elements(Slot::FIRST)),
+            shell: *shell,
+        })
+    }
+
+    /// The command: phases step by 360° F/T from plane to plane in both types.
+    fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        let kind = match self.shell.pattern() {
+            Pattern::Star => "Star",
+            Pattern::Delta | Pattern::Lattice => "Delta",
+        };
+        writeln!(
+            out,
+            "Walker */Satellite/{name} Type {kind} NumPlanes {} NumSatsPerPlane {} \
+             InterPlanePhaseIncrement {} ColorByPlane No ConstellationName {name} SetUniqueNames Yes",
+            self.shell.planes(),
+            self.shell.satellites_per_plane(),
+            self.shell.phasing(),
+            name = self.name,
+        )?;
+        // The seed is a copy of the first satellite.
+        writeln!(out, "Unload / */Satellite/{}", self.name)
+    }
+}
+
 /// A scenario of commands.
 pub struct ConnectScenario<'a> {
     /// The span.
     pub grid: TimeGrid,
-    /// Names and settings, those of the design first.
-    pub satellites: &'a [(String, Setting)],
+    /// The satellites, those of the constellation first.
+    pub items: &'a [ConnectItem],
     /// The ground points.
     pub sites: &'a [Site],
     /// Spacing of the points, degrees; none for a list of points.
@@ -45,7 +108,7 @@ pub struct ConnectScenario<'a> {
 
 /// What Connect's commands do not say, and has to be set or known in STK.
 #[must_use]
-pub fn by_hand(one_mask: bool, files: bool) -> Vec<String> {
+pub fn by_hand(one_mask: bool, files: bool, items: &[ConnectItem]) -> Vec<String> {
     let mut told = vec![
         "not tested in STK, for lack of a licence: the commands follow its documentation and \
          published scripts"
@@ -65,10 +128,25 @@ pub fn by_hand(one_mask: bool, files: bool) -> Vec<String> {
         "STK solves one clock for all systems: compare with gnss.clocks = \"shared\". It has no \
          cap on PDOP"
             .to_owned(),
-        "one SetState for each satellite instead of Walker, which allows no lattice, at most 999 \
-         satellites, and only its own names"
-            .to_owned(),
     ];
+    for item in items {
+        if let ConnectItem::Walker(WalkerShell { name, shell, .. }) = item {
+            told.push(format!(
+                "{shell} is one Walker command: STK names its satellites {name} and the numbers of plane and place, \
+                 and groups them in the constellation {name}"
+            ));
+        }
+    }
+    if items
+        .iter()
+        .any(|item| matches!(item, ConnectItem::Satellite(..)))
+    {
+        told.push(
+            "satellites with a SetState of their own keep their names: STK's Walker has no lattice, ellipse, raan, u or \
+             node-step, and at most 999 satellites"
+                .to_owned(),
+        );
+    }
     if !one_mask {
         told.push(
             "the mask is that of the design for all satellites: visibility.gnss-mask-deg and \
@@ -99,9 +177,16 @@ impl ConnectScenario<'_> {
         writeln!(out, "New / Scenario navwalker")?;
         writeln!(out, "SetAnalysisTimePeriod * \"{start}\" \"{end}\"")?;
         writeln!(out, "SetEpoch * \"{start}\"")?;
-        for (name, setting) in self.satellites {
+        for item in self.items {
+            let (name, setting) = match item {
+                ConnectItem::Satellite(name, setting) => (name, setting),
+                ConnectItem::Walker(walker) => (&walker.name, &walker.seed),
+            };
             writeln!(out, "New / */Satellite {name}")?;
             self.set_state(out, name, setting, &start)?;
+            if let ConnectItem::Walker(walker) = item {
+                walker.write(out)?;
+            }
         }
         self.coverage(out)
     }
@@ -156,8 +241,12 @@ impl ConnectScenario<'_> {
             out,
             "Cov {REGION} Grid GridConstraint Facility UsePointAltitudeType Facility/MaskPoint"
         )?;
-        for (name, _) in self.satellites {
-            writeln!(out, "Cov {REGION} Asset */Satellite/{name} Assign")?;
+        for item in self.items {
+            let object = match item {
+                ConnectItem::Satellite(name, _) => format!("Satellite/{name}"),
+                ConnectItem::Walker(walker) => format!("Constellation/{}", walker.name),
+            };
+            writeln!(out, "Cov {REGION} Asset */{object} Assign")?;
         }
         writeln!(out, "Cov {REGION} Access Compute")?;
         writeln!(out, "New / {REGION}/FigureOfMerit PDOP")?;
@@ -228,14 +317,20 @@ mod tests {
     fn commands(design: &str, grid: Grid) -> (String, String) {
         let design: Design = design.parse().unwrap();
         let set = |one: crate::constellation::Satellite| {
-            (format!("NW-{}", one.slot), Setting::J2(one.elements))
+            ConnectItem::Satellite(format!("NW-{}", one.slot), Setting::J2(one.elements))
         };
-        let mut satellites: Vec<_> = design.satellites().into_iter().map(set).collect();
-        satellites.push(("GEO-1".to_owned(), Setting::File("gnss/GEO-1.e".to_owned())));
+        let mut items: Vec<_> = design.satellites().into_iter().map(set).collect();
+        if let Some(shell) = design.only_shell()
+            && let Some(walker) = WalkerShell::new("NW".to_owned(), shell, Setting::J2)
+        {
+            items = vec![ConnectItem::Walker(walker)];
+        }
+        let geo = Setting::File("gnss/GEO-1.e".to_owned());
+        items.push(ConnectItem::Satellite("GEO-1".to_owned(), geo));
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let scenario = ConnectScenario {
             grid: TimeGrid::new(epoch, 86_400.0, 60.0).unwrap(),
-            satellites: &satellites,
+            items: &items,
             sites: &grid.sites(Surface::Wgs84).unwrap(),
             step_deg: Some(grid.step_deg),
             mask_deg: 7.0,
@@ -258,11 +353,51 @@ mod tests {
         }
     }
 
+    /// A pattern, its numbers, and then the seed goes; the satellites are an asset of the coverage together.
+    #[test]
+    fn a_circular_walker_shell_is_one_command() {
+        for (design, kind) in [
+            ("delta:55:6/3/2@925", "Delta"),
+            ("star:90:6/3/2@925", "Star"),
+        ] {
+            let (text, _) = commands(design, region([73.0, 136.0]));
+            let expected = format!(
+                "Walker */Satellite/NW Type {kind} NumPlanes 3 NumSatsPerPlane 2 InterPlanePhaseIncrement 2 \
+                 ColorByPlane No ConstellationName NW SetUniqueNames Yes\nUnload / */Satellite/NW\n"
+            );
+            assert!(text.contains(&expected), "{text}");
+            assert_eq!(text.matches("Classical").count(), 1);
+            assert!(
+                text.contains("Cov */CoverageDefinition/Region Asset */Constellation/NW Assign\n")
+            );
+        }
+    }
+
+    #[test]
+    fn what_walker_cannot_express_is_set_one_by_one() {
+        for design in [
+            "lattice:55:4/2/1@925",
+            "delta:55:4/2/1@925,e=0.01",
+            "delta:55:4/2/1@925,raan=10",
+            "delta:55:4/2/1@925,u=10",
+            "star:90:4/2/1@925,node-step=31.6",
+            "delta:55:1000/10/1@925",
+        ] {
+            let (text, _) = commands(design, region([73.0, 136.0]));
+            let satellites = design.parse::<Design>().unwrap().satellite_count();
+            assert_eq!(text.matches("Classical").count(), satellites, "{design}");
+            assert!(!text.contains("Walker"), "{design}");
+        }
+    }
+
     /// The elements are in metres and degrees, perigee before node, as "SetState Classical" has
-    /// them; a star pattern has its nodes over half a turn.
+    /// them; a star pattern has its nodes over half a turn. With a node of its own a shell is no `Walker`.
     #[test]
     fn commands_hold_the_design() {
-        for (design, node) in [("delta:55:4/2/1@925", 180.0), ("star:55:4/2/1@925", 90.0)] {
+        for (design, node) in [
+            ("delta:55:4/2/1@925,raan=5", 185.0),
+            ("star:55:4/2/1@925,raan=5", 95.0),
+        ] {
             let (text, _) = commands(design, region([73.0, 136.0]));
             let set: Vec<&str> = text.lines().filter(|l| l.contains("Classical")).collect();
             assert_eq!(set.len(), 4);

@@ -46,6 +46,7 @@ fn written(frame: Frame, step_s: f64) -> String {
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
         frame_note: None,
+        from_files: false,
     };
     let sampled = Sampled::new(&ephemeris, frame);
     let satellite = &ephemeris.satellites()[1];

@@ -12,6 +12,8 @@ use crate::time::{FIRST_YEAR, ends_with_leap_second};
 pub(in crate::scenario) enum Text {
     /// Something that is safe as part of a file name everywhere.
     Name,
+    /// What satellites' names begin with, in every format.
+    Prefix,
     /// Printable ASCII.
     Ascii,
     /// Anything.
@@ -20,11 +22,12 @@ pub(in crate::scenario) enum Text {
 
 impl Text {
     /// Longest text in bytes. A name becomes part of a directory name, where 255 is the usual
-    /// limit; ASCII text follows its keyword on a line of a CCSDS message, which has at most 254
+    /// limit; a prefix leaves room for shell, plane and slot in the 24 columns of a TLE's name; ASCII text follows its keyword on a line of a CCSDS message, which has at most 254
     /// characters (502.0-B-3, 7.3.2); 4096 is the usual limit of a path.
     fn longest(&self) -> usize {
         match self {
             Self::Name => 100,
+            Self::Prefix => 8,
             Self::Ascii => 200,
             Self::Any => 4096,
         }
@@ -37,6 +40,10 @@ impl Text {
                     && text
                         .chars()
                         .all(|c| c.is_ascii_alphanumeric() || "-_.".contains(c))
+            }
+            Self::Prefix => {
+                text.starts_with(|c: char| c.is_ascii_alphabetic())
+                    && text.chars().all(|c| c.is_ascii_alphanumeric() || c == '-')
             }
             Self::Ascii => text.is_ascii(),
             Self::Any => true,
@@ -62,6 +69,7 @@ impl Rule for Text {
             Self::Name => {
                 "a text of letters, digits, '-', '_' and '.' that begins with a letter or digit"
             }
+            Self::Prefix => "a text of letters, digits and '-' that begins with a letter",
             Self::Ascii => "a text of printable ASCII",
             Self::Any => "a text without control characters",
         };
@@ -71,6 +79,7 @@ impl Rule for Text {
     fn schema(&self) -> Json {
         let pattern = match self {
             Self::Name => "^[A-Za-z0-9][A-Za-z0-9._-]*$",
+            Self::Prefix => "^[A-Za-z][A-Za-z0-9-]*$",
             Self::Ascii => "^[ -~]*[!-~][ -~]*$",
             Self::Any => r"^[^\u0000-\u001F\u007F-\u009F]+$",
         };

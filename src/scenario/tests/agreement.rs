@@ -86,8 +86,8 @@ fn the_hash_moves_with_everything_that_is_computed() {
         .collect();
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations, export.originator, export.creation-date; region.points, gnss.files; optimizer.generations
-    let (labels, files, budgets) = (4, 2, 1);
+    // name, constellations and the keys of [export]; region.points, gnss.files; optimizer.generations
+    let (labels, files, budgets) = (6, 2, 1);
     assert_eq!(
         changes.len() + labels + files + budgets,
         describe_keys().len()
@@ -105,6 +105,8 @@ fn the_hash_stays_when_only_labels_and_budgets_change() {
         "constellations={ a = 'star:90:4/2/1@925', b = { files = ['b.tle'] } }",
         "export.originator=ME",
         "export.creation-date=2026-01-01T00:00:00Z",
+        "export.name-prefix=X",
+        "export.first-catalog-number=1",
     ];
     assert_eq!(with(&labels).hash(&[]), defaults().hash(&[]));
 }

@@ -18,6 +18,21 @@ fn names_are_safe_in_a_path() {
     let originator = "expected a text of printable ASCII";
     refuses("export", "originator = \"ÖBB\"", "originator", originator);
     refuses("export", "originator = \"A\\tB\"", "originator", originator);
+    let prefix =
+        "expected a text of letters, digits and '-' that begins with a letter, 1 to 8 bytes";
+    for wrong in ["", "9A", "-A", "A B", "NAVWALKER", "Ä"] {
+        let line = format!("name-prefix = \"{wrong}\"");
+        refuses("export", &line, "name-prefix", prefix);
+    }
+    for wrong in ["0", "340000", "-1", "1.5", "\"1\""] {
+        let line = format!("first-catalog-number = {wrong}");
+        refuses(
+            "export",
+            &line,
+            "first-catalog-number",
+            "an integer >= 1 and <= 339999",
+        );
+    }
     refuses(
         "export",
         "creation-date = 1",

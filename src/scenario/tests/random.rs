@@ -277,6 +277,7 @@ fn scenario() -> impl Strategy<Value = Scenario> {
         "[A-Za-z0-9][A-Za-z0-9._-]{0,20}",
         "[a-z:/@\"\\\\é0-9]{1,20}",
         "[!-~]{1,20}",
+        ("[A-Za-z][A-Za-z0-9-]{0,7}", 1..=339_999_u32),
     );
     let time = (instant(), 0.1..8.0, 60.0..1e6).prop_map(|(epoch, duration_h, step_s)| TimeSpan {
         epoch,
@@ -293,7 +294,8 @@ fn scenario() -> impl Strategy<Value = Scenario> {
     );
     let purpose = (objectives(), search(), optimizer(), instant());
     (texts, time, setting, purpose).prop_map(|(texts, time, setting, purpose)| {
-        let (name, reference_design, originator) = texts;
+        let (name, reference_design, originator, identities) = texts;
+        let (name_prefix, first_catalog_number) = identities;
         let (surface, model, region, visibility, gnss, constellations) = setting;
         let (objectives, search, optimizer, creation_date) = purpose;
         Scenario {
@@ -312,6 +314,8 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             export: Export {
                 originator,
                 creation_date,
+                name_prefix,
+                first_catalog_number,
             },
         }
     })

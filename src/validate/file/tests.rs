@@ -1,11 +1,10 @@
 use super::*;
 use crate::constellation::{Design, Shell};
 use crate::evaluate::Evaluator;
-use crate::exchange::export::{Choices, ExportSubject, Product, testing::in_memory};
-use crate::exchange::manifest::ExportedStudy;
+use crate::exchange::export::testing::{in_memory, subject};
+use crate::exchange::export::{Choices, Product};
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, Position, from_teme};
-use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::{Outcome, Subject, testing};
 
@@ -250,17 +249,7 @@ fn the_design_itself_needs_no_explanation() {
 /// Every export is read back by the reader of its format, in its own frame.
 #[test]
 fn exported_files_are_the_design() {
-    let subject = ExportSubject {
-        design: design().into(),
-        model: Model::J2,
-        grid: grid(),
-        study: ExportedStudy {
-            name: "test".to_owned(),
-            hash: String::new(),
-        },
-        originator: "TEST".to_owned(),
-        creation: epoch(),
-    };
+    let subject = subject(design().into(), grid());
     for (product, most_km) in [
         // Nine decimals of a km; EME2000 there and back.
         (Product::Oem, 1e-6),

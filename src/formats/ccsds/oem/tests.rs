@@ -93,6 +93,7 @@ fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
         frame_note: None,
+        from_files: false,
     }
 }
 
@@ -372,9 +373,14 @@ fn combined_xml_reads_back_satellite_by_satellite() {
     };
     let mut combined = Vec::new();
     let satellites = ephemeris.satellites().iter();
-    writer
-        .combined_xml(&mut combined, satellites.clone().zip(&objects))
-        .unwrap();
+    let messages = satellites.clone().zip(&objects);
+    let messages = messages.map(|(satellite, object)| OemMessage {
+        satellite,
+        object,
+        metadata: metadata.clone(),
+        hermite: None,
+    });
+    write_combined_xml(&mut combined, CcsdsVersion::V3, &sampled, messages).unwrap();
     assert_eq!(findings_xml(&combined), []);
     let messages = read_xml(combined.as_slice()).unwrap();
     assert_eq!(messages.len(), 6);

@@ -76,24 +76,6 @@ impl OemWriter<'_> {
         self.xml_content(out, satellite, object)
     }
 
-    /// Writes the messages of several satellites as one combined instantiation in XML.
-    ///
-    /// # Errors
-    /// If a satellite has no state, or the output fails.
-    pub fn combined_xml<'s>(
-        &self,
-        out: &mut impl Write,
-        satellites: impl Iterator<Item = (&'s EphemerisSatellite, &'s Object)>,
-    ) -> Result<(), WriteError> {
-        xml::begin_ndm(out, self.version)?;
-        for (satellite, object) in satellites {
-            writeln!(out, "<oem id=\"{VERSION}\" version=\"{}\">", self.version)?;
-            self.xml_content(out, satellite, object)?;
-        }
-        xml::end_ndm(out)?;
-        Ok(())
-    }
-
     fn xml_content(
         &self,
         out: &mut impl Write,
@@ -110,4 +92,41 @@ impl OemWriter<'_> {
         writeln!(out, "</body>\n</oem>")?;
         Ok(())
     }
+}
+
+/// One of several messages in a file.
+pub struct OemMessage<'a> {
+    /// The satellite.
+    pub satellite: &'a EphemerisSatellite,
+    /// Its identity.
+    pub object: &'a Object,
+    /// Its metadata.
+    pub metadata: Metadata,
+    /// What was measured for its states.
+    pub hermite: Option<Hermite>,
+}
+
+/// Writes the messages of several satellites as one combined instantiation in XML.
+///
+/// # Errors
+/// If a satellite has no state, or the output fails.
+pub fn write_combined_xml<'a>(
+    out: &mut impl Write,
+    version: CcsdsVersion,
+    sampled: &Sampled<'_, Frame>,
+    messages: impl Iterator<Item = OemMessage<'a>>,
+) -> Result<(), WriteError> {
+    xml::begin_ndm(out, version)?;
+    for message in messages {
+        writeln!(out, "<oem id=\"{VERSION}\" version=\"{version}\">")?;
+        let writer = OemWriter {
+            version,
+            metadata: &message.metadata,
+            sampled,
+            hermite: message.hermite,
+        };
+        writer.xml_content(out, message.satellite, message.object)?;
+    }
+    xml::end_ndm(out)?;
+    Ok(())
 }

@@ -91,6 +91,7 @@ fn some_header() -> CcsdsHeader {
         theory: Theory::Sgp4Elements(ElementChoice::Kozai),
         subject: vec!["Design: <a & b>".to_owned()],
         frame_note: None,
+        from_files: false,
     };
     header(CcsdsVersion::V2, &metadata)
 }

@@ -103,6 +103,7 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: vec!["Design".to_owned()],
         frame_note: None,
+        from_files: false,
     };
     let object = Object::numbered("NW-P02-S02", 4, epoch).unwrap();
     let state = from_teme(teme, frame, epoch, 0.0);
@@ -112,7 +113,7 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
             CcsdsVersion::V2,
             &metadata,
             &object,
-            &elements,
+            Some(&elements),
             epoch,
             state,
         ),

@@ -1,63 +1,48 @@
 //! Writes a scenario as CZML, packet by packet.
 
-use super::{DEGREE, FORMAT_VERSION, TARGET_KM};
-use crate::constellation::Design;
-use crate::ephemeris::arc::lagrange;
+use super::spacing::{ShownSpan, Spacing};
+use super::{DEGREE, FORMAT_VERSION};
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
-use crate::formats::maps::scene::{
-    ColourScale, Scene, colour_of, plane_colour, point_place, shown, wrapped,
-};
-use crate::frames::{EarthFixed, State};
+use crate::formats::maps::palette::{Palette, period_s, place_text};
+use crate::formats::maps::scene::{ColourScale, Scene, colour_of, point_place, shown, wrapped};
+use crate::frames::EarthFixed;
 use crate::ground::Grid;
 use crate::ground::shapes::LonLat;
 use crate::units::round_decimal;
 use rayon::prelude::*;
 use serde_json::{Value, json};
-use std::f64::consts::TAU;
 use std::io::{self, Write};
-
-/// Spacings of samples that are tried, s.
-const SPACINGS_S: [f64; 9] = [
-    3600.0, 1800.0, 1200.0, 600.0, 300.0, 120.0, 60.0, 30.0, 10.0,
-];
-
-/// Maximum number of intervals between samples that are checked for the error of a spacing.
-const INTERVALS: usize = 500;
-
-/// Samples beyond each end.
-const BEYOND: i64 = DEGREE as i64 / 2;
 
 /// Satellites whose packets are made at once.
 const CHUNK: usize = 64;
 
+/// Largest number of satellites outside shells whose orbits are drawn.
+const ORBITS: usize = 100;
+
 /// Opacity of the cells of the region, of 255.
 const CELL_OPACITY: u8 = 130;
 
-/// Writes the scenario around a design; the largest error of the interpolation, km, of a satellite of
+/// Writes the scenario around a constellation; the largest error of the interpolation, km, of a satellite of
 /// each constellation.
 ///
 /// # Errors
 /// If a satellite has no state, or the output fails.
-pub fn write(
-    out: &mut impl Write,
-    scene: &Scene<'_>,
-    design: &Design,
-    ephemeris: &Ephemeris,
-) -> Result<f64, WriteError> {
+pub fn write(out: &mut impl Write, scene: &Scene<'_>) -> Result<f64, WriteError> {
     let mut packets = Packets { out, any: false };
     let shown = ShownSpan::of(scene);
-    packets.add(&shown.document(design))?;
-    packets.add(&study(scene, design))?;
+    let ephemeris = scene.ephemeris();
+    packets.add(&shown.document(scene.title()))?;
+    packets.add(&study(scene))?;
     for packet in region(scene)? {
         packets.add(&packet)?;
     }
-    packets.add(&json!({"id": "constellation", "name": design.to_string()}))?;
-    let mut worst_km = packets.satellites(&shown, ephemeris, &|satellite| {
-        design_look(satellite, design)
-    })?;
+    packets.add(&json!({"id": "constellation", "name": scene.title()}))?;
+    let looks = LeoLooks::of(ephemeris);
+    let mut worst_km =
+        packets.satellites(&shown, ephemeris, &|satellite| looks.of_one(satellite))?;
     let mut ids = std::collections::BTreeMap::new();
     for (system, satellites) in scene.systems() {
         // Two files of one name are two systems.
@@ -69,12 +54,14 @@ pub fn write(
         };
         packets.add(&json!({"id": parent, "name": system.name()}))?;
         let propagated = Ephemeris::of_gnss(satellites, ephemeris.grid());
-        let look = |satellite: &EphemerisSatellite| Appearance {
-            id: format!("{parent}:{}", satellite.name),
-            parent: parent.clone(),
-            colour: [255, 255, 255],
-            description: String::new(),
-            period_s: None,
+        let look = |satellite: &EphemerisSatellite| {
+            Ok(Appearance {
+                id: format!("{parent}:{}", satellite.name),
+                parent: parent.clone(),
+                colour: [255, 255, 255],
+                description: String::new(),
+                period_s: None,
+            })
         };
         worst_km = worst_km.max(packets.satellites(&shown, &propagated, &look)?);
     }
@@ -100,38 +87,30 @@ impl<W: Write> Packets<'_, W> {
         self.out.write_all(b"\n]\n")
     }
 
-    /// The packets of satellites with the same propagation, so that the first determines the spacing of all.
+    /// The packets of satellites.
     fn satellites(
         &mut self,
         shown: &ShownSpan,
         ephemeris: &Ephemeris,
-        look: &(impl Fn(&EphemerisSatellite) -> Appearance + Sync),
+        look: &(impl Fn(&EphemerisSatellite) -> Result<Appearance, EphemerisError> + Sync),
     ) -> Result<f64, WriteError> {
         let sampled = Sampled::new(ephemeris, EarthFixed);
-        let mut spacing: Option<Spacing> = None;
-        for propagated in ephemeris.satellites() {
-            // GNSS of several heights: the spacing that suits the lowest suits all.
-            let found = shown.spacing(&sampled, propagated)?;
-            if spacing.is_none_or(|known| found.step_s < known.step_s) {
-                spacing = Some(found);
-            }
-            if propagated.slot.is_some() {
-                break;
-            }
-        }
-        let Some(spacing) = spacing else {
-            return Ok(0.0);
-        };
-        for chunk in ephemeris.satellites().chunks(CHUNK) {
+        let spacings = shown.spacings(&sampled, ephemeris)?;
+        let satellites: Vec<(&EphemerisSatellite, &Spacing)> =
+            ephemeris.satellites().iter().zip(&spacings).collect();
+        for chunk in satellites.chunks(CHUNK) {
             let packets: Vec<Value> = chunk
                 .par_iter()
-                .map(|propagated| shown.satellite(&sampled, propagated, spacing, look(propagated)))
-                .collect::<Result<_, _>>()?;
+                .map(|(propagated, spacing)| {
+                    shown.satellite(&sampled, propagated, **spacing, look(propagated)?)
+                })
+                .collect::<Result<_, EphemerisError>>()?;
             for packet in &packets {
                 self.add(packet)?;
             }
         }
-        Ok(spacing.error_km)
+        let errors = spacings.iter().map(|spacing| spacing.error_km);
+        Ok(errors.fold(0.0, f64::max))
     }
 }
 
@@ -145,34 +124,43 @@ struct Appearance {
     period_s: Option<f64>,
 }
 
-fn design_look(propagated: &EphemerisSatellite, design: &Design) -> Appearance {
-    let slot = propagated.slot;
-    let elements = design.satellites().first().map(|first| first.elements);
-    let period_s = elements.map(|first| TAU / first.kepler_mean_motion_rad_s());
-    Appearance {
-        id: propagated.name.clone(),
-        parent: "constellation".to_owned(),
-        colour: plane_colour(slot.map_or(0, |slot| slot.plane), design.planes()),
-        description: slot.map_or_else(String::new, |slot| {
-            format!("plane {}, place {}", slot.plane + 1, slot.index + 1)
-        }),
-        // One orbit a plane: a thousand of them stop a browser.
-        period_s: period_s.filter(|_| slot.is_some_and(|slot| slot.index == 0)),
+/// How the satellites of the constellation are shown.
+struct LeoLooks<'a> {
+    ephemeris: &'a Ephemeris,
+    palette: Palette,
+    /// Whether satellites outside shells have orbits.
+    draws_others: bool,
+}
+
+impl<'a> LeoLooks<'a> {
+    fn of(ephemeris: &'a Ephemeris) -> Self {
+        let satellites = ephemeris.satellites().iter();
+        let others = satellites.filter(|satellite| satellite.slot.is_none());
+        Self {
+            ephemeris,
+            palette: Palette::of(ephemeris),
+            draws_others: others.count() <= ORBITS,
+        }
     }
-}
 
-/// How far apart samples lie, and what that costs.
-#[derive(Clone, Copy)]
-struct Spacing {
-    step_s: f64,
-    error_km: f64,
-}
-
-/// The span that is shown.
-struct ShownSpan {
-    start: String,
-    end: String,
-    span_s: f64,
+    fn of_one(&self, satellite: &EphemerisSatellite) -> Result<Appearance, EphemerisError> {
+        // One orbit a plane: a thousand of them stop a browser.
+        let draws = match satellite.slot {
+            Some(slot) => slot.index == 0,
+            None => self.draws_others,
+        };
+        let period_s = match draws {
+            true => period_s(self.ephemeris, satellite)?,
+            false => None,
+        };
+        Ok(Appearance {
+            id: satellite.name.clone(),
+            parent: "constellation".to_owned(),
+            colour: self.palette.colour(satellite.slot),
+            description: satellite.slot.map_or_else(String::new, place_text),
+            period_s,
+        })
+    }
 }
 
 impl ShownSpan {
@@ -190,10 +178,10 @@ impl ShownSpan {
         format!("{}/{}", self.start, self.end)
     }
 
-    fn document(&self, design: &Design) -> Value {
+    fn document(&self, title: &str) -> Value {
         json!({
             "id": "document",
-            "name": format!("navwalker {design}"),
+            "name": format!("navwalker {title}"),
             "version": FORMAT_VERSION,
             "clock": {
                 "interval": self.interval(),
@@ -205,52 +193,6 @@ impl ShownSpan {
         })
     }
 
-    /// The widest spacing within the target, or the best one.
-    fn spacing(
-        &self,
-        sampled: &Sampled<'_, EarthFixed>,
-        propagated: &EphemerisSatellite,
-    ) -> Result<Spacing, EphemerisError> {
-        let mut best: Option<Spacing> = None;
-        for step_s in SPACINGS_S {
-            let error_km = self.error_km(sampled, propagated, step_s)?;
-            if best.is_none_or(|best| error_km < best.error_km) {
-                best = Some(Spacing { step_s, error_km });
-            }
-            if error_km <= TARGET_KM {
-                break;
-            }
-        }
-        Ok(best.unwrap_or(Spacing {
-            step_s: SPACINGS_S[0],
-            error_km: f64::INFINITY,
-        }))
-    }
-
-    /// Largest distance between the polynomial and the model halfway between samples, km.
-    fn error_km(
-        &self,
-        sampled: &Sampled<'_, EarthFixed>,
-        propagated: &EphemerisSatellite,
-        step_s: f64,
-    ) -> Result<f64, EphemerisError> {
-        let intervals = (self.span_s / step_s).ceil().max(1.0) as usize;
-        let stride = intervals.div_ceil(INTERVALS);
-        let mut worst_km = 0.0_f64;
-        for k in (0..intervals).step_by(stride) {
-            let nodes = nodes(
-                sampled,
-                propagated,
-                step_s,
-                k as i64 - BEYOND..=k as i64 + 1 + BEYOND,
-            )?;
-            let middle_s = (k as f64 + 0.5) * step_s;
-            let exact = sampled.state(propagated, middle_s)?.position_km.km();
-            worst_km = worst_km.max((lagrange(&nodes, middle_s).0 - exact).norm());
-        }
-        Ok(worst_km)
-    }
-
     fn satellite(
         &self,
         sampled: &Sampled<'_, EarthFixed>,
@@ -258,9 +200,15 @@ impl ShownSpan {
         spacing: Spacing,
         look: Appearance,
     ) -> Result<Value, EphemerisError> {
-        let step_s = spacing.step_s;
-        let intervals = (self.span_s / step_s).ceil() as i64;
-        let nodes = nodes(sampled, propagated, step_s, -BEYOND..=intervals + BEYOND)?;
+        let nodes = self.nodes(sampled, propagated, spacing.step_s)?;
+        let last_s = nodes.last().map_or(0.0, |(t, _)| *t);
+        let availability = match last_s < self.span_s {
+            true => {
+                let last = sampled.grid().epoch().plus_seconds(last_s);
+                format!("{}/{last}", self.start)
+            }
+            false => self.interval(),
+        };
         let metres = |km: f64| round_decimal(km * 1000.0, 1);
         let cartesian: Vec<f64> = nodes
             .iter()
@@ -271,7 +219,7 @@ impl ShownSpan {
             "id": look.id,
             "name": propagated.name,
             "parent": look.parent,
-            "availability": self.interval(),
+            "availability": availability,
             "description": look.description,
             "position": {
                 "epoch": self.start,
@@ -295,26 +243,12 @@ impl ShownSpan {
     }
 }
 
-/// Positions at whole multiples of a spacing, Earth-fixed, km.
-fn nodes(
-    sampled: &Sampled<'_, EarthFixed>,
-    propagated: &EphemerisSatellite,
-    step_s: f64,
-    range: std::ops::RangeInclusive<i64>,
-) -> Result<Vec<(f64, State<EarthFixed>)>, EphemerisError> {
-    let node = |k: i64| {
-        let t = k as f64 * step_s;
-        Ok((t, sampled.state(propagated, t)?))
-    };
-    range.map(node).collect()
-}
-
 fn rgba([red, green, blue]: [u8; 3], opacity: u8) -> Value {
     json!({"rgba": [red, green, blue, opacity]})
 }
 
 /// What the study assumes, for programs and, as a description, for people.
-fn study(scene: &Scene<'_>, design: &Design) -> Value {
+fn study(scene: &Scene<'_>) -> Value {
     let assumptions = scene.assumptions();
     let items: Vec<String> = assumptions
         .iter()
@@ -325,7 +259,7 @@ fn study(scene: &Scene<'_>, design: &Design) -> Value {
         "name": "Study",
         "description": format!("<ul>{}</ul>", items.concat()),
         "properties": {
-            "design": design.to_string(),
+            scene.title_key(): scene.title(),
             "mask_deg": scene.setup().mask.degrees(),
             "gnss_mask_deg": scene.setup().gnss_mask.degrees(),
         },
