@@ -275,6 +275,27 @@ fn states_become_element_sets_by_a_fit_only() {
     );
 }
 
+/// No format here writes gaps, so a satellite with one is named before anything is written.
+#[test]
+fn a_satellite_with_a_gap_is_named() {
+    let table = String::from_utf8(star(Product::TleStates, "tle-states.csv")).unwrap();
+    // The last row of one satellite.
+    let ends = |line: &&str| line.starts_with("IR-P02-S01,2025-01-01T01:58:");
+    let text: Vec<&str> = table.lines().filter(|line| !ends(line)).collect();
+    assert_eq!(text.len(), table.lines().count() - 1);
+    let subject = subject_of(of_file("gap.csv", text.join("\n").as_bytes()), grid());
+    let request = Request {
+        subject: &subject,
+        shown: None,
+        products: &[Product::Oem],
+        choices: Choices::default(),
+    };
+    let sink = |path: &str| -> io::Result<Vec<u8>> { panic!("{path} is written") };
+    let error = export(&request, &sink).unwrap_err().to_string();
+    let start = "IR-P02-S01 has no state at 2025-01-01T01:58:00Z: leave it out with --exclude";
+    assert!(error.starts_with(start), "{error}");
+}
+
 #[test]
 fn a_keplerian_slot_is_not_for_element_sets_of_a_file() {
     let constellation = of_file("a.tle", &star(Product::Tle, "constellation.tle"));
