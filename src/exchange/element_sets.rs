@@ -1,6 +1,6 @@
 //! The SGP4 element sets of a constellation's satellites: made from mean elements, or as their file has them.
 
-use super::members::{Member, Origin};
+use super::members::{ConstellationMember, Origin};
 use crate::constellation::identity::ObjectIdentity;
 use crate::formats::element_set;
 use crate::formats::metadata::Object;
@@ -24,7 +24,11 @@ pub(super) struct ElementSetRule {
 
 impl ElementSetRule {
     /// The unrounded element set of a satellite; none for states and almanacs, which have no such elements.
-    pub(super) fn set(&self, member: &Member<'_>, object: &Object) -> Option<sgp4::Elements> {
+    pub(super) fn set(
+        &self,
+        member: &ConstellationMember<'_>,
+        object: &Object,
+    ) -> Option<sgp4::Elements> {
         match member.origin {
             Origin::Mean { epoch, .. } => {
                 // Mean elements that SGP4 propagates stay at their own epoch.

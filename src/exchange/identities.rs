@@ -3,7 +3,7 @@
 //! A satellite of a file keeps what identifies it there; what it lacks, and everything of a design's satellites, is
 //! synthetic. Names, numbers and designators are unique, so that every reader tells the satellites apart.
 
-use super::members::Member;
+use super::members::ConstellationMember;
 use crate::constellation::identity::{ObjectIdentity, unique_labels};
 use crate::formats::gmat::script_name;
 use crate::formats::metadata::{CatalogNumber, IdentityError, Object};
@@ -38,13 +38,13 @@ impl Naming {
     /// If there are too few catalogue numbers from the first one on.
     pub(super) fn objects(
         &self,
-        members: &[Member<'_>],
+        members: &[ConstellationMember<'_>],
         epoch: Epoch,
     ) -> Result<Vec<Object>, IdentityError> {
         let mut numbers = FreshNumbers::new(self.first_catalog_number, members);
         let mut designators = HashSet::new();
         let names = self.names(members);
-        let object = |(member, name): (&Member<'_>, String)| {
+        let object = |(member, name): (&ConstellationMember<'_>, String)| {
             let number = number_of(&member.identity);
             let designator = member.identity.designator();
             let designator = designator.filter(|text| designators.insert((*text).to_owned()));
@@ -68,13 +68,13 @@ impl Naming {
     }
 
     /// Unique names in printable ASCII, which every format can hold.
-    fn names(&self, members: &[Member<'_>]) -> Vec<String> {
+    fn names(&self, members: &[ConstellationMember<'_>]) -> Vec<String> {
         let of_files = members.iter().filter(|member| member.slot.is_none());
         let identities: Vec<ObjectIdentity> =
             of_files.map(|member| member.identity.clone()).collect();
         let mut labels = unique_labels(&identities).into_iter();
         let mut taken = HashSet::new();
-        let name = |member: &Member<'_>| {
+        let name = |member: &ConstellationMember<'_>| {
             let name = match member.slot {
                 Some(slot) => format!("{}-{slot}", self.prefix),
                 None => printable(&labels.next().unwrap_or_default()),
@@ -95,7 +95,7 @@ struct FreshNumbers {
 }
 
 impl FreshNumbers {
-    fn new(first: u32, members: &[Member<'_>]) -> Self {
+    fn new(first: u32, members: &[ConstellationMember<'_>]) -> Self {
         let identities = || members.iter().map(|member| &member.identity);
         let numbers = identities().filter_map(number_of);
         let designators = identities().filter_map(ObjectIdentity::designator);
@@ -168,7 +168,7 @@ mod tests {
     use crate::exchange::members::Origin;
 
     fn member(set: &sgp4::Elements, number: u64, designator: &str, name: &str) -> Object {
-        let member = Member {
+        let member = ConstellationMember {
             slot: None,
             origin: Origin::Set(set),
             identity: ObjectIdentity::new(number, designator, name),

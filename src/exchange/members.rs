@@ -33,7 +33,7 @@ pub(super) enum Origin<'a> {
 
 /// A satellite of a constellation.
 #[derive(Debug, Clone)]
-pub(super) struct Member<'a> {
+pub(super) struct ConstellationMember<'a> {
     /// Its place in the shells.
     pub(super) slot: Option<Slot>,
     /// What its states are made from.
@@ -86,12 +86,12 @@ impl Origin<'_> {
 
 impl Constellation {
     /// The satellites in the order of the ephemeris, `epoch` being that of the study.
-    pub(super) fn members(&self, epoch: Epoch) -> Vec<Member<'_>> {
+    pub(super) fn members(&self, epoch: Epoch) -> Vec<ConstellationMember<'_>> {
         let satellites = self
             .design
             .iter()
             .flat_map(crate::constellation::Design::satellites);
-        let of_shell = |satellite: crate::constellation::Satellite| Member {
+        let of_shell = |satellite: crate::constellation::Satellite| ConstellationMember {
             slot: Some(satellite.slot),
             origin: Origin::Mean {
                 elements: satellite.elements,
@@ -99,12 +99,12 @@ impl Constellation {
             },
             identity: ObjectIdentity::default(),
         };
-        let mut members: Vec<Member<'_>> = satellites.map(of_shell).collect();
+        let mut members: Vec<ConstellationMember<'_>> = satellites.map(of_shell).collect();
         if let Some(files) = &self.files {
             let mut origins = Vec::with_capacity(files.fleet.len());
             collect(&files.fleet, &mut origins);
             let identities = files.fleet.identities();
-            let of_file = |(origin, identity)| Member {
+            let of_file = |(origin, identity)| ConstellationMember {
                 slot: None,
                 origin,
                 identity,

@@ -15,7 +15,7 @@ use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::exchange::element_sets::ElementSetRule;
 use crate::exchange::identities::Naming;
 use crate::exchange::import::{Fleet, FleetError};
-use crate::exchange::members::{Member, Origin};
+use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::metadata::{ElementChoice, IdentityError, Object};
 use crate::orbit::Model;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
@@ -109,7 +109,7 @@ impl Recheck {
 /// The constellation that products are checked against.
 pub struct Original<'a> {
     evaluator: &'a Evaluator,
-    members: Vec<Member<'a>>,
+    members: Vec<ConstellationMember<'a>>,
     propagated: Rescored,
 }
 
@@ -153,7 +153,8 @@ impl<'a> Original<'a> {
         // Names make no difference to an orbit.
         let objects = Naming::default().objects(&self.members, grid.epoch())?;
         let sets = self.members.iter().zip(&objects);
-        let sets = sets.map(|(member, object): (&Member<'_>, &Object)| rule.set(member, object));
+        let sets = sets
+            .map(|(member, object): (&ConstellationMember<'_>, &Object)| rule.set(member, object));
         let Some(sets) = sets.collect::<Option<Vec<_>>>() else {
             return Ok(None);
         };
@@ -253,16 +254,17 @@ impl<'a> Original<'a> {
         if sets != ElementChoice::Fit {
             return Some(0.0);
         }
-        let gate_km = |member: &Member<'_>| match (&member.origin, self.evaluator.setup().model) {
-            (Origin::Set(_), _) | (Origin::Mean { .. }, Model::Sgp4) => Some(0.0),
-            (Origin::Mean { elements, .. }, Model::J2 | Model::J2Osculating) => {
-                let eccentric = 1.0 + 8.0 * elements.eccentricity;
-                Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
-            }
-            (Origin::Mean { .. }, Model::TwoBody) | (Origin::Sampled(_) | Origin::Almanac, _) => {
-                None
-            }
-        };
+        let gate_km =
+            |member: &ConstellationMember<'_>| match (&member.origin, self.evaluator.setup().model)
+            {
+                (Origin::Set(_), _) | (Origin::Mean { .. }, Model::Sgp4) => Some(0.0),
+                (Origin::Mean { elements, .. }, Model::J2 | Model::J2Osculating) => {
+                    let eccentric = 1.0 + 8.0 * elements.eccentricity;
+                    Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
+                }
+                (Origin::Mean { .. }, Model::TwoBody)
+                | (Origin::Sampled(_) | Origin::Almanac, _) => None,
+            };
         let gates: Option<Vec<f64>> = self.members.iter().map(gate_km).collect();
         Some(gates?.into_iter().fold(0.0, f64::max))
     }

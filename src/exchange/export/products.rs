@@ -7,7 +7,7 @@ use crate::ephemeris::hermite::Hermite;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, GNSS_DIRECTORY, Loss};
-use crate::exchange::members::Member;
+use crate::exchange::members::ConstellationMember;
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::opm::Opm;
 use crate::formats::ccsds::{oem, omm};
@@ -55,7 +55,7 @@ impl ExportSource<'_> {
     }
 
     /// The metadata of a file of one satellite, from those of the files of all.
-    fn of_one(&self, metadata: &Metadata, member: &Member<'_>) -> Metadata {
+    fn of_one(&self, metadata: &Metadata, member: &ConstellationMember<'_>) -> Metadata {
         Metadata {
             theory: self.theory(member),
             ..metadata.clone()

@@ -8,7 +8,7 @@ use crate::constellation::shell_letters;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite};
 use crate::exchange::manifest::{FileEntry, Loss};
-use crate::exchange::members::{Member, Origin};
+use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::maps::palette::Palette;
 use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::Theory;
@@ -134,7 +134,7 @@ impl ExportSource<'_> {
     /// A satellite by itself: elements if STK has the theory, otherwise its ephemeris.
     fn setting(
         &self,
-        member: &Member<'_>,
+        member: &ConstellationMember<'_>,
         stem: &str,
         theory: Option<fn(MeanElements) -> Setting>,
     ) -> Setting {
@@ -192,7 +192,8 @@ impl ExportSource<'_> {
             instead,
         };
         let (model, grid) = (self.subject.model, self.subject.grid);
-        let is_mean = |member: &Member<'_>| matches!(member.origin, Origin::Mean { .. });
+        let is_mean =
+            |member: &ConstellationMember<'_>| matches!(member.origin, Origin::Mean { .. });
         if model == Model::Sgp4 && self.members.iter().any(is_mean) {
             let what = "propagation.model = \"sgp4\": the script integrates J2".to_owned();
             return Err(cannot(

@@ -6,7 +6,7 @@ use crate::earth::MU_KM3_S2;
 use crate::ephemeris::{EphemerisError, EphemerisSatellite};
 use crate::exchange::element_sets::ElementSetRule;
 use crate::exchange::manifest::Loss;
-use crate::exchange::members::{Member, Origin};
+use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::ccsds::opm::Keplerian;
 use crate::formats::metadata::{ElementChoice, Object, Theory};
 use crate::formats::{WriteError, element_set, tle};
@@ -32,7 +32,7 @@ impl ExportSource<'_> {
         Theory::of_all(self.members.iter().map(|member| self.theory_of_set(member)))
     }
 
-    pub(super) fn theory_of_set(&self, member: &Member<'_>) -> Theory {
+    pub(super) fn theory_of_set(&self, member: &ConstellationMember<'_>) -> Theory {
         match member.origin {
             Origin::Set(_) => Theory::SourceSets,
             _ => Theory::Sgp4Elements(self.choices.elements),
@@ -106,7 +106,10 @@ impl ExportSource<'_> {
     ) -> Result<Vec<sgp4::Elements>, WriteError> {
         let rule = self.rule(rounding);
         let satellites = self.satellites().zip(&self.objects);
-        let set = |((satellite, member), object): ((&EphemerisSatellite, &Member<'_>), &Object)| {
+        let set = |((satellite, member), object): (
+            (&EphemerisSatellite, &ConstellationMember<'_>),
+            &Object,
+        )| {
             let unfitted = rule.set(member, object);
             let fits = self.choices.elements == ElementChoice::Fit;
             Ok(match (unfitted, member.origin) {

@@ -7,7 +7,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::exchange::identities::stems;
 use crate::exchange::import::interpolated;
 use crate::exchange::manifest::{Conventions, FileEntry, Manifest};
-use crate::exchange::members::{Member, Origin};
+use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::maps::scene::{Scene, ShownConstellation};
 use crate::formats::metadata::{Metadata, Object, Theory, distance_from_itrf};
 use crate::formats::text::timestamp::TimeSystem;
@@ -23,7 +23,7 @@ pub(super) struct ExportSource<'a> {
     pub(super) subject: &'a ExportSubject,
     pub(super) choices: Choices,
     /// The satellites, in the order of the ephemeris.
-    pub(super) members: Vec<Member<'a>>,
+    pub(super) members: Vec<ConstellationMember<'a>>,
     pub(super) objects: Vec<Object>,
     /// Names of files for each satellite.
     pub(super) stems: Vec<String>,
@@ -97,7 +97,9 @@ impl<'a> ExportSource<'a> {
     }
 
     /// The satellites with what describes them.
-    pub(super) fn satellites(&self) -> impl Iterator<Item = (&EphemerisSatellite, &Member<'a>)> {
+    pub(super) fn satellites(
+        &self,
+    ) -> impl Iterator<Item = (&EphemerisSatellite, &ConstellationMember<'a>)> {
         self.ephemeris.satellites().iter().zip(&self.members)
     }
 
@@ -107,7 +109,7 @@ impl<'a> ExportSource<'a> {
     }
 
     /// The theory of the states of one satellite.
-    pub(super) fn theory(&self, member: &Member<'_>) -> Theory {
+    pub(super) fn theory(&self, member: &ConstellationMember<'_>) -> Theory {
         member.origin.theory(self.subject.model)
     }
 

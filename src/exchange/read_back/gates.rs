@@ -1,7 +1,7 @@
 //! How a product is read back: its files, its theory and its digits.
 
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::exchange::members::{Member, Origin};
+use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::tle;
 use crate::time::{Epoch, TimeGrid};
 use crate::units::SECONDS_PER_DAY;
@@ -70,7 +70,7 @@ pub struct Extent {
 
 impl Extent {
     pub(super) fn new(
-        members: &[Member<'_>],
+        members: &[ConstellationMember<'_>],
         ephemeris: &Ephemeris,
     ) -> Result<Self, EphemerisError> {
         let grid = ephemeris.grid();

@@ -193,7 +193,9 @@ fn element_sets_go_out_as_they_came_and_as_states_by_sgp4() {
     let source = star(Product::Tle, "constellation.tle");
     let constellation = of_file("iridium.tle", &source);
     let (manifest, files) = exported(constellation.clone(), Product::Tle);
-    assert_eq!(files["constellation.tle"], source);
+    let [written, read] =
+        [&files["constellation.tle"], &source].map(|bytes| std::str::from_utf8(bytes).unwrap());
+    assert_eq!(written, read);
     assert_eq!(manifest.files[0].theory, "SGP4 elements of the source");
     assert_eq!(manifest.design, None);
     let converted = manifest.converted.unwrap();
@@ -273,6 +275,27 @@ fn states_become_element_sets_by_a_fit_only() {
             other => other,
         }),
     );
+}
+
+/// No format here writes gaps, so a satellite with one is named before anything is written.
+#[test]
+fn a_satellite_with_a_gap_is_named() {
+    let table = String::from_utf8(star(Product::TleStates, "tle-states.csv")).unwrap();
+    // The last row of one satellite.
+    let ends = |line: &&str| line.starts_with("IR-P02-S01,2025-01-01T01:58:");
+    let text: Vec<&str> = table.lines().filter(|line| !ends(line)).collect();
+    assert_eq!(text.len(), table.lines().count() - 1);
+    let subject = subject_of(of_file("gap.csv", text.join("\n").as_bytes()), grid());
+    let request = Request {
+        subject: &subject,
+        shown: None,
+        products: &[Product::Oem],
+        choices: Choices::default(),
+    };
+    let sink = |path: &str| -> io::Result<Vec<u8>> { panic!("{path} is written") };
+    let error = export(&request, &sink).unwrap_err().to_string();
+    let start = "IR-P02-S01 has no state at 2025-01-01T01:58:00Z: leave it out with --exclude";
+    assert!(error.starts_with(start), "{error}");
 }
 
 #[test]

@@ -123,7 +123,7 @@ mod tests {
         assert_eq!(names(&two), ["shellA", "shellB"]);
         let of_b = Slot {
             shell: Some(1),
-            ..second_plane
+            ..Slot::FIRST
         };
         assert_eq!(two.colour(Some(of_b)), two.groups()[1].1);
         assert_ne!(two.groups()[0].1, two.groups()[1].1);
