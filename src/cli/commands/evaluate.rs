@@ -78,12 +78,19 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     Ok(status)
 }
 
-/// The constellations given one by one.
+/// The constellations given one by one, or else those of the scenario.
 fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<Constellation>> {
-    if args.constellations.is_empty() && args.designs.is_none() {
-        bail!("no constellation: give --design NOTATION, --constellation FILE or --designs FILE");
+    if !args.constellations.is_empty() || args.designs.is_some() {
+        return constellations::resolve(&args.constellations, study);
     }
-    constellations::resolve(&args.constellations, study)
+    let named = constellations::of_scenario(study)?;
+    if named.is_empty() {
+        bail!(
+            "no constellation: give --design NOTATION, --constellation FILE or --designs FILE, or name some in \
+             [constellations] of the scenario"
+        );
+    }
+    Ok(named)
 }
 
 /// What every constellation is evaluated with.

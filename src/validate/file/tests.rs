@@ -5,6 +5,7 @@ use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::formats::trajectory::Trajectory;
 use crate::frames::{Frame, Position, from_teme};
+use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::{Outcome, Subject, testing};
 
