@@ -98,11 +98,11 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
-    /// Export a constellation to files for other tools, with a manifest of what each file contains and loses.
+    /// Export a constellation to files for other tools, with a manifest of what each contains.
     ///
-    /// The constellation is a design, a design of a run, or the satellites of files, which are converted: their
-    /// states by the theory of their format (SGP4 for element sets, interpolation for states), element sets to TLE
-    /// and OMM unchanged. What a product cannot express is an error.
+    /// The constellation is a design, a design of a run, or the satellites of files. These are
+    /// converted: states by the theory of their format (SGP4 for element sets, interpolation for
+    /// states), element sets unchanged in TLE and OMM. What a product cannot express is an error.
     ///
     /// Example: navwalker export --run runs/paper-1 --pick fuzzy --as tle,oem --out exports
     #[command(verbatim_doc_comment, after_help = products::help())]
