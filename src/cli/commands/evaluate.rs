@@ -29,7 +29,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
-    let work = Work {
+    let work = EvaluationContext {
         args,
         scenario: &study.scenario,
         stamp: study.stamp()?,
@@ -94,7 +94,7 @@ fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<Constellation>> {
 }
 
 /// What every constellation is evaluated with.
-struct Work<'a> {
+struct EvaluationContext<'a> {
     args: &'a EvaluateArgs,
     scenario: &'a Scenario,
     stamp: ScenarioStamp,
@@ -104,7 +104,7 @@ struct Work<'a> {
     gnss_only: Option<Assessment>,
 }
 
-impl Work<'_> {
+impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
         let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;

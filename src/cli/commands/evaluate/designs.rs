@@ -1,6 +1,6 @@
 //! The designs of a list, evaluated as they are read.
 
-use super::Work;
+use super::EvaluationContext;
 use super::print::Printer;
 use crate::cli::{Status, output};
 use crate::constellation::Design;
@@ -213,7 +213,7 @@ impl Layout {
 /// Evaluates the designs of a list in parallel and prints them in its order.
 pub(super) fn evaluate(
     mut list: DesignList,
-    work: &Work<'_>,
+    work: &EvaluationContext<'_>,
     printer: &mut Printer<'_>,
 ) -> Result<Status> {
     let size = BATCH_PER_THREAD * rayon::current_num_threads();
@@ -254,7 +254,11 @@ pub(super) fn evaluate(
     }
 }
 
-fn entry(layout: &Layout, line: &str, work: &Work<'_>) -> Result<ConstellationEntry, String> {
+fn entry(
+    layout: &Layout,
+    line: &str,
+    work: &EvaluationContext<'_>,
+) -> Result<ConstellationEntry, String> {
     let one = layout.constellation(line)?;
     let setup = work.evaluator.setup();
     let evaluate = || -> Result<ConstellationEntry> {

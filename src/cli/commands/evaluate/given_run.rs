@@ -1,6 +1,6 @@
 //! A run directory of designs that were given.
 
-use super::Work;
+use super::EvaluationContext;
 use crate::cli::output;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
@@ -20,7 +20,7 @@ impl GivenRun {
     /// The run of these designs; fails if a constellation cannot be a member, or the directory may not be replaced.
     pub(super) fn new(
         out: &Path,
-        work: &Work<'_>,
+        work: &EvaluationContext<'_>,
         study: &Study,
         entries: &[ConstellationEntry],
     ) -> Result<Self> {

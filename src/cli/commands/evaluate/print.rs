@@ -2,7 +2,7 @@
 
 use super::designs::DesignList;
 use super::table::TextTable;
-use super::{Work, single};
+use super::{EvaluationContext, single};
 use crate::cli::args::OutputFormat;
 use crate::cli::output;
 use crate::exchange::constellation::Constellation;
@@ -13,7 +13,7 @@ use serde::Serialize;
 
 /// Prints constellations in the format that is asked for. Nothing of a list is kept.
 pub(super) struct Printer<'a> {
-    work: &'a Work<'a>,
+    work: &'a EvaluationContext<'a>,
     form: PrintForm,
 }
 
@@ -34,7 +34,7 @@ enum PrintForm {
 impl<'a> Printer<'a> {
     /// A printer of the constellations given one by one and those of a list.
     pub(super) fn new(
-        work: &'a Work<'a>,
+        work: &'a EvaluationContext<'a>,
         given: &[Constellation],
         list: Option<&DesignList>,
     ) -> Self {

@@ -1,6 +1,6 @@
 //! The result of a single constellation.
 
-use super::Work;
+use super::EvaluationContext;
 use crate::cli::args::OutputFormat;
 use crate::cli::output;
 use crate::evaluate::{DopStatistics, Metrics};
@@ -10,7 +10,7 @@ use crate::units::counted;
 use anyhow::Result;
 
 /// Prints what was computed of a design, or of the satellites of files.
-pub(super) fn print(work: &Work<'_>, entry: ConstellationEntry) -> Result<()> {
+pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> Result<()> {
     let Some(alone) = entry.alone(work.gnss_only.clone(), work.stamp.clone()) else {
         return Ok(());
     };

@@ -1,6 +1,6 @@
 //! Several constellations as a table for reading.
 
-use super::Work;
+use super::EvaluationContext;
 use super::designs::DesignList;
 use crate::cli::output;
 use crate::evaluate::DopStatistics;
@@ -46,7 +46,11 @@ enum Rows {
 }
 
 impl TextTable {
-    pub(super) fn new(work: &Work<'_>, given: &[Constellation], list: Option<&DesignList>) -> Self {
+    pub(super) fn new(
+        work: &EvaluationContext<'_>,
+        given: &[Constellation],
+        list: Option<&DesignList>,
+    ) -> Self {
         let goals = &work.goals;
         let quantities = goals.objectives.iter().copied();
         let quantities = quantities.chain(goals.constrained());
@@ -149,7 +153,11 @@ fn table(columns: &[(String, Align)]) -> Table {
     Table::new(&columns.collect::<Vec<_>>())
 }
 
-fn columns(work: &Work<'_>, has_names: bool, further: &[Quantity]) -> Vec<(String, Align)> {
+fn columns(
+    work: &EvaluationContext<'_>,
+    has_names: bool,
+    further: &[Quantity],
+) -> Vec<(String, Align)> {
     let options = work.evaluator.setup().metrics;
     let tail = round_decimal(100.0 * (1.0 - options.cvar_level.get()), 4);
     let mut names: Vec<String> = [
