@@ -28,8 +28,8 @@ pub use compared::Compared;
 pub use csv::{ConstellationColumns, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
-    Alone, ConstellationEntry, ConstellationResult, ConstellationSummary, ConstraintCheck,
-    EvaluateResult, Evaluated, GNSS_ONLY,
+    Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
+    ConstraintCheck, EvaluateResult, GNSS_ONLY,
 };
 pub use reproduction::{
     ReproduceResult, reproduction_csv, reproduction_files, reproduction_markdown, reproduction_text,

@@ -167,9 +167,9 @@ fn may_meet_itself(span: &ShellSpan) -> bool {
 /// intersect, at an angle γ, cos d = (1 - cos γ)/2 cos(2θ - φ) + (1 + cos γ)/2 cos φ. At the maximum
 /// sin²(d/2) = cos²(γ/2) sin²(φ/2).
 fn least_distance_km(shell: &Shell) -> f64 {
-    let first = Place::of(shell, Slot::FIRST);
+    let first = UnitCirclePlace::of(shell, Slot::FIRST);
     let chords = shell.slots().skip(1).map(|slot| {
-        let other = Place::of(shell, slot);
+        let other = UnitCirclePlace::of(shell, slot);
         first.least_chord(&other)
     });
     let radius_km = shell.elements(Slot::FIRST).semi_major_axis_km;
@@ -177,13 +177,13 @@ fn least_distance_km(shell: &Shell) -> f64 {
 }
 
 /// A satellite on a circle of radius 1.
-struct Place {
+struct UnitCirclePlace {
     position: Vector3<f64>,
     /// Normal of the orbit.
     normal: Vector3<f64>,
 }
 
-impl Place {
+impl UnitCirclePlace {
     fn of(shell: &Shell, slot: Slot) -> Self {
         let elements = shell.elements(slot);
         let (sin_i, cos_i) = elements.inclination_rad.sin_cos();

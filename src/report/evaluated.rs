@@ -12,7 +12,7 @@ pub const GNSS_ONLY: &str = "gnss-only";
 
 /// What is computed of some satellites.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Evaluated {
+pub struct Assessment {
     /// The metrics.
     pub metrics: Metrics,
     /// All dilutions of precision, if requested.
@@ -51,7 +51,7 @@ impl ConstraintCheck {
     }
 }
 
-impl Evaluated {
+impl Assessment {
     /// What was computed of `satellites` satellites, which are those of `design` if there is one, under
     /// the goals of a scenario.
     #[must_use]
@@ -101,9 +101,9 @@ pub struct EvaluateResult {
     pub design: DesignSummary,
     /// What is computed of it.
     #[serde(flatten)]
-    pub evaluated: Evaluated,
+    pub evaluated: Assessment,
     /// The GNSS alone; `None` without GNSS.
-    pub gnss_only: Option<Evaluated>,
+    pub gnss_only: Option<Assessment>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
@@ -130,9 +130,9 @@ pub struct ConstellationResult {
     pub constellation: ConstellationSummary,
     /// What is computed of it.
     #[serde(flatten)]
-    pub evaluated: Evaluated,
+    pub evaluated: Assessment,
     /// The GNSS alone; `None` without GNSS.
-    pub gnss_only: Option<Evaluated>,
+    pub gnss_only: Option<Assessment>,
     /// The study.
     pub scenario: ScenarioStamp,
     /// Version of the program.
@@ -160,7 +160,7 @@ pub struct ConstellationEntry {
     pub design: Option<DesignSummary>,
     /// What is computed of it.
     #[serde(flatten)]
-    pub evaluated: Evaluated,
+    pub evaluated: Assessment,
 }
 
 impl ConstellationEntry {
@@ -183,13 +183,13 @@ impl ConstellationEntry {
             format_and_content: files.map(|files| (files.format(), files.fleet.content())),
             satellites,
             design,
-            evaluated: Evaluated::new(subject, metrics, dops, goals),
+            evaluated: Assessment::new(subject, metrics, dops, goals),
         }
     }
 
     /// The GNSS alone as a row of a table: no LEO satellite.
     #[must_use]
-    pub fn of_gnss(evaluated: &Evaluated) -> Self {
+    pub fn of_gnss(evaluated: &Assessment) -> Self {
         Self {
             name: GNSS_ONLY.to_owned(),
             notation: None,
@@ -204,7 +204,7 @@ impl ConstellationEntry {
     /// The result of a constellation that was evaluated alone: of a design if it has no other satellites,
     /// of files if it has no shells.
     #[must_use]
-    pub fn alone(self, gnss_only: Option<Evaluated>, scenario: ScenarioStamp) -> Option<Alone> {
+    pub fn alone(self, gnss_only: Option<Assessment>, scenario: ScenarioStamp) -> Option<Alone> {
         match (self.design, self.format_and_content) {
             (Some(design), None) => Some(Alone::Design(Box::new(EvaluateResult {
                 design,
@@ -273,7 +273,7 @@ mod tests {
         let design: Design = "delta:55:30/5/1@925".parse().unwrap();
         let metrics = testing::member(1, "delta:55:30/5/1@925").metrics;
         let verdicts = |design: Option<&Design>| {
-            let evaluated = Evaluated::new((30, design), metrics, None, &goals());
+            let evaluated = Assessment::new((30, design), metrics, None, &goals());
             let checks = evaluated.constraints.iter();
             checks.map(ConstraintCheck::verdict).collect::<Vec<_>>()
         };

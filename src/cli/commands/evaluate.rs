@@ -13,7 +13,7 @@ use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
-use crate::report::{ConstellationEntry, Evaluated};
+use crate::report::{Assessment, ConstellationEntry};
 use crate::run::ScenarioStamp;
 use crate::scenario::Scenario;
 use crate::search::Goals;
@@ -94,7 +94,7 @@ struct Work<'a> {
     evaluator: &'a Evaluator,
     goals: Goals,
     /// The GNSS without LEO satellites; `None` without GNSS.
-    gnss_only: Option<Evaluated>,
+    gnss_only: Option<Assessment>,
 }
 
 impl Work<'_> {
@@ -116,7 +116,7 @@ fn gnss_only(
     args: &EvaluateArgs,
     goals: &Goals,
     evaluator: &Evaluator,
-) -> Result<Option<Evaluated>> {
+) -> Result<Option<Assessment>> {
     let setup = evaluator.setup();
     if setup.gnss.is_empty() {
         return Ok(None);
@@ -124,5 +124,5 @@ fn gnss_only(
     let none = Ephemeris::new(setup.grid, Vec::new());
     let metrics = evaluator.evaluate_ephemeris(&none)?;
     let dops = args.dops.then(|| evaluator.dops(&none)).transpose()?;
-    Ok(Some(Evaluated::new((0, None), metrics, dops, goals)))
+    Ok(Some(Assessment::new((0, None), metrics, dops, goals)))
 }

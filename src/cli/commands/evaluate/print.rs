@@ -14,10 +14,10 @@ use serde::Serialize;
 /// Prints constellations in the format that is asked for. Nothing of a list is kept.
 pub(super) struct Printer<'a> {
     work: &'a Work<'a>,
-    form: Form,
+    form: PrintForm,
 }
 
-enum Form {
+enum PrintForm {
     /// One constellation, printed at the end in the form of its kind.
     Alone(Option<Box<ConstellationEntry>>),
     /// A table for reading.
@@ -41,13 +41,13 @@ impl<'a> Printer<'a> {
         let is_of_one_kind = |one: &Constellation| one.design.is_none() || one.files.is_none();
         let is_alone = list.is_none() && matches!(given, [one] if is_of_one_kind(one));
         let form = match work.args.format {
-            OutputFormat::Csv => Form::Csv {
+            OutputFormat::Csv => PrintForm::Csv {
                 has_files: given.iter().any(|one| one.files.is_some()),
                 columns: None,
             },
-            _ if is_alone => Form::Alone(None),
-            OutputFormat::Text => Form::Text(TextTable::new(work, given, list)),
-            OutputFormat::Json => Form::Json { is_begun: false },
+            _ if is_alone => PrintForm::Alone(None),
+            OutputFormat::Text => PrintForm::Text(TextTable::new(work, given, list)),
+            OutputFormat::Json => PrintForm::Json { is_begun: false },
         };
         Self { work, form }
     }
@@ -55,12 +55,12 @@ impl<'a> Printer<'a> {
     /// Prints the next constellation.
     pub(super) fn entry(&mut self, entry: ConstellationEntry) -> Result<()> {
         match &mut self.form {
-            Form::Alone(kept) => {
+            PrintForm::Alone(kept) => {
                 *kept = Some(Box::new(entry));
                 Ok(())
             }
-            Form::Text(table) => table.row(&entry),
-            Form::Json { is_begun } => {
+            PrintForm::Text(table) => table.row(&entry),
+            PrintForm::Json { is_begun } => {
                 let before = if *is_begun {
                     ",\n"
                 } else {
@@ -69,7 +69,7 @@ impl<'a> Printer<'a> {
                 *is_begun = true;
                 output::part(&format!("{before}{}", indented(&entry, 4)?))
             }
-            Form::Csv { has_files, columns } => {
+            PrintForm::Csv { has_files, columns } => {
                 if let Some(columns) = columns {
                     return output::part(&columns.row(&entry)?);
                 }
@@ -86,10 +86,10 @@ impl<'a> Printer<'a> {
         let gnss_only = self.work.gnss_only.as_ref();
         let gnss_row = gnss_only.map(ConstellationEntry::of_gnss);
         match self.form {
-            Form::Alone(None) => Ok(()),
-            Form::Alone(Some(entry)) => single::print(self.work, *entry),
-            Form::Text(table) => table.end(gnss_row.as_ref()),
-            Form::Json { .. } => {
+            PrintForm::Alone(None) => Ok(()),
+            PrintForm::Alone(Some(entry)) => single::print(self.work, *entry),
+            PrintForm::Text(table) => table.end(gnss_row.as_ref()),
+            PrintForm::Json { .. } => {
                 let (gnss, stamp) = (indented(&gnss_only, 2)?, &self.work.stamp);
                 output::result(&format!(
                     "\n  ],\n  \"gnss_only\": {},\n  \"scenario\": {},\n  \"version\": \"{VERSION}\"\n}}",
@@ -97,7 +97,7 @@ impl<'a> Printer<'a> {
                     indented(stamp, 2)?.trim_start(),
                 ))
             }
-            Form::Csv { columns, .. } => match (columns, gnss_row) {
+            PrintForm::Csv { columns, .. } => match (columns, gnss_row) {
                 (Some(columns), Some(row)) => output::part(&columns.row(&row)?),
                 _ => Ok(()),
             },
