@@ -146,8 +146,11 @@ impl View {
         self.stamp.is_none()
     }
 
-    /// The places of the compared constellations among the objectives.
+    /// The places of the compared constellations among the objectives; none beside a front that is empty.
     pub(crate) fn baselines(&self) -> Vec<Baseline> {
+        if self.is_of_search() && self.run.front.is_empty() {
+            return Vec::new();
+        }
         let each = self.compared.iter();
         each.map(|one| one.baseline.clone()).collect()
     }

@@ -369,7 +369,9 @@ fn given_designs_make_a_run() {
     done("plot run --figure pareto --out pareto.svg");
     done("plot run --figure map --pick hybrid --out map.svg");
     let report = done("report run");
-    assert_eq!(report.stderr, "", "no gap");
+    // Satellites of the hybrid meet; nothing else is amiss.
+    assert_eq!(report.stderr.lines().count(), 1, "{}", report.stderr);
+    assert!(report.stderr.contains("come within"), "{}", report.stderr);
     let unknown = ran(
         place,
         &[

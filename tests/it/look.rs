@@ -293,6 +293,14 @@ fn a_damaged_run_is_reported_with_its_gaps() {
     assert!(page.contains("history.json is damaged") && page.contains("id=\"pareto\""));
 
     fs::remove_file(run.join("front.json")).unwrap();
+    for (figure, reason) in [("pareto", "the front is empty"), ("map", "")] {
+        let output = navwalker(directory.path(), &["plot", "run", "--figure", figure]);
+        assert_eq!(output.status.code(), Some(2), "{figure}");
+        assert!(
+            String::from_utf8_lossy(&output.stderr).contains(reason),
+            "{figure}"
+        );
+    }
     fs::remove_file(run.join("history.json")).unwrap();
     let output = navwalker(directory.path(), &["report", "run"]);
     assert_eq!(output.status.code(), Some(2));

@@ -162,7 +162,7 @@ struct Shown {
 }
 
 /// What was picked: a member of the front, or a constellation.
-enum Picked<'a> {
+enum FirstShown<'a> {
     Member(Design),
     Constellation(&'a Compared),
 }
@@ -182,16 +182,16 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
     };
     let picked = picked(args.pick.as_deref(), view)?;
     let first = match &picked {
-        Picked::Member(design) => Shown {
+        FirstShown::Member(design) => Shown {
             name: design.to_string(),
             notation: design.to_string(),
             profile: Profile::of_design(evaluator, design)?,
         },
-        Picked::Constellation(one) => of_constellation(one)?,
+        FirstShown::Constellation(one) => of_constellation(one)?,
     };
     let is_first = |other: &&Compared| match &picked {
-        Picked::Member(design) => other.constellation.only_design() == Some(design),
-        Picked::Constellation(one) => std::ptr::eq(*one, *other),
+        FirstShown::Member(design) => other.constellation.only_design() == Some(design),
+        FirstShown::Constellation(one) => std::ptr::eq(*one, *other),
     };
     let mut shown = vec![first];
     if with_others {
@@ -203,11 +203,11 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
 }
 
 /// The constellation of that name; else the design picked from a front, or that number of the constellations.
-fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<Picked<'a>> {
+fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<FirstShown<'a>> {
     let compared = &view.compared;
     let named = pick.and_then(|pick| compared.iter().find(|one| one.constellation.name == pick));
     if let Some(one) = named {
-        return Ok(Picked::Constellation(one));
+        return Ok(FirstShown::Constellation(one));
     }
     let method = pick.and_then(|pick| pick.parse::<Pick>().ok());
     if view.is_of_search() {
@@ -219,7 +219,7 @@ fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<Picked<'a>> {
             );
         }
         let member = view.pick(&MemberPick::Pick(method.unwrap_or(Pick::Fuzzy)))?;
-        return Ok(Picked::Member(member.design.notation.parse()?));
+        return Ok(FirstShown::Member(member.design.notation.parse()?));
     }
     let place = match (pick, method) {
         (None, _) => Some(0),
@@ -231,7 +231,7 @@ fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<Picked<'a>> {
         (Some(_), None) => None,
     };
     let one = place.and_then(|place| compared.get(place));
-    one.map(Picked::Constellation).with_context(|| {
+    one.map(FirstShown::Constellation).with_context(|| {
         format!(
             "--pick {}: expected a number from 1 to {}, or a name among {}",
             pick.unwrap_or_default(),

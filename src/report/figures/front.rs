@@ -41,8 +41,7 @@ pub fn pareto(
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Pareto;
     let names = run.objective_names();
-    let is_of_search = run.search.is_some() && !run.is_of_given();
-    if run.front.is_empty() && (is_of_search || baselines.is_empty()) {
+    if run.front.is_empty() && baselines.is_empty() {
         let reason = "the front is empty";
         return Err(FigureError::Nothing { figure, reason });
     }

@@ -1,12 +1,13 @@
 //! The numbers embedded in the page for its figures.
 
+mod readouts;
 mod setting;
 mod tracks;
 
 use super::Page;
 use super::pack::{Packed, short};
 use crate::constellation::{Design, Shell};
-use crate::evaluate::{EpochMetrics, Metrics, PointMetrics};
+use crate::evaluate::{EpochMetrics, PointMetrics};
 use crate::optimize::Record;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
@@ -225,9 +226,9 @@ impl Beside {
             name: baseline.name.clone(),
             notation: baseline.notation.clone(),
             objectives: baseline.objectives.iter().map(|x| x.map(short)).collect(),
-            tiles: tiles(run, &names)
+            tiles: readouts::all(run, &names)
                 .iter()
-                .map(|tile| tile.text(&quantity, &baseline.metrics))
+                .map(|one| one.text(&quantity, &baseline.metrics))
                 .collect(),
             cuts,
         }
@@ -298,7 +299,7 @@ impl Front {
                 .collect(),
             membership: column(&|m| Some(m.membership)),
             membership_sum: column(&|m| Some(m.membership_sum)),
-            tiles: member_tiles(run, names),
+            tiles: readouts::of_members(run, names),
             memberships_shown: members
                 .iter()
                 .map(|m| shown::membership(m.membership))
@@ -325,68 +326,6 @@ impl Front {
             ],
         }
     }
-}
-
-/// A value shown for a selected constellation.
-enum Tile {
-    /// An objective, or a constrained quantity that has no other tile.
-    Quantity(String),
-    /// Label, and name of the quantity that gives its digits, of a metric.
-    Metric(&'static str, &'static str, fn(&Metrics) -> Option<f64>),
-}
-
-impl Tile {
-    fn label(&self) -> String {
-        match self {
-            Self::Quantity(name) => name.clone(),
-            Self::Metric(label, ..) => (*label).to_owned(),
-        }
-    }
-
-    fn text(&self, quantity: &dyn Fn(&str) -> Option<f64>, metrics: &Metrics) -> String {
-        match self {
-            Self::Quantity(name) => shown::named(name, quantity(name)),
-            Self::Metric(_, digits, value) => shown::named(digits, value(metrics)),
-        }
-    }
-}
-
-/// The values shown for each constellation: objectives, metrics, and constrained quantities that are
-/// neither.
-fn tiles(run: &Run, names: &[String]) -> Vec<Tile> {
-    let mut tiles: Vec<Tile> = names.iter().cloned().map(Tile::Quantity).collect();
-    type Value = fn(&Metrics) -> Option<f64>;
-    let metrics: [(&str, &str, Value); 7] = [
-        ("mean visible", "mean-visible", |m| Some(m.mean_visible)),
-        ("mean PDOP", "mean-pdop", |m| m.mean_pdop),
-        ("CVaR of PDOP", "cvar-pdop", |m| m.cvar_pdop),
-        ("maximum PDOP", "max-pdop", |m| m.max_pdop),
-        ("availability", "availability", |m| Some(m.availability)),
-        ("95 % quantile of PDOP", "p95-pdop", |m| m.p95_pdop),
-        // A fraction has the digits of the availability.
-        ("solved fraction", "availability", |m| {
-            Some(m.solved_fraction)
-        }),
-    ];
-    for (label, name, value) in metrics {
-        if label == "solved fraction" || !names.iter().any(|objective| objective == name) {
-            tiles.push(Tile::Metric(label, name, value));
-        }
-    }
-    tiles.extend(super::words::further(run).into_iter().map(Tile::Quantity));
-    tiles
-}
-
-/// The values shown for each member of the front, with their labels.
-fn member_tiles(run: &Run, names: &[String]) -> Vec<(String, Vec<String>)> {
-    let of_member = |tile: &Tile, member: &FrontMember| {
-        tile.text(&|name| member.quantity(name), &member.metrics)
-    };
-    let tiles = tiles(run, names).into_iter().map(|tile| {
-        let texts = run.front.iter().map(|member| of_member(&tile, member));
-        (tile.label(), texts.collect())
-    });
-    tiles.collect()
 }
 
 impl OtherFront {

@@ -44,7 +44,7 @@ impl Tracks {
         }
         let grid = ephemeris.grid();
         let span_s = grid.step_s() * grid.len().saturating_sub(1) as f64;
-        let plan = Plan::new(others.len(), span_s);
+        let plan = Thinning::new(others.len(), span_s);
         let drawn = others.iter().step_by(plan.stride);
         let positions = drawn.flat_map(|satellite| {
             (0..plan.instants).flat_map(move |n| {
@@ -64,14 +64,14 @@ impl Tracks {
 
 /// What fits into the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Plan {
+struct Thinning {
     step_s: f64,
     instants: usize,
     /// Every so many satellites are drawn.
     stride: usize,
 }
 
-impl Plan {
+impl Thinning {
     fn new(satellites: usize, span_s: f64) -> Self {
         let most = (MOST_BYTES / SAMPLE_BYTES / satellites).max(1);
         let count = |span_s: f64, step_s: f64| (span_s / step_s) as usize + 1;
@@ -120,7 +120,7 @@ mod tests {
     fn what_does_not_fit_is_thinned_and_said_to_be() {
         let day = 86_340.0;
         let told = |satellites: usize| {
-            let plan = Plan::new(satellites, day);
+            let plan = Thinning::new(satellites, day);
             let drawn = satellites.div_ceil(plan.stride);
             assert!(
                 drawn * plan.instants * SAMPLE_BYTES <= MOST_BYTES,
@@ -140,6 +140,6 @@ mod tests {
             many.contains("2.0 h only; 2500 of the 10000 are drawn"),
             "{many}"
         );
-        assert_eq!(Plan::new(3, 0.0).instants, 1);
+        assert_eq!(Thinning::new(3, 0.0).instants, 1);
     }
 }
