@@ -9,9 +9,8 @@ use divan::Bencher;
 use divan::counter::BytesCount;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use navwalker::constellation::Design;
-use navwalker::ephemeris::Ephemeris;
-use navwalker::exchange::export::{Choices, ExportSubject, Product};
+use navwalker::exchange::constellation::Constellation;
+use navwalker::exchange::export::{Choices, ExportSubject, Naming, Product};
 use navwalker::exchange::import::Fleet;
 use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
@@ -52,7 +51,8 @@ const CASES: [&str; 16] = [
 fn subject(design: &str) -> ExportSubject {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
     ExportSubject {
-        design: design.parse().expect(SOUND),
+        constellation: Constellation::of_design(design.parse().expect(SOUND)),
+        naming: Naming::default(),
         model: Model::J2,
         grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
         study: ExportedStudy {
@@ -161,8 +161,8 @@ fn sem() -> String {
 /// A document of positions, with six decimals of a metre.
 fn czml() -> String {
     let subject = subject(STATES);
-    let design: Design = subject.design;
-    let ephemeris = Ephemeris::of_design(&design, Model::J2, subject.grid).expect(SOUND);
+    let ephemeris = subject.constellation.ephemeris(subject.grid, Model::J2);
+    let ephemeris = ephemeris.expect(SOUND);
     let mut packets = vec!["{\"id\":\"document\",\"version\":\"1.0\"}".to_owned()];
     for satellite in ephemeris.satellites() {
         let samples = ephemeris.states(satellite).map(|sample| {
