@@ -13,7 +13,7 @@ use super::keys::{KeyPath, all, key, names, path, paths, sections};
 use super::problem::{Fault, ProblemList};
 use super::reader::{Given, Reader};
 use super::rule::Node;
-use super::source::{Parts, Source};
+use super::source::{Source, TableSources};
 use super::values::{ConstellationParts, Grid, Objectives, PointsFile};
 use crate::keyword::nearest;
 
@@ -27,7 +27,7 @@ pub(super) struct Document<'a> {
 struct Entry<'a> {
     source: Rc<Source<'a>>,
     /// What arguments set within a table.
-    parts: Parts<'a>,
+    parts: TableSources<'a>,
     value: Node<'a>,
 }
 
@@ -216,7 +216,7 @@ impl<'a> Entry<'a> {
     fn new(source: &Rc<Source<'a>>, value: Node<'a>) -> Self {
         Self {
             source: Rc::clone(source),
-            parts: Parts::new(),
+            parts: TableSources::new(),
             value,
         }
     }

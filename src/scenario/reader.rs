@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::keys::{Key, KeyPath, Section, Walk, path};
 use super::problem::{Fault, ProblemList};
 use super::rule::{Node, Reading, Rule};
-use super::source::{Parts, Source};
+use super::source::{Source, TableSources};
 
 /// The value of a key as written.
 #[derive(Clone, Copy)]
 pub(super) struct Given<'r> {
     pub(super) source: &'r Source<'r>,
-    pub(super) parts: &'r Parts<'r>,
+    pub(super) parts: &'r TableSources<'r>,
     pub(super) node: &'r Node<'r>,
 }
 

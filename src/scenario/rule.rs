@@ -20,7 +20,7 @@ use toml::de::DeValue;
 
 use super::keys::path;
 use super::problem::{Fault, ProblemList};
-use super::source::{Parts, Source};
+use super::source::{Source, TableSources};
 
 /// A value with its span in its source.
 pub(super) type Node<'a> = Spanned<DeValue<'a>>;
@@ -80,7 +80,7 @@ impl<R: Rule> Rule for Optional<R> {
 /// One value being read, and its problems.
 pub(super) struct Reading<'r> {
     pub(super) source: &'r Source<'r>,
-    pub(super) parts: &'r Parts<'r>,
+    pub(super) parts: &'r TableSources<'r>,
     pub(super) key: String,
     pub(super) accepted: String,
     pub(super) report: &'r mut ProblemList,

@@ -21,7 +21,7 @@ pub(super) struct Source<'a> {
 }
 
 /// The sources of values within the table of a key, by dotted path, where they are not the source of the table.
-pub(super) type Parts<'a> = BTreeMap<String, Rc<Source<'a>>>;
+pub(super) type TableSources<'a> = BTreeMap<String, Rc<Source<'a>>>;
 
 #[derive(Debug)]
 enum Kind<'a> {

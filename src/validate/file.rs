@@ -6,14 +6,14 @@
 //! explains the difference. Objects that do not match fail a check; they are never dropped silently.
 
 mod conventions;
-mod expected;
 mod matching;
 mod read;
+mod reference;
 mod tracks;
 
 pub use conventions::Explanation;
-pub use expected::Expected;
 pub use read::{Comparand, FileError, comparands, read};
+pub use reference::ReferenceConstellation;
 
 use super::decisions::TrajectoryPair;
 use super::distribution::{Distribution, Residual};
@@ -85,13 +85,13 @@ impl FileComparison {
 /// If nothing in the files can be compared: no object has a state, or none within the time span of
 /// the study.
 pub fn against_file(
-    expected: &Expected<'_>,
+    reference: &ReferenceConstellation<'_>,
     source: &str,
     comparands: &[Comparand],
 ) -> Result<Findings, ValidateError> {
-    let tracks = tracks(expected, comparands)?;
-    let ours = &expected.ephemeris;
-    let matching = Matching::of(&expected.reach_km, ours, &tracks);
+    let tracks = tracks(reference, comparands)?;
+    let ours = &reference.ephemeris;
+    let matching = Matching::of(&reference.reach_km, ours, &tracks);
     let pairs = matching.pairs(&tracks);
     let satellites = pairs
         .iter()
@@ -102,7 +102,7 @@ pub fn against_file(
     let explanation = if agrees {
         None
     } else {
-        conventions::explanation(expected, &tracks)?
+        conventions::explanation(reference, &tracks)?
     };
     if pairs.is_empty() && explanation.is_none() {
         return Err(FileError::NothingMatches {
@@ -115,15 +115,15 @@ pub fn against_file(
     let mut findings = Findings::default();
     findings
         .checks
-        .extend(coverage_checks(expected, source, &matching, &tracks));
-    let misplaced = matching.misplaced(expected, &tracks)?;
+        .extend(coverage_checks(reference, source, &matching, &tracks));
+    let misplaced = matching.misplaced(reference, &tracks)?;
     findings.checks.push(misplaced_check(source, misplaced));
     findings.checks.extend(size_checks(source, &satellites));
     findings
         .distributions
         .extend(distances(ours, source, &pairs)?);
-    if matching.is_complete() && tracks.iter().all(|track| track.covers(expected)) {
-        findings.append(metrics(expected, source, &pairs)?);
+    if matching.is_complete() && tracks.iter().all(|track| track.covers(reference)) {
+        findings.append(metrics(reference, source, &pairs)?);
     }
     findings.files.push(FileComparison {
         source: source.to_owned(),
@@ -182,12 +182,12 @@ fn difference(
 }
 
 fn coverage_checks(
-    expected: &Expected<'_>,
+    reference: &ReferenceConstellation<'_>,
     source: &str,
     matching: &Matching,
     tracks: &[Track],
 ) -> Vec<Check> {
-    let slots = expected.ephemeris.satellites().len() as f64;
+    let slots = reference.ephemeris.satellites().len() as f64;
     let matched = matching.count() as f64;
     let count = |name: &str, quantity: &str, value: f64, reason: &str| {
         Check::new(
@@ -204,7 +204,7 @@ fn coverage_checks(
     };
     let shortest = tracks
         .iter()
-        .map(|track| track.covered_share(expected))
+        .map(|track| track.covered_share(reference))
         .fold(1.0, f64::min);
     vec![
         count(
@@ -320,11 +320,11 @@ fn distances(
 
 /// Decisions, passes and metrics when the file replaces the design.
 fn metrics(
-    expected: &Expected<'_>,
+    reference: &ReferenceConstellation<'_>,
     source: &str,
     pairs: &[(usize, &Track)],
 ) -> Result<Findings, ValidateError> {
-    let ours = &expected.ephemeris;
+    let ours = &reference.ephemeris;
     let theirs = pairs
         .iter()
         .map(|&(slot, track)| crate::ephemeris::EphemerisSatellite {
@@ -332,9 +332,9 @@ fn metrics(
             slot: ours.satellites()[slot].slot,
             propagator: Box::new(track.clone()) as Box<dyn Propagator>,
         });
-    let theirs = Ephemeris::new(expected.grid(), theirs.collect());
+    let theirs = Ephemeris::new(reference.grid(), theirs.collect());
     let seen = TrajectoryPair {
-        evaluator: expected.evaluator,
+        evaluator: reference.evaluator,
         first: ours,
         second: &theirs,
     };

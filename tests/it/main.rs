@@ -21,6 +21,7 @@ mod readers;
 mod reference;
 mod runs;
 mod scenes;
+mod shells;
 mod singular;
 mod study;
 mod tidy;

@@ -14,7 +14,7 @@ use crate::printable::printable;
 use crate::report::{checks_csv, checks_junit, validation_markdown, validation_text};
 use crate::run::ValidateResult;
 use crate::scenario::{Scenario, builtin};
-use crate::validate::file::{Comparand, Expected, against_file, comparands};
+use crate::validate::file::{Comparand, ReferenceConstellation, against_file, comparands};
 use crate::validate::{Findings, Subject, Target, against_paper};
 use anyhow::{Context, Result, bail};
 use std::collections::BTreeMap;
@@ -121,7 +121,7 @@ struct Subjects<'a> {
     evaluator: &'a Evaluator,
     targets: &'a [Against],
     /// The files of each target that is files.
-    sources: Vec<Vec<Source>>,
+    sources: Vec<Vec<ComparedFiles>>,
     study: &'a Study,
 }
 
@@ -174,8 +174,8 @@ impl Subjects<'_> {
             return Ok(findings);
         }
         let expected = match one.only_design() {
-            Some(design) => Expected::of_design(design, self.evaluator)?,
-            None => Expected::of_satellites(ephemeris, self.evaluator)?,
+            Some(design) => ReferenceConstellation::of_design(design, self.evaluator)?,
+            None => ReferenceConstellation::of_satellites(ephemeris, self.evaluator)?,
         };
         for source in self.sources.iter().flatten() {
             findings.append(against_file(
@@ -212,12 +212,12 @@ fn standards_for(target: Target, study: &Study) -> Result<Vec<Target>> {
 }
 
 /// Files that are compared together, and their satellites.
-struct Source {
+struct ComparedFiles {
     name: String,
     files: Vec<(PathBuf, Fleet)>,
 }
 
-impl Source {
+impl ComparedFiles {
     fn read(name: String, path: &Path, format: Option<Format>) -> Result<Self> {
         let read = read_constellation::read_each(path, format)?.into_iter();
         let files: Vec<_> = read
@@ -239,7 +239,7 @@ impl Source {
 }
 
 /// The sources of each target that is files, with the satellites that are selected.
-fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<Source>>> {
+fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<ComparedFiles>>> {
     let paths = targets.iter().filter_map(Against::path);
     let mut found = paths
         .map(|path| comparisons(path, args.chosen.given.input_format))
@@ -276,12 +276,12 @@ fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<Source>>>
 }
 
 /// The comparisons for a path: a file, the formats of an export, or all files in a directory.
-fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
+fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<ComparedFiles>> {
     let name = path.file_name().unwrap_or(path.as_os_str());
     let name = output::shown_path(Path::new(name));
     let manifest = path.join(FILE_NAME);
     if !path.is_dir() || !manifest.exists() {
-        return Ok(vec![Source::read(name, path, format)?]);
+        return Ok(vec![ComparedFiles::read(name, path, format)?]);
     }
     let bytes = files::read_run(&manifest)
         .with_context(|| format!("cannot read {}", manifest.display()))?;
@@ -297,7 +297,7 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
                     file.path
                 );
             }
-            let found = Source::read(file.format, &path.join(&file.path), format)?;
+            let found = ComparedFiles::read(file.format, &path.join(&file.path), format)?;
             by_format.entry(found.name).or_default().extend(found.files);
         }
     }
@@ -308,7 +308,7 @@ fn comparisons(path: &Path, format: Option<Format>) -> Result<Vec<Source>> {
             COMPARED.join(", ")
         );
     }
-    let source = |(name, files)| Source { name, files };
+    let source = |(name, files)| ComparedFiles { name, files };
     Ok(by_format.into_iter().map(source).collect())
 }
 

@@ -12,7 +12,7 @@ use crate::scenario::keys::{list, paths, section};
 use crate::scenario::problem::{ProblemList, Problems};
 use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule, Table};
-use crate::scenario::source::{Parts, Source};
+use crate::scenario::source::{Source, TableSources};
 use crate::scenario::{KeyDescription, Pattern};
 
 section! {
@@ -162,7 +162,7 @@ fn read(text: &str) -> Result<Nested, Problems> {
     let mut report = ProblemList::default();
     let mut reading = Reading {
         source: &source,
-        parts: &Parts::new(),
+        parts: &TableSources::new(),
         key: "search".to_owned(),
         accepted: rule.accepted(),
         report: &mut report,

@@ -2,8 +2,8 @@
 
 mod propagators;
 
-use super::expected::Expected;
 use super::matching::Matching;
+use super::reference::ReferenceConstellation;
 use super::tracks::Track;
 use crate::constellation::{Pattern, Satellite, Shell, Slot};
 use crate::earth::RADIUS_KM;
@@ -64,11 +64,11 @@ pub(super) struct Fitted {
 impl Fitted {
     /// The mean excess of the radii at the first samples, before anything has drifted, taken as an
     /// excess of the semi-major axis; zero if some object is not near a slot.
-    fn to(expected: &Expected<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
-        let ours = &expected.ephemeris;
-        let matching = Matching::of(&expected.reach_km, ours, tracks);
+    fn to(reference: &ReferenceConstellation<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
+        let ours = &reference.ephemeris;
+        let matching = Matching::of(&reference.reach_km, ours, tracks);
         let pairs = matching.pairs(tracks);
-        let orbits = expected.shells.iter().map(Subject::orbit);
+        let orbits = reference.shells.iter().map(Subject::orbit);
         let largest_km = orbits
             .map(|orbit| orbit.semi_major_axis_km)
             .fold(0.0, f64::max);
@@ -324,24 +324,24 @@ const CONVENTIONS: &[Convention] = &[
 /// # Errors
 /// If the design itself cannot be propagated.
 pub(super) fn explanation(
-    expected: &Expected<'_>,
+    reference: &ReferenceConstellation<'_>,
     tracks: &[Track],
 ) -> Result<Option<Explanation>, ValidateError> {
-    if expected.shells.is_empty() {
+    if reference.shells.is_empty() {
         return Ok(None);
     }
-    let before_km = rms_km(expected, &expected.ephemeris, tracks);
-    let fitted = Fitted::to(expected, tracks)?;
+    let before_km = rms_km(reference, &reference.ephemeris, tracks);
+    let fitted = Fitted::to(reference, tracks)?;
     let tried = CONVENTIONS.iter().filter_map(|convention| {
-        let shells = expected.shells.iter();
+        let shells = reference.shells.iter();
         let propagated = shells.flat_map(|shell| (convention.propagate)(shell, fitted));
         let satellites = propagated.map(|(name, propagator)| EphemerisSatellite {
             name,
             slot: None,
             propagator,
         });
-        let ephemeris = Ephemeris::new(expected.grid(), satellites.collect());
-        Some((convention, rms_km(expected, &ephemeris, tracks)?))
+        let ephemeris = Ephemeris::new(reference.grid(), satellites.collect());
+        Some((convention, rms_km(reference, &ephemeris, tracks)?))
     });
     let best = tried.min_by(|a, b| a.1.total_cmp(&b.1));
     let enough_km = before_km.map_or(MOST_LEFT_KM, |before_km| {
@@ -363,8 +363,12 @@ pub(super) fn explanation(
 }
 
 /// Root mean square distance of all tracks from an ephemeris; `None` unless all of them match.
-fn rms_km(expected: &Expected<'_>, propagated: &Ephemeris, tracks: &[Track]) -> Option<f64> {
-    let matching = Matching::of(&expected.reach_km, propagated, tracks);
+fn rms_km(
+    reference: &ReferenceConstellation<'_>,
+    propagated: &Ephemeris,
+    tracks: &[Track],
+) -> Option<f64> {
+    let matching = Matching::of(&reference.reach_km, propagated, tracks);
     let pairs = matching.pairs(tracks);
     let with_states = tracks.iter().filter(|t| !t.states.is_empty()).count();
     if pairs.len() < with_states.min(propagated.satellites().len()) {

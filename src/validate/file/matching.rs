@@ -1,6 +1,6 @@
 //! Matching the objects of a file to the slots of a design.
 
-use super::expected::Expected;
+use super::reference::ReferenceConstellation;
 use super::tracks::Track;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{State, Teme};
@@ -81,16 +81,16 @@ impl Matching {
     /// position.
     pub(super) fn misplaced(
         &self,
-        expected: &Expected<'_>,
+        reference: &ReferenceConstellation<'_>,
         tracks: &[Track],
     ) -> Result<usize, EphemerisError> {
-        let ours = &expected.ephemeris;
+        let ours = &reference.ephemeris;
         let mut misplaced = 0;
         for (slot, track) in self.pairs(tracks) {
             if let Some((elapsed_s, state)) = track.at(0.0) {
                 let own = ours.state(&ours.satellites()[slot], elapsed_s)?;
                 let apart_km = (state.position_km - own.position_km).norm();
-                misplaced += usize::from(apart_km > expected.reach_km[slot]);
+                misplaced += usize::from(apart_km > reference.reach_km[slot]);
             }
         }
         Ok(misplaced)

@@ -62,7 +62,7 @@ fn renamed(mut comparands: Vec<Comparand>) -> Vec<Comparand> {
 
 fn compared(comparands: &[Comparand]) -> Result<Findings, ValidateError> {
     let evaluator = evaluator();
-    let expected = Expected::of_design(&design().into(), &evaluator)?;
+    let expected = ReferenceConstellation::of_design(&design().into(), &evaluator)?;
     against_file(&expected, "test", comparands)
 }
 
@@ -145,7 +145,7 @@ fn an_unknown_difference_is_not_explained() {
 fn satellites_that_meet_are_told_apart_by_their_course() {
     let evaluator = evaluator();
     let design: Design = "delta:54.6:24/4/2@925".parse().unwrap();
-    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let expected = ReferenceConstellation::of_design(&design, &evaluator).unwrap();
     let ours = &expected.ephemeris;
     let objects = ours.satellites().iter().enumerate().map(|(n, satellite)| {
         let states = grid().iter().map(|t| {
@@ -176,7 +176,7 @@ fn satellites_that_meet_are_told_apart_by_their_course() {
 fn a_design_of_two_shells_is_compared_as_a_whole() {
     let evaluator = evaluator();
     let design: Design = "delta:54.6:24/4/1@925+star:87:12/3/1@1100".parse().unwrap();
-    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let expected = ReferenceConstellation::of_design(&design, &evaluator).unwrap();
     let sampled = |convention: &str| -> Vec<Comparand> {
         let shells = expected.shells.iter();
         let fitted = conventions::Fitted::default();
@@ -219,7 +219,7 @@ fn a_design_of_two_shells_is_compared_as_a_whole() {
 fn satellites_from_files_are_compared_with_other_files() {
     let evaluator = evaluator();
     let satellites = || Ephemeris::of_design(&design().into(), Model::J2, grid()).unwrap();
-    let expected = Expected::of_satellites(satellites(), &evaluator).unwrap();
+    let expected = ReferenceConstellation::of_satellites(satellites(), &evaluator).unwrap();
     assert!(expected.shells.is_empty());
     let found = against_file(&expected, "test", &renamed(propagated("mean-j2"))).unwrap();
     assert!(
@@ -384,7 +384,7 @@ fn validate_an_ephemeris_of_orekit() {
     const OREKIT: &[u8] = include_bytes!("../../../validation/cases/orekit/j2-from-osculating.oem");
     let evaluator = testing::evaluator(TimeGrid::new(epoch(), 21_600.0, 600.0).unwrap());
     let design = "delta:40:8/4/1@925".parse().unwrap();
-    let expected = Expected::of_design(&design, &evaluator).unwrap();
+    let expected = ReferenceConstellation::of_design(&design, &evaluator).unwrap();
     let findings = against_file(&expected, "orekit", &one_message_each(OREKIT)).unwrap();
     assert!(findings.passed(), "{:#?}", findings.checks);
     let comparison = &findings.files[0];

@@ -1,7 +1,7 @@
 //! The objects of files as TEME states in the time scale of the study.
 
-use super::expected::Expected;
 use super::read::{Comparand, FileError};
+use super::reference::ReferenceConstellation;
 use crate::ephemeris::hermite::hermite_position;
 use crate::frames::{State, Teme, to_teme};
 use crate::orbit::sgp4::Sgp4Orbit;
@@ -35,25 +35,28 @@ pub(super) struct Track {
 /// # Errors
 /// If no object has a state in the span, or SGP4 rejects an element set.
 pub(super) fn tracks(
-    expected: &Expected<'_>,
+    reference: &ReferenceConstellation<'_>,
     comparands: &[Comparand],
 ) -> Result<Vec<Track>, ValidateError> {
     let mut tracks = Vec::with_capacity(comparands.len());
     for comparand in comparands {
         tracks.push(match comparand {
-            Comparand::States(trajectory) => sampled(expected, trajectory),
-            Comparand::Elements(set) => of_elements(expected, set)?,
+            Comparand::States(trajectory) => sampled(reference, trajectory),
+            Comparand::Elements(set) => of_elements(reference, set)?,
         });
     }
     if tracks.iter().all(|track| track.states.is_empty()) {
-        return Err(another_epoch(expected, comparands).into());
+        return Err(another_epoch(reference, comparands).into());
     }
     Ok(tracks)
 }
 
-fn sampled(expected: &Expected<'_>, trajectory: &crate::formats::trajectory::Trajectory) -> Track {
-    let epoch = expected.epoch();
-    let last_s = last_s(expected);
+fn sampled(
+    reference: &ReferenceConstellation<'_>,
+    trajectory: &crate::formats::trajectory::Trajectory,
+) -> Track {
+    let epoch = reference.epoch();
+    let last_s = last_s(reference);
     let all: Vec<(f64, State<Teme>)> = trajectory
         .samples()
         .into_iter()
@@ -76,7 +79,10 @@ fn sampled(expected: &Expected<'_>, trajectory: &crate::formats::trajectory::Tra
     }
 }
 
-fn of_elements(expected: &Expected<'_>, set: &::sgp4::Elements) -> Result<Track, ValidateError> {
+fn of_elements(
+    reference: &ReferenceConstellation<'_>,
+    set: &::sgp4::Elements,
+) -> Result<Track, ValidateError> {
     let name = set
         .object_name
         .clone()
@@ -85,8 +91,8 @@ fn of_elements(expected: &Expected<'_>, set: &::sgp4::Elements) -> Result<Track,
         object: name.clone(),
         source,
     };
-    let propagated = Sgp4Orbit::from_element_set(set, expected.epoch()).map_err(failed)?;
-    let grid = expected.grid();
+    let propagated = Sgp4Orbit::from_element_set(set, reference.epoch()).map_err(failed)?;
+    let grid = reference.grid();
     let stride = grid.len().div_ceil(MOST_SAMPLES);
     let mut states = Vec::new();
     for elapsed_s in grid.iter().step_by(stride) {
@@ -100,12 +106,12 @@ fn of_elements(expected: &Expected<'_>, set: &::sgp4::Elements) -> Result<Track,
     })
 }
 
-fn last_s(expected: &Expected<'_>) -> f64 {
-    expected.grid().elapsed_s(expected.grid().len() - 1)
+fn last_s(reference: &ReferenceConstellation<'_>) -> f64 {
+    reference.grid().elapsed_s(reference.grid().len() - 1)
 }
 
-fn another_epoch(expected: &Expected<'_>, comparands: &[Comparand]) -> FileError {
-    let at = |elapsed_s: f64| expected.epoch().plus_seconds(elapsed_s).to_string();
+fn another_epoch(reference: &ReferenceConstellation<'_>, comparands: &[Comparand]) -> FileError {
+    let at = |elapsed_s: f64| reference.epoch().plus_seconds(elapsed_s).to_string();
     let instants = comparands.iter().find_map(|comparand| match comparand {
         Comparand::States(trajectory) => {
             let (first, last) = trajectory.span()?;
@@ -117,7 +123,7 @@ fn another_epoch(expected: &Expected<'_>, comparands: &[Comparand]) -> FileError
     FileError::AnotherEpoch {
         objects: comparands.len(),
         from: at(0.0),
-        to: at(last_s(expected)),
+        to: at(last_s(reference)),
         first,
         last,
     }
@@ -126,15 +132,15 @@ fn another_epoch(expected: &Expected<'_>, comparands: &[Comparand]) -> FileError
 impl Track {
     /// Fraction of the study's time span that the states cover without a gap too wide to
     /// interpolate.
-    pub(super) fn covered_share(&self, expected: &Expected<'_>) -> f64 {
-        let last_s = last_s(expected);
+    pub(super) fn covered_share(&self, reference: &ReferenceConstellation<'_>) -> f64 {
+        let last_s = last_s(reference);
         if self.propagated.is_some() {
             return 1.0;
         }
         if last_s <= 0.0 {
             return if self.states.is_empty() { 0.0 } else { 1.0 };
         }
-        let most_s = WIDEST_GAP_TURNS * expected.shortest_period_s;
+        let most_s = WIDEST_GAP_TURNS * reference.shortest_period_s;
         let steps = self.all.windows(2).map(|pair| (pair[0].0, pair[1].0));
         let covered_s: f64 = steps
             .filter(|(from, to)| to - from <= most_s)
@@ -144,9 +150,9 @@ impl Track {
     }
 
     /// Whether the states cover the full span and can be interpolated.
-    pub(super) fn covers(&self, expected: &Expected<'_>) -> bool {
+    pub(super) fn covers(&self, reference: &ReferenceConstellation<'_>) -> bool {
         let has_velocity = |(_, state): &(f64, State<Teme>)| state.velocity_km_s.norm() > 0.0;
-        self.covered_share(expected) > 1.0 - 1e-9
+        self.covered_share(reference) > 1.0 - 1e-9
             && (self.propagated.is_some() || self.all.iter().all(has_velocity))
     }
 

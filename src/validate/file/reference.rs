@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 const MOST_REACH_KM: f64 = 1_500.0;
 
 /// A constellation propagated on the grid of a study.
-pub struct Expected<'a> {
+pub struct ReferenceConstellation<'a> {
     pub(super) evaluator: &'a Evaluator,
     pub(super) ephemeris: Ephemeris,
     /// The shells of a design, on which conventions are tried; empty for satellites from files.
@@ -25,7 +25,7 @@ pub struct Expected<'a> {
     pub(super) shortest_period_s: f64,
 }
 
-impl<'a> Expected<'a> {
+impl<'a> ReferenceConstellation<'a> {
     /// A design by the model of the study.
     ///
     /// # Errors
