@@ -136,3 +136,23 @@ fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
     let design = design();
     bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
 }
+
+/// A hybrid of 182 satellites, its two shells, and no satellites at all: what the hybrid costs beyond the last is
+/// what its shells cost beyond the last.
+const SHELLS: [&str; 4] = [
+    "",
+    "delta:53:104/8/1@1000",
+    "star:87:78/6/1@1100",
+    "delta:53:104/8/1@1000+star:87:78/6/1@1100",
+];
+
+#[divan::bench(sample_count = 200, args = SHELLS)]
+fn shells(bencher: Bencher, notation: &str) {
+    let setup = paper();
+    let ephemeris = match notation.parse::<Design>() {
+        Ok(design) => Ephemeris::of_design(&design, Model::J2, setup.grid).expect(SOUND),
+        Err(_) => Ephemeris::new(setup.grid, Vec::new()),
+    };
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    bencher.bench_local(|| evaluator.evaluate_ephemeris(&ephemeris).expect(SOUND));
+}

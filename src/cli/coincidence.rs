@@ -3,7 +3,7 @@
 use crate::cli::output;
 use crate::constellation::gnss::System;
 use crate::ephemeris::Ephemeris;
-use crate::ephemeris::coincidence::{COINCIDENT_WITHIN_KM, Member, coincident};
+use crate::ephemeris::coincidence::{COINCIDENT_WITHIN_KM, SatellitePlace, coincident};
 use crate::ephemeris::meetings::{MEET_WITHIN_KM, Meeting, meetings};
 use crate::time::TimeGrid;
 
@@ -54,11 +54,12 @@ pub(crate) fn warn_of_meetings(name: &str, ephemeris: &Ephemeris) {
     ));
 }
 
-fn text(all: &[&Ephemeris], groups: &[Vec<Member>]) -> String {
+fn text(all: &[&Ephemeris], groups: &[Vec<SatellitePlace>]) -> String {
     let satellites: usize = groups.iter().map(Vec::len).sum();
-    let name = |&(number, place): &Member| all[number].satellites()[place].name.clone();
-    let members =
-        |group: &Vec<Member>| listed(&group.iter().map(name).collect::<Vec<_>>(), " = ", "more");
+    let name = |&(number, place): &SatellitePlace| all[number].satellites()[place].name.clone();
+    let members = |group: &Vec<SatellitePlace>| {
+        listed(&group.iter().map(name).collect::<Vec<_>>(), " = ", "more")
+    };
     let named: Vec<String> = groups.iter().map(members).collect();
     let places = match groups.len() {
         1 => "one place".to_owned(),

@@ -78,6 +78,9 @@ pub(crate) fn study_and_constellations(
 
 /// The constellations given on the command line: the designs, then the files, each in its order.
 pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
+    if args.constellation.is_empty() && !args.satellites.filter().is_empty() {
+        bail!("--only and --exclude select satellites of files, and no file is given");
+    }
     let mut found = Vec::new();
     for given in &args.design {
         let one = of_notation(&given.text, study)?;
@@ -144,7 +147,7 @@ fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
     fleet.choose(&args.satellites.filter())?;
     let name = path.file_name().unwrap_or(path.as_os_str());
     Ok(Constellation::of_files(FileSatellites {
-        names: vec![name.to_string_lossy().into_owned()],
+        names: vec![output::shown_path(Path::new(name))],
         formats,
         fleet,
     }))

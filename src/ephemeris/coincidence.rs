@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 pub const COINCIDENT_WITHIN_KM: f64 = 0.01;
 
 /// A satellite by the index of its ephemeris and its index in it.
-pub type Member = (usize, usize);
+pub type SatellitePlace = (usize, usize);
 
 /// The groups of two or more coincident satellites, each in the order of the satellites.
 ///
@@ -21,7 +21,7 @@ pub type Member = (usize, usize);
 ///
 /// # Errors
 /// If a satellite cannot be propagated.
-pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<Member>>, EphemerisError> {
+pub fn coincident(ephemerides: &[&Ephemeris]) -> Result<Vec<Vec<SatellitePlace>>, EphemerisError> {
     let Some(first) = ephemerides.first() else {
         return Ok(Vec::new());
     };
@@ -56,10 +56,10 @@ fn track(
 }
 
 /// A satellite and its positions at the three instants, km.
-type Located = (Member, [Vector3<f64>; 3]);
+type Located = (SatellitePlace, [Vector3<f64>; 3]);
 
 /// Groups of coincident tracks; the tracks are sorted by x at the first instant.
-fn groups(tracks: &[Located]) -> Vec<Vec<Member>> {
+fn groups(tracks: &[Located]) -> Vec<Vec<SatellitePlace>> {
     // The group of each track, identified by its first track.
     let mut leaders: Vec<usize> = (0..tracks.len()).collect();
     for (n, (_, track)) in tracks.iter().enumerate() {
@@ -79,7 +79,7 @@ fn groups(tracks: &[Located]) -> Vec<Vec<Member>> {
             }
         }
     }
-    let mut groups: Vec<Vec<Member>> = vec![Vec::new(); tracks.len()];
+    let mut groups: Vec<Vec<SatellitePlace>> = vec![Vec::new(); tracks.len()];
     for (leader, (member, _)) in leaders.into_iter().zip(tracks) {
         groups[leader].push(*member);
     }

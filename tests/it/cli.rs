@@ -272,6 +272,7 @@ fn the_run_directory_is_whole_and_repeatable() {
     names.sort();
     let expected = [
         "checkpoint",
+        "checkpoint.log",
         "checkpoint.previous",
         "front.csv",
         "front.json",

@@ -41,7 +41,7 @@ const SHORTHANDS: [(&str, &str); 5] = [
 
 /// A flag that is refused without the value that it needs, or with a wrong one, is read; what it changes is told here. Words
 /// before `|` are a command that runs first.
-const ROWS: [Row; 75] = [
+const ROWS: &[Row] = &[
     Row(
         "optimize",
         "set",
@@ -165,7 +165,7 @@ const ROWS: [Row; 75] = [
     Row(
         "reproduce",
         "force",
-        "optimize --out out SMALL SEARCH | --out out LITTLE",
+        "reproduce --out out LITTLE --seed 3 | --out out LITTLE",
         "--force",
         Status,
     ),
@@ -367,13 +367,6 @@ const ROWS: [Row; 75] = [
         "--format markdown",
         Stdout,
     ),
-    Row(
-        "report",
-        "compare",
-        "run --out out",
-        "--compare delta:60:4/2/1@800",
-        Out,
-    ),
     Row("report", "front", "run --out out", "--front other", Out),
     Row(
         "report",
@@ -383,13 +376,6 @@ const ROWS: [Row; 75] = [
         Out,
     ),
     Row("report", "out", "run", "--out out", Out),
-    Row(
-        "plot",
-        "compare",
-        "run --figure pareto",
-        "--compare delta:60:4/2/1@800",
-        Stdout,
-    ),
     Row(
         "plot",
         "front",
@@ -439,6 +425,148 @@ const ROWS: [Row; 75] = [
     Row("man", "out", "", "--out out", Out),
     // Of the program, for every command.
     Row(
+        "evaluate",
+        "designs",
+        "SMALL DESIGN",
+        "--designs list.txt",
+        Stdout,
+    ),
+    Row("evaluate", "out", "SMALL DESIGN", "--out out", Out),
+    Row(
+        "export",
+        "constellation",
+        "SMALL --as csv --out out",
+        "--constellation six.csv",
+        Out,
+    ),
+    Row(
+        "export",
+        "input-format",
+        "SMALL --as csv --out out --constellation six.csv",
+        "--input-format tle",
+        Status,
+    ),
+    Row(
+        "export",
+        "only",
+        "SMALL --as csv --out out --constellation six.csv",
+        "--only NW-P01-*",
+        Out,
+    ),
+    Row(
+        "export",
+        "exclude",
+        "SMALL --as csv --out out --constellation six.csv",
+        "--exclude NW-P01-S01",
+        Out,
+    ),
+    Row(
+        "validate",
+        "constellation",
+        "SMALL --against ./six.tle",
+        "--constellation six.csv",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "only",
+        "SMALL --against ./six.tle --constellation six.csv",
+        "--only NW-P01-*",
+        Stdout,
+    ),
+    Row(
+        "validate",
+        "exclude",
+        "SMALL --against ./six.tle --constellation six.csv",
+        "--exclude NW-P01-S01",
+        Stdout,
+    ),
+    Row("report", "design", "SMALL --out out OTHER", "DESIGN", Out),
+    Row(
+        "report",
+        "constellation",
+        "SMALL --out out OTHER",
+        "--constellation six.csv",
+        Out,
+    ),
+    Row(
+        "report",
+        "input-format",
+        "SMALL --out out --constellation six.csv",
+        "--input-format tle",
+        Status,
+    ),
+    Row(
+        "report",
+        "only",
+        "SMALL --out out --constellation six.csv",
+        "--only NW-P01-*",
+        Out,
+    ),
+    Row(
+        "report",
+        "exclude",
+        "SMALL --out out --constellation six.csv",
+        "--exclude NW-P01-S01",
+        Out,
+    ),
+    Row(
+        "report",
+        "set",
+        "SMALL --out out OTHER",
+        "--set visibility.mask-deg=20",
+        Out,
+    ),
+    Row(
+        "plot",
+        "design",
+        "SMALL --figure cdf --measure pdop OTHER",
+        "DESIGN",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "constellation",
+        "SMALL --figure cdf --measure pdop OTHER",
+        "--constellation six.csv",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "input-format",
+        "SMALL --figure cdf --measure pdop --constellation six.csv",
+        "--input-format tle",
+        Status,
+    ),
+    Row(
+        "plot",
+        "only",
+        "SMALL --figure cdf --measure pdop --constellation six.csv",
+        "--only NW-P01-*",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "exclude",
+        "SMALL --figure cdf --measure pdop --constellation six.csv",
+        "--exclude NW-P01-S01",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "set",
+        "SMALL --figure cdf --measure pdop OTHER",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row(
+        "",
+        "allow-large",
+        "export --design delta:55:10000/100/1@925 --as oem --out /proc/self/a --set time.step-s=1",
+        "--allow-large",
+        Stderr,
+    ),
+    Row(
         "",
         "threads",
         "evaluate DESIGN SMALL",
@@ -451,7 +579,14 @@ const ROWS: [Row; 75] = [
 ];
 
 /// The flags of the program itself, which every command has; `--help` is how the rows are checked.
-const GLOBAL: [&str; 5] = ["threads", "quiet", "no-color", "version", "help"];
+const GLOBAL: [&str; 6] = [
+    "threads",
+    "allow-large",
+    "quiet",
+    "no-color",
+    "version",
+    "help",
+];
 
 fn words(text: &str) -> Vec<String> {
     let mut text = format!(" {text} ");
@@ -582,8 +717,9 @@ fn every_flag_has_its_effect() {
     }
     fs::rename(place.join("six/elements.csv"), place.join("six.csv")).unwrap();
     fs::rename(place.join("six/constellation.tle"), place.join("six.tle")).unwrap();
+    fs::write(place.join("list.txt"), "delta:60:4/2/1@800\n").unwrap();
     let mut none = Vec::new();
-    for Row(command, flag, arguments, with, seen) in &ROWS {
+    for Row(command, flag, arguments, with, seen) in ROWS {
         let written = if *with == "DESIGN" { "--design" } else { with };
         assert!(
             written.starts_with(&format!("--{flag}")),

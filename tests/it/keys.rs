@@ -36,6 +36,11 @@ const SWEEP: &str = "optimize --quiet --format json --out run --set region.step-
 const EXPORT: &str =
     "export --quiet --as oem --out files --design delta:55:2/2/1@925 --set time.duration-h=1";
 
+const EXPORT_TLE: &str =
+    "export --quiet --as tle --out files --design delta:55:2/2/1@925 --set time.duration-h=1";
+const EVALUATE_OWN: &str = "evaluate --format json --set constellations.two=delta:55:6/3/1@925 \
+     --set constellations.three=delta:60:6/3/1@925 --set time.step-s=3600 --set region.step-deg=25";
+
 const fn row(
     key: &'static str,
     value: &'static str,
@@ -51,8 +56,26 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 53] = [
+const ROWS: [Row; 56] = [
     row("name", "other", EVALUATE, "/scenario/name"),
+    row(
+        "constellations",
+        "{one=\"delta:55:4/2/1@800\"}",
+        EVALUATE_OWN,
+        "/constellations",
+    ),
+    row(
+        "export.name-prefix",
+        "AB",
+        EXPORT_TLE,
+        "file:constellation.tle",
+    ),
+    row(
+        "export.first-catalog-number",
+        "91001",
+        EXPORT_TLE,
+        "file:constellation.tle",
+    ),
     row(
         "reference-design",
         "delta:55:4/2/1@800",

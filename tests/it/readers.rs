@@ -194,7 +194,9 @@ fn satellites_are_chosen_alike_by_every_command() {
     let nothing = run(directory.path(), &nothing);
     assert_eq!(nothing.status, 2);
     assert!(
-        nothing.stderr.contains("--against names no file"),
+        nothing
+            .stderr
+            .contains("--only and --exclude select satellites of files, and no file is given"),
         "{}",
         nothing.stderr
     );

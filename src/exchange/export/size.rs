@@ -60,7 +60,12 @@ pub fn export_size(subject: &ExportSubject, products: &[Product], choices: &Choi
             Product::Omm => choices.omm != omm::OmmSyntax::Kvn,
             _ => !each,
         };
-        size.files += if is_one { 1 } else { satellites };
+        size.files += match product {
+            // Elements and states.
+            Product::Csv => 2,
+            _ if is_one => 1,
+            _ => satellites,
+        };
         size.bytes += satellites * (satellite + instants * state + days * day);
     }
     size

@@ -38,7 +38,7 @@ pub(crate) struct XmlLeaf {
 }
 
 /// A node and the place where it begins.
-pub(crate) type Placed = ((usize, usize), XmlNode);
+pub(crate) type LocatedNode = ((usize, usize), XmlNode);
 
 /// Counts lines as they are consumed, and refuses an event that is too long.
 struct Counting<R> {
@@ -92,7 +92,7 @@ struct Held {
 }
 
 impl Held {
-    fn leaf(self) -> Placed {
+    fn leaf(self) -> LocatedNode {
         let Self {
             name, text, unit, ..
         } = self;
@@ -104,7 +104,7 @@ impl Held {
 pub(crate) struct Nodes<R> {
     reader: Reader<Counting<R>>,
     held: Option<Held>,
-    queued: Option<Placed>,
+    queued: Option<LocatedNode>,
     depth: usize,
     any: bool,
     ended: bool,
@@ -143,7 +143,7 @@ impl<R: BufRead> Nodes<R> {
     }
 
     /// The next node; `None` at the end or after a finding.
-    pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<Placed>> {
+    pub(crate) fn next(&mut self, findings: &mut FindingList) -> io::Result<Option<LocatedNode>> {
         let mut buffer = Vec::new();
         loop {
             if let Some(node) = self.queued.take() {
@@ -224,7 +224,7 @@ impl<R: BufRead> Nodes<R> {
         }
     }
 
-    fn start(&mut self, held: Held, findings: &mut FindingList) -> Option<Placed> {
+    fn start(&mut self, held: Held, findings: &mut FindingList) -> Option<LocatedNode> {
         self.any = true;
         self.depth += 1;
         if self.depth > MAX_DEPTH {
@@ -235,7 +235,7 @@ impl<R: BufRead> Nodes<R> {
     }
 
     /// The first of two nodes; the second is queued.
-    fn after(&mut self, first: Option<Placed>, second: Placed) -> Option<Placed> {
+    fn after(&mut self, first: Option<LocatedNode>, second: LocatedNode) -> Option<LocatedNode> {
         match first {
             Some(first) => {
                 self.queued = Some(second);
@@ -259,7 +259,7 @@ impl<R: BufRead> Nodes<R> {
     }
 }
 
-fn opened(held: Held) -> Placed {
+fn opened(held: Held) -> LocatedNode {
     (held.place, XmlNode::Open(held.name, held.version))
 }
 

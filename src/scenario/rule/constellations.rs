@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::{Node, Reading, Rule, Table};
+use super::{Node, Reading, Rule, SectionTable};
 use crate::constellation::{Design, NotationError};
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
@@ -45,7 +45,7 @@ impl Rule for Notation {
 pub(in crate::scenario) struct Constellations;
 
 impl Constellations {
-    const TABLE: Table<ConstellationParts> = Table::new();
+    const TABLE: SectionTable<ConstellationParts> = SectionTable::new();
 
     /// What stands behind a name.
     fn accepted_parts() -> String {

@@ -12,15 +12,15 @@ use crate::scenario::problem::Fault;
 use crate::scenario::reader::{Given, Reader};
 
 /// A table with the keys of a section, on one line as canonical TOML.
-pub(in crate::scenario) struct Table<S>(PhantomData<fn() -> S>);
+pub(in crate::scenario) struct SectionTable<S>(PhantomData<fn() -> S>);
 
-impl<S> Table<S> {
+impl<S> SectionTable<S> {
     pub(in crate::scenario) const fn new() -> Self {
         Self(PhantomData)
     }
 }
 
-impl<S: Section> Rule for Table<S> {
+impl<S: Section> Rule for SectionTable<S> {
     type Value = S;
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<S> {

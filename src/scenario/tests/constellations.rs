@@ -138,7 +138,7 @@ fn problems_are_where_they_are_with_their_key() {
         "study.toml:6: constellations.f: found 3, expected a design in Walker notation",
         "study.toml:7: constellations.g: the constellation has no satellites: give `design`, `files` or both",
         "study.toml:8: constellations.h.only: this is about satellites from files, but `files` is not given",
-        "study.toml:9: constellations.i.input-format: unknown word \"tel\" (choices: tle, oem, ",
+        "study.toml:9: constellations.i.input-format: unknown name \"tel\" (choices: tle, oem, ",
         "study.toml:10: constellations.j.files: \"j.tle\" appears more than once",
         "study.toml:12: constellations.k.design: shell A: ",
     ];

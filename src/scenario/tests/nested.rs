@@ -1,6 +1,6 @@
 //! What declarations can carry beyond the present keys: lists of tables, tables with free names, and
 //! values of one type or another. A rule for each is all that it takes; they move to `rule/` with
-//! the first key that needs them, as [`Table`] did.
+//! the first key that needs them, as [`SectionTable`] did.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 use crate::scenario::keys::{list, paths, section};
 use crate::scenario::problem::{ProblemList, Problems};
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule, Table};
+use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule, SectionTable};
 use crate::scenario::source::{Source, TableSources};
 use crate::scenario::{KeyDescription, Pattern};
 
@@ -37,12 +37,12 @@ section! {
     #[derive(Debug, Clone, PartialEq)]
     struct Nested in "search" {
         /// A list of tables.
-        pub shells: Vec<Shell> = ListOf(Table::new()), default Vec::new();
+        pub shells: Vec<Shell> = ListOf(SectionTable::new()), default Vec::new();
         /// Tables with free names.
-        pub constellations: BTreeMap<String, Shell> = Named(Table::new()),
+        pub constellations: BTreeMap<String, Shell> = Named(SectionTable::new()),
             default BTreeMap::new();
         /// A word or a table.
-        pub design: Either<Pattern, Shell> = OneOrOther(OneOf::new(), Table::new()),
+        pub design: Either<Pattern, Shell> = OneOrOther(OneOf::new(), SectionTable::new()),
             default Either::One(Pattern::Delta);
         /// A list of words or a single word.
         pub patterns: Either<Vec<Pattern>, Pattern> =
@@ -158,7 +158,7 @@ fn read(text: &str) -> Result<Nested, Problems> {
     let source = Source::file("nested.toml", text);
     let table = DeTable::parse(text).unwrap();
     let node = Spanned::new(0..text.len(), DeValue::Table(table.into_inner()));
-    let rule = Table::<Nested>::new();
+    let rule = SectionTable::<Nested>::new();
     let mut report = ProblemList::default();
     let mut reading = Reading {
         source: &source,
@@ -193,7 +193,7 @@ fn nested_keys_are_read_and_written() {
     assert_eq!(nested.design, Either::Other(shell(5, 500.0)));
     let both = vec![Pattern::Delta, Pattern::Star];
     assert_eq!(nested.patterns, Either::One(both));
-    let written = Table::<Nested>::new().write(&nested);
+    let written = SectionTable::<Nested>::new().write(&nested);
     let inner = written.trim_start_matches('{').trim_end_matches('}');
     let lines = inner.replace(", constellations", "\nconstellations");
     let lines = lines.replace(", design", "\ndesign");
