@@ -44,11 +44,11 @@ pub enum WriteError {
     #[error("{0} shows the complete scenario; it needs the region and the GNSS")]
     NoScene(&'static str),
     /// Something of the scenario that the format has no words for.
-    #[error("{product} cannot say {what}; {instead}")]
+    #[error("{product} cannot hold {what}; {instead}")]
     CannotSay {
         /// The product.
         product: &'static str,
-        /// What it cannot say.
+        /// What it cannot hold.
         what: String,
         /// What to do.
         instead: &'static str,

@@ -70,6 +70,14 @@ pub(crate) fn study_and_constellations(
     }
     let loaded = Study::load(study, &[])?;
     let mut given = resolve(&chosen.given, &loaded)?;
+    let named = &loaded.scenario.constellations;
+    if given.is_empty() && !named.is_empty() {
+        let names: Vec<&str> = named.iter().map(|one| one.name.as_str()).collect();
+        output::hint(&format!(
+            "the reference design is taken; --design NAME takes a constellation of the scenario: {}",
+            names.join(", ")
+        ));
+    }
     if given.is_empty() {
         given.push(Constellation::of_design(loaded.reference_design()?));
     }
@@ -78,9 +86,6 @@ pub(crate) fn study_and_constellations(
 
 /// The constellations given on the command line: the designs, then the files, each in its order.
 pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
-    if args.constellation.is_empty() && !args.satellites.filter().is_empty() {
-        bail!("--only and --exclude select satellites of files, and no file is given");
-    }
     let mut found = Vec::new();
     for given in &args.design {
         let one = of_notation(&given.text, study)?;
@@ -92,6 +97,20 @@ pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Con
     }
     require_different_names(&found)?;
     Ok(found)
+}
+
+/// Refuses what is said of files where none is given.
+pub(crate) fn require_files(args: &ConstellationArgs) -> Result<()> {
+    if !args.constellation.is_empty() {
+        return Ok(());
+    }
+    if !args.satellites.filter().is_empty() {
+        bail!("--only and --exclude select satellites of files, and no file is given");
+    }
+    if args.input_format.is_some() {
+        bail!("--input-format names the format of files, and no file is given");
+    }
+    Ok(())
 }
 
 /// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated, in one
@@ -153,15 +172,21 @@ fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
     }))
 }
 
-/// Refuses constellations that have the same name.
+/// The name of the GNSS alone in tables.
+const RESERVED: &str = "gnss-only";
+
+/// Refuses constellations that have the same name, or that of the GNSS alone.
 pub(crate) fn require_different_names(constellations: &[Constellation]) -> Result<()> {
     for (n, one) in constellations.iter().enumerate() {
+        if one.name == RESERVED {
+            bail!("the name {RESERVED} is that of the GNSS alone in tables; choose another");
+        }
         if constellations[..n]
             .iter()
             .any(|other| other.name == one.name)
         {
             bail!(
-                "two constellations are named {}; name them apart, as in --design first=NOTATION",
+                "two constellations are named {}; name them apart, as in --design first=NOTATION or --constellation first=FILE",
                 one.name
             );
         }

@@ -218,9 +218,10 @@ impl Shell {
         }
         Ok(Self {
             orientation: Orientation {
-                raan_deg: wrap_360(raan_deg),
-                arg_latitude_deg: arg_latitude_deg.map(wrap_360),
-                node_step_deg,
+                // 0 is added so that -0 becomes 0, which is written in one way.
+                raan_deg: wrap_360(raan_deg) + 0.0,
+                arg_latitude_deg: arg_latitude_deg.map(|u| wrap_360(u) + 0.0),
+                node_step_deg: node_step_deg.map(|step| step + 0.0),
             },
             ..self
         })

@@ -71,8 +71,13 @@ impl ElementSetRule {
 fn named(set: &sgp4::Elements, object: &Object) -> sgp4::Elements {
     let identity = ObjectIdentity::of_set(set);
     let or = |own: Option<&str>, other: &str| Some(own.unwrap_or(other).to_owned());
+    // A name that another satellite of the constellation has too has a number behind it.
+    let own = identity.name().filter(|own| {
+        let behind = object.name.strip_prefix(own);
+        behind.is_none_or(|behind| !behind.starts_with(" #"))
+    });
     sgp4::Elements {
-        object_name: or(identity.name(), &object.name),
+        object_name: or(own, &object.name),
         international_designator: or(identity.designator(), &object.id),
         norad_id: match set.norad_id {
             0 => u64::from(object.catalog_number.number()),

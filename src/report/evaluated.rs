@@ -97,6 +97,9 @@ impl Assessment {
 /// The output of `evaluate` for one design.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EvaluateResult {
+    /// Its name, if it has one besides its notation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// The design.
     pub design: DesignSummary,
     /// What is computed of it.
@@ -207,6 +210,7 @@ impl ConstellationEntry {
     pub fn alone(self, gnss_only: Option<Assessment>, scenario: ScenarioStamp) -> Option<Alone> {
         match (self.design, self.format_and_content) {
             (Some(design), None) => Some(Alone::Design(Box::new(EvaluateResult {
+                name: Some(self.name).filter(|name| *name != design.notation),
                 design,
                 evaluated: self.evaluated,
                 gnss_only,

@@ -102,7 +102,7 @@ fn a_file_of_element_sets_is_converted_and_checked() {
     assert_eq!(done.status, 2);
     let error = done.stderr;
     assert!(
-        error.contains("yuma cannot say the satellites of constellation.tle"),
+        error.contains("yuma cannot hold the satellites of constellation.tle"),
         "{error}"
     );
     let two = [

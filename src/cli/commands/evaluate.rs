@@ -27,6 +27,9 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let study = Study::load(&args.study, &[])?;
     let given = given(args, &study)?;
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
+    if args.out.is_some() {
+        given_run::require_designs(&given)?;
+    }
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
     let work = EvaluationContext {
@@ -80,6 +83,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
 
 /// The constellations given one by one, or else those of the scenario.
 fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<Constellation>> {
+    constellations::require_files(&args.constellations)?;
     if !args.constellations.is_empty() || args.designs.is_some() {
         return constellations::resolve(&args.constellations, study);
     }

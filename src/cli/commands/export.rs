@@ -111,6 +111,7 @@ fn study_and_constellation(
     study: &StudyArgs,
     chosen: &ChosenArgs,
 ) -> Result<(Study, Constellation)> {
+    constellations::require_files(&chosen.given)?;
     let (study, mut chosen) = constellations::study_and_constellations(study, chosen)?;
     match (chosen.pop(), chosen.as_slice()) {
         (Some(one), []) => Ok((study, one)),

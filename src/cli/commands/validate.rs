@@ -137,6 +137,12 @@ impl Subjects<'_> {
         Ok(standards)
     }
 
+    /// Whether all standards are asked for, those that check designs only where there is one, and files too.
+    fn is_all_with_files(&self) -> bool {
+        let is_all = |target: &Against| matches!(target, Against::Standard(Target::All));
+        self.targets.iter().any(is_all) && !self.sources.iter().all(Vec::is_empty)
+    }
+
     /// What is found about the study, whatever is propagated in it.
     fn of_study(&self) -> Result<Findings> {
         let mut findings = Findings::default();
@@ -157,6 +163,7 @@ impl Subjects<'_> {
             }
             match &one.design {
                 Some(design) => findings.append(self.of_shells(target, design)?),
+                None if self.is_all_with_files() => {}
                 None => bail!(
                     "{}: {target} checks the propagation of a design; satellites from files have a theory of their \
                      own and are compared with other files only, as in --against other.oem",

@@ -255,7 +255,7 @@ fn states_become_element_sets_by_a_fit_only() {
         };
         let sink = |path: &str| -> io::Result<Vec<u8>> { panic!("{path} is written") };
         let error = export(&request, &sink).unwrap_err().to_string();
-        let start = format!("{product} cannot say the satellites of states.csv: ");
+        let start = format!("{product} cannot hold the satellites of states.csv: ");
         assert!(error.starts_with(&start), "{error}");
     }
     let fitted = Choices {

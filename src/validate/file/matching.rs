@@ -141,7 +141,7 @@ impl Matching {
 
 /// Distance between two states, km, with velocities scaled by the time of one radian along the
 /// orbit: satellites of two crossing planes may share a position but not a direction.
-fn apart_km(theirs: &State<Teme>, own: &State<Teme>) -> f64 {
+pub(super) fn apart_km(theirs: &State<Teme>, own: &State<Teme>) -> f64 {
     let apart_km = (theirs.position_km - own.position_km).norm();
     if theirs.velocity_km_s.norm() == 0.0 {
         return apart_km;

@@ -1,5 +1,6 @@
 //! What a file is compared with: a constellation in a study.
 
+use super::matching::apart_km;
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Evaluator;
@@ -7,7 +8,6 @@ use crate::frames::{State, Teme};
 use crate::orbit::MeanElements;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::Subject;
-use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 /// Largest distance of an object from its slot, km.
@@ -124,17 +124,13 @@ fn period_s(state: &State<Teme>) -> Option<f64> {
     (per_axis > 0.0).then(|| TAU / orbit.kepler_mean_motion_rad_s())
 }
 
-/// For each satellite, a third of the distance to the nearest other one.
+/// For each satellite, a third of the distance to the nearest other one, which may cross it on another course.
 fn thirds_of_nearest_km(states: &[Option<State<Teme>>]) -> Vec<f64> {
-    let places: Vec<Option<Vector3<f64>>> = states
-        .iter()
-        .map(|state| state.map(|state| state.position_km.km()))
-        .collect();
-    let nearest = |(n, place): (usize, &Option<Vector3<f64>>)| {
-        let Some(place) = place else { return 0.0 };
-        let others = places.iter().enumerate().filter(|(other, _)| *other != n);
-        let distances = others.filter_map(|(_, other)| Some((other.as_ref()? - place).norm()));
+    let nearest = |(n, state): (usize, &Option<State<Teme>>)| {
+        let Some(state) = state else { return 0.0 };
+        let others = states.iter().enumerate().filter(|(other, _)| *other != n);
+        let distances = others.filter_map(|(_, other)| Some(apart_km(other.as_ref()?, state)));
         (distances.fold(f64::INFINITY, f64::min) / 3.0).min(MOST_REACH_KM)
     };
-    places.iter().enumerate().map(nearest).collect()
+    states.iter().enumerate().map(nearest).collect()
 }

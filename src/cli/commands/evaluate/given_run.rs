@@ -4,11 +4,33 @@ use super::EvaluationContext;
 use crate::cli::output;
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
+use crate::exchange::constellation::Constellation;
+use crate::optimize::Pick;
 use crate::report::ConstellationEntry;
 use crate::run::OptimizeResult;
 use crate::scenario::Scenario;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::path::Path;
+
+/// Refuses what cannot be a member of a run: satellites from files, and names that `--pick` takes for a method or
+/// an index.
+pub(super) fn require_designs(given: &[Constellation]) -> Result<()> {
+    for one in given {
+        if one.files.is_some() {
+            bail!(
+                "{} has satellites from files; a run is made of designs: omit it, or --out",
+                one.name
+            );
+        }
+        if one.name.parse::<Pick>().is_ok() {
+            bail!(
+                "--pick {} is a method or an index, so that no design of a run can have this name",
+                one.name
+            );
+        }
+    }
+    Ok(())
+}
 
 /// The run, not yet in its place.
 pub(super) struct GivenRun {

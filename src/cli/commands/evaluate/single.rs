@@ -18,7 +18,14 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
         return output::result(&serde_json::to_string_pretty(&alone)?);
     }
     let (title, evaluated) = match &alone {
-        Alone::Design(result) => (result.design.notation.clone(), &result.evaluated),
+        Alone::Design(result) => {
+            let notation = &result.design.notation;
+            let title = match &result.name {
+                Some(name) => format!("{name} ({notation})"),
+                None => notation.clone(),
+            };
+            (title, &result.evaluated)
+        }
         Alone::Files(result) => {
             let of = &result.constellation;
             let satellites = counted(of.satellites, "satellite");
