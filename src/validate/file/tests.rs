@@ -1,5 +1,6 @@
 use super::*;
 use crate::constellation::{Design, Shell};
+use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::Evaluator;
 use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
@@ -229,6 +230,32 @@ fn satellites_from_files_are_compared_with_other_files() {
     );
     let other = against_file(&expected, "test", &propagated("two-body")).unwrap();
     assert!(!other.files[0].agrees && other.files[0].explanation.is_none());
+}
+
+/// Satellites that cross in one place at the epoch are in their own places, a few metres off.
+#[test]
+fn crossing_satellites_of_a_file_are_not_misplaced() {
+    let evaluator = evaluator();
+    let crossing = |altitude_km: f64| {
+        let design = format!("delta:54.6:24/4/2@{altitude_km}").parse().unwrap();
+        Ephemeris::of_design(&design, Model::J2, grid()).unwrap()
+    };
+    let expected = ReferenceConstellation::of_satellites(crossing(925.0), &evaluator).unwrap();
+    let others = crossing(925.003);
+    let one = |satellite: &EphemerisSatellite| {
+        let states = others.states(satellite).map(|sample| {
+            let (t, state) = sample.unwrap();
+            (
+                epoch().plus_seconds(t),
+                from_teme(state, Frame::Teme, epoch(), t),
+            )
+        });
+        let (name, states) = (&satellite.name, states.collect());
+        Comparand::States(Trajectory::of_states(name, name, Frame::Teme, states))
+    };
+    let objects: Vec<_> = others.satellites().iter().map(one).collect();
+    let found = against_file(&expected, "test", &objects).unwrap();
+    assert!(found.passed(), "{:#?}", found.checks);
 }
 
 #[test]
