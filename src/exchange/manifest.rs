@@ -16,6 +16,9 @@ pub const FILE_NAME: &str = "manifest.json";
 /// Directory of the additional GNSS files.
 pub(crate) const GNSS_DIRECTORY: &str = "gnss/";
 
+/// Folder of the commands that build the study in STK.
+pub(crate) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
+
 /// The content of an export.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Manifest {
@@ -146,10 +149,11 @@ pub struct Loss {
 }
 
 impl FileEntry {
-    /// Whether the file is of the constellation, not of a GNSS.
+    /// Whether the file holds satellites of the constellation, not a GNSS or what is around them in STK.
     #[must_use]
     pub fn is_of_design(&self) -> bool {
-        !self.path.starts_with(GNSS_DIRECTORY)
+        let beside = [GNSS_DIRECTORY, STK_SCENARIO_DIRECTORY];
+        !beside.iter().any(|folder| self.path.starts_with(folder))
     }
 
     /// The entry of a file that `metadata` describes.

@@ -218,7 +218,7 @@ fn comparison_lines(comparison: &FileComparison) -> Vec<String> {
                 .to_owned()
         }
         None => {
-            "no known convention explains the difference better than the design itself".to_owned()
+            "no known convention of a design explains the difference".to_owned()
         }
     });
     lines

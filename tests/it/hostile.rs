@@ -137,13 +137,20 @@ fn names_from_files_are_shown_not_obeyed() {
         };
         let file = format!("./{stem}.{extension}");
         fs::write(place.join(&file), text).unwrap();
+        // The same satellites in two files of one directory.
+        let twice = format!("twice-{n}");
+        fs::create_dir(place.join(&twice)).unwrap();
+        for copy in ["a", "b"] {
+            let copy = place.join(&twice).join(format!("{copy}.{extension}"));
+            fs::copy(place.join(&file), copy).unwrap();
+        }
         let mut seen = String::new();
         for command in [
             "lint FILE",
             "lint --format json FILE",
             "lint --format csv FILE",
             "evaluate CONSTELLATION --constellation FILE",
-            "evaluate CONSTELLATION --constellation FILE --constellation FILE",
+            "evaluate CONSTELLATION --constellation TWICE",
             "evaluate CONSTELLATION --constellation FILE --format json",
             "evaluate CONSTELLATION --constellation FILE --format csv --only nobody",
             "evaluate STUDY --set GNSS --series series",
@@ -151,7 +158,7 @@ fn names_from_files_are_shown_not_obeyed() {
             "validate STUDY --against FILE --format junit",
         ] {
             let constellation = STUDY.split_once(" --set").unwrap().1;
-            let command = command.replace("STUDY", STUDY);
+            let command = command.replace("STUDY", STUDY).replace("TWICE", &twice);
             let command = command.replace("CONSTELLATION", &format!("--set{constellation}"));
             let ran = ran(place, &command, Some(&file));
             let of = format!("{export}: {command} ({})", ran.status);

@@ -30,7 +30,7 @@ fn what_is_very_large_is_not_started() {
         ),
         (
             "export --design delta:55:10000/100/1@925 --set time.step-s=1 --as oem,csv --out a",
-            "about 10002 files of 296.4 GB in all, in about 2 h; more than 10.0 GB needs --allow-large",
+            "about 10003 files of 296.4 GB in all, in about 2 h; more than 10.0 GB needs --allow-large",
         ),
         (
             "evaluate --design delta:55:4/2/1@925 --set time.step-s=86.4 --set region.step-deg=0.5 \

@@ -86,7 +86,7 @@ fn a_hybrid_and_its_files_are_compared_as_a_whole() {
         "--constellation",
         "theirs=out/oem",
         "--against",
-        "./out/stk/ephemeris",
+        "./out/stk",
     ];
     let found = json(place, &files);
     assert!(found.get("design").is_none());

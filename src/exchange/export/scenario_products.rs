@@ -7,7 +7,7 @@ use crate::constellation::gnss::{GnssOrbit, GnssSatellite, System};
 use crate::constellation::shell_letters;
 use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{Ephemeris, EphemerisSatellite};
-use crate::exchange::manifest::{FileEntry, Loss};
+use crate::exchange::manifest::{FileEntry, Loss, STK_SCENARIO_DIRECTORY};
 use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::maps::palette::Palette;
 use crate::formats::maps::scene::Scene;
@@ -19,9 +19,6 @@ use crate::frames::{Eme2000, Frame, from_teme};
 use crate::keyword::Keyword;
 use crate::orbit::{MeanElements, Model};
 use std::io::Write;
-
-/// Directory of the files that build the scenario in STK, including its GNSS.
-pub(super) const STK_SCENARIO_DIRECTORY: &str = "stk-scenario/";
 
 /// A GNSS satellite in STK: its name there and its setting, and its ephemeris if it needs one.
 struct InStk {

@@ -2,7 +2,6 @@
 
 use super::Files;
 use super::products::ProductFiles;
-use super::scenario_products::STK_SCENARIO_DIRECTORY;
 use super::size::ProductSize;
 use super::source::ExportSource;
 use crate::exchange::manifest::FileEntry;
@@ -93,7 +92,7 @@ products! {
             theory: ReadBackTheory::Sgp4,
             digits_km: gates::omm_km,
         }),
-        size: ProductSize { each: true, satellite: 1_590, state: 0, day: 0 },
+        size: ProductSize { each: true, satellite: 980, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.omm(files)),
     }
     /// CCSDS Orbit Ephemeris Messages, one file for each satellite or one for all.
@@ -119,7 +118,7 @@ products! {
             theory: ReadBackTheory::Study,
             digits_km: gates::opm_km,
         }),
-        size: ProductSize { each: true, satellite: 1_920, state: 0, day: 0 },
+        size: ProductSize { each: true, satellite: 1_390, state: 0, day: 0 },
         write: ProductWriter::Design(|source, files| source.opm(files)),
     }
     /// SP3 in GPS time, files of up to 99 satellites (85 in SP3-c), and of GNSS by choice.
@@ -233,8 +232,7 @@ impl Product {
     #[must_use]
     pub fn read_back_of(file: &FileEntry) -> Option<ReadBack> {
         let product = Self::from_keyword(&file.format).ok()?;
-        let beside = !file.is_of_design() || file.path.starts_with(STK_SCENARIO_DIRECTORY);
-        product.row().read_back.ok().filter(|_| !beside)
+        product.row().read_back.ok().filter(|_| file.is_of_design())
     }
 
     /// Writes the files of the product.
