@@ -259,18 +259,18 @@ pub fn csv(bytes: &[u8]) {
 
 fn same_elements(rows: &[ElementsRow]) {
     for row in rows {
-        let satellite = navwalker::constellation::Satellite {
-            slot: navwalker::constellation::Slot::FIRST,
-            elements: row.elements,
-        };
         let object = Object {
             name: row.name.clone(),
             catalog_number: CatalogNumber::new(90_001).expect("a number in range"),
             id: "2025-900A".to_owned(),
         };
         let mut out = Vec::new();
-        let one = std::iter::once((&satellite, &object));
-        csv::write_elements(&mut out, one, row.epoch).expect("what is read can be written");
+        let one = [csv::ElementsOf {
+            slot: Some(navwalker::constellation::Slot::FIRST),
+            elements: row.elements,
+            object: &object,
+        }];
+        csv::write_elements(&mut out, &one, row.epoch).expect("what is read can be written");
         let again = csv::read_elements(out.as_slice()).expect("our own file is read");
         assert_eq!((&again[0].name, again[0].epoch), (&row.name, row.epoch));
         let numbers = |row: &ElementsRow| {

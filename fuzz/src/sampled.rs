@@ -98,6 +98,7 @@ pub fn sp3(bytes: &[u8]) {
         frame: Frame::EarthFixed,
         time_system: TimeSystem::Gps,
         frame_note: None,
+        from_files: false,
         theory: Theory::EphemerisSatellite(Model::J2),
         subject: Vec::new(),
     };
