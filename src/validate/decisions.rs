@@ -100,8 +100,26 @@ impl TrajectoryPair<'_> {
             }))
     }
 
+    /// Whether satellites have states between the samples too, as those of a table do not.
+    fn is_continuous(&self) -> Result<bool, EphemerisError> {
+        let between_s = 0.5 * self.first.grid().step_s();
+        for ephemeris in [self.first, self.second] {
+            for satellite in ephemeris.satellites() {
+                if ephemeris.state_or_gap(satellite, between_s)?.is_none() {
+                    return Ok(false);
+                }
+            }
+        }
+        Ok(true)
+    }
+
     /// Shifts of rise and set and of the duration of passes.
     fn passes(&self, name: &str, findings: &mut Findings) -> Result<(), EphemerisError> {
+        if !self.is_continuous()? {
+            let note = format!("{name}: passes are not timed, for lack of states between samples");
+            findings.notes.push(note);
+            return Ok(());
+        }
         let sites = thinned(&self.evaluator.setup().sites, PASS_SITES);
         let pairs: Vec<(&EphemerisSatellite, &EphemerisSatellite)> = self
             .first

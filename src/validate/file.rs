@@ -97,6 +97,13 @@ pub fn against_file(
         .iter()
         .map(|&(slot, track)| difference(ours, slot, track))
         .collect::<Result<Vec<_>, _>>()?;
+    if let Some(without) = satellites.iter().find(|one| one.samples == 0) {
+        return Err(FileError::NoCommonInstant {
+            source_name: source.to_owned(),
+            object: without.object.clone(),
+        }
+        .into());
+    }
     let worst = satellites.iter().map(|one| one.max_km).fold(0.0, f64::max);
     let agrees = matching.is_complete() && worst <= SAME_KM;
     let explanation = if agrees {
@@ -122,7 +129,8 @@ pub fn against_file(
     findings
         .distributions
         .extend(distances(ours, source, &pairs)?);
-    if matching.is_complete() && tracks.iter().all(|track| track.covers(reference)) {
+    let covers = tracks.iter().all(|track| track.covers(reference));
+    if matching.is_complete() && covers && !reference.has_gaps()? {
         findings.append(metrics(reference, source, &pairs)?);
     }
     findings.files.push(FileComparison {
@@ -146,7 +154,10 @@ fn differences(
     let satellite = &ours.satellites()[slot];
     let mut found = Vec::with_capacity(track.states.len());
     for (elapsed_s, theirs) in &track.states {
-        let state = ours.state(satellite, *elapsed_s)?;
+        // Satellites from files have states at the samples of the study only, and none in a gap.
+        let Some(state) = ours.state_or_gap(satellite, *elapsed_s)? else {
+            continue;
+        };
         if let Some(basis) = ric_basis(&state) {
             found.push((*elapsed_s, basis * (theirs.position_km - state.position_km)));
         }

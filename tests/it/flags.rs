@@ -549,7 +549,7 @@ const ROWS: &[Row] = &[
         "plot",
         "exclude",
         "SMALL --figure cdf --measure mean-visible --constellation six.csv",
-        "--exclude NW-P01-S01",
+        "--exclude NW-P01-*",
         Stdout,
     ),
     Row(

@@ -88,7 +88,9 @@ impl Matching {
         let mut misplaced = 0;
         for (slot, track) in self.pairs(tracks) {
             if let Some((elapsed_s, state)) = track.at(0.0) {
-                let own = ours.state(&ours.satellites()[slot], elapsed_s)?;
+                let Some(own) = ours.state_or_gap(&ours.satellites()[slot], elapsed_s)? else {
+                    continue;
+                };
                 let apart_km = (state.position_km - own.position_km).norm();
                 misplaced += usize::from(apart_km > reference.reach_km[slot]);
             }

@@ -59,6 +59,17 @@ pub enum FileError {
         /// Slots of the design.
         slots: usize,
     },
+    /// An object without a state at an instant at which the constellation has one.
+    #[error(
+        "{source_name}: {object} has no state at an instant at which the satellite that it is compared with has one; \
+         set time.epoch and time.step-s to instants of both"
+    )]
+    NoCommonInstant {
+        /// The files.
+        source_name: String,
+        /// The object.
+        object: String,
+    },
     /// No object at all.
     #[error("{0} has no objects")]
     Empty(String),

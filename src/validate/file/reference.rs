@@ -87,6 +87,21 @@ impl<'a> ReferenceConstellation<'a> {
         })
     }
 
+    /// Whether a satellite has no state at some sample.
+    pub(super) fn has_gaps(&self) -> Result<bool, EphemerisError> {
+        if !self.shells.is_empty() {
+            return Ok(false);
+        }
+        for satellite in self.ephemeris.satellites() {
+            for elapsed_s in self.grid().iter() {
+                if self.ephemeris.state_or_gap(satellite, elapsed_s)?.is_none() {
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
     pub(super) fn grid(&self) -> TimeGrid {
         self.ephemeris.grid()
     }
