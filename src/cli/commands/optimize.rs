@@ -202,7 +202,7 @@ pub(super) fn status(result: &OptimizeResult) -> Status {
     }
 }
 
-/// Says how far an interrupted search got, where its results are, and how to go on: if it is complete,
+/// Says how far an interrupted search got, where its results are, and how to resume: if it is complete,
 /// only when the command has `more` to do.
 pub(super) fn hint_interrupted(result: &OptimizeResult, placed: Placed, place: &Path, more: bool) {
     let [done, of] = result.search.generations;
