@@ -134,9 +134,9 @@ fn best(quantity: Quantity, column: impl Iterator<Item = Option<f64>>) -> Option
     (values.len() > 1 && first != text(values.last())).then_some(first)
 }
 
-/// The metrics without LEO satellites.
+/// The metrics without LEO satellites; none without GNSS.
 fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
-    let evaluator = page.evaluator?;
+    let evaluator = page.evaluator.filter(|one| !one.setup().gnss.is_empty())?;
     let nothing = Ephemeris::new(evaluator.setup().grid, Vec::new());
     evaluator.evaluate_ephemeris(&nothing).ok()
 }

@@ -107,7 +107,7 @@ impl<'a> Printer<'a> {
 
 /// JSON in lines, indented as a part of a larger object.
 fn indented(value: &impl Serialize, by: usize) -> Result<String> {
-    let text = serde_json::to_string_pretty(value)?;
+    let text = crate::printable::json(value)?;
     let lines = text.lines().map(|line| format!("{:by$}{line}", ""));
     Ok(lines.collect::<Vec<_>>().join("\n"))
 }

@@ -15,7 +15,7 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
         return Ok(());
     };
     if work.args.format == OutputFormat::Json {
-        return output::result(&serde_json::to_string_pretty(&alone)?);
+        return output::result(&crate::printable::json(&alone)?);
     }
     let (title, evaluated) = match &alone {
         Alone::Design(result) => {
