@@ -7,12 +7,8 @@ mod written;
 
 use divan::Bencher;
 use divan::counter::{BytesCount, ItemsCount};
-use navwalker::exchange::constellation::Constellation;
-use navwalker::exchange::export::{Choices, ExportSubject, Naming, Product, Request, export};
-use navwalker::exchange::manifest::ExportedStudy;
+use navwalker::exchange::export::{Choices, Product, Request, export};
 use navwalker::formats::ccsds::{oem, omm};
-use navwalker::orbit::Model;
-use navwalker::time::{Epoch, TimeGrid};
 use std::io;
 
 fn main() {
@@ -20,6 +16,8 @@ fn main() {
 }
 
 const SOUND: &str = "the design can be exported";
+/// The design, and its satellites.
+const DESIGN: &str = "delta:55:24/6/1@925";
 const SATELLITES: usize = 24;
 const SAMPLES: usize = 360;
 
@@ -103,26 +101,6 @@ fn names() -> impl Iterator<Item = &'static str> {
     CASES.iter().map(|(name, ..)| *name)
 }
 
-fn subject() -> ExportSubject {
-    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
-    ExportSubject {
-        constellation: Constellation::of_design(
-            format!("delta:55:{SATELLITES}/6/1@925")
-                .parse()
-                .expect(SOUND),
-        ),
-        naming: Naming::default(),
-        model: Model::J2,
-        grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
-        study: ExportedStudy {
-            name: "bench".to_owned(),
-            hash: String::new(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: epoch,
-    }
-}
-
 fn case(name: &str) -> (Product, Choices) {
     let (_, product, omm, oem) = CASES
         .iter()
@@ -138,7 +116,7 @@ fn case(name: &str) -> (Product, Choices) {
 
 fn files(name: &str) -> Vec<(String, Vec<u8>)> {
     let (product, choices) = case(name);
-    written::files(&subject(), product, choices)
+    written::files(&written::subject(DESIGN, SAMPLES), product, choices)
 }
 
 fn one_thread() -> rayon::ThreadPool {
@@ -151,7 +129,7 @@ fn one_thread() -> rayon::ThreadPool {
 fn write(bencher: Bencher, name: &str) {
     let bytes: usize = files(name).iter().map(|(_, bytes)| bytes.len()).sum();
     let (product, choices) = case(name);
-    let (subject, pool) = (subject(), one_thread());
+    let (subject, pool) = (written::subject(DESIGN, SAMPLES), one_thread());
     let sink = |_: &str| Ok(io::sink());
     bencher
         .counter(BytesCount::new(bytes))

@@ -9,13 +9,10 @@ use divan::Bencher;
 use divan::counter::BytesCount;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use navwalker::exchange::constellation::Constellation;
-use navwalker::exchange::export::{Choices, ExportSubject, Naming, Product};
+use navwalker::exchange::export::{Choices, Product};
 use navwalker::exchange::import::Fleet;
-use navwalker::exchange::manifest::ExportedStudy;
 use navwalker::formats::ccsds::{oem, omm};
 use navwalker::orbit::Model;
-use navwalker::time::{Epoch, TimeGrid};
 use std::io::Write;
 
 fn main() {
@@ -48,26 +45,10 @@ const CASES: [&str; 16] = [
     "states-csv",
 ];
 
-fn subject(design: &str) -> ExportSubject {
-    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
-    ExportSubject {
-        constellation: Constellation::of_design(design.parse().expect(SOUND)),
-        naming: Naming::default(),
-        model: Model::J2,
-        grid: TimeGrid::new(epoch, SAMPLES as f64 * 60.0, 60.0).expect(SOUND),
-        study: ExportedStudy {
-            name: "bench".to_owned(),
-            hash: String::new(),
-        },
-        originator: "NAVWALKER".to_owned(),
-        creation: epoch,
-    }
-}
-
 /// The files of a case: name and bytes.
 fn files(name: &str) -> Vec<(String, Vec<u8>)> {
     let exported = |design: &str, product: Product, choices: Choices| {
-        written::files(&subject(design), product, choices)
+        written::files(&written::subject(design, SAMPLES), product, choices)
     };
     let omm = |syntax: omm::OmmSyntax| {
         let choices = Choices {
@@ -160,7 +141,7 @@ fn sem() -> String {
 
 /// A document of positions, with six decimals of a metre.
 fn czml() -> String {
-    let subject = subject(STATES);
+    let subject = written::subject(STATES, SAMPLES);
     let ephemeris = subject.constellation.ephemeris(subject.grid, Model::J2);
     let ephemeris = ephemeris.expect(SOUND);
     let mut packets = vec!["{\"id\":\"document\",\"version\":\"1.0\"}".to_owned()];

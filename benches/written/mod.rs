@@ -1,10 +1,31 @@
-//! The files of an export, in memory.
+//! The subject of an export, and its files in memory.
 
-use navwalker::exchange::export::{Choices, ExportSubject, Product, Request, export};
+use navwalker::exchange::constellation::Constellation;
+use navwalker::exchange::export::{Choices, ExportSubject, Naming, Product, Request, export};
+use navwalker::exchange::manifest::ExportedStudy;
+use navwalker::orbit::Model;
+use navwalker::time::{Epoch, TimeGrid};
 use std::io;
 use std::sync::Mutex;
 
 const SOUND: &str = "the design can be exported";
+
+/// A design propagated by J2, with its samples a minute apart.
+pub(crate) fn subject(design: &str, samples: usize) -> ExportSubject {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().expect("a date"));
+    ExportSubject {
+        constellation: Constellation::of_design(design.parse().expect(SOUND)),
+        naming: Naming::default(),
+        model: Model::J2,
+        grid: TimeGrid::new(epoch, samples as f64 * 60.0, 60.0).expect(SOUND),
+        study: ExportedStudy {
+            name: "bench".to_owned(),
+            hash: String::new(),
+        },
+        originator: "NAVWALKER".to_owned(),
+        creation: epoch,
+    }
+}
 
 /// A file that is kept.
 struct Kept<'a>(&'a Mutex<Vec<(String, Vec<u8>)>>, String, Vec<u8>);

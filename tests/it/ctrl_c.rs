@@ -1,11 +1,11 @@
 //! Ctrl-C at any moment of a search: what is finished stays, and the exit status is 130.
 
 use crate::cli::{optimize, ran};
-use std::collections::BTreeMap;
+use crate::common::{self, contents, signal};
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::path::Path;
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
@@ -13,10 +13,7 @@ use tempfile::TempDir;
 const SOON: Duration = Duration::from_secs(300);
 
 fn started(directory: &Path, arguments: &[&str]) -> Child {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("navwalker"));
-    command.current_dir(directory).args(arguments);
-    command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    command.spawn().unwrap()
+    common::started(directory, arguments, Stdio::piped)
 }
 
 /// Waits until something is there while the child works.
@@ -29,8 +26,7 @@ fn wait_for(child: &mut Child, path: &Path) {
 }
 
 fn interrupt(child: &Child) {
-    let kill = ["-s", "INT", &child.id().to_string()].map(str::to_owned);
-    assert!(Command::new("kill").args(kill).status().unwrap().success());
+    signal(child, "INT");
 }
 
 /// The exit status and stderr of a child that was told to stop; its stdout is not read before.
@@ -50,23 +46,6 @@ fn ended(mut child: Child) -> (i32, String) {
     let mut stderr = String::new();
     child.stderr.unwrap().read_to_string(&mut stderr).unwrap();
     (status.code().unwrap(), stderr)
-}
-
-/// All files below a directory with their contents.
-fn contents(directory: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut found = BTreeMap::new();
-    let mut waiting = vec![directory.to_owned()];
-    while let Some(next) = waiting.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                waiting.push(path);
-            } else {
-                found.insert(path.clone(), fs::read(path).unwrap());
-            }
-        }
-    }
-    found
 }
 
 /// `optimize` without `--quiet`, to read the hints.
@@ -95,11 +74,11 @@ fn a_finished_run_outlives_an_interrupted_repetition() {
         let whole = optimize(&[&["--out", "run"], further.as_slice()].concat());
         assert_eq!(ran(place, &whole).status, 0);
         let before = contents(place);
-        let run = if further[0] == "--seeds" {
-            place.join("run/seed-1")
-        } else {
-            place.join("run")
+        let name = match further[0] {
+            "--seeds" => "run/seed-1",
+            _ => "run",
         };
+        let run = place.join(name);
         for resume in [&[][..], &["--resume"]] {
             let more = [&["--out", "run"], further.as_slice(), &LONG, resume].concat();
             let mut child = started(place, &talking(&more));
@@ -118,7 +97,7 @@ fn a_finished_run_outlives_an_interrupted_repetition() {
             let mut after = contents(place);
             let mut expected = before.clone();
             for files in [&mut after, &mut expected] {
-                files.retain(|path, _| !is_of_progress(path, &run));
+                files.retain(|path, _| !is_of_progress(path, Path::new(name)));
             }
             assert!(after == expected, "{further:?}");
         }
@@ -139,7 +118,7 @@ fn a_finished_run_outlives_an_interrupted_repetition() {
 fn is_of_progress(path: &Path, run: &Path) -> bool {
     let name = path.file_name().unwrap().to_string_lossy();
     (path.starts_with(run) && name.starts_with("checkpoint"))
-        || path.ends_with("run-sweep/scenario.toml")
+        || path == Path::new("run-sweep/scenario.toml")
 }
 
 /// With the same budget the repetition has nothing to add, and changes no byte before its end.
@@ -164,14 +143,7 @@ fn a_repetition_that_is_interrupted_changes_nothing() {
     let short = |out| optimize(&["--out", out, "--set", "optimizer.generations=3"]);
     assert_eq!(ran(place, &short("run")).status, 0);
     assert_eq!(ran(place, &short("other")).status, 0);
-    let names = |run: &str| -> Vec<(PathBuf, Vec<u8>)> {
-        let run = place.join(run);
-        let relative = |(path, bytes): (PathBuf, Vec<u8>)| {
-            (path.strip_prefix(&run).unwrap().to_owned(), bytes)
-        };
-        contents(&run).into_iter().map(relative).collect()
-    };
-    assert!(names("run") == names("other"));
+    assert!(contents(&place.join("run")) == contents(&place.join("other")));
 }
 
 /// Two generations of some time each, so that Ctrl-C meets the second, which is the last.

@@ -1,6 +1,7 @@
 //! The program under fire: killed at any moment, given places that it cannot have.
 
 use crate::cli::{optimize, ran};
+use crate::common;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -8,11 +9,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 fn started(directory: &Path, arguments: &[&str]) -> Child {
-    let program = assert_cmd::cargo::cargo_bin!("navwalker");
-    let mut command = Command::new(program);
-    command.current_dir(directory).args(arguments);
-    command.stdout(Stdio::null()).stderr(Stdio::null());
-    command.spawn().unwrap()
+    common::started(directory, arguments, Stdio::null)
 }
 
 /// Names in a directory, sorted.
@@ -32,7 +29,7 @@ const EXPORT: &str = "export --quiet --design delta:55:24/6/1@925 --as oem,stk,s
 
 /// Waits for a staged directory beside the place of an export, then kills.
 #[cfg(unix)]
-fn killed_while_staged(place: &Path, signal: &str) -> i32 {
+fn killed_while_staged(place: &Path, name: &str) -> i32 {
     let mut child = started(place, &line(EXPORT));
     while !names(place)
         .iter()
@@ -41,8 +38,7 @@ fn killed_while_staged(place: &Path, signal: &str) -> i32 {
         assert_eq!(child.try_wait().unwrap(), None, "the export was too fast");
         std::thread::sleep(Duration::from_millis(1));
     }
-    let kill = ["-s", signal, &child.id().to_string()].map(str::to_owned);
-    assert!(Command::new("kill").args(kill).status().unwrap().success());
+    common::signal(&child, name);
     child.wait().unwrap().code().unwrap_or(-1)
 }
 

@@ -1,9 +1,10 @@
 //! Run directories: they stand alone, and what is found there is checked.
 
 use crate::cli::{Ran, optimize, ran};
+use crate::common::contents;
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use tempfile::TempDir;
 
 const POINTS: &str = "name,latitude_deg,longitude_deg,country\nBrest,48,-4,FR\n,52,5,NL\n";
@@ -44,25 +45,6 @@ fn stopped(directory: &Path, line: &str, message: &str) {
     let ran = run(directory, line);
     assert_eq!(ran.status, 2, "{line}: {}{}", ran.stdout, ran.stderr);
     assert!(ran.stderr.contains(message), "{line}: {}", ran.stderr);
-}
-
-/// All files below a directory with their contents, by their paths from it.
-fn contents(directory: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut found = Vec::new();
-    let mut waiting = vec![directory.to_owned()];
-    while let Some(next) = waiting.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                waiting.push(path);
-            } else {
-                let name = path.strip_prefix(directory).unwrap().to_owned();
-                found.push((name, fs::read(path).unwrap()));
-            }
-        }
-    }
-    found.sort();
-    found
 }
 
 #[test]
