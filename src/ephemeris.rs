@@ -164,6 +164,17 @@ impl Ephemeris {
         &self.shells
     }
 
+    /// Places of the satellites that are in none of the shells, in their order.
+    #[must_use]
+    pub fn outside_shells(&self) -> Vec<usize> {
+        let mut is_inside = vec![false; self.satellites.len()];
+        for shell in &self.shells {
+            is_inside[shell.places()].fill(true);
+        }
+        let places = 0..is_inside.len();
+        places.filter(|place| !is_inside[*place]).collect()
+    }
+
     /// The satellites, without the grid.
     #[must_use]
     pub fn into_satellites(self) -> Vec<EphemerisSatellite> {
@@ -228,9 +239,45 @@ pub fn object_name(slot: Slot) -> String {
 }
 
 #[cfg(test)]
+pub(crate) mod testing {
+    use super::*;
+    use crate::time::Epoch;
+
+    /// Two satellites outside shells, at 700 km, before a shell of four at 1200 km and after one of two at 925 km.
+    pub(crate) fn files_between_shells() -> Ephemeris {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, 7_200.0, 300.0).unwrap();
+        let of = |text: &str| {
+            let design = text.parse().unwrap();
+            Ephemeris::of_design(&design, Model::J2, grid).unwrap()
+        };
+        let mut files = of("delta:55:2/1/0@700").into_satellites();
+        for (n, satellite) in files.iter_mut().enumerate() {
+            satellite.name = format!("FILE {n}");
+            satellite.slot = None;
+        }
+        let files = Ephemeris::new(grid, files);
+        let low = of("delta:55:2/1/0@925");
+        low.joined(files).joined(of("star:90:4/2/1@1200"))
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::time::Epoch;
+
+    #[test]
+    fn satellites_outside_shells_may_be_before_them() {
+        let mixed = testing::files_between_shells();
+        assert_eq!(mixed.outside_shells(), [2, 3]);
+        let names = mixed.outside_shells().into_iter();
+        let names: Vec<&str> = names
+            .map(|place| mixed.satellites()[place].name.as_str())
+            .collect();
+        assert_eq!(names, ["FILE 0", "FILE 1"]);
+        assert_eq!(mixed.shells()[1].places(), 4..8);
+    }
 
     #[test]
     fn a_design_propagates_on_the_grid() {

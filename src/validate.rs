@@ -111,7 +111,7 @@ impl Findings {
 
     /// The same findings under names that begin with that of a shell or a constellation.
     #[must_use]
-    pub fn of_shell(mut self, name: &str) -> Self {
+    pub fn prefixed(mut self, name: &str) -> Self {
         let named = |of: &mut String| *of = format!("{name}/{of}");
         self.checks.iter_mut().for_each(|one| named(&mut one.name));
         self.budget.iter_mut().for_each(|one| named(&mut one.case));
@@ -140,7 +140,7 @@ impl Findings {
             findings.budget.extend(BudgetLine::pooled(&lines));
         }
         for (n, found) in shells.into_iter().enumerate() {
-            findings.append(found.of_shell(&shell_letters(n)));
+            findings.append(found.prefixed(&shell_letters(n)));
         }
         findings
     }
@@ -206,9 +206,9 @@ impl Target {
     }
 }
 
-/// A design in a study, with the parts that propagate it and decide what is visible.
+/// A shell in a study, with the parts that propagate it and decide what is visible.
 pub struct Subject<'a> {
-    /// The design.
+    /// The shell: a design of one, or one of a design of several.
     pub shell: Shell,
     /// The study.
     pub evaluator: &'a Evaluator,
@@ -219,7 +219,7 @@ pub struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// A design with the library's own parts.
+    /// The only shell of a design, with the library's own parts.
     #[must_use]
     pub fn new(shell: Shell, evaluator: &'a Evaluator) -> Self {
         Self {
@@ -382,3 +382,49 @@ pub enum ValidateError {
 mod planted;
 #[cfg(test)]
 mod testing;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use residuals::{Ric, Worst};
+
+    /// The budget of several shells counts each by its satellites, before the lines of the shells.
+    #[test]
+    fn the_budget_of_a_design_counts_every_shell() {
+        let design: Design = "delta:53:20/5/1@1000+star:87:8/2/0@1100".parse().unwrap();
+        let found = |km: f64| {
+            let axes = Ric {
+                radial: km,
+                in_track: km,
+                cross_track: km,
+            };
+            let line = BudgetLine {
+                case: "first/second".to_owned(),
+                cause: String::new(),
+                rms_km: axes,
+                max_km: axes,
+                mean_km: axes,
+                growth_km_per_day: axes,
+                worst: Worst {
+                    satellite: String::new(),
+                    elapsed_s: 0.0,
+                    distance_km: km,
+                },
+                distance: None,
+            };
+            Findings {
+                budget: vec![line],
+                ..Findings::default()
+            }
+        };
+        let findings = Findings::of_design(&design, vec![found(1.0), found(5.0)]);
+        let cases = findings.budget.iter().map(|line| line.case.as_str());
+        let cases: Vec<&str> = cases.collect();
+        assert_eq!(cases, ["first/second", "A/first/second", "B/first/second"]);
+        let all = &findings.budget[0];
+        // (20 · 1² + 8 · 5²) / 28, and (20 · 1 + 8 · 5) / 28; rounding.
+        assert!((all.rms_km.radial - (220.0_f64 / 28.0).sqrt()).abs() < 1e-12);
+        assert!((all.mean_km.in_track - 60.0 / 28.0).abs() < 1e-12);
+        assert_eq!((all.max_km.radial, all.worst.distance_km), (5.0, 5.0));
+    }
+}

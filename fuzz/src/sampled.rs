@@ -99,7 +99,7 @@ pub fn sp3(bytes: &[u8]) {
         time_system: TimeSystem::Gps,
         frame_note: None,
         from_files: false,
-        theory: Theory::EphemerisSatellite(Model::J2),
+        theory: Theory::Propagated(Model::J2),
         subject: Vec::new(),
     };
     let sampled = Sampled::new(&ephemeris, EarthFixed);

@@ -7,7 +7,7 @@ use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::time::TimeGrid;
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use std::path::{Path, PathBuf};
 
 /// An argument that may begin with a name: `NAME=TEXT`.
@@ -99,13 +99,18 @@ pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Con
     Ok(found)
 }
 
+/// The error of a selection without files.
+pub(crate) fn no_file_to_select_from() -> anyhow::Error {
+    anyhow!("--only and --exclude select satellites of files, and no file is given")
+}
+
 /// Refuses what is said of files where none is given.
 pub(crate) fn require_files(args: &ConstellationArgs) -> Result<()> {
     if !args.constellation.is_empty() {
         return Ok(());
     }
     if !args.satellites.filter().is_empty() {
-        bail!("--only and --exclude select satellites of files, and no file is given");
+        return Err(no_file_to_select_from());
     }
     if args.input_format.is_some() {
         bail!("--input-format names the format of files, and no file is given");

@@ -3,6 +3,7 @@
 use crate::cli::output;
 use crate::evaluate::Setup;
 use crate::exchange::export::ExportSize;
+use crate::units::counted;
 use anyhow::{Result, bail};
 use std::fs;
 use std::num::NonZeroUsize;
@@ -92,7 +93,8 @@ fn told(size: ExportSize) -> String {
     let ExportSize { files, bytes } = size;
     let time = shown_time(bytes / WRITTEN_PER_S);
     format!(
-        "about {files} files of {} in all, in about {time}",
+        "about {} of {} in all, in about {time}",
+        counted(usize::try_from(files).unwrap_or(usize::MAX), "file"),
         shown_bytes(bytes)
     )
 }
@@ -129,7 +131,7 @@ mod tests {
         );
         assert_eq!(
             told(1, 12_000_000_000),
-            "about 1 files of 12.0 GB in all, in about 6 min"
+            "about 1 file of 12.0 GB in all, in about 6 min"
         );
         assert_eq!(
             told(2, 2_000_000_000_000),

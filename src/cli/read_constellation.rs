@@ -1,7 +1,7 @@
 //! Constellations from files.
 
 use crate::cli::output::{self, shown_path};
-use crate::exchange::import::{Fleet, Imported};
+use crate::exchange::import::{Fleet, Imported, MergedFiles};
 use crate::exchange::lint::Format;
 use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
@@ -15,23 +15,13 @@ const MOST_NAMES: usize = 5;
 
 /// The satellites of files and directories, in the order of the names, and the formats found.
 pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<Format>, Fleet)> {
-    let mut formats = Vec::new();
-    let mut whole: Option<Fleet> = None;
+    let mut merged = MergedFiles::default();
     for path in paths {
         for (_, imported) in read_each(path, format)? {
-            if !formats.contains(&imported.format) {
-                formats.push(imported.format);
-            }
-            match &mut whole {
-                None => whole = Some(imported.fleet),
-                Some(whole) => whole.append(imported.fleet),
-            }
+            merged.add(imported);
         }
     }
-    match whole {
-        Some(whole) => Ok((formats, whole)),
-        None => bail!("no file to read"),
-    }
+    merged.finish().context("no file to read")
 }
 
 /// Imports each file of a path: the file itself, or the constellation files in a directory. A warning lists the

@@ -141,15 +141,44 @@ pub fn unique_labels(identities: &[ObjectIdentity]) -> Vec<String> {
         }
         _ => label.clone(),
     };
-    let mut labels: Vec<String> = labels.iter().zip(identities).map(unique).collect();
     // An object may be named as another is numbered.
-    let mut known = HashSet::new();
-    for (place, label) in labels.iter_mut().enumerate() {
-        if !known.insert(label.clone()) {
-            *label = format!("{label} #{}", place + 1);
+    let mut texts = UniqueTexts::default();
+    let labels = labels.iter().zip(identities).map(unique);
+    labels.map(|label| texts.take(label, NUMBERED)).collect()
+}
+
+/// What stands between a name and the number that makes it unique.
+pub const NUMBERED: &str = " #";
+
+/// Texts that are given once each.
+#[derive(Debug, Default)]
+pub struct UniqueTexts {
+    taken: HashSet<String>,
+    /// The next number of a text that was taken.
+    next: HashMap<String, usize>,
+}
+
+impl UniqueTexts {
+    /// The text if it is free, or else with the first free number from 2 behind it and `between` them.
+    pub fn take(&mut self, text: String, between: &str) -> String {
+        self.take_by(text, between, str::to_owned)
+    }
+
+    /// The same, where two texts are alike if they have the same key.
+    pub fn take_by(&mut self, text: String, between: &str, key: fn(&str) -> String) -> String {
+        let own = key(&text);
+        if self.taken.insert(own.clone()) {
+            return text;
+        }
+        let next = self.next.entry(own).or_insert(2);
+        loop {
+            let numbered = format!("{text}{between}{next}");
+            *next += 1;
+            if self.taken.insert(key(&numbered)) {
+                return numbered;
+            }
         }
     }
-    labels
 }
 
 /// The objects found so far, indexed by identity.
@@ -265,6 +294,8 @@ mod tests {
             object(0, "", ""),
             object(10, "", "SAT"),
             object(0, "", "9"),
+            object(0, "", "9 #2"),
+            object(0, "", "9"),
         ]);
         let expected = [
             "2025-900A",
@@ -274,7 +305,9 @@ mod tests {
             "9",
             "satellite 6",
             "SAT",
-            "9 #8",
+            "9 #2",
+            "9 #2 #2",
+            "9 #3",
         ];
         assert_eq!(labels, expected);
     }

@@ -7,6 +7,7 @@ use crate::ephemeris::sampled::Sampled;
 use crate::ephemeris::{EphemerisError, EphemerisSatellite};
 use crate::frames::{Position, ReferenceFrame, State};
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 /// Error that the chosen degree keeps to where it can, km: the centimetre to which files are
 /// compared.
@@ -28,8 +29,31 @@ pub struct Hermite {
 }
 
 impl Hermite {
+    /// The interpolation for each satellite. Those of a shell are propagated in the same way, so the first
+    /// represents all; others are measured one by one.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn of_each<F: ReferenceFrame>(
+        sampled: &Sampled<'_, F>,
+    ) -> Result<Vec<Option<Self>>, EphemerisError> {
+        let ephemeris = sampled.ephemeris();
+        let measured = |place: usize| Self::measured(sampled, &ephemeris.satellites()[place]);
+        let mut hermites = vec![None; ephemeris.satellites().len()];
+        for span in ephemeris.shells() {
+            hermites[span.places()].fill(measured(span.first)?);
+        }
+        let others = ephemeris.outside_shells();
+        let found = others.par_iter().map(|place| measured(*place));
+        let found: Vec<Option<Self>> = found.collect::<Result<_, _>>()?;
+        for (place, hermite) in others.into_iter().zip(found) {
+            hermites[place] = hermite;
+        }
+        Ok(hermites)
+    }
+
     /// The lowest degree from 7 whose error is below a centimetre, or the best up to 15,
-    /// measured on the states of one satellite. None if there is only one sample.
+    /// measured on the states of one satellite. None if there is only one sample, or no state halfway between two.
     ///
     /// # Errors
     /// If the satellite cannot be propagated.
@@ -43,9 +67,12 @@ impl Hermite {
         }
         let mut best: Option<Self> = None;
         for nodes in NODES.map(|nodes| nodes.min(samples)) {
+            let Some(max_error_km) = max_error_km(sampled, satellite, nodes)? else {
+                return Ok(None);
+            };
             let found = Self {
                 degree: 2 * nodes - 1,
-                max_error_km: max_error_km(sampled, satellite, nodes)?,
+                max_error_km,
             };
             if best.is_none_or(|best| found.max_error_km < best.max_error_km) {
                 best = Some(found);
@@ -58,17 +85,18 @@ impl Hermite {
     }
 }
 
-/// Largest distance between the interpolated and the true position, halfway between samples.
+/// Largest distance between the interpolated and the true position, halfway between samples. A satellite may have no
+/// state there, between two arcs of its file; `None` if that is so everywhere.
 fn max_error_km<F: ReferenceFrame>(
     sampled: &Sampled<'_, F>,
     satellite: &EphemerisSatellite,
     nodes: usize,
-) -> Result<f64, EphemerisError> {
+) -> Result<Option<f64>, EphemerisError> {
     let grid = sampled.grid();
     let state = |elapsed_s: f64| sampled.state(satellite, elapsed_s);
     let last = grid.len() - 1;
     let count = last.min(INTERVALS);
-    let mut max_km = 0.0_f64;
+    let mut max_km: Option<f64> = None;
     for k in 0..count {
         // The first and the last interval are among them, where the nodes lie to one side.
         let interval = if count == 1 {
@@ -76,15 +104,18 @@ fn max_error_km<F: ReferenceFrame>(
         } else {
             k * (last - 1) / (count - 1)
         };
+        let middle_s = grid.elapsed_s(interval) + 0.5 * grid.step_s();
+        let Some(exact) = sampled.state_or_gap(satellite, middle_s)? else {
+            continue;
+        };
         let start = (interval + 1)
             .saturating_sub(nodes / 2)
             .min(grid.len() - nodes);
         let table = (start..start + nodes)
             .map(|sample| Ok((grid.elapsed_s(sample), state(grid.elapsed_s(sample))?)))
             .collect::<Result<Vec<_>, EphemerisError>>()?;
-        let middle_s = grid.elapsed_s(interval) + 0.5 * grid.step_s();
-        let apart = hermite_position(&table, middle_s) - state(middle_s)?.position_km;
-        max_km = max_km.max(apart.norm());
+        let apart = hermite_position(&table, middle_s) - exact.position_km;
+        max_km = Some(max_km.unwrap_or(0.0).max(apart.norm()));
     }
     Ok(max_km)
 }
@@ -131,6 +162,7 @@ mod tests {
     use super::*;
     use crate::constellation::Design;
     use crate::ephemeris::Ephemeris;
+    use crate::ephemeris::testing::files_between_shells;
     use crate::frames::{Frame, Teme};
     use crate::orbit::Model;
     use crate::time::{Epoch, TimeGrid};
@@ -184,6 +216,19 @@ mod tests {
             coarse.degree > 7 && coarse.max_error_km < TARGET_KM,
             "{coarse:?}"
         );
+    }
+
+    /// Each satellite has the error of its own orbit, whatever is before it.
+    #[test]
+    fn satellites_are_represented_by_their_own_shell() {
+        let mixed = files_between_shells();
+        let sampled = Sampled::new(&mixed, Frame::Teme);
+        let found = Hermite::of_each(&sampled).unwrap();
+        let own = |place: usize| Hermite::measured(&sampled, &mixed.satellites()[place]).unwrap();
+        for (place, first) in [0, 0, 2, 3, 4, 4, 4, 4].into_iter().enumerate() {
+            assert_eq!(found[place], own(first), "{place}");
+        }
+        assert_ne!(own(0), own(4));
     }
 
     #[test]

@@ -112,11 +112,8 @@ pub fn meetings(ephemeris: &Ephemeris) -> Result<Option<Meetings>, EphemerisErro
 /// The places of the satellites that may meet another one.
 fn candidates(ephemeris: &Ephemeris) -> Vec<usize> {
     let shells = ephemeris.shells();
-    let mut is_of_shell = vec![false; ephemeris.satellites().len()];
-    for shell in shells {
-        is_of_shell[shell.places()].fill(true);
-    }
-    let has_others = is_of_shell.contains(&false);
+    let others = ephemeris.outside_shells();
+    let has_others = !others.is_empty();
     let may_meet = |n: usize| {
         let shell = &shells[n];
         let other = |m: usize| m != n && share_radii(shell, &shells[m]);
@@ -126,7 +123,7 @@ fn candidates(ephemeris: &Ephemeris) -> Vec<usize> {
         .filter(|n| may_meet(*n))
         .flat_map(|n| shells[n].places())
         .collect();
-    places.extend((0..is_of_shell.len()).filter(|place| !is_of_shell[*place]));
+    places.extend(others);
     places
 }
 

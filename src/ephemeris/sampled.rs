@@ -39,6 +39,12 @@ impl<'a, F: ReferenceFrame> Sampled<'a, F> {
         self.ephemeris.grid()
     }
 
+    /// The ephemeris.
+    #[must_use]
+    pub fn ephemeris(&self) -> &'a Ephemeris {
+        self.ephemeris
+    }
+
     /// The satellites.
     #[must_use]
     pub fn satellites(&self) -> &'a [EphemerisSatellite] {

@@ -3,12 +3,12 @@
 //! It is what every command works on. All satellites of a constellation share one clock state.
 
 use crate::constellation::Design;
+use crate::constellation::identity::{NUMBERED, UniqueTexts};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::lint::Format;
 use crate::orbit::Model;
 use crate::time::TimeGrid;
-use std::collections::HashSet;
 use thiserror::Error;
 
 /// A named constellation, with at least one satellite.
@@ -111,10 +111,31 @@ impl Constellation {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn ephemeris(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, ConstellationError> {
-        let of_files = match &self.files {
-            Some(files) => Some(files.fleet.propagate(grid, model)?),
-            None => None,
-        };
+        self.with_files(grid, model, |fleet| fleet.propagate(grid, model))
+    }
+
+    /// The same, in which satellites with sampled states also have states between the samples of the grid.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn continuous_ephemeris(
+        &self,
+        grid: TimeGrid,
+        model: Model,
+    ) -> Result<Ephemeris, ConstellationError> {
+        self.with_files(grid, model, |fleet| {
+            fleet.propagate_continuously(grid, model)
+        })
+    }
+
+    fn with_files(
+        &self,
+        grid: TimeGrid,
+        model: Model,
+        propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
+    ) -> Result<Ephemeris, ConstellationError> {
+        let fleet = self.files.as_ref().map(|files| &files.fleet);
+        let of_files = fleet.map(propagate).transpose()?;
         let Some(design) = &self.design else {
             return Ok(of_files.unwrap_or_else(|| Ephemeris::new(grid, Vec::new())));
         };
@@ -122,16 +143,13 @@ impl Constellation {
         let Some(of_files) = of_files else {
             return Ok(shells);
         };
-        let taken = shells.satellites().iter().map(|one| one.name.clone());
-        let mut taken: HashSet<String> = taken.collect();
+        let mut names = UniqueTexts::default();
+        for satellite in shells.satellites() {
+            names.take(satellite.name.clone(), NUMBERED);
+        }
         let mut added = of_files.into_satellites();
         for satellite in &mut added {
-            let name = satellite.name.clone();
-            let mut number = 1;
-            while !taken.insert(satellite.name.clone()) {
-                number += 1;
-                satellite.name = format!("{name} #{number}");
-            }
+            satellite.name = names.take(std::mem::take(&mut satellite.name), NUMBERED);
         }
         Ok(shells.joined(Ephemeris::new(grid, added)))
     }

@@ -1,7 +1,8 @@
 //! The SGP4 element sets of a constellation's satellites: made from mean elements, or as their file has them.
 
+use super::identities::{own_designator, own_name, own_number};
 use super::members::{ConstellationMember, Origin};
-use crate::constellation::identity::ObjectIdentity;
+use crate::constellation::identity::{NUMBERED, ObjectIdentity};
 use crate::formats::element_set;
 use crate::formats::metadata::Object;
 use crate::orbit::Model;
@@ -45,7 +46,7 @@ impl ElementSetRule {
                 Some(element_set(&elements, object, at, self.slot))
             }
             Origin::Set(set) => Some(self.at_writable_epoch(named(set, object))),
-            Origin::Sampled(_) | Origin::Almanac => None,
+            Origin::Sampled | Origin::Almanac => None,
         }
     }
 
@@ -67,22 +68,20 @@ impl ElementSetRule {
     }
 }
 
-/// A set of a file; only what does not identify its satellite there comes from `object`.
+/// A set of a file under the identity that it has there, as far as every format can hold it; the rest is from `object`.
 fn named(set: &sgp4::Elements, object: &Object) -> sgp4::Elements {
     let identity = ObjectIdentity::of_set(set);
     let or = |own: Option<&str>, other: &str| Some(own.unwrap_or(other).to_owned());
     // A name that another satellite of the constellation has too has a number behind it.
-    let own = identity.name().filter(|own| {
+    let own = own_name(&identity).filter(|own| {
         let behind = object.name.strip_prefix(own);
-        behind.is_none_or(|behind| !behind.starts_with(" #"))
+        behind.is_none_or(|behind| !behind.starts_with(NUMBERED))
     });
+    let number = own_number(&identity).unwrap_or(object.catalog_number);
     sgp4::Elements {
         object_name: or(own, &object.name),
-        international_designator: or(identity.designator(), &object.id),
-        norad_id: match set.norad_id {
-            0 => u64::from(object.catalog_number.number()),
-            number => number,
-        },
+        international_designator: or(own_designator(&identity), &object.id),
+        norad_id: u64::from(number.number()),
         ..set.clone()
     }
 }

@@ -28,12 +28,12 @@ use crate::ground::Grid;
 use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
-use source::ExportSource;
 use std::io::{self, BufWriter, Write};
 use thiserror::Error;
 
 pub use crate::exchange::identities::Naming;
 pub use size::{ExportSize, export_size};
+pub use source::ExportSource;
 pub use table::{Product, ProductRow};
 
 /// The destination of an export: gives a writer for a path relative to the manifest, with `/`.
@@ -170,19 +170,13 @@ pub struct Request<'a> {
     pub choices: Choices,
 }
 
-/// Writes the products and then the manifest, which it also returns.
+/// Sets the constellation up and writes its products: [`ExportSource::new`] and [`ExportSource::export`].
 ///
 /// # Errors
-/// If a satellite cannot be propagated or named, an element, the constellation or the scenario cannot be expressed
-/// in a format, a file cannot be written, or a product needs the scenario. What a product cannot express is an error
-/// before anything is written.
+/// As of these.
 pub fn export(request: &Request<'_>, sink: &impl Sink) -> Result<Manifest, ExportError> {
     let source = ExportSource::new(request.subject, request.choices)?;
-    for product in request.products {
-        source.require_expressible(*product)?;
-    }
-    let shown = request.shown.map(|shown| source.scene(shown));
-    Ok(write(&source, request.products, shown.as_ref(), sink)?)
+    source.export(request.products, request.shown, sink)
 }
 
 fn write(

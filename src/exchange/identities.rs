@@ -4,7 +4,8 @@
 //! synthetic. Names, numbers and designators are unique, so that every reader tells the satellites apart.
 
 use super::members::ConstellationMember;
-use crate::constellation::identity::{ObjectIdentity, unique_labels};
+use crate::constellation::identity::{NUMBERED, ObjectIdentity, UniqueTexts, unique_labels};
+use crate::exchange::manifest::{ChangedIdentity, Identifier};
 use crate::formats::gmat::script_name;
 use crate::formats::metadata::{CatalogNumber, IdentityError, Object};
 use crate::time::Epoch;
@@ -45,8 +46,8 @@ impl Naming {
         let mut designators = HashSet::new();
         let names = self.names(members);
         let object = |(member, name): (&ConstellationMember<'_>, String)| {
-            let number = number_of(&member.identity);
-            let designator = member.identity.designator();
+            let number = own_number(&member.identity);
+            let designator = own_designator(&member.identity);
             let designator = designator.filter(|text| designators.insert((*text).to_owned()));
             match (number, designator) {
                 (Some(catalog_number), Some(id)) => Ok(Object {
@@ -73,13 +74,13 @@ impl Naming {
         let identities: Vec<ObjectIdentity> =
             of_files.map(|member| member.identity.clone()).collect();
         let mut labels = unique_labels(&identities).into_iter();
-        let mut taken = HashSet::new();
+        let mut names = UniqueTexts::default();
         let name = |member: &ConstellationMember<'_>| {
             let name = match member.slot {
                 Some(slot) => format!("{}-{slot}", self.prefix),
-                None => printable(&labels.next().unwrap_or_default()),
+                None => plain_ascii(&labels.next().unwrap_or_default()),
             };
-            unique(&mut taken, name, " #", str::to_owned)
+            names.take(name, NUMBERED)
         };
         members.iter().map(name).collect()
     }
@@ -97,7 +98,7 @@ struct FreshNumbers {
 impl FreshNumbers {
     fn new(first: u32, members: &[ConstellationMember<'_>]) -> Self {
         let identities = || members.iter().map(|member| &member.identity);
-        let numbers = identities().filter_map(number_of);
+        let numbers = identities().filter_map(own_number);
         let designators = identities().filter_map(ObjectIdentity::designator);
         Self {
             first,
@@ -124,42 +125,75 @@ impl FreshNumbers {
     }
 }
 
-/// The catalogue number of an object, if a TLE can hold it.
-fn number_of(identity: &ObjectIdentity) -> Option<CatalogNumber> {
+/// The name of an object in its file, if every format can hold it.
+pub(super) fn own_name(identity: &ObjectIdentity) -> Option<&str> {
+    identity.name().filter(|name| is_plain_ascii(name))
+}
+
+/// The catalogue number of an object in its file, if every format can hold it.
+pub(super) fn own_number(identity: &ObjectIdentity) -> Option<CatalogNumber> {
     let number = u32::try_from(identity.catalogue_number()?).ok()?;
     CatalogNumber::new(number).ok()
 }
 
-fn printable(label: &str) -> String {
+/// The designator of an object in its file, in characters that every format can hold.
+pub(super) fn own_designator(identity: &ObjectIdentity) -> Option<&str> {
+    identity.designator().filter(|text| is_plain_ascii(text))
+}
+
+/// What of the identities in files is not written as it is there.
+pub(super) fn changed(
+    members: &[ConstellationMember<'_>],
+    objects: &[Object],
+) -> Vec<ChangedIdentity> {
+    let mut changed = Vec::new();
+    for (member, object) in members.iter().zip(objects) {
+        let identity = &member.identity;
+        let mut add = |identifier, source: Option<String>, written: String| {
+            changed.extend(source.map(|source| ChangedIdentity {
+                identifier,
+                source,
+                written,
+            }));
+        };
+        if own_name(identity).is_none() {
+            let name = identity.name().map(str::to_owned);
+            add(Identifier::Name, name, object.name.clone());
+        }
+        if own_number(identity).is_none() {
+            let number = identity.catalogue_number().map(|number| number.to_string());
+            let written = object.catalog_number.number().to_string();
+            add(Identifier::CatalogueNumber, number, written);
+        }
+        if own_designator(identity).is_none() {
+            let designator = identity.designator().map(str::to_owned);
+            add(Identifier::Designator, designator, object.id.clone());
+        }
+    }
+    changed
+}
+
+fn is_plain_ascii(text: &str) -> bool {
+    text.chars().all(|c| (' '..='~').contains(&c))
+}
+
+/// A text in printable ASCII, with `_` for other characters.
+pub(super) fn plain_ascii(text: &str) -> String {
     let plain = |c: char| if (' '..='~').contains(&c) { c } else { '_' };
-    let text: String = label.chars().map(plain).collect();
+    let text: String = text.chars().map(plain).collect();
     text.trim().to_owned()
 }
 
 /// Names of files, and of objects in STK: letters, digits, `-` and `_`, different on every file system and in GMAT.
 pub(super) fn stems(objects: &[Object]) -> Vec<String> {
-    let mut taken = HashSet::new();
+    let mut stems = UniqueTexts::default();
     let stem = |object: &Object| {
         let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
         let plain = |c: char| if allowed(c) { c } else { '_' };
         let stem: String = object.name.chars().take(STEM).map(plain).collect();
-        let key = |stem: &str| script_name(stem).to_ascii_lowercase();
-        unique(&mut taken, stem, "_", key)
+        stems.take_by(stem, "_", |stem| script_name(stem).to_ascii_lowercase())
     };
     objects.iter().map(stem).collect()
-}
-
-/// A text whose key is not yet taken: the text itself, or numbered from 2.
-fn unique(
-    taken: &mut HashSet<String>,
-    text: String,
-    before_number: &str,
-    key: impl Fn(&str) -> String,
-) -> String {
-    let numbered = (2..).map(|number| format!("{text}{before_number}{number}"));
-    let mut candidates = std::iter::once(text.clone()).chain(numbered);
-    let free = candidates.find(|candidate| taken.insert(key(candidate)));
-    free.unwrap_or(text)
 }
 
 #[cfg(test)]

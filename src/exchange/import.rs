@@ -8,13 +8,14 @@
 //! ([`crate::orbit::earth_orbit`]), and that everything left out is counted and named
 //! ([`crate::formats::text::finding::LeftOut`]). `docs/formats.md` describes them for users.
 
+mod merged;
 mod objects;
 mod propagation;
 mod sampling;
 
+pub use merged::MergedFiles;
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
-pub(crate) use propagation::interpolated;
 pub use sampling::SamplingNote;
 
 use crate::ephemeris::arc::{Arc, Interpolation};

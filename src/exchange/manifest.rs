@@ -37,6 +37,9 @@ pub struct Manifest {
     /// Where satellites come from that are not of the design, and by which theory their states are made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub converted: Option<String>,
+    /// What of the identities in files no format here can hold, and what is written instead.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub changed_identities: Vec<ChangedIdentity>,
     /// First instant, UTC.
     pub epoch: String,
     /// Spacing of the samples, s.
@@ -47,6 +50,29 @@ pub struct Manifest {
     pub conventions: Conventions,
     /// The files, in the order in which they were written.
     pub files: Vec<FileEntry>,
+}
+
+/// An identifier of a satellite that is not written as its file has it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ChangedIdentity {
+    /// Which identifier.
+    pub identifier: Identifier,
+    /// As its file has it.
+    pub source: String,
+    /// As it is written.
+    pub written: String,
+}
+
+/// What identifies a satellite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Identifier {
+    /// Its name.
+    Name,
+    /// Its catalogue number.
+    CatalogueNumber,
+    /// Its international designator.
+    Designator,
 }
 
 /// The study that an export belongs to.

@@ -6,7 +6,6 @@ use crate::earth::MU_KM3_S2;
 use crate::exchange::constellation::Constellation;
 use crate::exchange::import::Fleet;
 use crate::formats::metadata::Theory;
-use crate::formats::trajectory::Trajectory;
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::{MeanElements, Model};
 use crate::time::Epoch;
@@ -26,7 +25,7 @@ pub(super) enum Origin<'a> {
     /// An element set of a file.
     Set(&'a sgp4::Elements),
     /// States of a file.
-    Sampled(&'a Trajectory),
+    Sampled,
     /// An almanac of a file.
     Almanac,
 }
@@ -46,9 +45,9 @@ impl Origin<'_> {
     /// The theory of its states in a study whose model is `model`.
     pub(super) fn theory(&self, model: Model) -> Theory {
         match self {
-            Self::Mean { .. } => Theory::EphemerisSatellite(model),
+            Self::Mean { .. } => Theory::Propagated(model),
             Self::Set(_) => Theory::Sgp4OfSource,
-            Self::Sampled(_) => Theory::Interpolated,
+            Self::Sampled => Theory::Interpolated,
             Self::Almanac => Theory::Almanac,
         }
     }
@@ -79,7 +78,7 @@ impl Origin<'_> {
                 let mean_motion_rad_s = set.mean_motion * TAU / SECONDS_PER_DAY;
                 Some((MU_KM3_S2 / mean_motion_rad_s.powi(2)).cbrt())
             }
-            Self::Almanac | Self::Sampled(_) => None,
+            Self::Almanac | Self::Sampled => None,
         }
     }
 }
@@ -113,14 +112,6 @@ impl Constellation {
         }
         members
     }
-
-    /// Whether every satellite has mean elements that the model of a study at `epoch` propagates.
-    #[must_use]
-    pub fn has_mean_elements(&self, epoch: Epoch, model: Model) -> bool {
-        let members = self.members(epoch);
-        let mut origins = members.iter().map(|member| member.origin);
-        origins.all(|origin| origin.mean_elements(epoch, model).is_some())
-    }
 }
 
 fn collect<'a>(fleet: &'a Fleet, origins: &mut Vec<Origin<'a>>) {
@@ -130,7 +121,9 @@ fn collect<'a>(fleet: &'a Fleet, origins: &mut Vec<Origin<'a>>) {
             elements: row.elements,
             epoch: row.epoch,
         })),
-        Fleet::Sampled(trajectories) => origins.extend(trajectories.iter().map(Origin::Sampled)),
+        Fleet::Sampled(trajectories) => {
+            origins.extend(trajectories.iter().map(|_| Origin::Sampled))
+        }
         Fleet::Almanacs(almanacs) => origins.extend(almanacs.iter().map(|_| Origin::Almanac)),
         Fleet::Mixed(parts) => parts.iter().for_each(|part| collect(part, origins)),
     }

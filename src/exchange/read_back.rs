@@ -11,12 +11,11 @@ pub(crate) mod gates;
 
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::{Evaluator, Metrics};
-use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::exchange::element_sets::ElementSetRule;
-use crate::exchange::identities::Naming;
+use crate::exchange::export::ExportSource;
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::members::{ConstellationMember, Origin};
-use crate::formats::metadata::{ElementChoice, IdentityError, Object};
+use crate::formats::metadata::{ElementChoice, Object};
 use crate::orbit::Model;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Orbit};
 use crate::time::Epoch;
@@ -49,12 +48,6 @@ pub enum RecheckError {
     /// A satellite has no state.
     #[error(transparent)]
     Ephemeris(#[from] EphemerisError),
-    /// The constellation cannot be propagated.
-    #[error(transparent)]
-    Constellation(#[from] ConstellationError),
-    /// A satellite cannot be named.
-    #[error(transparent)]
-    Identity(#[from] IdentityError),
     /// The satellites are not those of the constellation.
     #[error("{found} satellites were read back; the constellation has {expected}")]
     Satellites {
@@ -109,8 +102,8 @@ impl Recheck {
 /// The constellation that products are checked against.
 pub struct Original<'a> {
     evaluator: &'a Evaluator,
-    members: Vec<ConstellationMember<'a>>,
-    propagated: Rescored,
+    source: &'a ExportSource<'a>,
+    metrics: Metrics,
 }
 
 /// Satellites and their metrics under the scenario.
@@ -120,23 +113,18 @@ struct Rescored {
 }
 
 impl<'a> Original<'a> {
-    /// Evaluates the constellation.
+    /// Evaluates the constellation of an export in its own study.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn new(
         evaluator: &'a Evaluator,
-        constellation: &'a Constellation,
+        source: &'a ExportSource<'a>,
     ) -> Result<Self, RecheckError> {
-        let setup = evaluator.setup();
-        let ephemeris = constellation.ephemeris(setup.grid, setup.model)?;
         Ok(Self {
             evaluator,
-            members: constellation.members(setup.grid.epoch()),
-            propagated: Rescored {
-                metrics: evaluator.evaluate_ephemeris(&ephemeris)?,
-                ephemeris,
-            },
+            source,
+            metrics: evaluator.evaluate_ephemeris(source.ephemeris())?,
         })
     }
 
@@ -150,9 +138,7 @@ impl<'a> Original<'a> {
             slot: MeanMotionSlot::Kozai,
             rounding,
         };
-        // Names make no difference to an orbit.
-        let objects = Naming::default().objects(&self.members, grid.epoch())?;
-        let sets = self.members.iter().zip(&objects);
+        let sets = self.source.members.iter().zip(&self.source.objects);
         let sets = sets
             .map(|(member, object): (&ConstellationMember<'_>, &Object)| rule.set(member, object));
         let Some(sets) = sets.collect::<Option<Vec<_>>>() else {
@@ -169,7 +155,7 @@ impl<'a> Original<'a> {
                 })?),
             })
         };
-        let known = self.propagated.ephemeris.satellites();
+        let known = self.source.ephemeris().satellites();
         let propagated = sets.iter().zip(known).map(propagate);
         let ephemeris = Ephemeris::new(grid, propagated.collect::<Result<_, EphemerisError>>()?);
         let metrics = self.evaluator.evaluate_ephemeris(&ephemeris)?;
@@ -189,7 +175,8 @@ impl<'a> Original<'a> {
         fleet: &Fleet,
     ) -> Result<Recheck, RecheckError> {
         let setup = self.evaluator.setup();
-        let (found, expected) = (fleet.len(), self.propagated.ephemeris.satellites().len());
+        let propagated = self.source.ephemeris();
+        let (found, expected) = (fleet.len(), propagated.satellites().len());
         if found != expected {
             return Err(RecheckError::Satellites { found, expected });
         }
@@ -200,23 +187,26 @@ impl<'a> Original<'a> {
         };
         let by_sgp4 = rounding.map(|rounding| self.by_sgp4(rounding));
         let by_sgp4 = by_sgp4.transpose()?.flatten();
-        let reference = by_sgp4.as_ref().unwrap_or(&self.propagated);
+        let (reference, expected) = match &by_sgp4 {
+            Some(seen) => (&seen.ephemeris, &seen.metrics),
+            None => (propagated, &self.metrics),
+        };
         let read_back = fleet.propagate(setup.grid, setup.model)?;
         let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
         let gate_km = self.position_gate_km(product, sets)?;
         let relative = gate_km.map(|km| km / SCALE_KM);
         let flips = FLIPS / setup.sample_count() as f64;
         let of = |value: f64| relative.map(|relative| value * relative + flips);
-        let pdop = reference.metrics.mean_pdop.zip(metrics.mean_pdop);
-        let visible = reference.metrics.mean_visible;
+        let pdop = expected.mean_pdop.zip(metrics.mean_pdop);
+        let visible = expected.mean_visible;
         let theory = by_sgp4.as_ref().map(|seen| &seen.ephemeris);
         Ok(Recheck {
             position_km: Difference {
-                value: apart_km(&read_back, &reference.ephemeris)?,
+                value: apart_km(&read_back, reference)?,
                 gate: gate_km,
             },
             theory_km: theory
-                .map(|theory| apart_km(theory, &self.propagated.ephemeris))
+                .map(|theory| apart_km(theory, propagated))
                 .transpose()?,
             mean_visible: Difference {
                 value: metrics.mean_visible - visible,
@@ -237,7 +227,7 @@ impl<'a> Original<'a> {
         product: &ReadBack,
         sets: ElementChoice,
     ) -> Result<Option<f64>, EphemerisError> {
-        let extent = Extent::new(&self.members, &self.propagated.ephemeris)?;
+        let extent = Extent::new(&self.source.members, self.source.ephemeris())?;
         let digits_km = (product.digits_km)(extent);
         Ok(match product.theory {
             ReadBackTheory::Study => Some(digits_km),
@@ -262,10 +252,11 @@ impl<'a> Original<'a> {
                     let eccentric = 1.0 + 8.0 * elements.eccentricity;
                     Some(eccentric * (SGP4_KM + SGP4_KM_PER_DAY * days))
                 }
-                (Origin::Mean { .. }, Model::TwoBody)
-                | (Origin::Sampled(_) | Origin::Almanac, _) => None,
+                (Origin::Mean { .. }, Model::TwoBody) | (Origin::Sampled | Origin::Almanac, _) => {
+                    None
+                }
             };
-        let gates: Option<Vec<f64>> = self.members.iter().map(gate_km).collect();
+        let gates: Option<Vec<f64>> = self.source.members.iter().map(gate_km).collect();
         Some(gates?.into_iter().fold(0.0, f64::max))
     }
 }

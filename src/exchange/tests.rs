@@ -3,6 +3,7 @@
 mod constellations;
 mod foreign;
 mod hostile;
+mod identities;
 mod kinds;
 mod leap_seconds;
 

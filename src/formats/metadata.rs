@@ -206,7 +206,7 @@ keywords! {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Theory {
     /// States of the propagation model of the scenario.
-    EphemerisSatellite(Model),
+    Propagated(Model),
     /// An SGP4 element set made from the design.
     Sgp4Elements(ElementChoice),
     /// Element sets of another file, as they are.
@@ -241,7 +241,7 @@ impl Theory {
 impl fmt::Display for Theory {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.pad(match self {
-            Self::EphemerisSatellite(model) => return model.fmt(formatter),
+            Self::Propagated(model) => return model.fmt(formatter),
             Self::Several(theories) => {
                 let texts: Vec<String> = theories.iter().map(Self::to_string).collect();
                 return formatter.pad(&texts.join("; "));

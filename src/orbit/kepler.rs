@@ -1,6 +1,18 @@
-//! Kepler's equation.
+//! Kepler's equation, and his third law.
 
+use crate::earth::MU_KM3_S2;
+use crate::frames::State;
 use crate::units::wrap_pi;
+use std::f64::consts::TAU;
+
+/// The period of the unperturbed orbit through a state, s; `None` if it is not closed.
+#[must_use]
+pub fn period_s<F>(state: &State<F>) -> Option<f64> {
+    let speed2 = state.velocity_km_s.norm_squared();
+    let a_km = 1.0 / (2.0 / state.position_km.norm() - speed2 / MU_KM3_S2);
+    let is_closed = a_km.is_finite() && a_km > 0.0;
+    is_closed.then(|| TAU * (a_km.powi(3) / MU_KM3_S2).sqrt())
+}
 
 /// Eccentric anomaly E of E - e sin E = M, radians; for 0 <= e < 1 ([M-5](crate::models#m-5)).
 ///
@@ -31,6 +43,8 @@ pub fn eccentric_anomaly(mean_anomaly_rad: f64, eccentricity: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::orbit::MeanElements;
+    use crate::orbit::j2::SecularOrbit;
     use proptest::prelude::*;
 
     proptest! {
@@ -42,6 +56,29 @@ mod tests {
             let residual = anomaly - e * anomaly.sin() - m;
             prop_assert!(residual.abs() < 1e-15, "{residual:e}");
         }
+    }
+
+    /// The period of mean elements from any of their states, and none of a hyperbola.
+    #[test]
+    fn a_state_has_the_period_of_its_elements() {
+        let elements = MeanElements {
+            semi_major_axis_km: 8_000.0,
+            eccentricity: 0.1,
+            inclination_rad: 1.0,
+            raan_rad: 2.0,
+            arg_perigee_rad: 3.0,
+            mean_anomaly_rad: 0.5,
+        };
+        let expected_s = TAU / elements.kepler_mean_motion_rad_s();
+        let orbit = SecularOrbit::two_body(&elements);
+        for elapsed_s in [0.0, 1_000.0, 4_000.0] {
+            let found_s = period_s(&orbit.state(elapsed_s)).unwrap();
+            // Rounding of the difference of two energies.
+            assert!((found_s / expected_s - 1.0).abs() < 1e-13, "{found_s}");
+        }
+        let mut open = orbit.state(0.0);
+        open.velocity_km_s *= 1.5;
+        assert_eq!(period_s(&open), None);
     }
 
     #[test]

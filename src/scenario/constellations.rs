@@ -5,7 +5,9 @@ use super::setup::SetupError;
 use super::values::{ConstellationParts, NamedConstellation};
 use crate::constellation::{Design, NotationError};
 use crate::exchange::constellation::{Constellation, FileSatellites};
-use crate::exchange::import::{Fleet, NoSuchSatellite, ReadFleetError, SatelliteFilter};
+use crate::exchange::import::{
+    Fleet, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter,
+};
 use crate::keyword::nearest;
 use std::io;
 use thiserror::Error;
@@ -123,8 +125,7 @@ impl NamedConstellation {
             ..
         } = &self.parts;
         let mut names = Vec::new();
-        let mut formats = Vec::new();
-        let mut whole: Option<Fleet> = None;
+        let mut merged = MergedFiles::default();
         for file in files {
             let error = |error| self.error(file, error);
             let name = file.rsplit('/').next().unwrap_or(file);
@@ -135,15 +136,10 @@ impl NamedConstellation {
                 notes.push(format!("{file}: {}", imported.left_out));
             }
             names.push(name.to_owned());
-            if !formats.contains(&imported.format) {
-                formats.push(imported.format);
-            }
-            match &mut whole {
-                None => whole = Some(imported.fleet),
-                Some(whole) => whole.append(imported.fleet),
-            }
+            merged.add(imported);
         }
-        let mut fleet = whole.unwrap_or_else(|| Fleet::Sets(Vec::new()));
+        let none = || (Vec::new(), Fleet::Sets(Vec::new()));
+        let (formats, mut fleet) = merged.finish().unwrap_or_else(none);
         let filter = SatelliteFilter {
             only: only.clone(),
             exclude: exclude.clone(),

@@ -98,7 +98,7 @@ impl GnssFiles {
             .notes
             .extend(notes.iter().map(|note| format!("gnss.files: {note}")));
         // These files have no mean elements, which are the only input that needs a model.
-        let ephemeris = fleet.propagate(grid, Model::J2)?;
+        let ephemeris = fleet.propagate_continuously(grid, Model::J2)?;
         let groups = by_system(name, ephemeris.into_satellites(), |one| &one.name);
         for (name, satellites) in groups {
             let given = |satellite: EphemerisSatellite| GnssSatellite {

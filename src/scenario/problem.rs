@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use super::source::{Place, Source, printable};
+use super::source::{Place, Source, blanked};
 use crate::constellation::NotationError;
 use crate::keyword::UnknownKeyword;
 use crate::search::ConstraintError;
@@ -187,7 +187,7 @@ impl ProblemList {
         if self.0.len() < MAX_PROBLEMS {
             self.0.push(ScenarioProblem {
                 place: source.place(span),
-                key: printable(key).take(LONGEST_KEY).collect(),
+                key: blanked(key).take(LONGEST_KEY).collect(),
                 fault: fault.into(),
             });
         }

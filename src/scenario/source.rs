@@ -117,7 +117,7 @@ impl<'a> Source<'a> {
     /// The text at `span` on one line, shortened if long.
     pub(super) fn written(&self, span: Range<usize>) -> String {
         let text = self.text.get(span).unwrap_or_default().trim();
-        let mut shown: String = printable(text).take(FOUND_WIDTH).collect();
+        let mut shown: String = blanked(text).take(FOUND_WIDTH).collect();
         if text.chars().nth(FOUND_WIDTH).is_some() {
             shown.push('…');
         }
@@ -127,7 +127,7 @@ impl<'a> Source<'a> {
 
 /// The characters of a text, with spaces for those that a terminal would obey: unlike escapes they leave each column
 /// where it is.
-pub(super) fn printable(text: &str) -> impl Iterator<Item = char> {
+pub(super) fn blanked(text: &str) -> impl Iterator<Item = char> {
     text.chars().map(|c| if is_obeyed(c) { ' ' } else { c })
 }
 
@@ -144,7 +144,7 @@ fn excerpt(text: &str, at: usize, length: usize) -> (usize, Excerpt) {
     } else {
         0
     };
-    let shown: String = printable(line).skip(cut).take(EXCERPT_WIDTH).collect();
+    let shown: String = blanked(line).skip(cut).take(EXCERPT_WIDTH).collect();
     let offset = before - cut;
     let visible = shown.chars().count().saturating_sub(offset);
     let length = characters(at..at.saturating_add(length))

@@ -130,8 +130,13 @@ pub fn against_file(
         .distributions
         .extend(distances(ours, source, &pairs)?);
     let covers = tracks.iter().all(|track| track.covers(reference));
-    if matching.is_complete() && covers && !reference.has_gaps()? {
-        findings.append(metrics(reference, source, &pairs)?);
+    if matching.is_complete() && covers {
+        match &reference.first_gap {
+            None => findings.append(metrics(reference, source, &pairs)?),
+            Some((name, at)) => findings.notes.push(format!(
+                "file/{source}: metrics are not compared: {name} of the constellation has no state at {at}"
+            )),
+        }
     }
     findings.files.push(FileComparison {
         source: source.to_owned(),

@@ -123,3 +123,101 @@ fn a_file_of_element_sets_is_converted_and_checked() {
     );
     assert!(!directory.path().join("none").exists());
 }
+
+/// GNSS that a file gives as states have states between the samples of the study too, as the ephemerides of STK and the
+/// positions of CZML need them; the ephemerides are those of the file.
+#[test]
+fn gnss_states_of_a_file_go_to_stk_and_czml() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let source = ["--design", "delta:56:6/3/1@21528", "--as", "oem", "--out"];
+    export(place, &[&source[..], &["gnss"]].concat());
+    let files = fs::read_dir(place.join("gnss/oem")).unwrap();
+    let files = files.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut files: Vec<String> = files.map(|name| format!("\"gnss/oem/{name}\"")).collect();
+    files.sort();
+    let scenario = format!(
+        "name = \"states\"\n[region]\nstep-deg = 20\n[gnss]\nconstellations = []\nfiles = [{}]\n",
+        files.join(", ")
+    );
+    fs::write(place.join("states.toml"), scenario).unwrap();
+    let options = [
+        "--design",
+        "delta:55:14/7/1@925",
+        "--as",
+        "stk,czml,metrics",
+    ];
+    export(
+        place,
+        &[&["states.toml"], &options[..], &["--out", "out"]].concat(),
+    );
+    let manifest = fs::read_to_string(place.join("out/manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let files = manifest["files"].as_array().unwrap().iter();
+    let is_gnss = |file: &&Value| {
+        let path = file["path"].as_str().unwrap();
+        path.starts_with("stk-scenario/gnss/")
+    };
+    let gnss: Vec<&Value> = files.filter(is_gnss).collect();
+    assert_eq!(gnss.len(), 6);
+    for file in gnss {
+        // A centimetre; two interpolations of degree 7 between states 300 s apart.
+        let interpolation_km = file["loss"]["interpolation_max_km"].as_f64().unwrap();
+        assert!(interpolation_km < 1e-5, "{file}");
+    }
+    let against = [
+        "--constellation",
+        "gnss/oem",
+        "--against",
+        "./out/stk-scenario/gnss",
+    ];
+    let arguments = [
+        &["validate", "--quiet", "--format", "json"],
+        &against[..],
+        &SHORT,
+    ]
+    .concat();
+    let done = ran(place, &arguments);
+    assert_eq!(done.status, 0, "{}{}", done.stdout, done.stderr);
+    let found: Value = serde_json::from_str(&done.stdout).unwrap();
+    assert_eq!(found["files"][0]["agrees"], true, "{found}");
+}
+
+/// A name outside ASCII and a number past Alpha-5 go out in a TLE under others, which a warning and the manifest name. The
+/// number is the first free one whose synthetic designator is free too.
+#[test]
+fn identities_that_no_format_holds_are_named() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let source = [
+        "--design",
+        "star:86.4:6/3/1@780",
+        "--as",
+        "omm",
+        "--omm-syntax",
+        "json",
+    ];
+    export(place, &[&source[..], &["--out", "source"]].concat());
+    let text = fs::read_to_string(place.join("source/omm.json")).unwrap();
+    let text = text.replace("\"NW-P01-S01\"", "\"Спутник 1\"");
+    let text = text.replace("\"NORAD_CAT_ID\":90002", "\"NORAD_CAT_ID\":799500123");
+    fs::write(place.join("own.json"), text).unwrap();
+    let options = [
+        "--constellation",
+        "own.json",
+        "--as",
+        "tle,omm,oem",
+        "--check",
+    ];
+    let talking = [&["export"], &options[..], &["--out", "out"], &SHORT].concat();
+    let done = ran(place, &talking);
+    assert_eq!(done.status, 0, "{}{}", done.stdout, done.stderr);
+    let warning = "warning: names, numbers or designators that the formats cannot hold are changed: Спутник 1 as _______ 1, \
+                   799500123 as 90007; manifest.json lists them under changed_identities\n";
+    assert!(done.stderr.contains(warning), "{}", done.stderr);
+    let tle = fs::read_to_string(place.join("out/constellation.tle")).unwrap();
+    assert!(tle.starts_with("_______ 1\n1 90001U "), "{tle}");
+    assert!(tle.contains("\nNW-P01-S02\n1 90007U "), "{tle}");
+    let omm = fs::read_to_string(place.join("out/omm/NW-P01-S02.omm")).unwrap();
+    assert!(omm.contains("\nNORAD_CAT_ID = 90007\n"), "{omm}");
+}

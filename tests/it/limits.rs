@@ -62,6 +62,26 @@ fn an_export_is_told_and_allowed() {
     }
 }
 
+/// The size is looked at before anything else is done: states are not interpolated, of which a warning would tell.
+#[test]
+fn the_size_of_an_export_comes_first() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let small =
+        "export --quiet --design delta:55:24/6/1@925 --set time.duration-h=1 --as oem --out a";
+    assert_eq!(ran(place, &line(small)).status, 0);
+    let large = "export --constellation a/oem --set time.duration-h=0.9 --set time.step-s=0.001 --as oem,csv --out b";
+    let refused = ran(place, &line(large));
+    assert_eq!(refused.status, 2);
+    assert!(
+        refused
+            .stderr
+            .starts_with("error: the export would be about 27 files of "),
+        "{}",
+        refused.stderr
+    );
+}
+
 /// A file of a run that is longer than any that a run writes is not read.
 #[test]
 fn files_of_a_run_are_read_up_to_a_bound() {

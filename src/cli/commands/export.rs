@@ -5,12 +5,13 @@ use crate::cli::progress::FileCount;
 use crate::cli::study::Study;
 use crate::cli::{Status, coincidence, constellations, files, limits, output, read_constellation};
 use crate::constellation::gnss::Preset;
+use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
 use crate::exchange::export::{
-    Choices, ExportSubject, Naming, Product, Request, ShownScenario, export, export_size,
+    Choices, ExportSource, ExportSubject, Naming, Product, ShownScenario, export_size,
 };
 use crate::exchange::lint::Format as LintFormat;
-use crate::exchange::manifest::{ExportedStudy, FILE_NAME, Manifest};
+use crate::exchange::manifest::{ChangedIdentity, ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
 use crate::formats::ccsds::oem;
 use crate::formats::metadata::ElementChoice;
@@ -23,6 +24,9 @@ use anyhow::{Context, Result, bail};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
+
+/// Maximum number of changed identities that are named.
+const TOLD_IDENTITIES: usize = 3;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
@@ -52,12 +56,44 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         originator: scenario.export.originator.clone(),
         creation: Epoch::from_utc(scenario.export.creation_date),
     };
+    let (products, choices) = (products(args), choices(args));
+    limits::check_export(export_size(&subject, &products, &choices))?;
     constellations::warn_of_files(&subject.constellation, subject.grid);
-    if let Ok(satellites) = subject.constellation.ephemeris(subject.grid, subject.model) {
-        coincidence::warn(&[], subject.grid, Some(&satellites));
+    let not_exported = || format!("cannot export to {}", args.out.display());
+    let source = ExportSource::new(&subject, choices).with_context(not_exported)?;
+    coincidence::warn(&[], subject.grid, Some(source.ephemeris()));
+    let staged = files::StagedDirectory::new(&args.out)?;
+    let progress = FileCount::new();
+    let sink = |path: &str| {
+        let path = staged.path().join(path);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        progress.one_more();
+        File::create(path)
+    };
+    let uses_scenario = products.iter().any(|one| one.row().uses_scenario());
+    let evaluator = (uses_scenario || args.check).then(|| study.evaluator());
+    let evaluator = evaluator.transpose()?;
+    let shown = evaluator.as_ref().filter(|_| uses_scenario);
+    let shown = shown.map(|evaluator| ShownScenario {
+        evaluator,
+        surface: scenario.earth.surface,
+        grid: scenario.ground_grid(),
+    });
+    let manifest = source.export(&products, shown, &sink);
+    let manifest = manifest.with_context(not_exported)?;
+    progress.finish();
+    staged.commit()?;
+    output::result(&text(args, &manifest))?;
+    warn(args);
+    warn_of_identities(&manifest.changed_identities);
+    match evaluator.filter(|_| args.check) {
+        Some(evaluator) => check(args, &evaluator, &source, &manifest),
+        None => Ok(Status::Done),
     }
-    let products = products(args);
-    let choices = Choices {
+}
+
+fn choices(args: &ExportArgs) -> Choices {
+    Choices {
         frame: args.frame.unwrap_or(Frame::Eme2000),
         time_system: args.time_system,
         omm: args.omm_syntax,
@@ -68,42 +104,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         sp3_version: args.sp3_version,
         sp3_letter: args.sp3_letter,
         sp3_gnss: std::array::from_fn(|at| args.gnss.contains(&Preset::ALL[at])),
-    };
-    limits::check_export(export_size(&subject, &products, &choices))?;
-    let staged = files::StagedDirectory::new(&args.out)?;
-    let progress = FileCount::new();
-    let sink = |path: &str| {
-        let path = staged.path().join(path);
-        path.parent().map_or(Ok(()), fs::create_dir_all)?;
-        progress.one_more();
-        File::create(path)
-    };
-    let evaluator = products
-        .iter()
-        .any(|product| product.row().uses_scenario())
-        .then(|| study.evaluator())
-        .transpose()?;
-    let shown = evaluator.as_ref().map(|evaluator| ShownScenario {
-        evaluator,
-        surface: scenario.earth.surface,
-        grid: scenario.ground_grid(),
-    });
-    let request = Request {
-        subject: &subject,
-        shown,
-        products: &products,
-        choices,
-    };
-    let manifest = export(&request, &sink)
-        .with_context(|| format!("cannot export to {}", args.out.display()))?;
-    progress.finish();
-    staged.commit()?;
-    output::result(&text(args, &manifest))?;
-    warn(args);
-    if args.check {
-        return check(args, &study, &subject.constellation, &manifest);
     }
-    Ok(Status::Done)
 }
 
 /// The study, and the one constellation to export.
@@ -152,17 +153,32 @@ fn warn(args: &ExportArgs) {
     }
 }
 
+/// Names the first identities of files that are not written as they are there.
+fn warn_of_identities(changed: &[ChangedIdentity]) {
+    let told = |one: &ChangedIdentity| format!("{} as {}", one.source, one.written);
+    let first: Vec<String> = changed.iter().take(TOLD_IDENTITIES).map(told).collect();
+    let more = match changed.len() - first.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    if !first.is_empty() {
+        output::warning(&format!(
+            "names, numbers or designators that the formats cannot hold are changed: {}{more}; {FILE_NAME} lists them \
+             under changed_identities",
+            first.join(", ")
+        ));
+    }
+}
+
 /// Reads the products back and prints the metrics from each.
 fn check(
     args: &ExportArgs,
-    study: &Study,
-    constellation: &Constellation,
+    evaluator: &Evaluator,
+    source: &ExportSource<'_>,
     manifest: &Manifest,
 ) -> Result<Status> {
-    let evaluator = study.evaluator()?;
-    let original = Original::new(&evaluator, constellation)?;
-    let setup = evaluator.setup();
-    let has_elements = constellation.has_mean_elements(setup.grid.epoch(), setup.model);
+    let original = Original::new(evaluator, source)?;
+    let has_elements = source.has_mean_elements();
     if !has_elements && args.products.contains(&Product::Opm) {
         output::hint(
             "opm is not read back: it has states at the epoch alone, without a theory to propagate them",

@@ -1,7 +1,7 @@
 //! `navwalker validate`.
 
 use crate::cli::args::{ReportFormat, ValidateArgs};
-use crate::cli::constellations::{propagate, study_and_constellations};
+use crate::cli::constellations::{no_file_to_select_from, propagate, study_and_constellations};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
         let found = subjects.of_constellation(one)?;
         findings.append(match constellations.len() {
             1 => found,
-            _ => found.of_shell(&one.name),
+            _ => found.prefixed(&one.name),
         });
     }
     findings.append(subjects.of_study()?);
@@ -257,7 +257,7 @@ fn sources(targets: &[Against], args: &ValidateArgs) -> Result<Vec<Vec<ComparedF
     }
     if found.is_empty() {
         if args.chosen.given.constellation.is_empty() {
-            bail!("--only and --exclude select satellites of files, and no file is given");
+            return Err(no_file_to_select_from());
         }
         return Ok(found);
     }

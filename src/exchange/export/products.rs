@@ -175,31 +175,12 @@ impl ExportSource<'_> {
         Ok(vec![entry])
     }
 
-    /// The interpolation for each satellite. Those of a shell are propagated in the same way, so the first
-    /// represents all; others are measured one by one.
-    fn hermites(&self, sampled: &Sampled<'_, Frame>) -> Result<Vec<Option<Hermite>>, WriteError> {
-        let satellites = self.ephemeris.satellites();
-        let shells = self.ephemeris.shells();
-        let in_shells = shells.iter().map(|span| span.shell.satellite_count()).sum();
-        let mut hermites = Vec::with_capacity(satellites.len());
-        for span in shells {
-            let measured = Hermite::measured(sampled, &satellites[span.first])?;
-            hermites.extend(std::iter::repeat_n(measured, span.shell.satellite_count()));
-        }
-        let others: Vec<Option<Hermite>> = satellites[in_shells..]
-            .par_iter()
-            .map(|satellite| Hermite::measured(sampled, satellite))
-            .collect::<Result<_, _>>()?;
-        hermites.extend(others);
-        Ok(hermites)
-    }
-
     pub(super) fn oem(&self, files: &Files<'_>) -> ProductFiles {
         let choices = self.choices;
         let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
         let sampled = Sampled::new(&self.ephemeris, choices.frame);
-        let hermites = self.hermites(&sampled)?;
+        let hermites = Hermite::of_each(&sampled)?;
         let loss = |hermite: Option<Hermite>| Loss {
             interpolation_max_km: hermite.map(|hermite| hermite.max_error_km),
             note: joined([
@@ -311,7 +292,7 @@ impl ExportSource<'_> {
         let frame = self.choices.frame;
         let metadata = self.propagated_metadata(frame);
         let sampled = Sampled::new(&self.ephemeris, frame);
-        let hermites = self.hermites(&sampled)?;
+        let hermites = Hermite::of_each(&sampled)?;
         self.each(|k| {
             let path = format!("stk/{}.e", self.stems[k]);
             let format = ProductVersion {
@@ -392,7 +373,7 @@ impl ExportSource<'_> {
         let objects = Object::all(ephemeris.satellites(), grid.epoch())?;
         let satellites: Vec<_> = ephemeris.satellites().iter().zip(&objects).collect();
         let sampled = Sampled::new(&ephemeris, EarthFixed);
-        let mut metadata = self.metadata(Frame::EarthFixed, Theory::EphemerisSatellite(Model::J2));
+        let mut metadata = self.metadata(Frame::EarthFixed, Theory::Propagated(Model::J2));
         metadata.time_system = TimeSystem::Gps;
         let note = format!("nominal {preset}: slots, not the satellites in orbit");
         metadata.subject.insert(0, note.clone());

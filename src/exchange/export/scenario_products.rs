@@ -109,7 +109,6 @@ impl ExportSource<'_> {
             ConnectItem::Satellite(stem.clone(), setting)
         };
         let mut items = Vec::new();
-        let mut done = 0;
         let shells = self.ephemeris.shells();
         for (n, span) in shells.iter().enumerate() {
             let prefix = &self.subject.naming.prefix;
@@ -122,9 +121,8 @@ impl ExportSource<'_> {
                 Some(walker) => items.push(ConnectItem::Walker(walker)),
                 None => items.extend(span.places().map(single)),
             }
-            done = span.places().end;
         }
-        items.extend((done..self.members.len()).map(single));
+        items.extend(self.ephemeris.outside_shells().into_iter().map(single));
         items
     }
 
@@ -146,7 +144,7 @@ impl ExportSource<'_> {
     /// The ephemerides of the GNSS satellites for which STK has no theory.
     fn gnss_files(&self, files: &Files<'_>, gnss: &[InStk]) -> ProductFiles {
         let mut entries = Vec::new();
-        let theory = Theory::EphemerisSatellite(self.subject.model);
+        let theory = Theory::Propagated(self.subject.model);
         let mut metadata = self.metadata(self.choices.frame, theory);
         metadata
             .subject

@@ -63,8 +63,7 @@ impl ExportSource<'_> {
                         "omit --tle-theory kepler, which is for mean elements of J2",
                     ));
                 }
-                let without =
-                    |one: &Origin<'_>| matches!(one, Origin::Sampled(_) | Origin::Almanac);
+                let without = |one: &Origin<'_>| matches!(one, Origin::Sampled | Origin::Almanac);
                 if elements != ElementChoice::Fit && any(without) {
                     return Err(cannot(
                         format!(

@@ -1,12 +1,11 @@
 //! The data from which the products of an export are made.
 
-use super::{Choices, ExportError, ExportSubject, ShownScenario};
+use super::{Choices, ExportError, ExportSubject, Product, ShownScenario, Sink, write};
 use crate::constellation::{Design, shell_letters};
 use crate::earth::RADIUS_KM;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
-use crate::exchange::identities::stems;
-use crate::exchange::import::interpolated;
-use crate::exchange::manifest::{Conventions, FileEntry, Manifest};
+use crate::exchange::identities::{changed, plain_ascii, stems};
+use crate::exchange::manifest::{ChangedIdentity, Conventions, FileEntry, Manifest};
 use crate::exchange::members::{ConstellationMember, Origin};
 use crate::formats::maps::scene::{Scene, ShownConstellation};
 use crate::formats::metadata::{Metadata, Object, Theory, distance_from_itrf};
@@ -18,13 +17,14 @@ use crate::units::counted;
 /// Longest name of a constellation or a file in a comment.
 const LONGEST_NAME: usize = 120;
 
-/// The data of an export.
-pub(super) struct ExportSource<'a> {
+/// A constellation that is ready for export: propagated, and with the identities under which it goes out.
+pub struct ExportSource<'a> {
     pub(super) subject: &'a ExportSubject,
     pub(super) choices: Choices,
     /// The satellites, in the order of the ephemeris.
-    pub(super) members: Vec<ConstellationMember<'a>>,
-    pub(super) objects: Vec<Object>,
+    pub(in crate::exchange) members: Vec<ConstellationMember<'a>>,
+    pub(in crate::exchange) objects: Vec<Object>,
+    changed: Vec<ChangedIdentity>,
     /// Names of files for each satellite.
     pub(super) stems: Vec<String>,
     pub(super) ephemeris: Ephemeris,
@@ -33,27 +33,24 @@ pub(super) struct ExportSource<'a> {
 }
 
 impl<'a> ExportSource<'a> {
-    pub(super) fn new(subject: &'a ExportSubject, choices: Choices) -> Result<Self, ExportError> {
+    /// Propagates a constellation and names its satellites.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated or named, or has no state at a sample.
+    pub fn new(subject: &'a ExportSubject, choices: Choices) -> Result<Self, ExportError> {
         let (grid, constellation) = (subject.grid, &subject.constellation);
         let members = constellation.members(grid.epoch());
         let objects = subject.naming.objects(&members, grid.epoch());
         let objects = objects.map_err(crate::formats::WriteError::from)?;
-        let mut ephemeris = constellation.ephemeris(grid, subject.model)?;
-        for ((satellite, member), object) in ephemeris
-            .satellites_mut()
-            .iter_mut()
-            .zip(&members)
-            .zip(&objects)
-        {
+        let mut ephemeris = constellation.continuous_ephemeris(grid, subject.model)?;
+        for (satellite, object) in ephemeris.satellites_mut().iter_mut().zip(&objects) {
             satellite.name.clone_from(&object.name);
-            if let Origin::Sampled(trajectory) = member.origin {
-                satellite.propagator = interpolated(trajectory, grid.epoch());
-            }
         }
         let mut source = Self {
             subject,
             choices,
             stems: stems(&objects),
+            changed: changed(&members, &objects),
             members,
             objects,
             ephemeris,
@@ -64,10 +61,43 @@ impl<'a> ExportSource<'a> {
         Ok(source)
     }
 
+    /// The satellites under the names that they go out with.
+    #[must_use]
+    pub fn ephemeris(&self) -> &Ephemeris {
+        &self.ephemeris
+    }
+
+    /// Whether every satellite has mean elements that the model of the study propagates.
+    #[must_use]
+    pub fn has_mean_elements(&self) -> bool {
+        let (epoch, model) = (self.subject.grid.epoch(), self.subject.model);
+        let mut origins = self.members.iter().map(|member| member.origin);
+        origins.all(|origin| origin.mean_elements(epoch, model).is_some())
+    }
+
+    /// Writes the products in their order and then the manifest, which it also returns. `shown` is the scenario around
+    /// the constellation, for the products that show it.
+    ///
+    /// # Errors
+    /// If an element, the constellation or the scenario cannot be expressed in a format, a file cannot be written, or a
+    /// product needs the scenario. What a product cannot express is an error before anything is written.
+    pub fn export(
+        &self,
+        products: &[Product],
+        shown: Option<ShownScenario<'_>>,
+        sink: &impl Sink,
+    ) -> Result<Manifest, ExportError> {
+        for product in products {
+            self.require_expressible(*product)?;
+        }
+        let scene = shown.map(|shown| self.scene(shown));
+        Ok(write(self, products, scene.as_ref(), sink)?)
+    }
+
     /// Sampled satellites need a state at every instant: no format here writes gaps.
     fn require_states(&self) -> Result<(), ExportError> {
         let sampled = self.satellites().filter_map(|(satellite, member)| {
-            matches!(member.origin, Origin::Sampled(_)).then_some(satellite)
+            matches!(member.origin, Origin::Sampled).then_some(satellite)
         });
         for satellite in sampled {
             for elapsed_s in self.subject.grid.iter() {
@@ -227,6 +257,7 @@ impl<'a> ExportSource<'a> {
             design: constellation.design.as_ref().map(Design::to_string),
             constellation: (!is_design).then(|| constellation.name.clone()),
             converted: self.converted(),
+            changed_identities: self.changed.clone(),
             epoch: grid.epoch().to_string(),
             step_s: grid.step_s(),
             samples: grid.len(),
@@ -238,8 +269,8 @@ impl<'a> ExportSource<'a> {
 
 /// The first characters of a name, in printable ASCII.
 fn short(name: &str) -> String {
-    let plain = |c: char| if (' '..='~').contains(&c) { c } else { '_' };
-    name.chars().take(LONGEST_NAME).map(plain).collect()
+    let first: String = name.chars().take(LONGEST_NAME).collect();
+    plain_ascii(&first)
 }
 
 pub(super) fn failed(satellite: &EphemerisSatellite, source: PropagationError) -> EphemerisError {

@@ -92,12 +92,19 @@ impl Propagator for Interpolated {
     }
 }
 
-/// The states of a file at any instant that it covers, not only at those of a grid.
-pub(crate) fn interpolated(trajectory: &Trajectory, epoch: Epoch) -> Box<dyn Propagator> {
-    Box::new(Interpolated {
-        trajectory: trajectory.clone(),
-        epoch,
-    })
+/// States that are kept at the samples of a grid, and interpolated at other instants.
+struct Continuous {
+    kept: Box<dyn Propagator>,
+    between: Interpolated,
+}
+
+impl Propagator for Continuous {
+    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
+        match self.kept.state_at(elapsed_s) {
+            Err(PropagationError::NotSampled { .. }) => self.between.state_at(elapsed_s),
+            found => found,
+        }
+    }
 }
 
 /// A propagator whose elements hold at another instant than the epoch of the study.
@@ -144,6 +151,49 @@ impl Fleet {
         }
         let satellites = self.satellites(&unique_labels(&identities), grid, model)?;
         Ok(Ephemeris::new(grid, satellites))
+    }
+
+    /// The same, in which satellites with sampled states also have states between the samples of the grid, as far as
+    /// their file covers them.
+    ///
+    /// # Errors
+    /// As of [`Self::propagate`].
+    pub fn propagate_continuously(
+        &self,
+        grid: TimeGrid,
+        model: Model,
+    ) -> Result<Ephemeris, FleetError> {
+        let satellites = self.propagate(grid, model)?.into_satellites().into_iter();
+        let continuous = |(satellite, trajectory): (EphemerisSatellite, Option<&Trajectory>)| {
+            let Some(trajectory) = trajectory else {
+                return satellite;
+            };
+            let between = Interpolated {
+                trajectory: trajectory.clone(),
+                epoch: grid.epoch(),
+            };
+            EphemerisSatellite {
+                propagator: Box::new(Continuous {
+                    kept: satellite.propagator,
+                    between,
+                }),
+                ..satellite
+            }
+        };
+        let satellites = satellites
+            .zip(self.trajectories())
+            .map(continuous)
+            .collect();
+        Ok(Ephemeris::new(grid, satellites))
+    }
+
+    /// The sampled states of each satellite, where it has such.
+    fn trajectories(&self) -> Vec<Option<&Trajectory>> {
+        match self {
+            Self::Sampled(trajectories) => trajectories.iter().map(Some).collect(),
+            Self::Mixed(parts) => parts.iter().flat_map(Self::trajectories).collect(),
+            other => vec![None; other.len()],
+        }
     }
 
     /// The satellites under the names `labels`.
@@ -333,5 +383,39 @@ impl RotationsByFrame {
             self.made.len() - 1
         });
         self.made[at].1[k]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::formats::csv::write_states;
+
+    /// States every minute in a study of two-minute steps: at its samples as they are, between them interpolated, and none
+    /// beyond the file.
+    #[test]
+    fn states_are_continuous_as_far_as_the_file_goes() {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = |step_s: f64| TimeGrid::new(epoch, 3_600.0, step_s).unwrap();
+        let design = "delta:55:2/1/0@925".parse().unwrap();
+        let truth = Ephemeris::of_design(&design, Model::J2, grid(60.0)).unwrap();
+        let mut table = Vec::new();
+        write_states(&mut table, &truth).unwrap();
+        let fleet = Fleet::read(table.as_slice(), None, Some("states.csv")).unwrap();
+        let sampled = fleet.fleet.propagate(grid(120.0), Model::J2).unwrap();
+        let continuous = fleet.fleet.propagate_continuously(grid(120.0), Model::J2);
+        let continuous = continuous.unwrap();
+        let at = |of: &Ephemeris, elapsed_s: f64| {
+            let state = of.state_or_gap(&of.satellites()[1], elapsed_s).unwrap();
+            state.map(|state| state.position_km)
+        };
+        for elapsed_s in [0.0, 120.0, 180.0, 1_234.5, 3_540.0] {
+            let apart = at(&continuous, elapsed_s).unwrap() - at(&truth, elapsed_s).unwrap();
+            // Nine decimals of a kilometre, and polynomials of degree 7 a minute apart.
+            assert!(apart.norm() < 1e-7, "{elapsed_s}: {}", apart.norm());
+        }
+        assert_eq!(at(&sampled, 120.0), at(&continuous, 120.0));
+        assert_eq!(at(&sampled, 180.0), None);
+        assert_eq!(at(&continuous, 3_541.0), None);
     }
 }

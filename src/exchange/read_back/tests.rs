@@ -76,8 +76,9 @@ fn as_it_is(text: String) -> String {
 /// Exports pass, with a gate in metres that the digits of the format explain.
 #[test]
 fn exports_pass_gates_of_their_digits() {
-    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
-    let original = Original::new(&evaluator, &constellation).unwrap();
+    let (evaluator, subject) = (evaluator(), subject(design(), grid()));
+    let source = ExportSource::new(&subject, Choices::default()).unwrap();
+    let original = Original::new(&evaluator, &source).unwrap();
     for product in CHECKED {
         let fleet = read_back(product, Choices::default(), &as_it_is).unwrap();
         let found = original
@@ -149,8 +150,9 @@ type Mistake = fn(&mut Fleet);
 
 #[test]
 fn planted_mistakes_fail() {
-    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
-    let original = Original::new(&evaluator, &constellation).unwrap();
+    let (evaluator, subject) = (evaluator(), subject(design(), grid()));
+    let source = ExportSource::new(&subject, Choices::default()).unwrap();
+    let original = Original::new(&evaluator, &source).unwrap();
     let teme = Choices {
         frame: Frame::Teme,
         ..Choices::default()
@@ -198,8 +200,9 @@ fn planted_mistakes_fail() {
 /// The same in the text of a file, as another program would have written it.
 #[test]
 fn a_frame_that_is_misnamed_in_the_file_fails() {
-    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
-    let original = Original::new(&evaluator, &constellation).unwrap();
+    let (evaluator, subject) = (evaluator(), subject(design(), grid()));
+    let source = ExportSource::new(&subject, Choices::default()).unwrap();
+    let original = Original::new(&evaluator, &source).unwrap();
     for (notation, from, to) in [
         (
             oem::OemSyntax::Kvn,
@@ -231,8 +234,9 @@ fn a_frame_that_is_misnamed_in_the_file_fails() {
 
 #[test]
 fn fitted_sets_are_held_against_the_propagated_design() {
-    let (evaluator, constellation) = (evaluator(), Constellation::of_design(design()));
-    let original = Original::new(&evaluator, &constellation).unwrap();
+    let (evaluator, subject) = (evaluator(), subject(design(), grid()));
+    let source = ExportSource::new(&subject, Choices::default()).unwrap();
+    let original = Original::new(&evaluator, &source).unwrap();
     let fit = Choices {
         elements: ElementChoice::Fit,
         ..Choices::default()

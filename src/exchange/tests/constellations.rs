@@ -3,7 +3,9 @@
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::exchange::export::testing::{in_memory, setup, subject, subject_of};
-use crate::exchange::export::{Choices, ExportSubject, Naming, Product, Request, export};
+use crate::exchange::export::{
+    Choices, ExportSource, ExportSubject, Naming, Product, Request, export,
+};
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::manifest::Manifest;
 use crate::exchange::read_back::{Grouping, Original};
@@ -15,7 +17,7 @@ use crate::time::{Epoch, TimeGrid};
 use std::collections::BTreeMap;
 use std::io;
 
-type Files = BTreeMap<String, Vec<u8>>;
+pub(super) type Files = BTreeMap<String, Vec<u8>>;
 
 /// Two shells of different heights, whose satellites are far from each other.
 const HYBRID: &str = "delta:53:8/4/1@1000+star:86.4:6/3/1@600";
@@ -33,7 +35,7 @@ const READ: [Product; 9] = [
     Product::Czml,
 ];
 
-fn grid() -> TimeGrid {
+pub(super) fn grid() -> TimeGrid {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     TimeGrid::new(epoch, 7_200.0, 120.0).unwrap()
 }
@@ -129,7 +131,8 @@ fn hybrids_come_back_by_name_from_every_format() {
 /// The gates of `--check` hold for a constellation in every product that is read back.
 fn passes_its_gates(subject: &ExportSubject, choices: Choices, products: &[Product]) {
     let evaluator = Evaluator::new(setup(subject)).unwrap();
-    let original = Original::new(&evaluator, &subject.constellation).unwrap();
+    let source = ExportSource::new(subject, choices).unwrap();
+    let original = Original::new(&evaluator, &source).unwrap();
     for product in products {
         let files = in_memory(subject, &[*product], choices);
         let mut fleet = read(*product, &files, as_it_is).unwrap();
@@ -158,7 +161,7 @@ fn hybrids_pass_the_gates_of_their_digits() {
 }
 
 /// Satellites of a file that another program could have written.
-fn of_file(name: &str, bytes: &[u8]) -> Constellation {
+pub(super) fn of_file(name: &str, bytes: &[u8]) -> Constellation {
     let imported = Fleet::read(bytes, None, Some(name)).unwrap();
     Constellation::of_files(FileSatellites {
         names: vec![name.to_owned()],
@@ -180,7 +183,7 @@ fn star(product: Product, path: &str) -> Vec<u8> {
     files.remove(path).unwrap()
 }
 
-fn exported(constellation: Constellation, product: Product) -> (Manifest, Files) {
+pub(super) fn exported(constellation: Constellation, product: Product) -> (Manifest, Files) {
     in_memory(
         &subject_of(constellation, grid()),
         &[product],

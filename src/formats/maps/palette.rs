@@ -3,8 +3,8 @@
 
 use super::scene::group_colour;
 use crate::constellation::{Slot, shell_letters};
-use crate::earth::MU_KM3_S2;
 use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
+use crate::orbit::kepler;
 use std::f64::consts::TAU;
 
 /// The groups of a constellation.
@@ -18,8 +18,7 @@ pub(crate) struct Palette {
 impl Palette {
     pub(crate) fn of(ephemeris: &Ephemeris) -> Self {
         let shells = ephemeris.shells();
-        let in_shells: usize = shells.iter().map(|span| span.shell.satellite_count()).sum();
-        let has_others = ephemeris.satellites().len() > in_shells;
+        let has_others = !ephemeris.outside_shells().is_empty();
         Self {
             planes: match shells {
                 [only] if !has_others => Some(only.shell.planes()),
@@ -91,16 +90,13 @@ pub(crate) fn period_s(
         let elements = span.shell.elements(slot);
         return Ok(Some(TAU / elements.kepler_mean_motion_rad_s()));
     }
-    let state = ephemeris.state(satellite, 0.0)?;
-    let speed2 = state.velocity_km_s.norm_squared();
-    let a_km = 1.0 / (2.0 / state.position_km.km().norm() - speed2 / MU_KM3_S2);
-    let closed = a_km.is_finite() && a_km > 0.0;
-    Ok(closed.then(|| TAU * (a_km.powi(3) / MU_KM3_S2).sqrt()))
+    Ok(kepler::period_s(&ephemeris.state(satellite, 0.0)?))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ephemeris::testing::files_between_shells;
     use crate::orbit::Model;
     use crate::time::{Epoch, TimeGrid};
 
@@ -108,6 +104,14 @@ mod tests {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
         Palette::of(&Ephemeris::of_design(&design.parse().unwrap(), Model::J2, grid).unwrap())
+    }
+
+    #[test]
+    fn satellites_outside_shells_are_a_group_wherever_they_are() {
+        let palette = Palette::of(&files_between_shells());
+        let names: Vec<String> = palette.groups().into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["shellA", "shellB", "others"]);
+        assert_eq!(palette.colour(None), palette.groups()[2].1);
     }
 
     #[test]

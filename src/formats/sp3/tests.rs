@@ -23,7 +23,7 @@ fn written(ephemeris: &Ephemeris, version: Sp3Version, letter: char) -> Result<S
         creation: epoch,
         frame: Frame::EarthFixed,
         time_system: TimeSystem::Gps,
-        theory: Theory::EphemerisSatellite(Model::J2),
+        theory: Theory::Propagated(Model::J2),
         subject: vec!["Design: delta:55:20/5/1@925".to_owned()],
         frame_note: None,
         from_files: false,

@@ -43,7 +43,7 @@ fn written(frame: Frame, step_s: f64) -> String {
         creation: epoch,
         frame,
         time_system: TimeSystem::Utc,
-        theory: Theory::EphemerisSatellite(Model::J2),
+        theory: Theory::Propagated(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
         frame_note: None,
         from_files: false,

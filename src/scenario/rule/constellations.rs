@@ -6,7 +6,7 @@ use super::{Node, Reading, Rule, SectionTable};
 use crate::constellation::{Design, NotationError};
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
-use crate::scenario::source::printable;
+use crate::scenario::source::blanked;
 use crate::scenario::values::{ConstellationParts, NamedConstellation};
 
 /// Longest name in bytes, since it becomes the name of a folder and the head of a column.
@@ -116,7 +116,7 @@ fn check_name(name: &str, node: &Node<'_>, reading: &mut Reading<'_>) -> bool {
     let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
     let is_name = (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(allowed);
     if !is_name {
-        let found: String = printable(name).take(LONGEST_NAME).collect();
+        let found: String = blanked(name).take(LONGEST_NAME).collect();
         let fault = Fault::NotAccepted {
             found: format!("the name {found:?}"),
             accepted: Constellations::accepted_name(),

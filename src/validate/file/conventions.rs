@@ -62,25 +62,29 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    /// The mean excess of the radii at the first samples, before anything has drifted, taken as an
-    /// excess of the semi-major axis; zero if some object is not near a slot.
+    /// The mean excess of the radii at the first samples, before anything has drifted, each taken as an
+    /// excess of the semi-major axis of its own shell; zero if no object is near a slot.
     fn to(reference: &ReferenceConstellation<'_>, tracks: &[Track]) -> Result<Self, ValidateError> {
         let ours = &reference.ephemeris;
         let matching = Matching::of(&reference.reach_km, ours, tracks);
         let pairs = matching.pairs(tracks);
-        let orbits = reference.shells.iter().map(Subject::orbit);
-        let largest_km = orbits
-            .map(|orbit| orbit.semi_major_axis_km)
-            .fold(0.0, f64::max);
-        let mut sum = 0.0;
+        let axes_km: Vec<f64> = reference
+            .shells
+            .iter()
+            .flat_map(|one| {
+                let a_km = one.orbit().semi_major_axis_km;
+                std::iter::repeat_n(a_km, one.shell.satellite_count())
+            })
+            .collect();
+        let mut sum_km = 0.0;
         for (slot, track) in &pairs {
             if let Some((elapsed_s, theirs)) = track.at(0.0) {
                 let own = ours.state(&ours.satellites()[*slot], elapsed_s)?;
-                sum += theirs.position_km.norm() / own.position_km.norm() - 1.0;
+                let excess = theirs.position_km.norm() / own.position_km.norm() - 1.0;
+                sum_km += excess * axes_km[*slot];
             }
         }
-        let mean = sum / pairs.len().max(1) as f64;
-        let offset_km = mean * largest_km;
+        let offset_km = sum_km / pairs.len().max(1) as f64;
         let radius_offset_km = (offset_km / RADIUS_DIGIT_KM).round() * RADIUS_DIGIT_KM;
         Ok(Self { radius_offset_km })
     }

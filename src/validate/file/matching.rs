@@ -42,7 +42,7 @@ impl Matching {
         })
     }
 
-    /// Nearest pairs first, as long as they are closer than half the distance to the next slot.
+    /// Nearest pairs first, as long as they are within reach of each other in position and velocity.
     fn by_place(reach_km: &[f64], ours: &Ephemeris, tracks: &[Track]) -> Self {
         let mut pairs = Vec::new();
         for (object, track) in tracks.iter().enumerate() {

@@ -2,10 +2,10 @@
 
 use super::matching::apart_km;
 use crate::constellation::Design;
-use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::ephemeris::{Ephemeris, EphemerisError, EphemerisSatellite};
 use crate::evaluate::Evaluator;
 use crate::frames::{State, Teme};
-use crate::orbit::MeanElements;
+use crate::orbit::kepler;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::Subject;
 use std::f64::consts::TAU;
@@ -23,6 +23,8 @@ pub struct ReferenceConstellation<'a> {
     pub(super) reach_km: Vec<f64>,
     /// The shortest orbital period, seconds.
     pub(super) shortest_period_s: f64,
+    /// The first satellite that has no state at a sample, and that instant.
+    pub(super) first_gap: Option<(String, Epoch)>,
 }
 
 impl<'a> ReferenceConstellation<'a> {
@@ -61,6 +63,7 @@ impl<'a> ReferenceConstellation<'a> {
             reach_km,
             shortest_period_s: periods.fold(f64::INFINITY, f64::min),
             shells,
+            first_gap: None,
         })
     }
 
@@ -73,10 +76,14 @@ impl<'a> ReferenceConstellation<'a> {
         evaluator: &'a Evaluator,
     ) -> Result<Self, EphemerisError> {
         let mut states = Vec::new();
+        let mut first_gap = None;
         for satellite in ephemeris.satellites() {
-            states.push(first_state(&ephemeris, satellite)?);
+            let first = FirstSamples::of(&ephemeris, satellite)?;
+            let gap = first.gap.map(|at| (satellite.name.clone(), at));
+            first_gap = first_gap.or(gap);
+            states.push(first.state);
         }
-        let periods = states.iter().flatten().filter_map(period_s);
+        let periods = states.iter().flatten().filter_map(kepler::period_s);
         let shortest_period_s = periods.fold(f64::INFINITY, f64::min);
         Ok(Self {
             evaluator,
@@ -84,22 +91,8 @@ impl<'a> ReferenceConstellation<'a> {
             ephemeris,
             shells: Vec::new(),
             shortest_period_s,
+            first_gap,
         })
-    }
-
-    /// Whether a satellite has no state at some sample.
-    pub(super) fn has_gaps(&self) -> Result<bool, EphemerisError> {
-        if !self.shells.is_empty() {
-            return Ok(false);
-        }
-        for satellite in self.ephemeris.satellites() {
-            for elapsed_s in self.grid().iter() {
-                if self.ephemeris.state_or_gap(satellite, elapsed_s)?.is_none() {
-                    return Ok(true);
-                }
-            }
-        }
-        Ok(false)
     }
 
     pub(super) fn grid(&self) -> TimeGrid {
@@ -111,32 +104,27 @@ impl<'a> ReferenceConstellation<'a> {
     }
 }
 
-/// The first state that a satellite has on the grid.
-fn first_state(
-    ephemeris: &Ephemeris,
-    satellite: &crate::ephemeris::EphemerisSatellite,
-) -> Result<Option<State<Teme>>, EphemerisError> {
-    for elapsed_s in ephemeris.grid().iter() {
-        if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {
-            return Ok(Some(state));
-        }
-    }
-    Ok(None)
+/// The first state of a satellite on the grid, and the first sample without one.
+#[derive(Default)]
+struct FirstSamples {
+    state: Option<State<Teme>>,
+    gap: Option<Epoch>,
 }
 
-/// The period of the osculating orbit; `None` for an open one.
-fn period_s(state: &State<Teme>) -> Option<f64> {
-    let radius_km = state.position_km.norm();
-    let per_axis = 2.0 / radius_km - state.velocity_km_s.norm_squared() / crate::earth::MU_KM3_S2;
-    let orbit = MeanElements {
-        semi_major_axis_km: 1.0 / per_axis,
-        eccentricity: 0.0,
-        inclination_rad: 0.0,
-        raan_rad: 0.0,
-        arg_perigee_rad: 0.0,
-        mean_anomaly_rad: 0.0,
-    };
-    (per_axis > 0.0).then(|| TAU / orbit.kepler_mean_motion_rad_s())
+impl FirstSamples {
+    fn of(ephemeris: &Ephemeris, satellite: &EphemerisSatellite) -> Result<Self, EphemerisError> {
+        let mut first = Self::default();
+        for elapsed_s in ephemeris.grid().iter() {
+            match ephemeris.state_or_gap(satellite, elapsed_s)? {
+                None => {
+                    let at = || ephemeris.grid().epoch().plus_seconds(elapsed_s);
+                    first.gap = first.gap.or_else(|| Some(at()));
+                }
+                found => first.state = first.state.or(found),
+            }
+        }
+        Ok(first)
+    }
 }
 
 /// For each satellite, a third of the distance to the nearest other one, which may cross it on another course.

@@ -5,8 +5,8 @@ use crate::evaluate::Evaluator;
 use crate::exchange::export::testing::{in_memory, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::formats::trajectory::Trajectory;
-use crate::frames::{Frame, Position, from_teme};
-use crate::orbit::Model;
+use crate::frames::{Frame, Position, State, Teme, from_teme};
+use crate::orbit::{Model, PropagationError};
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::{Outcome, Subject, testing};
 
@@ -50,6 +50,22 @@ fn propagated(convention: &str) -> Vec<Comparand> {
             Comparand::States(Trajectory::of_states(&name, &name, Frame::Teme, states))
         })
         .collect()
+}
+
+/// Satellites as a file of TEME states has them.
+fn sampled(ephemeris: &Ephemeris) -> Vec<Comparand> {
+    let one = |satellite: &EphemerisSatellite| {
+        let states = ephemeris.states(satellite).map(|sample| {
+            let (t, state) = sample.unwrap();
+            (
+                epoch().plus_seconds(t),
+                from_teme(state, Frame::Teme, epoch(), t),
+            )
+        });
+        let (name, states) = (&satellite.name, states.collect());
+        Comparand::States(Trajectory::of_states(name, name, Frame::Teme, states))
+    };
+    ephemeris.satellites().iter().map(one).collect()
 }
 
 fn renamed(mut comparands: Vec<Comparand>) -> Vec<Comparand> {
@@ -215,6 +231,57 @@ fn a_design_of_two_shells_is_compared_as_a_whole() {
     assert_eq!(missing.files[0].unmatched_slots, ["NW-A-P01-S01"]);
 }
 
+/// Altitudes of both shells measured from 6371 km: the offset is that of each shell, not scaled by the higher orbit.
+#[test]
+fn a_radius_is_fitted_to_shells_of_different_heights() {
+    let evaluator = evaluator();
+    let design: Design = "delta:54.6:24/4/1@500+star:87:12/3/1@2000".parse().unwrap();
+    let expected = ReferenceConstellation::of_design(&design, &evaluator).unwrap();
+    let lower = "delta:54.6:24/4/1@492.863+star:87:12/3/1@1992.863";
+    let lower = Ephemeris::of_design(&lower.parse().unwrap(), Model::J2, grid()).unwrap();
+    let found = against_file(&expected, "test", &sampled(&lower)).unwrap();
+    let explanation = found.files[0].explanation.as_ref().unwrap();
+    assert_eq!(
+        explanation.meaning,
+        "altitudes measured from a radius of 6371.0000 km (fitted)"
+    );
+}
+
+/// Metrics are not compared across a gap of the constellation, and a note says so.
+#[test]
+fn a_gap_of_the_constellation_is_noted() {
+    struct Gap(Box<dyn Propagator>);
+    impl Propagator for Gap {
+        fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
+            match elapsed_s {
+                600.0 | 900.0 => Err(PropagationError::NotSampled { elapsed_s }),
+                _ => self.0.state_at(elapsed_s),
+            }
+        }
+    }
+    let evaluator = evaluator();
+    let satellites = || Ephemeris::of_design(&design().into(), Model::J2, grid()).unwrap();
+    let objects = renamed(sampled(&satellites()));
+    let found = |with_gap: bool| {
+        let mut satellites = satellites().into_satellites();
+        if with_gap {
+            let last = satellites.pop().unwrap();
+            satellites.push(EphemerisSatellite {
+                propagator: Box::new(Gap(last.propagator)),
+                ..last
+            });
+        }
+        let ours = Ephemeris::new(grid(), satellites);
+        let expected = ReferenceConstellation::of_satellites(ours, &evaluator).unwrap();
+        let found = against_file(&expected, "test", &objects).unwrap();
+        let is_metric = |check: &Check| check.name.ends_with("mean-visible");
+        (found.checks.iter().any(is_metric), found.notes)
+    };
+    assert_eq!(found(false), (true, Vec::new()));
+    let note = "file/test: metrics are not compared: NW-P05-S04 of the constellation has no state at 2025-01-01T00:10:00Z";
+    assert_eq!(found(true), (false, vec![note.to_owned()]));
+}
+
 /// Satellites of a file against those of another: the same ones agree, and one moved to another place does not.
 #[test]
 fn satellites_from_files_are_compared_with_other_files() {
@@ -242,19 +309,7 @@ fn crossing_satellites_of_a_file_are_not_misplaced() {
     };
     let expected = ReferenceConstellation::of_satellites(crossing(925.0), &evaluator).unwrap();
     let others = crossing(925.003);
-    let one = |satellite: &EphemerisSatellite| {
-        let states = others.states(satellite).map(|sample| {
-            let (t, state) = sample.unwrap();
-            (
-                epoch().plus_seconds(t),
-                from_teme(state, Frame::Teme, epoch(), t),
-            )
-        });
-        let (name, states) = (&satellite.name, states.collect());
-        Comparand::States(Trajectory::of_states(name, name, Frame::Teme, states))
-    };
-    let objects: Vec<_> = others.satellites().iter().map(one).collect();
-    let found = against_file(&expected, "test", &objects).unwrap();
+    let found = against_file(&expected, "test", &sampled(&others)).unwrap();
     assert!(found.passed(), "{:#?}", found.checks);
 }
 

@@ -3,6 +3,7 @@
 use crate::cli::args::EvaluateArgs;
 use crate::cli::files::{self, StagedDirectory};
 use crate::cli::study::Study;
+use crate::constellation::identity::UniqueTexts;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
@@ -100,18 +101,10 @@ fn own(directory: &Path) -> BTreeSet<String> {
 /// A folder for each name: without characters that some file systems refuse, and no two alike, whatever the
 /// case.
 fn folders<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut taken = BTreeSet::new();
-    let mut folder = |name: &str| {
-        let safe = safe(name);
-        let mut unique = safe.clone();
-        let mut number = 1;
-        while !taken.insert(unique.to_lowercase()) {
-            number += 1;
-            unique = format!("{safe}-{number}");
-        }
-        unique
-    };
-    names.map(&mut folder).collect()
+    let mut folders = UniqueTexts::default();
+    names
+        .map(|name| folders.take_by(safe(name), "-", str::to_lowercase))
+        .collect()
 }
 
 fn safe(name: &str) -> String {

@@ -90,7 +90,7 @@ fn metadata(frame: Frame, time_system: TimeSystem) -> Metadata {
         creation: ephemeris(60.0).grid().epoch(),
         frame,
         time_system,
-        theory: Theory::EphemerisSatellite(Model::J2),
+        theory: Theory::Propagated(Model::J2),
         subject: vec!["Design: delta:55:6/3/1@925".to_owned()],
         frame_note: None,
         from_files: false,

@@ -100,7 +100,7 @@ fn written(frame: Frame, design: &str) -> (MeanElements, Opm) {
         creation: epoch,
         frame,
         time_system: TimeSystem::Tai,
-        theory: Theory::EphemerisSatellite(Model::J2),
+        theory: Theory::Propagated(Model::J2),
         subject: vec!["Design".to_owned()],
         frame_note: None,
         from_files: false,

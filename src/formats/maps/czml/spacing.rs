@@ -25,6 +25,14 @@ pub(super) struct Spacing {
     pub(super) error_km: f64,
 }
 
+impl Spacing {
+    /// Of nothing that was measured.
+    const UNKNOWN: Self = Self {
+        step_s: SPACINGS_S[0],
+        error_km: f64::INFINITY,
+    };
+}
+
 /// The span that is shown.
 pub(super) struct ShownSpan {
     pub(super) start: String,
@@ -41,13 +49,13 @@ impl ShownSpan {
         ephemeris: &Ephemeris,
     ) -> Result<Vec<Spacing>, EphemerisError> {
         let satellites = ephemeris.satellites();
-        let mut spacings = Vec::with_capacity(satellites.len());
+        let mut spacings = vec![Spacing::UNKNOWN; satellites.len()];
         for span in ephemeris.shells() {
-            let found = self.spacing(sampled, &satellites[span.first])?;
-            spacings.extend(std::iter::repeat_n(found, span.shell.satellite_count()));
+            spacings[span.places()].fill(self.spacing(sampled, &satellites[span.first])?);
         }
-        let others = &satellites[spacings.len()..];
-        let found = others.par_iter().map(|one| self.spacing(sampled, one));
+        let others = ephemeris.outside_shells();
+        let found = others.par_iter();
+        let found = found.map(|place| self.spacing(sampled, &satellites[*place]));
         let found: Vec<Spacing> = found.collect::<Result<_, _>>()?;
         let narrowest = found.into_iter().reduce(|one, other| {
             if other.step_s < one.step_s {
@@ -56,11 +64,9 @@ impl ShownSpan {
                 one
             }
         });
-        spacings.extend(
-            narrowest
-                .into_iter()
-                .flat_map(|one| std::iter::repeat_n(one, others.len())),
-        );
+        for (place, narrowest) in others.into_iter().zip(narrowest.into_iter().cycle()) {
+            spacings[place] = narrowest;
+        }
         Ok(spacings)
     }
 
@@ -80,10 +86,7 @@ impl ShownSpan {
                 break;
             }
         }
-        Ok(best.unwrap_or(Spacing {
-            step_s: SPACINGS_S[0],
-            error_km: f64::INFINITY,
-        }))
+        Ok(best.unwrap_or(Spacing::UNKNOWN))
     }
 
     /// Largest distance between the polynomial and the model halfway between samples, km. Where states end at the
@@ -131,5 +134,32 @@ impl ShownSpan {
             nodes.push((last_s, sampled.state(propagated, last_s)?));
         }
         Ok(nodes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ephemeris::testing::files_between_shells;
+
+    /// Each satellite has the spacing of its own orbit, whatever is before it.
+    #[test]
+    fn spacings_are_those_of_the_own_orbit() {
+        let mixed = files_between_shells();
+        let sampled = Sampled::new(&mixed, EarthFixed);
+        let span = ShownSpan {
+            start: String::new(),
+            end: String::new(),
+            span_s: 7_200.0,
+        };
+        let found = span.spacings(&sampled, &mixed).unwrap();
+        let errors: Vec<f64> = found.iter().map(|one| one.error_km).collect();
+        let of = |place: usize| {
+            let own = span.spacing(&sampled, &mixed.satellites()[place]);
+            own.unwrap().error_km
+        };
+        let (low, file, high) = (of(0), errors[2], of(4));
+        assert!(low != high && [2, 3].map(of).contains(&file));
+        assert_eq!(errors, [low, low, file, file, high, high, high, high]);
     }
 }

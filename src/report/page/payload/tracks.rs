@@ -1,6 +1,6 @@
 //! Positions of satellites that are not in a shell, for the globe: samples between which the page interpolates.
 
-use crate::ephemeris::{Ephemeris, ShellSpan};
+use crate::ephemeris::Ephemeris;
 use crate::report::page::pack::Packed;
 use crate::units::SECONDS_PER_HOUR;
 use serde::Serialize;
@@ -33,12 +33,7 @@ pub(super) struct Tracks {
 impl Tracks {
     /// `None` if every satellite is in a shell, whose elements are enough.
     pub(super) fn new(ephemeris: &Ephemeris) -> Option<Self> {
-        let in_shells: usize = ephemeris
-            .shells()
-            .iter()
-            .map(|span: &ShellSpan| span.places().len())
-            .sum();
-        let others = &ephemeris.satellites()[in_shells..];
+        let others = ephemeris.outside_shells();
         if others.is_empty() {
             return None;
         }
@@ -46,6 +41,7 @@ impl Tracks {
         let span_s = grid.step_s() * grid.len().saturating_sub(1) as f64;
         let plan = Thinning::new(others.len(), span_s);
         let drawn = others.iter().step_by(plan.stride);
+        let drawn = drawn.map(|place| &ephemeris.satellites()[*place]);
         let positions = drawn.flat_map(|satellite| {
             (0..plan.instants).flat_map(move |n| {
                 let state = ephemeris.state_or_gap(satellite, plan.step_s * n as f64);
@@ -115,6 +111,21 @@ impl Thinning {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ephemeris::testing::files_between_shells;
+
+    /// Those in shells are drawn from their elements.
+    #[test]
+    fn only_satellites_outside_shells_are_sampled() {
+        let mixed = files_between_shells();
+        let tracks = Tracks::new(&mixed).unwrap();
+        let expected = mixed.satellites()[2..4].iter().flat_map(|satellite| {
+            let states = (0..tracks.instants).map(|n| mixed.state(satellite, 300.0 * n as f64));
+            states.flat_map(|state| state.unwrap().position_km.km().data.0[0].map(Some))
+        });
+        let expected = Packed::new(expected);
+        let json = |packed: &Packed| serde_json::to_string(packed).unwrap();
+        assert_eq!(json(&tracks.positions_km), json(&expected));
+    }
 
     #[test]
     fn what_does_not_fit_is_thinned_and_said_to_be() {
