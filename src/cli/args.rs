@@ -185,6 +185,15 @@ pub(crate) enum Command {
     },
 }
 
+/// A word of a command line as a shell takes it.
+pub(crate) fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%\\".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
 /// The study to work on.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
@@ -201,6 +210,16 @@ impl StudyArgs {
     /// The named scenario, or the paper's.
     pub(crate) fn name(&self) -> &str {
         self.scenario.as_deref().unwrap_or("paper")
+    }
+
+    /// The same arguments for a command that is proposed.
+    pub(crate) fn words(&self) -> String {
+        let name = std::iter::once(quoted(self.name()));
+        let overrides = self
+            .overrides
+            .iter()
+            .map(|one| format!("--set {}", quoted(one)));
+        name.chain(overrides).collect::<Vec<_>>().join(" ")
     }
 }
 

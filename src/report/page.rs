@@ -123,7 +123,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let members = &page.run.front;
     let designs: Vec<Design> = places
         .iter()
-        .filter_map(|&n| members[n].design.design())
+        .filter_map(|&n| members[n].only_design())
         .collect();
     let profiles = match page.evaluator {
         Some(evaluator) => Profile::of_designs(evaluator, &designs),
@@ -177,7 +177,7 @@ fn of_compared(page: &Page<'_>) -> Vec<Option<Profile>> {
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
     let propagated: Vec<usize> = (0..members.len())
-        .filter(|&n| members[n].design.design().is_some())
+        .filter(|&n| members[n].only_design().is_some())
         .collect();
     let count = page.most_cuts().min(propagated.len());
     if count == 0 {

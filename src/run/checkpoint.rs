@@ -167,7 +167,8 @@ fn read_log(header: &CheckpointHeader, log: &[u8]) -> Option<Vec<Record>> {
     is_whole.then_some(records)
 }
 
-pub(super) fn hex_sha256(bytes: &[u8]) -> String {
+/// SHA-256, hex.
+pub(crate) fn hex_sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 

@@ -47,7 +47,7 @@ impl MemberPick {
                 let Some(place) = front.iter().position(is_it) else {
                     bail!("cannot pick {name}: expected {}", expected(front));
                 };
-                let reason = "the design with this name".to_owned();
+                let reason = "the constellation with this name".to_owned();
                 Ok(Picked { place, reason })
             }
         }
