@@ -414,3 +414,30 @@ pub(crate) struct LintArgs {
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: OutputFormat,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_proposed_command_can_be_pasted() {
+        let study = StudyArgs {
+            scenario: Some("my study.toml".to_owned()),
+            overrides: ["time.step-s=60", "gnss.files=['a b.tle']"]
+                .map(str::to_owned)
+                .to_vec(),
+        };
+        assert_eq!(
+            study.words(),
+            "'my study.toml' --set time.step-s=60 --set 'gnss.files=['\\''a b.tle'\\'']'"
+        );
+        assert_eq!(
+            quoted("delta:55:4/2/1@925,e=0.01"),
+            "delta:55:4/2/1@925,e=0.01"
+        );
+        assert_eq!(
+            (quoted(""), quoted("$(x)")),
+            ("''".to_owned(), "'$(x)'".to_owned())
+        );
+    }
+}

@@ -381,4 +381,49 @@ mod tests {
             assert_eq!(found.text, text, "{argument}");
         }
     }
+
+    #[test]
+    fn what_is_mistaken_for_a_design_or_a_name_is_said() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let study = study(directory.path());
+        let error = |text: &str| {
+            let error = resolve(&designs(&[text]), &study).unwrap_err();
+            format!("{error:#}")
+        };
+        let file = directory
+            .path()
+            .join("a.csv")
+            .to_string_lossy()
+            .into_owned();
+        assert_eq!(
+            error(&file),
+            format!("--design {file}: this is a file; give it as --constellation {file}")
+        );
+        assert!(error(&format!("x={file}")).ends_with(&format!("--constellation x={file}")));
+        assert_eq!(error("x="), "--design x=: no notation is given");
+        let long = "n".repeat(65);
+        for name in ["a b", "é", long.as_str()] {
+            let told = error(&format!("{name}=delta:55:4/2/1@925"));
+            let expected =
+                format!("'{name}' is not a name, expected a name of letters, digits, '-' and '_'");
+            assert!(told.contains(&expected), "{told}");
+        }
+        let twice = error("delta:55:4/2/1@925,e=0,e=0");
+        assert!(twice.ends_with("option e is given twice"), "{twice}");
+        let files = ConstellationArgs {
+            constellation: vec!["a b=c.tle".parse().unwrap()],
+            ..designs(&[])
+        };
+        let told = format!("{:#}", resolve(&files, &study).unwrap_err());
+        assert!(
+            told.contains("there is no such file, and 'a b' is not a name"),
+            "{told}"
+        );
+        let empty = ConstellationArgs {
+            constellation: vec!["x=".parse().unwrap()],
+            ..designs(&[])
+        };
+        let told = format!("{:#}", resolve(&empty, &study).unwrap_err());
+        assert_eq!(told, "--constellation x=: no file is given");
+    }
 }

@@ -445,7 +445,7 @@ mod tests {
             .map(|m| (m.seed, m.member.index, m.member.made_of()))
             .collect();
         // A is in both, C dominates B.
-        assert_eq!(joint, [(4, 1, A), (5, 2, C)]);
+        assert_eq!(joint, [(4, 1, A.to_owned()), (5, 2, C.to_owned())]);
         assert_eq!(
             seeds.joint_front.iter().filter(|m| m.member.chosen).count(),
             1

@@ -11,6 +11,7 @@ mod exports;
 mod fire;
 mod flags;
 mod gallery;
+mod given_runs;
 mod hostile;
 mod interchange;
 mod keys;

@@ -143,13 +143,13 @@ struct Budget {
     rms_km: [f64; 3],
 }
 
-/// Approximate bytes of the page for the cuts of one design.
-pub(super) fn cut_bytes(epochs: usize, points: usize) -> usize {
+/// Approximate bytes of the page for the cuts of one design of this many satellites, but for positions.
+pub(super) fn cut_bytes(epochs: usize, points: usize, satellites: usize) -> usize {
     let numbers = SERIES.len() * epochs.min(MOST_EPOCHS)
         + MAPS.len() * points
         + (SERIES.len() + 1) * drawn_levels().len();
     // Two bytes each, in base64, and the names.
-    numbers * 2 * 4 / 3 + 2500
+    (numbers + satellites) * 2 * 4 / 3 + 2500
 }
 
 impl Payload {
@@ -214,7 +214,7 @@ impl Beside {
         let setup = page.evaluator.map(|evaluator| evaluator.setup());
         let cuts = setup.zip(profile).map(|(setup, profile)| {
             let cuts = Cuts {
-                tracks: Tracks::new(&one.ephemeris),
+                tracks: Tracks::new(&one.ephemeris, page.track_bytes()),
                 ..Cuts::new(profile)
             };
             match &one.constellation.design {
