@@ -147,7 +147,7 @@ impl Run {
         run
     }
 
-    /// Whether its designs were given, and not found by a search.
+    /// Whether its constellations were given, and not found by a search.
     #[must_use]
     pub fn is_of_given(&self) -> bool {
         let search = self.search.as_ref();

@@ -58,13 +58,13 @@ impl Named {
 }
 
 /// A constellation that is given, and where its satellites come from.
-pub(crate) struct Given {
+pub(crate) struct GivenConstellation {
     pub(crate) constellation: Constellation,
-    pub(crate) source: Source,
+    pub(crate) source: ConstellationSource,
 }
 
 /// Where the satellites of a constellation come from.
-pub(crate) enum Source {
+pub(crate) enum ConstellationSource {
     /// A notation.
     Notation,
     /// The scenario, under this name.
@@ -131,7 +131,7 @@ pub(crate) fn resolve_given(
     args: &ConstellationArgs,
     study: &Study,
     with_contents: bool,
-) -> Result<Vec<Given>> {
+) -> Result<Vec<GivenConstellation>> {
     let mut found = Vec::new();
     for given in &args.design {
         found.push(of_notation(given, study)?.named_as(given));
@@ -180,7 +180,7 @@ pub(crate) fn warn_of_files(one: &Constellation, grid: TimeGrid) {
     }
 }
 
-impl Given {
+impl GivenConstellation {
     fn named_as(self, given: &Named) -> Self {
         let constellation = match &given.name {
             Some(name) => self.constellation.named(name.clone()),
@@ -194,12 +194,12 @@ impl Given {
 }
 
 /// A constellation by its name in the scenario, or a design by its notation.
-fn of_notation(given: &Named, study: &Study) -> Result<Given> {
+fn of_notation(given: &Named, study: &Study) -> Result<GivenConstellation> {
     let text = &given.text;
     if let Some(named) = study.scenario.constellation(text) {
-        return Ok(Given {
+        return Ok(GivenConstellation {
             constellation: study.constellation(named)?,
-            source: Source::Scenario(named.name.clone()),
+            source: ConstellationSource::Scenario(named.name.clone()),
         });
     }
     let argument = given.argument();
@@ -217,9 +217,9 @@ fn of_notation(given: &Named, study: &Study) -> Result<Given> {
         );
     }
     let design = design.with_context(|| format!("--design {argument}"))?;
-    Ok(Given {
+    Ok(GivenConstellation {
         constellation: Constellation::of_design(design),
-        source: Source::Notation,
+        source: ConstellationSource::Notation,
     })
 }
 
@@ -230,16 +230,20 @@ pub(crate) fn of_scenario(study: &Study) -> Result<Vec<Constellation>> {
 }
 
 /// The same as those that are given.
-pub(crate) fn given_by_scenario(study: &Study) -> Result<Vec<Given>> {
-    let given = |constellation: Constellation| Given {
-        source: Source::Scenario(constellation.name.clone()),
+pub(crate) fn given_by_scenario(study: &Study) -> Result<Vec<GivenConstellation>> {
+    let given = |constellation: Constellation| GivenConstellation {
+        source: ConstellationSource::Scenario(constellation.name.clone()),
         constellation,
     };
     Ok(of_scenario(study)?.into_iter().map(given).collect())
 }
 
 /// The satellites of a file or a directory that the arguments select.
-fn of_files(args: &ConstellationArgs, given: &Named, with_contents: bool) -> Result<Given> {
+fn of_files(
+    args: &ConstellationArgs,
+    given: &Named,
+    with_contents: bool,
+) -> Result<GivenConstellation> {
     let path = PathBuf::from(&given.text);
     if given.text.is_empty() {
         bail!("--constellation {}: no file is given", given.argument());
@@ -260,13 +264,13 @@ fn of_files(args: &ConstellationArgs, given: &Named, with_contents: bool) -> Res
     };
     fleet.choose(&args.satellites.filter())?;
     let name = path.file_name().unwrap_or(path.as_os_str());
-    Ok(Given {
+    Ok(GivenConstellation {
         constellation: Constellation::of_files(FileSatellites {
             names: vec![output::shown_path(Path::new(name))],
             formats,
             fleet,
         }),
-        source: Source::Files(contents),
+        source: ConstellationSource::Files(contents),
     })
 }
 

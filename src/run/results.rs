@@ -114,7 +114,7 @@ pub struct ScenarioStamp {
 pub struct FrontMember {
     /// Place in the front from 1, by the first objective; what `--pick N` takes.
     pub index: usize,
-    /// Its name, in a run of given designs; `--pick` takes it too.
+    /// Its name, in a run of given constellations; `--pick` takes it too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// The shells; `None` if all its satellites are from files.
@@ -280,10 +280,10 @@ pub struct SearchSummary {
 }
 
 impl SearchSummary {
-    /// The algorithm of a run of designs that were given, without a search.
+    /// The algorithm of a run of constellations that were given, without a search.
     pub const GIVEN: &str = "given";
 
-    /// Whether the designs were given, and not found by a search: then there is no history.
+    /// Whether the constellations were given, and not found by a search: then there is no history.
     #[must_use]
     pub fn is_of_given(&self) -> bool {
         self.algorithm == Self::GIVEN

@@ -8,7 +8,7 @@ mod single;
 mod table;
 
 use crate::cli::args::EvaluateArgs;
-use crate::cli::constellations::Given;
+use crate::cli::constellations::GivenConstellation;
 use crate::cli::study::Study;
 use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
@@ -82,7 +82,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
 }
 
 /// The constellations given one by one, or else those of the scenario.
-fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<Given>> {
+fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<GivenConstellation>> {
     constellations::require_files(&args.constellations)?;
     if !args.constellations.is_empty() || args.designs.is_some() {
         let with_contents = args.out.is_some();

@@ -1,8 +1,9 @@
 use super::*;
-use crate::evaluate::Evaluator;
+use crate::evaluate::{Evaluator, Setup};
 use crate::keyword::Keyword;
 use crate::time::{Epoch, TimeGrid};
 use crate::validate::testing;
+use crate::visibility::Mask;
 
 #[test]
 fn closed_forms_hold_for_every_pattern() {
@@ -60,7 +61,10 @@ fn a_step_longer_than_a_pass_has_no_gate() {
 fn a_constellation_that_is_never_seen_has_no_relative_difference() {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
     let grid = TimeGrid::new(epoch, 86_400.0, 300.0).unwrap();
-    let evaluator = testing::evaluator_of(Model::J2, grid);
+    let setup = testing::evaluator_of(Model::J2, grid).setup().clone();
+    let mask = Mask::from_degrees(89.0).unwrap();
+    let evaluator = Evaluator::new(Setup { mask, ..setup }).unwrap();
+    // Never over the points, which begin at 5° N.
     let subject = Subject::new("delta:1:4/2/1@200".parse().unwrap(), &evaluator);
     let found = quadrature::checks(&subject).unwrap();
     assert_eq!(found.len(), 1);

@@ -2,7 +2,7 @@
 
 use super::EvaluationContext;
 use crate::cli::args::{EvaluateArgs, quoted};
-use crate::cli::constellations::{Given, Source};
+use crate::cli::constellations::{ConstellationSource, GivenConstellation};
 use crate::cli::run::RunDirectory;
 use crate::cli::study::Study;
 use crate::cli::{files, output};
@@ -29,12 +29,12 @@ impl GivenRun {
     pub(super) fn open(
         args: &EvaluateArgs,
         study: &Study,
-        given: &[Given],
+        given: &[GivenConstellation],
     ) -> Result<Option<Self>> {
         let Some(out) = &args.out else {
             return Ok(None);
         };
-        for Given { constellation, .. } in given {
+        for GivenConstellation { constellation, .. } in given {
             let name = &constellation.name;
             if name.parse::<Pick>().is_ok() {
                 bail!(
@@ -85,18 +85,18 @@ impl GivenRun {
 fn with_files(
     args: &EvaluateArgs,
     study: &Study,
-    given: &[Given],
+    given: &[GivenConstellation],
 ) -> Result<(Study, Vec<Option<String>>)> {
     let mut added: Vec<(NamedConstellation, Vec<Vec<u8>>)> = Vec::new();
     let mut in_scenario = Vec::new();
     for one in given {
         in_scenario.push(match &one.source {
-            Source::Notation => None,
-            Source::Scenario(name) => {
+            ConstellationSource::Notation => None,
+            ConstellationSource::Scenario(name) => {
                 let has_files = one.constellation.files.is_some();
                 has_files.then(|| name.clone())
             }
-            Source::Files(files) => {
+            ConstellationSource::Files(files) => {
                 let is_taken = |name: &str| {
                     let of_scenario = study.scenario.constellation(name).is_some();
                     of_scenario || added.iter().any(|(known, _)| known.name == name)
@@ -144,7 +144,11 @@ fn parts(args: &EvaluateArgs, files: Vec<String>) -> ConstellationParts {
 }
 
 /// A constellation as it identifies the run: its name, what it is made of, and what is in its files.
-fn described(given: &Given, in_scenario: Option<&str>, study: &Study) -> Result<String> {
+fn described(
+    given: &GivenConstellation,
+    in_scenario: Option<&str>,
+    study: &Study,
+) -> Result<String> {
     let one = &given.constellation;
     let described = format!("{} = {}", one.name, one.made_of());
     let named = in_scenario.and_then(|name| study.scenario.constellation(name));
