@@ -4,6 +4,7 @@ mod baseline;
 mod certificate;
 pub mod coastline;
 mod compared;
+mod comparison_columns;
 mod csv;
 mod diagnostics;
 #[cfg(feature = "figures")]
@@ -25,11 +26,12 @@ pub(crate) mod validation;
 
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
+pub use comparison_columns::{ComparisonColumn, comparison_columns};
 pub use csv::{ConstellationColumns, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
-    ConstraintCheck, EvaluateResult, GNSS_ONLY,
+    ConstraintCheck, EvaluateResult,
 };
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,

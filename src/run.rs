@@ -11,8 +11,8 @@ pub(crate) mod tables;
 mod validation;
 
 pub use results::{
-    Certificate, DesignSummary, Diagnostic, FrontMember, Hypervolume, Missed, OptimizeResult,
-    ScenarioStamp, SearchSummary, VolumeAt,
+    Certificate, DesignSummary, Diagnostic, FrontMember, Hypervolume, MemberFiles, Missed,
+    OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]
@@ -147,7 +147,7 @@ impl Run {
         run
     }
 
-    /// Whether its designs were given, and not found by a search.
+    /// Whether its constellations were given, and not found by a search.
     #[must_use]
     pub fn is_of_given(&self) -> bool {
         let search = self.search.as_ref();

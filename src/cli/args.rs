@@ -185,6 +185,15 @@ pub(crate) enum Command {
     },
 }
 
+/// A word of a command line as a shell takes it.
+pub(crate) fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,=+@%\\".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
 /// The study to work on.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct StudyArgs {
@@ -201,6 +210,16 @@ impl StudyArgs {
     /// The named scenario, or the paper's.
     pub(crate) fn name(&self) -> &str {
         self.scenario.as_deref().unwrap_or("paper")
+    }
+
+    /// The same arguments for a command that is proposed.
+    pub(crate) fn words(&self) -> String {
+        let name = std::iter::once(quoted(self.name()));
+        let overrides = self
+            .overrides
+            .iter()
+            .map(|one| format!("--set {}", quoted(one)));
+        name.chain(overrides).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -394,4 +413,31 @@ pub(crate) struct LintArgs {
     /// Output format.
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: OutputFormat,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_proposed_command_can_be_pasted() {
+        let study = StudyArgs {
+            scenario: Some("my study.toml".to_owned()),
+            overrides: ["time.step-s=60", "gnss.files=['a b.tle']"]
+                .map(str::to_owned)
+                .to_vec(),
+        };
+        assert_eq!(
+            study.words(),
+            "'my study.toml' --set time.step-s=60 --set 'gnss.files=['\\''a b.tle'\\'']'"
+        );
+        assert_eq!(
+            quoted("delta:55:4/2/1@925,e=0.01"),
+            "delta:55:4/2/1@925,e=0.01"
+        );
+        assert_eq!(
+            (quoted(""), quoted("$(x)")),
+            ("''".to_owned(), "'$(x)'".to_owned())
+        );
+    }
 }

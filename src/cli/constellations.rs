@@ -1,13 +1,17 @@
 //! The constellations that a command works on, from its arguments.
 
 use crate::cli::args::{ChosenArgs, ConstellationArgs, StudyArgs};
+use crate::cli::read_constellation::FileContents;
 use crate::cli::study::Study;
 use crate::cli::{coincidence, output, read_constellation, run};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
-use crate::exchange::constellation::{Constellation, FileSatellites};
+use crate::exchange::constellation::{
+    Constellation, FileSatellites, GNSS_ONLY, accepted_name, is_name,
+};
 use crate::time::TimeGrid;
 use anyhow::{Context, Result, anyhow, bail};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// An argument that may begin with a name: `NAME=TEXT`.
@@ -23,10 +27,6 @@ impl std::str::FromStr for Named {
     type Err = std::convert::Infallible;
 
     fn from_str(argument: &str) -> Result<Self, Self::Err> {
-        let is_name = |name: &&str| {
-            let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-            !name.is_empty() && name.chars().all(allowed)
-        };
         let named = argument.split_once('=');
         Ok(match named.filter(|(name, _)| is_name(name)) {
             Some((name, text)) => Self {
@@ -39,6 +39,38 @@ impl std::str::FromStr for Named {
             },
         })
     }
+}
+
+impl Named {
+    /// The argument as it was given.
+    fn argument(&self) -> String {
+        match &self.name {
+            Some(name) => format!("{name}={}", self.text),
+            None => self.text.clone(),
+        }
+    }
+
+    /// What is before the first `=` and cannot be a name; a notation has `=` after its first `:` only.
+    fn refused_name(&self) -> Option<&str> {
+        let (head, _) = self.text.split_once('=')?;
+        (self.name.is_none() && !head.contains(':')).then_some(head)
+    }
+}
+
+/// A constellation that is given, and where its satellites come from.
+pub(crate) struct GivenConstellation {
+    pub(crate) constellation: Constellation,
+    pub(crate) source: ConstellationSource,
+}
+
+/// Where the satellites of a constellation come from.
+pub(crate) enum ConstellationSource {
+    /// A notation.
+    Notation,
+    /// The scenario, under this name.
+    Scenario(String),
+    /// Files, with their contents if they are kept.
+    Files(Vec<FileContents>),
 }
 
 impl ConstellationArgs {
@@ -64,9 +96,13 @@ pub(crate) fn study_and_constellations(
             bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, &chosen.pick)?;
-        output::hint(&format!("{picked} of {}: {why}", directory.display()));
-        return Ok((loaded, vec![Constellation::of_design(picked)]));
+        let (picked, why) = run::pick(directory, &loaded, &chosen.pick)?;
+        output::hint(&format!(
+            "{} of {}: {why}",
+            picked.name,
+            directory.display()
+        ));
+        return Ok((loaded, vec![picked]));
     }
     let loaded = Study::load(study, &[])?;
     let mut given = resolve(&chosen.given, &loaded)?;
@@ -86,16 +122,24 @@ pub(crate) fn study_and_constellations(
 
 /// The constellations given on the command line: the designs, then the files, each in its order.
 pub(crate) fn resolve(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constellation>> {
+    let given = resolve_given(args, study, false)?.into_iter();
+    Ok(given.map(|one| one.constellation).collect())
+}
+
+/// The same, with where they come from and, to be kept, the contents of their files.
+pub(crate) fn resolve_given(
+    args: &ConstellationArgs,
+    study: &Study,
+    with_contents: bool,
+) -> Result<Vec<GivenConstellation>> {
     let mut found = Vec::new();
     for given in &args.design {
-        let one = of_notation(&given.text, study)?;
-        found.push(renamed(one, given));
+        found.push(of_notation(given, study)?.named_as(given));
     }
     for given in &args.constellation {
-        let one = of_files(args, &PathBuf::from(&given.text))?;
-        found.push(renamed(one, given));
+        found.push(of_files(args, given, with_contents)?.named_as(given));
     }
-    require_different_names(&found)?;
+    require_different_names(found.iter().map(|one| &one.constellation))?;
     Ok(found)
 }
 
@@ -141,21 +185,47 @@ pub(crate) fn warn_of_files(one: &Constellation, grid: TimeGrid) {
     }
 }
 
-fn renamed(one: Constellation, given: &Named) -> Constellation {
-    match &given.name {
-        Some(name) => one.named(name.clone()),
-        None => one,
+impl GivenConstellation {
+    fn named_as(self, given: &Named) -> Self {
+        let constellation = match &given.name {
+            Some(name) => self.constellation.named(name.clone()),
+            None => self.constellation,
+        };
+        Self {
+            constellation,
+            ..self
+        }
     }
 }
 
 /// A constellation by its name in the scenario, or a design by its notation.
-fn of_notation(text: &str, study: &Study) -> Result<Constellation> {
+fn of_notation(given: &Named, study: &Study) -> Result<GivenConstellation> {
+    let text = &given.text;
     if let Some(named) = study.scenario.constellation(text) {
-        return study.constellation(named);
+        return Ok(GivenConstellation {
+            constellation: study.constellation(named)?,
+            source: ConstellationSource::Scenario(named.name.clone()),
+        });
+    }
+    let argument = given.argument();
+    if text.is_empty() {
+        bail!("--design {argument}: no notation is given");
     }
     let design = study.scenario.design(text);
-    let design = design.with_context(|| format!("--design {text}"))?;
-    Ok(Constellation::of_design(design))
+    if design.is_err() && Path::new(text).exists() {
+        bail!("--design {argument}: this is a file; give it as --constellation {argument}");
+    }
+    if let (Err(_), Some(head)) = (&design, given.refused_name()) {
+        bail!(
+            "--design {argument}: '{head}' is not a name, expected {}",
+            accepted_name()
+        );
+    }
+    let design = design.with_context(|| format!("--design {argument}"))?;
+    Ok(GivenConstellation {
+        constellation: Constellation::of_design(design),
+        source: ConstellationSource::Notation,
+    })
 }
 
 /// The constellations that the scenario names, in its order.
@@ -164,35 +234,63 @@ pub(crate) fn of_scenario(study: &Study) -> Result<Vec<Constellation>> {
     named.map(|one| study.constellation(one)).collect()
 }
 
-/// The satellites of a file or a directory that the arguments select.
-fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
-    let (formats, mut fleet) =
-        read_constellation::read(std::slice::from_ref(path), args.input_format)?;
-    fleet.choose(&args.satellites.filter())?;
-    let name = path.file_name().unwrap_or(path.as_os_str());
-    Ok(Constellation::of_files(FileSatellites {
-        names: vec![output::shown_path(Path::new(name))],
-        formats,
-        fleet,
-    }))
+/// The same as those that are given.
+pub(crate) fn given_by_scenario(study: &Study) -> Result<Vec<GivenConstellation>> {
+    let given = |constellation: Constellation| GivenConstellation {
+        source: ConstellationSource::Scenario(constellation.name.clone()),
+        constellation,
+    };
+    Ok(of_scenario(study)?.into_iter().map(given).collect())
 }
 
-/// The name of the GNSS alone in tables.
-const RESERVED: &str = "gnss-only";
+/// The satellites of a file or a directory that the arguments select.
+fn of_files(
+    args: &ConstellationArgs,
+    given: &Named,
+    with_contents: bool,
+) -> Result<GivenConstellation> {
+    let path = PathBuf::from(&given.text);
+    if given.text.is_empty() {
+        bail!("--constellation {}: no file is given", given.argument());
+    }
+    if let Some(head) = given.refused_name().filter(|_| !path.exists()) {
+        bail!(
+            "--constellation {}: there is no such file, and '{head}' is not a name, expected {}",
+            given.argument(),
+            accepted_name()
+        );
+    }
+    let paths = std::slice::from_ref(&path);
+    let (formats, mut fleet, contents) = if with_contents {
+        read_constellation::read_with_contents(paths, args.input_format)?
+    } else {
+        let (formats, fleet) = read_constellation::read(paths, args.input_format)?;
+        (formats, fleet, Vec::new())
+    };
+    fleet.choose(&args.satellites.filter())?;
+    let name = path.file_name().unwrap_or(path.as_os_str());
+    Ok(GivenConstellation {
+        constellation: Constellation::of_files(FileSatellites {
+            names: vec![output::shown_path(Path::new(name))],
+            formats,
+            fleet,
+        }),
+        source: ConstellationSource::Files(contents),
+    })
+}
 
 /// Refuses constellations that have the same name, or that of the GNSS alone.
-pub(crate) fn require_different_names(constellations: &[Constellation]) -> Result<()> {
-    for (n, one) in constellations.iter().enumerate() {
-        if one.name == RESERVED {
-            bail!("the name {RESERVED} is that of the GNSS alone in tables; choose another");
+pub(crate) fn require_different_names<'a>(
+    constellations: impl IntoIterator<Item = &'a Constellation>,
+) -> Result<()> {
+    let mut taken = BTreeSet::new();
+    for Constellation { name, .. } in constellations {
+        if name == GNSS_ONLY {
+            bail!("the name {GNSS_ONLY} is that of the GNSS alone in tables; choose another");
         }
-        if constellations[..n]
-            .iter()
-            .any(|other| other.name == one.name)
-        {
+        if !taken.insert(name) {
             bail!(
-                "two constellations are named {}; name them apart, as in --design first=NOTATION or --constellation first=FILE",
-                one.name
+                "two constellations are named {name}; name them apart, as in --design first=NOTATION or --constellation first=FILE"
             );
         }
     }
@@ -291,5 +389,50 @@ mod tests {
             assert_eq!(found.name.as_deref(), name, "{argument}");
             assert_eq!(found.text, text, "{argument}");
         }
+    }
+
+    #[test]
+    fn what_is_mistaken_for_a_design_or_a_name_is_said() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let study = study(directory.path());
+        let error = |text: &str| {
+            let error = resolve(&designs(&[text]), &study).unwrap_err();
+            format!("{error:#}")
+        };
+        let file = directory
+            .path()
+            .join("a.csv")
+            .to_string_lossy()
+            .into_owned();
+        assert_eq!(
+            error(&file),
+            format!("--design {file}: this is a file; give it as --constellation {file}")
+        );
+        assert!(error(&format!("x={file}")).ends_with(&format!("--constellation x={file}")));
+        assert_eq!(error("x="), "--design x=: no notation is given");
+        let long = "n".repeat(65);
+        for name in ["a b", "é", long.as_str()] {
+            let told = error(&format!("{name}=delta:55:4/2/1@925"));
+            let expected =
+                format!("'{name}' is not a name, expected a name of letters, digits, '-' and '_'");
+            assert!(told.contains(&expected), "{told}");
+        }
+        let twice = error("delta:55:4/2/1@925,e=0,e=0");
+        assert!(twice.ends_with("option e is given twice"), "{twice}");
+        let files = ConstellationArgs {
+            constellation: vec!["a b=c.tle".parse().unwrap()],
+            ..designs(&[])
+        };
+        let told = format!("{:#}", resolve(&files, &study).unwrap_err());
+        assert!(
+            told.contains("there is no such file, and 'a b' is not a name"),
+            "{told}"
+        );
+        let empty = ConstellationArgs {
+            constellation: vec!["x=".parse().unwrap()],
+            ..designs(&[])
+        };
+        let told = format!("{:#}", resolve(&empty, &study).unwrap_err());
+        assert_eq!(told, "--constellation x=: no file is given");
     }
 }

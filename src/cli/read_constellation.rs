@@ -1,5 +1,6 @@
 //! Constellations from files.
 
+use crate::cli::files;
 use crate::cli::output::{self, shown_path};
 use crate::exchange::import::{Fleet, Imported, MergedFiles};
 use crate::exchange::lint::Format;
@@ -7,17 +8,50 @@ use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
 use anyhow::{Context, Result, bail};
 use std::fs::{self, File};
-use std::io::BufReader;
+use std::io::{self, BufRead, BufReader, Cursor};
 use std::path::{Path, PathBuf};
 
 /// Maximum number of other files in a directory to list.
 const MOST_NAMES: usize = 5;
 
+/// Opens a file that is read.
+type Opener<'a> = &'a mut dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>>;
+
+/// A file and its contents.
+pub(crate) type FileContents = (PathBuf, Vec<u8>);
+
 /// The satellites of files and directories, in the order of the names, and the formats found.
 pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<Format>, Fleet)> {
+    read_by(&mut open, paths, format)
+}
+
+/// The same, with the contents of the files that were read.
+pub(crate) fn read_with_contents(
+    paths: &[PathBuf],
+    format: Option<Format>,
+) -> Result<(Vec<Format>, Fleet, Vec<FileContents>)> {
+    let mut contents: Vec<FileContents> = Vec::new();
+    let mut keep = |file: &Path| {
+        let bytes = files::read_whole(file)?;
+        contents.push((file.to_owned(), bytes.clone()));
+        Ok(Box::new(Cursor::new(bytes)) as Box<dyn BufRead>)
+    };
+    let (formats, fleet) = read_by(&mut keep, paths, format)?;
+    Ok((formats, fleet, contents))
+}
+
+fn open(file: &Path) -> io::Result<Box<dyn BufRead>> {
+    Ok(Box::new(BufReader::new(File::open(file)?)))
+}
+
+fn read_by(
+    open: Opener<'_>,
+    paths: &[PathBuf],
+    format: Option<Format>,
+) -> Result<(Vec<Format>, Fleet)> {
     let mut merged = MergedFiles::default();
     for path in paths {
-        for (_, imported) in read_each(path, format)? {
+        for (_, imported) in read_each_by(open, path, format)? {
             merged.add(imported);
         }
     }
@@ -27,8 +61,16 @@ pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<For
 /// Imports each file of a path: the file itself, or the constellation files in a directory. A warning lists the
 /// other files in the directory.
 pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(PathBuf, Imported)>> {
+    read_each_by(&mut open, path, format)
+}
+
+fn read_each_by(
+    open: Opener<'_>,
+    path: &Path,
+    format: Option<Format>,
+) -> Result<Vec<(PathBuf, Imported)>> {
     if !path.is_dir() {
-        return Ok(vec![(path.to_owned(), read_one(path, format)?)]);
+        return Ok(vec![(path.to_owned(), read_one(open, path, format)?)]);
     }
     let (files, mut others) = entries(path)?;
     let mut found = Vec::new();
@@ -38,7 +80,7 @@ pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(Path
             None => format_of(&file)?,
         };
         match format {
-            Some(format) => found.push((file.clone(), read_one(&file, Some(format))?)),
+            Some(format) => found.push((file.clone(), read_one(open, &file, Some(format))?)),
             None => others.push(file),
         }
     }
@@ -58,9 +100,9 @@ pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     }
 }
 
-fn read_one(file: &Path, format: Option<Format>) -> Result<Imported> {
-    let read = || -> Result<Imported> {
-        let input = BufReader::new(File::open(file)?);
+fn read_one(open: Opener<'_>, file: &Path, format: Option<Format>) -> Result<Imported> {
+    let mut read = || -> Result<Imported> {
+        let input = open(file)?;
         let name = file.file_name().map(|name| name.to_string_lossy());
         Ok(Fleet::read(input, format, name.as_deref())?)
     };

@@ -4,11 +4,11 @@ use crate::cli::args::MemberPick;
 use crate::cli::interrupt::Removed;
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
-use crate::constellation::Design;
+use crate::exchange::constellation::Constellation;
 use crate::optimize::{Search, Strategy};
 use crate::run::checkpoint::{self, Identity, RecordLog};
 use crate::run::{
-    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, INPUTS, MANIFEST, OptimizeResult,
+    CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
     PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
 };
 use crate::scenario::Scenario;
@@ -160,7 +160,8 @@ impl RunDirectory {
         Self::open_as(path, study, study.identity()?, force)
     }
 
-    /// The same for a run of given designs, which `given` names.
+    /// The same for a run of given constellations, which `given` names. The directory is tried and not touched
+    /// before [`Self::place`].
     pub(crate) fn open_for(
         path: PathBuf,
         study: &Study,
@@ -222,9 +223,13 @@ impl RunDirectory {
         self.begin(&kept)
     }
 
-    /// Puts a directory with what a run begins with in the place, and these entries of the one there.
+    /// Puts a directory with what a run begins with in the place, and these entries of the one there; without a
+    /// search, only tries the place.
     fn begin(&mut self, kept: &[OsString]) -> Result<()> {
         let staged = files::StagedDirectory::new(&self.path)?;
+        if !self.identity.given.is_empty() {
+            return Ok(());
+        }
         files::write_all(staged.path(), &self.first_files)?;
         self.lock = staged.commit_keeping(kept)?;
         Ok(())
@@ -262,11 +267,10 @@ impl RunDirectory {
                 format!("a run by version {theirs}; this is version {ours}")
             }
             Some(found) if found.given != self.identity.given => {
-                let is_search = found.given.is_empty();
-                if is_search {
-                    "a search"
-                } else {
-                    "a run of other designs"
+                match (found.given.as_slice(), self.identity.given.as_slice()) {
+                    ([], _) => "a search",
+                    (_, []) => "constellations evaluated as given, without a search",
+                    _ => "a run of other constellations",
                 }
                 .to_owned()
             }
@@ -390,7 +394,7 @@ impl RunDirectory {
         Ok(Placed::Written)
     }
 
-    /// Writes the results of given designs to a sibling directory and moves it into place.
+    /// Writes the results of given constellations to a sibling directory and moves it into place.
     pub(crate) fn place(&mut self, scenario: &Scenario, result: &OptimizeResult) -> Result<()> {
         let staged = self.staged_results(scenario, result)?;
         self.lock = staged.commit_keeping(&self.others()?)?;
@@ -437,8 +441,12 @@ impl Drop for RunDirectory {
     }
 }
 
-/// The design that `pick` selects from the front of a run, and why.
-pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, String)> {
+/// The constellation that `pick` selects from the front of the run of `study`, and why.
+pub(crate) fn pick(
+    directory: &Path,
+    study: &Study,
+    pick: &MemberPick,
+) -> Result<(Constellation, String)> {
     let path = directory.join(FRONT_JSON);
     let bytes = files::read_run(&path).with_context(|| {
         format!(
@@ -451,6 +459,28 @@ pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, Strin
     let picked = pick
         .apply(&found.front)
         .with_context(|| format!("cannot pick from {}", path.display()))?;
-    let design = found.front[picked.place].design.notation.parse()?;
-    Ok((design, picked.reason))
+    let picked_one = constellation_of(&found.front[picked.place], study)?;
+    Ok((picked_one, picked.reason))
+}
+
+/// The constellation of a member of the run of `study`: its design, or what the scenario of the run has of it.
+pub(crate) fn constellation_of(member: &FrontMember, study: &Study) -> Result<Constellation> {
+    let Some(files) = &member.files else {
+        let design = member.design.as_ref();
+        let design = design.with_context(|| format!("design {} has no notation", member.index))?;
+        return Ok(Constellation::of_design(design.notation.parse()?));
+    };
+    let named = study.scenario.constellation(&files.constellation);
+    let named = named.with_context(|| {
+        format!(
+            "the scenario of the run has no constellation '{}', which its {FRONT_JSON} names",
+            files.constellation
+        )
+    })?;
+    let mut one = study.constellation(named)?;
+    if let Some(of_files) = &mut one.files {
+        of_files.names.clone_from(&files.names);
+    }
+    let name = member.name.clone();
+    Ok(one.named(name.unwrap_or_else(|| files.constellation.clone())))
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::args::{ConstellationArgs, MemberPick, ViewArgs};
 use crate::cli::study::Study;
-use crate::cli::{constellations, files, output};
+use crate::cli::{constellations, files, output, run};
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
 use crate::report::figures::{Baseline, NamedFront};
@@ -23,7 +23,7 @@ pub(crate) struct View {
     pub(crate) run: Run,
     /// The study, if there was no search.
     pub(crate) stamp: Option<ScenarioStamp>,
-    /// The members of a run of given designs, which are shown as constellations: the first of those compared.
+    /// The members of a run of given constellations, which are shown as constellations: the first of those compared.
     pub(crate) given: Vec<FrontMember>,
     /// Text of the scenario, for the provenance.
     pub(crate) scenario_toml: Option<String>,
@@ -190,14 +190,14 @@ fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constella
     Ok(all)
 }
 
-/// What is shown of a run of given designs: these, and the constellations given on the command line.
+/// What is shown of a run of given constellations: these, and the constellations given on the command line.
 fn beside_given(
     members: &[FrontMember],
     args: &ConstellationArgs,
     study: &Study,
 ) -> Result<Vec<Constellation>> {
     let of_member = |member: &FrontMember| -> Result<Constellation> {
-        let one = Constellation::of_design(member.design.notation.parse()?);
+        let one = run::constellation_of(member, study)?;
         Ok(match &member.name {
             Some(name) => one.named(name.clone()),
             None => one,

@@ -6,7 +6,7 @@ use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Setup};
 use crate::exchange::constellation::Constellation;
 use crate::ground::ignored_columns;
-use crate::run::checkpoint::Identity;
+use crate::run::checkpoint::{Identity, hex_sha256};
 use crate::run::inputs::{RunManifest, copy_paths, first_files};
 use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
 use crate::scenario::{
@@ -81,6 +81,33 @@ impl Study {
         let mut other = self.clone();
         other.scenario.optimizer.algorithm = algorithm;
         other
+    }
+
+    /// The same study with further constellations, with the contents of their files.
+    pub(crate) fn with_constellations(
+        &self,
+        added: Vec<(NamedConstellation, Vec<Vec<u8>>)>,
+    ) -> Result<Self> {
+        let mut other = self.clone();
+        let mut contents = self.contents()?.to_vec();
+        for (named, of_files) in added {
+            // The files of constellations are the last of all.
+            other.scenario.constellations.push(named);
+            contents.extend(of_files);
+        }
+        other.contents = OnceCell::from(contents);
+        Ok(other)
+    }
+
+    /// Identifies the satellites from files of a constellation: how they are read, and what is in the files.
+    pub(crate) fn digest_of_files(&self, named: &NamedConstellation) -> Result<String> {
+        let parts = &named.parts;
+        let mut text = format!("{:?}", (parts.input_format, &parts.only, &parts.exclude));
+        let contents = self.contents()?;
+        for file in &parts.files {
+            text += &hex_sha256(&self.content(file, contents)?);
+        }
+        Ok(hex_sha256(text.as_bytes()))
     }
 
     /// The identification of the study in results.

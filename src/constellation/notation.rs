@@ -1,7 +1,7 @@
 //! Walker's notation with pattern and altitude, `delta:55:182/13/1@925[,e=0.01,w=270]`; `+` joins shells.
 
 use super::{Design, DesignError, Orientation, Shell, ShellParameters, shell_letters};
-use crate::keyword::UnknownKeyword;
+use crate::keyword::{UnknownKeyword, nearest};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -27,11 +27,20 @@ pub enum NotationError {
         /// The text found.
         text: String,
     },
-    /// An unknown option, or the same one twice.
-    #[error(
-        "option '{0}' is unknown or given twice; the options are e=E, w=DEG, raan=DEG, u=DEG and node-step=DEG"
-    )]
-    Option(String),
+    /// An option that does not exist.
+    #[error("option '{text}' is unknown{}; {OPTIONS_TOLD}", did_you_mean(*.nearest))]
+    UnknownOption {
+        /// The option as written.
+        text: String,
+        /// The option that was most likely meant.
+        nearest: Option<&'static str>,
+    },
+    /// An option without a value.
+    #[error("option '{0}' has no value; {OPTIONS_TOLD}")]
+    NoValue(String),
+    /// The same option twice.
+    #[error("option {0} is given twice")]
+    RepeatedOption(&'static str),
     /// Nothing before, between or after the `+` of a design.
     #[error("'{0}' has an empty shell: + joins two shells")]
     EmptyShell(String),
@@ -49,6 +58,16 @@ pub enum NotationError {
     /// Numbers that do not describe a design.
     #[error(transparent)]
     Design(#[from] DesignError),
+}
+
+/// The names of the options.
+const OPTIONS: [&str; 5] = ["e", "w", "raan", "u", "node-step"];
+
+/// The options, for error messages.
+const OPTIONS_TOLD: &str = "the options are e=E, w=DEG, raan=DEG, u=DEG and node-step=DEG";
+
+fn did_you_mean(nearest: Option<&str>) -> String {
+    nearest.map_or_else(String::new, |name| format!(", did you mean {name}?"))
 }
 
 fn number<T: FromStr>(field: &'static str, text: &str) -> Result<T, NotationError> {
@@ -144,18 +163,28 @@ impl Options {
     fn parse<'a>(texts: impl Iterator<Item = &'a str>) -> Result<Self, NotationError> {
         let mut options = Self::default();
         for text in texts {
-            let wrong = || NotationError::Option(text.to_owned());
-            let (name, value) = text.split_once('=').ok_or_else(wrong)?;
+            let (written, value) = match text.split_once('=') {
+                Some((name, value)) => (name, Some(value)),
+                None => (text, None),
+            };
+            let Some(name) = OPTIONS.into_iter().find(|name| *name == written) else {
+                return Err(NotationError::UnknownOption {
+                    text: text.to_owned(),
+                    nearest: nearest(written, &OPTIONS),
+                });
+            };
             let (place, field) = match name {
                 "e" => (&mut options.eccentricity, "eccentricity e"),
                 "w" => (&mut options.arg_perigee_deg, "argument of perigee w"),
                 "raan" => (&mut options.raan_deg, "right ascension of the node raan"),
                 "u" => (&mut options.arg_latitude_deg, "argument of latitude u"),
-                "node-step" => (&mut options.node_step_deg, "node-step"),
-                _ => return Err(wrong()),
+                _ => (&mut options.node_step_deg, "node-step"),
+            };
+            let Some(value) = value.filter(|value| !value.is_empty()) else {
+                return Err(NotationError::NoValue(text.to_owned()));
             };
             if place.replace(decimal(field, value)?).is_some() {
-                return Err(wrong());
+                return Err(NotationError::RepeatedOption(name));
             }
         }
         Ok(options)
@@ -251,7 +280,16 @@ mod tests {
         assert!(error("delta:55:182/13/1@nan").starts_with("altitude 'nan' is not a number"));
         assert!(error("helix:55:182/13/1@925").contains("(choices: delta, star, lattice)"));
         assert!(error("delta:55:182/13/1@925,f=3").starts_with("option 'f=3' is unknown"));
-        assert!(error("delta:55:182/13/1@925,e=0,e=0").contains("given twice"));
+        assert_eq!(
+            error("delta:55:182/13/1@925,ran=5"),
+            "option 'ran=5' is unknown, did you mean raan?; the options are e=E, w=DEG, raan=DEG, u=DEG and \
+             node-step=DEG"
+        );
+        assert!(error("delta:55:182/13/1@925,raan").starts_with("option 'raan' has no value"));
+        assert_eq!(
+            error("delta:55:182/13/1@925,e=0,e=0"),
+            "option e is given twice"
+        );
         assert_eq!(
             error("delta:55:183/13/0@925"),
             "satellites T = 183 is not a multiple of planes P = 13; nearest: 182 or 195"

@@ -2,6 +2,11 @@
 //!
 //! It is what every command works on. All satellites of a constellation share one clock state.
 
+mod name;
+
+pub(crate) use name::NAME_CHARACTERS;
+pub use name::{GNSS_ONLY, LONGEST_NAME, accepted_name, is_name, similar_name};
+
 use crate::constellation::Design;
 use crate::constellation::identity::{NUMBERED, UniqueTexts};
 use crate::ephemeris::{Ephemeris, EphemerisError};

@@ -15,8 +15,8 @@ use crate::search::{DesignProblem, Quantity};
 pub struct Baseline {
     /// Name.
     pub name: String,
-    /// Walker notation, and the names of files.
-    pub notation: String,
+    /// What its satellites are: the notation, the files, or both.
+    pub made_of: String,
     /// Number of satellites.
     pub satellites: usize,
     /// Its metrics.
@@ -80,7 +80,7 @@ impl Baseline {
         let value = |quantity: &Quantity| quantity.value_of(satellites, design, &metrics, cost);
         Self {
             name: shown::name(&one.name),
-            notation: shown::name(&one.made_of()),
+            made_of: shown::name(&one.made_of()),
             satellites,
             objectives: goals.objectives.iter().map(value).collect(),
             constraints: goals.constrained().iter().map(value).collect(),
@@ -89,16 +89,16 @@ impl Baseline {
         }
     }
 
-    /// Name and notation for use in a sentence; the notation alone if it is also the name.
+    /// Name and what it is made of, for use in a sentence; the latter alone if it is also the name.
     #[must_use]
     pub fn label(&self) -> String {
-        let Self { name, notation, .. } = self;
-        if name == notation {
-            notation.clone()
+        let Self { name, made_of, .. } = self;
+        if name == made_of {
+            made_of.clone()
         } else if name == Self::REFERENCE {
-            format!("the {name} {notation}")
+            format!("the {name} {made_of}")
         } else {
-            format!("the constellation {name} {notation}")
+            format!("the constellation {name} {made_of}")
         }
     }
 
@@ -123,7 +123,7 @@ impl Baseline {
                      larger population or wider bounds",
                     self.label(),
                     shown::pairs(values),
-                    pick.design.notation,
+                    pick.made_of(),
                     shown::objectives(pick)
                 ),
             )
@@ -150,7 +150,7 @@ mod tests {
         };
         let beside = |feasible: Option<[f64; 2]>| Baseline {
             name: Baseline::REFERENCE.to_owned(),
-            notation: "delta:55:182/13/1@925".to_owned(),
+            made_of: "delta:55:182/13/1@925".to_owned(),
             satellites: 182,
             metrics: pick.metrics,
             objectives: vec![Some(2.0), Some(9.0)],

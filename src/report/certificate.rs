@@ -115,7 +115,7 @@ impl Certificate {
 
 impl Missed {
     fn of(members: &[&FrontMember]) -> Option<Self> {
-        let designs = members.iter().filter_map(|m| m.design.design());
+        let designs = members.iter().filter_map(|m| m.only_design());
         let shells: Vec<Shell> = designs.flat_map(|d| d.shells().to_vec()).collect();
         let whole = |value: fn(&Shell) -> usize| {
             let values = || shells.iter().map(value);

@@ -5,7 +5,7 @@ use crate::evaluate::{DopStatistics, Metrics};
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
 use crate::run::columns::{cells, fields, optional};
-use crate::run::tables::text;
+use crate::run::tables::{design_cells, text};
 use crate::search::Quantity;
 use crate::stats::Summary;
 use ::csv::Writer;
@@ -71,17 +71,9 @@ impl ConstellationColumns {
     /// Never for a table in memory.
     pub fn row(&self, entry: &ConstellationEntry) -> io::Result<String> {
         let mut row = vec![entry.name.clone()];
-        row.extend(match &entry.design {
-            Some(design) => cells(design, DesignSummary::columns())?,
-            None => vec![String::new(); DesignSummary::columns().len()],
-        });
-        // Of the shells alone, in the design.
-        let satellites = DesignSummary::columns()
-            .iter()
-            .position(|one| *one == "satellites");
-        if let Some(place) = satellites {
-            row[1 + place] = entry.satellites.to_string();
-        }
+        let is_design = entry.design.is_some() && entry.files.is_empty();
+        let satellites = (!is_design).then_some(entry.satellites);
+        row.extend(design_cells(entry.design.as_ref(), satellites)?);
         if self.has_files {
             let (format, content) = entry.format_and_content.clone().unwrap_or_default();
             row.extend([entry.files.join("+"), format, content]);

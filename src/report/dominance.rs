@@ -99,7 +99,7 @@ mod tests {
     fn place(name: &str, feasible: Option<[f64; 2]>) -> Baseline {
         Baseline {
             name: name.to_owned(),
-            notation: name.to_owned(),
+            made_of: name.to_owned(),
             satellites: 3,
             metrics: testing::member(1, "delta:55:3/3/1@900").metrics,
             objectives: feasible.map_or(vec![Some(1.0), None], |x| x.map(Some).to_vec()),

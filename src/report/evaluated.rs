@@ -2,13 +2,10 @@
 
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, Goals, Quantity};
 use serde::{Deserialize, Serialize};
-
-/// Name of the GNSS alone in tables.
-pub const GNSS_ONLY: &str = "gnss-only";
 
 /// What is computed of some satellites.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! The members of a front as a table for a terminal.
 
 use super::{Align, Table, shown};
-use crate::run::FrontMember;
+use crate::run::{DesignSummary, FrontMember};
 
 /// Quantities that have a column in every table of a front.
 const ALWAYS: [&str; 7] = [
@@ -58,14 +58,21 @@ fn further(member: &FrontMember) -> Vec<String> {
 }
 
 fn row(label: &str, member: &FrontMember, further: &[String]) -> Vec<String> {
-    let (design, metrics) = (&member.design, &member.metrics);
+    let (design, metrics) = (member.design.as_ref(), &member.metrics);
+    let of_files = member.files.as_ref();
+    let satellites = of_files.map(|files| files.satellites);
+    let satellites = satellites.or(design.map(|design| design.satellites));
+    let shells = design.filter(|_| of_files.is_none());
+    let by_shell = |text: fn(&DesignSummary) -> Option<String>| {
+        shells.map_or_else(String::new, |design| design.by_shell(text))
+    };
     let mut cells = vec![
         if member.chosen { "*" } else { "" }.to_owned(),
         label.to_owned(),
-        design.notation.clone(),
-        design.satellites.to_string(),
-        design.by_shell(|shell| Some(format!("{:.2}", shell.inclination_deg?))),
-        design.by_shell(|shell| Some(format!("{:.1}", shell.altitude_km?))),
+        member.made_of(),
+        satellites.map_or_else(String::new, |count| count.to_string()),
+        by_shell(|shell| Some(format!("{:.2}", shell.inclination_deg?))),
+        by_shell(|shell| Some(format!("{:.1}", shell.altitude_km?))),
         shown::named("mean-visible", Some(metrics.mean_visible)),
     ];
     let pdops = [

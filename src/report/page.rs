@@ -75,14 +75,39 @@ impl Page<'_> {
             return 0;
         };
         let setup = evaluator.setup();
-        let each = payload::cut_bytes(setup.grid.len(), setup.sites.len());
+        let of_members = self
+            .run
+            .front
+            .iter()
+            .filter_map(|member| member.design.as_ref());
+        let of_members = of_members.map(|design| design.satellites);
+        let shells = |one: &Compared| {
+            one.constellation
+                .design
+                .as_ref()
+                .map(Design::satellite_count)
+        };
+        let satellites = of_members.chain(self.compared.iter().filter_map(shells));
+        let satellites = satellites.max().unwrap_or(0);
+        let each = payload::cut_bytes(setup.grid.len(), setup.sites.len(), satellites);
         (CUTS_BYTES / each).clamp(1, MOST_CUTS)
+    }
+
+    /// Maximum bytes for the positions of satellites from files, of each constellation that has some.
+    fn track_bytes(&self) -> usize {
+        let shown = self.compared_with_cuts().iter();
+        let with_files = shown.filter(|one| one.constellation.files.is_some());
+        TRACKS_BYTES / with_files.count().max(1)
     }
 }
 
-/// Maximum bytes for the cuts of the members: with the script for the figures (4.7 MB) the page
-/// stays below 6 MB.
+/// Maximum bytes for the cuts of the members, and of the compared constellations. With these, the positions of
+/// satellites from files and the script for the figures (4.7 MB), the page stays below 8 MB, apart from the
+/// history of a long search.
 const CUTS_BYTES: usize = 900_000;
+
+/// Maximum bytes for the positions of satellites from files, of all constellations.
+const TRACKS_BYTES: usize = 900_000;
 
 /// Maximum number of members whose cuts are computed: more would take minutes.
 const MOST_CUTS: usize = 100;
@@ -123,7 +148,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let members = &page.run.front;
     let designs: Vec<Design> = places
         .iter()
-        .filter_map(|&n| members[n].design.design())
+        .filter_map(|&n| members[n].only_design())
         .collect();
     let profiles = match page.evaluator {
         Some(evaluator) => Profile::of_designs(evaluator, &designs),
@@ -177,7 +202,7 @@ fn of_compared(page: &Page<'_>) -> Vec<Option<Profile>> {
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
     let propagated: Vec<usize> = (0..members.len())
-        .filter(|&n| members[n].design.design().is_some())
+        .filter(|&n| members[n].only_design().is_some())
         .collect();
     let count = page.most_cuts().min(propagated.len());
     if count == 0 {

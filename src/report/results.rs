@@ -5,8 +5,8 @@ use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Certificate, FrontMember, Hypervolume, OptimizeResult, ScenarioStamp, SearchSummary, VERSION,
-    VolumeAt,
+    Certificate, FrontMember, Hypervolume, MemberFiles, OptimizeResult, ScenarioStamp,
+    SearchSummary, VERSION, VolumeAt,
 };
 use crate::scenario::Scenario;
 use crate::search::{DesignProblem, Goals, Quantity};
@@ -64,12 +64,14 @@ impl OptimizeResult {
         }
     }
 
-    /// The result of designs that were given, each a member in its order; the memberships are over this set.
+    /// The result of constellations that were given, each a member in its order; the memberships are over this
+    /// set. `in_scenario` has the name in the scenario of the run of each with satellites from files.
     ///
     /// # Errors
-    /// If a constellation is no design, or has no value of an objective.
+    /// If there is no constellation, or one without a value of an objective.
     pub fn of_given(
         given: &[ConstellationEntry],
+        in_scenario: &[Option<String>],
         scenario: &Scenario,
         stamp: ScenarioStamp,
     ) -> Result<Self, NoMember> {
@@ -87,20 +89,24 @@ impl OptimizeResult {
             None,
             objectives,
         );
-        let memberships = fuzzy(&points).map_err(|_| NoMember::NoDesign)?;
+        let memberships = fuzzy(&points).map_err(|_| NoMember::NoConstellation)?;
         let chosen = best(&memberships.minimum);
         let goals = scenario.goals();
         let mut front = Vec::new();
         for (n, (entry, values)) in given.iter().zip(values).enumerate() {
-            let name = &entry.name;
-            let design = entry.design.clone().filter(|_| entry.files.is_empty());
-            let design = design.ok_or_else(|| NoMember::Files { name: name.clone() })?;
+            let of_files = |constellation: &String| MemberFiles {
+                constellation: constellation.clone(),
+                names: entry.files.clone(),
+                satellites: entry.satellites,
+            };
+            let of_scenario = in_scenario.get(n).and_then(Option::as_ref);
             let constrained = goals.constrained().into_iter();
             let constrained = constrained.map(|one| (one.to_string(), entry.evaluated.value(one)));
             front.push(FrontMember {
                 index: n + 1,
-                name: Some(name.clone()),
-                design,
+                name: Some(entry.name.clone()),
+                design: entry.design.clone(),
+                files: of_scenario.map(of_files),
                 metrics: entry.evaluated.metrics,
                 objectives: objectives
                     .iter()
@@ -151,14 +157,8 @@ impl OptimizeResult {
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum NoMember {
     /// There is none.
-    #[error("a run needs a design")]
-    NoDesign,
-    /// It has satellites from files.
-    #[error("{name} has satellites from files; a run is made of designs")]
-    Files {
-        /// Its name.
-        name: String,
-    },
+    #[error("a run needs a constellation")]
+    NoConstellation,
     /// An objective without a value, as for PDOP without solved samples.
     #[error(
         "{name} has no value of the objective {objective}; choose another with objectives.minimize"
@@ -248,7 +248,8 @@ fn front_members(
         Some(FrontMember {
             index: n + 1,
             name: None,
-            design: (&design).into(),
+            design: Some((&design).into()),
+            files: None,
             objectives: objectives(&individuals[n]),
             constraints: constrained(&design, &metrics, problem.goals()),
             membership: memberships.minimum[n],

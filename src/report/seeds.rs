@@ -39,7 +39,7 @@ impl From<&OptimizeResult> for SeedRun {
             best: single_best(result),
             evaluations: result.search.evaluations,
             front_size: result.front.len(),
-            pick: result.chosen().map(|member| member.design.notation.clone()),
+            pick: result.chosen().map(FrontMember::made_of),
         }
     }
 }
@@ -312,7 +312,7 @@ fn joint_front(results: &[OptimizeResult]) -> Vec<JointMember> {
     let mut joint: Vec<JointMember> = Vec::new();
     for (seed, member) in all() {
         let point = member.minimised();
-        let is_known = |m: &JointMember| m.member.design.notation == member.design.notation;
+        let is_known = |m: &JointMember| m.member.design == member.design;
         if joint.iter().any(is_known) || all().any(|(_, m)| dominates(&m.minimised(), &point)) {
             continue;
         }
@@ -442,10 +442,10 @@ mod tests {
         let joint: Vec<_> = seeds
             .joint_front
             .iter()
-            .map(|m| (m.seed, m.member.index, m.member.design.notation.as_str()))
+            .map(|m| (m.seed, m.member.index, m.member.made_of()))
             .collect();
         // A is in both, C dominates B.
-        assert_eq!(joint, [(4, 1, A), (5, 2, C)]);
+        assert_eq!(joint, [(4, 1, A.to_owned()), (5, 2, C.to_owned())]);
         assert_eq!(
             seeds.joint_front.iter().filter(|m| m.member.chosen).count(),
             1

@@ -18,7 +18,8 @@ pub struct Identity {
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// The designs of a run without a search, by name: `polar = star:90:182/13/1@925`.
+    /// The constellations of a run without a search, by name: `polar = star:90:182/13/1@925`; with the SHA-256 of
+    /// how files are read and of what is in them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub given: Vec<String>,
 }
@@ -35,7 +36,7 @@ impl Identity {
         }
     }
 
-    /// The identity of a run of given designs, named by what they are.
+    /// The identity of a run of given constellations, named by what they are.
     #[must_use]
     pub fn of_given(self, given: Vec<String>) -> Self {
         Self { given, ..self }
@@ -167,7 +168,8 @@ fn read_log(header: &CheckpointHeader, log: &[u8]) -> Option<Vec<Record>> {
     is_whole.then_some(records)
 }
 
-pub(super) fn hex_sha256(bytes: &[u8]) -> String {
+/// SHA-256, hex.
+pub(crate) fn hex_sha256(bytes: &[u8]) -> String {
     hex(&Sha256::digest(bytes))
 }
 

@@ -114,11 +114,14 @@ pub struct ScenarioStamp {
 pub struct FrontMember {
     /// Place in the front from 1, by the first objective; what `--pick N` takes.
     pub index: usize,
-    /// Its name, in a run of given designs; `--pick` takes it too.
+    /// Its name, in a run of given constellations; `--pick` takes it too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// The design.
-    pub design: DesignSummary,
+    /// The shells; `None` if all its satellites are from files.
+    pub design: Option<DesignSummary>,
+    /// Its satellites from files, in a run of given constellations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub files: Option<MemberFiles>,
     /// Its metrics.
     pub metrics: Metrics,
     /// Value of each objective by name, in its original sense.
@@ -136,7 +139,34 @@ pub struct FrontMember {
     pub chosen: bool,
 }
 
+/// The satellites of a member that are from files, of which the run has copies.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MemberFiles {
+    /// The constellation in the scenario of the run, which names the copies.
+    pub constellation: String,
+    /// The files or directories as they were given, without their paths.
+    pub names: Vec<String>,
+    /// Number of satellites of the member, with those of its shells.
+    pub satellites: usize,
+}
+
 impl FrontMember {
+    /// What its satellites are: the notation, the files, or both.
+    #[must_use]
+    pub fn made_of(&self) -> String {
+        let notation = self.design.iter().map(|design| &design.notation);
+        let files = self.files.iter().flat_map(|files| &files.names);
+        let parts: Vec<&str> = notation.chain(files).map(String::as_str).collect();
+        parts.join("+")
+    }
+
+    /// The design, if the member has no other satellites and its notation is valid.
+    #[must_use]
+    pub fn only_design(&self) -> Option<Design> {
+        let summary = self.design.as_ref().filter(|_| self.files.is_none());
+        summary?.design()
+    }
+
     /// An objective by its name.
     #[must_use]
     pub fn objective(&self, name: &str) -> Option<f64> {
@@ -250,10 +280,10 @@ pub struct SearchSummary {
 }
 
 impl SearchSummary {
-    /// The algorithm of a run of designs that were given, without a search.
+    /// The algorithm of a run of constellations that were given, without a search.
     pub const GIVEN: &str = "given";
 
-    /// Whether the designs were given, and not found by a search: then there is no history.
+    /// Whether the constellations were given, and not found by a search: then there is no history.
     #[must_use]
     pub fn is_of_given(&self) -> bool {
         self.algorithm == Self::GIVEN

@@ -8,7 +8,7 @@ use csv::Writer;
 use std::io;
 
 /// The front of a search, one member per row, including the fields of its design and metrics and the
-/// objectives and constrained quantities that are in neither; with names where members have them.
+/// objectives and constrained quantities that are in neither; with names and files where members have them.
 ///
 /// # Errors
 /// Never for a table in memory.
@@ -16,7 +16,12 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let further = further_quantities(front);
     let has_names = front.iter().any(|member| member.name.is_some());
-    let is_column = |name: &&&str| has_names || **name != "name";
+    let has_files = front.iter().any(|member| member.files.is_some());
+    let is_column = |name: &&&str| match **name {
+        "name" => has_names,
+        "files" => has_files,
+        _ => true,
+    };
     let columns: Vec<&str> = fields::<FrontMember>()
         .iter()
         .filter(is_column)
@@ -34,7 +39,14 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         let mut row = Vec::new();
         for name in &columns {
             row.extend(match *name {
-                "design" => cells(&member.design, DesignSummary::columns())?,
+                "design" => {
+                    let satellites = member.files.as_ref().map(|files| files.satellites);
+                    design_cells(member.design.as_ref(), satellites)?
+                }
+                "files" => {
+                    let files = member.files.as_ref();
+                    vec![files.map_or_else(String::new, |files| files.names.join("+"))]
+                }
                 "metrics" => cells(&member.metrics, fields::<Metrics>())?,
                 "objectives" => {
                     let values = further.iter().map(|name| member.quantity(name));
@@ -47,6 +59,30 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         writer.write_record(row)?;
     }
     text(writer)
+}
+
+/// The cells of a design. With `satellites`, the number of a constellation that also has satellites from files,
+/// they say only that and the notation, since no other field describes all of them.
+pub(crate) fn design_cells(
+    design: Option<&DesignSummary>,
+    satellites: Option<usize>,
+) -> serde_json::Result<Vec<String>> {
+    let columns = DesignSummary::columns();
+    let mut row = match design {
+        Some(design) => cells(design, columns)?,
+        None => vec![String::new(); columns.len()],
+    };
+    let Some(satellites) = satellites else {
+        return Ok(row);
+    };
+    for (name, cell) in columns.iter().zip(&mut row) {
+        match *name {
+            "notation" => {}
+            "satellites" => *cell = satellites.to_string(),
+            _ => cell.clear(),
+        }
+    }
+    Ok(row)
 }
 
 /// The name of a quantity as a column.

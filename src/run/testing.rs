@@ -10,7 +10,8 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
     FrontMember {
         index,
         name: None,
-        design: DesignSummary::from(&design),
+        design: Some(DesignSummary::from(&design)),
+        files: None,
         metrics: Metrics {
             mean_visible: 8.0,
             mean_pdop: None,

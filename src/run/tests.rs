@@ -18,7 +18,9 @@ fn front_json() -> Value {
         ..testing::member(index, "delta:45:225/15/1@1000")
     };
     let mut unnamed = one(2, &both);
-    unnamed.design.notation = "no design".to_owned();
+    if let Some(design) = &mut unnamed.design {
+        design.notation = "no design".to_owned();
+    }
     let result = OptimizeResult {
         front: vec![
             one(1, &both),
@@ -51,13 +53,9 @@ fn has_gap(run: &Run, text: &str) -> bool {
 #[test]
 fn what_can_be_read_is_kept_and_the_rest_is_named() {
     let run = Run::read(&files());
-    let notations: Vec<_> = run
-        .front
-        .iter()
-        .map(|m| m.design.notation.as_str())
-        .collect();
+    let notations: Vec<_> = run.front.iter().map(FrontMember::made_of).collect();
     assert_eq!(notations, ["delta:45:225/15/1@1000", "no design"]);
-    assert!(run.front[0].design.design().is_some() && run.front[1].design.design().is_none());
+    assert!(run.front[0].only_design().is_some() && run.front[1].only_design().is_none());
     assert!(has_gap(&run, "1 of 4 designs of the front cannot be read"));
     assert!(has_gap(&run, "1 designs of the front lack an objective"));
     assert!(has_gap(&run, "made by version 0.0.0"));

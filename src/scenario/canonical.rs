@@ -7,9 +7,8 @@ use sha2::{Digest, Sha256};
 
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::Rule;
-use super::values::{
-    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
-};
+use super::values::{Export, GnssSetup, Optimizer, PointsFile, Region, Scenario};
+use crate::constellation::Design;
 
 impl Scenario {
     /// The scenario as TOML with every key, including defaults, in a fixed order and spelling. It parses back to the same scenario.
@@ -104,11 +103,11 @@ impl Scenario {
             .collect()
     }
 
-    /// The same scenario with its reference design as a notation, if it is given by name.
+    /// The same scenario with its reference design as a notation, if it is given by names.
     fn resolved(&self) -> Self {
         let mut scenario = self.clone();
-        let named = self.constellation(&self.reference_design);
-        if let Some(design) = named.and_then(NamedConstellation::only_design) {
+        let is_notation = self.reference_design.parse::<Design>().is_ok();
+        if let (false, Ok(design)) = (is_notation, self.design(&self.reference_design)) {
             scenario.reference_design = design.to_string();
         }
         scenario

@@ -65,16 +65,20 @@ impl Scenario {
         self.constellations.iter().find(|one| one.name == name)
     }
 
-    /// The design that a text is the notation or the name of.
+    /// The design that a text is the notation or the name of; `+` joins either.
     ///
     /// # Errors
     /// If it is neither, or names satellites from files.
     pub fn design(&self, text: &str) -> Result<Design, NoDesign> {
-        if let Some(named) = self.constellation(text) {
-            let design = named.only_design().cloned();
-            return design.ok_or_else(|| NoDesign::HasFiles(named.name.clone()));
-        }
-        text.parse().map_err(|notation| {
+        let notation_of = |part: &str| match self.constellation(part.trim()) {
+            None => Ok(part.to_owned()),
+            Some(named) => match named.only_design() {
+                Some(design) => Ok(design.to_string()),
+                None => Err(NoDesign::HasFiles(named.name.clone())),
+            },
+        };
+        let parts: Vec<String> = text.split('+').map(notation_of).collect::<Result<_, _>>()?;
+        parts.join("+").parse().map_err(|notation| {
             // A notation has colons, a name has none.
             if text.contains(':') {
                 return NoDesign::Notation(notation);

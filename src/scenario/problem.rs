@@ -78,6 +78,12 @@ pub enum Fault {
     /// A constellation of nothing.
     #[error("the constellation has no satellites: give `design`, `files` or both")]
     NoSatellites,
+    /// A constellation with the name of the GNSS alone.
+    #[error("the name {name} is that of the GNSS alone in tables; choose another")]
+    ReservedName {
+        /// The name.
+        name: &'static str,
+    },
     /// A key about files where there are none.
     #[error("this is about satellites from files, but `files` is not given")]
     NoFiles,

@@ -387,20 +387,12 @@ fn given_designs_make_a_run() {
     let other = evaluate(place, &[&designs[..2], &out].concat());
     assert_eq!((other.status, other.stdout.as_str()), (2, ""));
     assert!(
-        other.stderr.contains("a run of other designs"),
+        other.stderr.contains("a run of other constellations"),
         "{}",
         other.stderr
     );
     let forced = evaluate(place, &[&designs[..2], &out, &["--force"]].concat());
     assert_eq!(forced.status, 0, "{}", forced.stderr);
-    let with_files = evaluate(place, &[&THREE[..], &["--out", "other"]].concat());
-    assert_eq!(with_files.status, 2);
-    assert!(
-        with_files.stderr.contains("satellites from files"),
-        "{}",
-        with_files.stderr
-    );
-    assert!(!place.join("other").exists());
 }
 
 /// A run of given designs and a search of the same scenario do not replace each other.

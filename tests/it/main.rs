@@ -12,6 +12,7 @@ mod exports;
 mod fire;
 mod flags;
 mod gallery;
+mod given_runs;
 mod hostile;
 mod interchange;
 mod keys;

@@ -13,7 +13,7 @@ pub(crate) struct EvaluateArgs {
     pub(crate) constellations: ConstellationArgs,
 
     /// Evaluate the designs of a list, of any length: CSV with a column `design` (or `notation`) and perhaps
-    /// `name`, or one notation a line; `-` is stdin.
+    /// `name`, or one notation a line; a constellation of the scenario may be given by its name; `-` is stdin.
     ///
     /// Blank lines and lines that begin with `#` are skipped. Results are printed in the order of the list as they
     /// come. A line that cannot be evaluated is named on stderr and left out, and the exit status is 1; it is 2 if
@@ -30,8 +30,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) series: Option<PathBuf>,
 
-    /// Write a run directory of these designs, which `report`, `plot`, `export --run` and `validate --run` take
-    /// like that of a search; `--pick` takes their names too.
+    /// Write a run directory of these constellations, with copies of their files, which `report`, `plot`,
+    /// `export --run` and `validate --run` take like that of a search; `--pick` takes their names too.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 

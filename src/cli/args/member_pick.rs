@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 pub(crate) enum MemberPick {
     /// By a method or an index.
     Pick(Pick),
-    /// By its name, in a run of given designs.
+    /// By its name, in a run of given constellations.
     Name(String),
 }
 
@@ -47,7 +47,7 @@ impl MemberPick {
                 let Some(place) = front.iter().position(is_it) else {
                     bail!("cannot pick {name}: expected {}", expected(front));
                 };
-                let reason = "the design with this name".to_owned();
+                let reason = "the constellation with this name".to_owned();
                 Ok(Picked { place, reason })
             }
         }
@@ -62,7 +62,7 @@ fn expected(front: &[FrontMember]) -> String {
         .collect();
     let names = match names.as_slice() {
         [] => String::new(),
-        names => format!(", or the name of a design: {}", names.join(", ")),
+        names => format!("; or a name: {}", names.join(", ")),
     };
     format!("fuzzy, sum, topsis, knee, or the index of a front member from 1{names}")
 }

@@ -72,7 +72,7 @@ pub(crate) struct PlotArgs {
 
     /// What a map shows, and what comes first in a distribution or a series: of a run fuzzy, sum, topsis, knee or
     /// the index of a design on the front; otherwise, or beside the front, the name of a constellation or its
-    /// number from 1 [default: fuzzy, or the first constellation].
+    /// number from 1 [default: fuzzy, or the first constellation; needed for a map of one of several].
     #[arg(long, value_name = "PICK")]
     pub(crate) pick: Option<String>,
 

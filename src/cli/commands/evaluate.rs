@@ -8,6 +8,7 @@ mod single;
 mod table;
 
 use crate::cli::args::EvaluateArgs;
+use crate::cli::constellations::GivenConstellation;
 use crate::cli::study::Study;
 use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
@@ -25,11 +26,11 @@ use series::SeriesDirectory;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let study = Study::load(&args.study, &[])?;
-    let given = given(args, &study)?;
+    let sourced = given(args, &study)?;
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
-    if args.out.is_some() {
-        given_run::require_designs(&given)?;
-    }
+    let run = GivenRun::open(args, &study, &sourced)?;
+    let given = sourced.into_iter().map(|one| one.constellation);
+    let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
     let work = EvaluationContext {
@@ -48,17 +49,16 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
             series.write(n, &evaluator, &ephemeris)?;
         }
     }
-    let run = args
-        .out
-        .as_deref()
-        .map(|out| GivenRun::new(out, &work, &study, &entries));
-    let run = run.transpose()?;
+    let run = match run {
+        Some(run) => Some((run.result(&work, &entries)?, run)),
+        None => None,
+    };
     let mut printer = Printer::new(&work, &given, list.as_ref());
     for entry in entries {
         printer.entry(entry)?;
     }
     let status = match list {
-        Some(list) => designs::evaluate(list, &work, &mut printer)?,
+        Some(list) => designs::evaluate(list, &study, &work, &mut printer)?,
         None => Status::Done,
     };
     printer.end()?;
@@ -67,27 +67,28 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
         series.commit()?;
         output::hint(&told);
     }
-    if let Some(run) = run {
-        return run.finish(&study.scenario).map(|()| status);
+    if let Some((result, run)) = run {
+        return run.finish(&result).map(|()| status);
     }
     if let [one] = given.as_slice()
         && let (Some(design), None) = (one.only_design(), &args.designs)
     {
         output::hint(&format!(
             "\nnext: navwalker validate {} --design {design} --against sgp4",
-            args.study.name()
+            args.study.words()
         ));
     }
     Ok(status)
 }
 
 /// The constellations given one by one, or else those of the scenario.
-fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<Constellation>> {
+fn given(args: &EvaluateArgs, study: &Study) -> Result<Vec<GivenConstellation>> {
     constellations::require_files(&args.constellations)?;
     if !args.constellations.is_empty() || args.designs.is_some() {
-        return constellations::resolve(&args.constellations, study);
+        let with_contents = args.out.is_some();
+        return constellations::resolve_given(&args.constellations, study, with_contents);
     }
-    let named = constellations::of_scenario(study)?;
+    let named = constellations::given_by_scenario(study)?;
     if named.is_empty() {
         bail!(
             "no constellation: give --design NOTATION, --constellation FILE or --designs FILE, or name some in \

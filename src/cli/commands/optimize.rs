@@ -2,7 +2,7 @@
 
 mod seeds;
 
-use crate::cli::args::{OptimizeArgs, OutputFormat};
+use crate::cli::args::{OptimizeArgs, OutputFormat, quoted};
 use crate::cli::interrupt::Stoppable;
 use crate::cli::progress::SearchBar;
 use crate::cli::run::{Placed, RunDirectory};
@@ -292,7 +292,7 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         text += &format!(
             "* fuzzy pick: {} {}, the best worst-case membership over the objectives ({})\n",
             chosen.index,
-            chosen.design.notation,
+            chosen.made_of(),
             shown::membership(chosen.membership)
         );
     }
@@ -320,7 +320,7 @@ fn other_picks(result: &OptimizeResult) -> String {
                 "  --pick {}: {} {}, {}\n",
                 pick.keyword(),
                 member.index,
-                member.design.notation,
+                member.made_of(),
                 picked.reason
             );
         }
@@ -330,6 +330,7 @@ fn other_picks(result: &OptimizeResult) -> String {
 
 fn hint_what_next(result: &OptimizeResult, out: &str) {
     output::hint(&format!("\nrun written to {out}"));
+    let out = quoted(out);
     if result.front.is_empty() {
         return;
     }

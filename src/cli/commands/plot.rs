@@ -131,6 +131,7 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
         Figure::Convergence => figures::convergence(&view.run)?,
         Figure::Budget => figures::budget(view.run.validation.as_ref())?,
         Figure::Map => {
+            require_one(args, view)?;
             let profiles = profiles(args, view, false)?;
             let first = &named(&profiles)[0];
             figures::map(first, measure(Measure::MeanPdop), cell_deg(view))?
@@ -144,6 +145,19 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
             figures::series(&named(&profiles), measure(Measure::MaxPdop))?
         }
     })
+}
+
+/// Refuses to choose which of several constellations a map shows; of a front it is the fuzzy pick.
+fn require_one(args: &PlotArgs, view: &View) -> Result<()> {
+    let several = view.compared.as_slice();
+    if args.pick.is_some() || view.is_of_search() || several.len() < 2 {
+        return Ok(());
+    }
+    bail!(
+        "a map shows one constellation, and there are {}: choose one with --pick, by its number or its name: {}",
+        several.len(),
+        names(several)
+    )
 }
 
 /// The steps of the region's grid, if it is one.
@@ -176,7 +190,7 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
     let of_constellation = |one: &Compared| -> Result<Shown> {
         Ok(Shown {
             name: one.baseline.name.clone(),
-            notation: one.baseline.notation.clone(),
+            notation: one.baseline.made_of.clone(),
             profile: Profile::new(evaluator, &one.ephemeris)?,
         })
     };
@@ -219,7 +233,9 @@ fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<FirstShown<'a>> {
             );
         }
         let member = view.pick(&MemberPick::Pick(method.unwrap_or(Pick::Fuzzy)))?;
-        return Ok(FirstShown::Member(member.design.notation.parse()?));
+        let design = member.only_design();
+        let design = design.with_context(|| format!("design {} has no notation", member.index))?;
+        return Ok(FirstShown::Member(design));
     }
     let place = match (pick, method) {
         (None, _) => Some(0),

@@ -24,28 +24,28 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
     type Value = fn(&FrontMember) -> Option<f64>;
     let variables: [(&str, &str, [f64; 2], Value); 7] = [
         ("planes", "", whole(space.planes), |m| {
-            Some(m.design.planes as f64)
+            Some(m.design.as_ref()?.planes as f64)
         }),
         (
             "satellites-per-plane",
             "",
             whole(space.satellites_per_plane),
-            |m| Some(m.design.satellites_per_plane? as f64),
+            |m| Some(m.design.as_ref()?.satellites_per_plane? as f64),
         ),
         ("inclination-deg", "°", space.inclination_deg, |m| {
-            m.design.inclination_deg
+            m.design.as_ref()?.inclination_deg
         }),
         ("altitude-km", " km", space.altitude_km, |m| {
-            m.design.altitude_km
+            m.design.as_ref()?.altitude_km
         }),
         ("phasing", "", open_phasing(space), |m| {
-            Some(m.design.phasing? as f64)
+            Some(m.design.as_ref()?.phasing? as f64)
         }),
         ("eccentricity", "", space.eccentricity, |m| {
-            m.design.eccentricity
+            m.design.as_ref()?.eccentricity
         }),
         ("arg-perigee-deg", "°", open_perigee(space), |m| {
-            m.design.arg_perigee_deg
+            m.design.as_ref()?.arg_perigee_deg
         }),
     ];
     let mut found = Vec::new();

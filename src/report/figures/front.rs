@@ -15,14 +15,14 @@ pub struct NamedFront {
     pub front: Vec<FrontMember>,
 }
 
-/// Rows of the plane: name of the set, generation, index, notation, objectives, quantities under
+/// Rows of the plane: name of the set, generation, index, what it is made of, objectives, quantities under
 /// constraints, membership, name of a constellation that is compared.
 struct FrontRow<'a> {
     set: &'a str,
     name: &'a str,
     generation: Option<u64>,
     index: Option<usize>,
-    notation: &'a str,
+    made_of: String,
     objectives: Vec<Option<f64>>,
     constraints: Vec<Option<f64>>,
     membership: Option<f64>,
@@ -118,7 +118,7 @@ fn rows<'a>(
             name: "",
             generation: None,
             index: Some(member.index),
-            notation: &member.design.notation,
+            made_of: member.made_of(),
             objectives: names.iter().map(|name| member.objective(name)).collect(),
             constraints: constrained.iter().map(|n| member.quantity(n)).collect(),
             membership: Some(member.membership),
@@ -133,7 +133,7 @@ fn rows<'a>(
         name: &baseline.name,
         generation: None,
         index: None,
-        notation: &baseline.notation,
+        made_of: baseline.made_of.clone(),
         objectives: baseline.objectives.clone(),
         constraints: baseline.constraints.clone(),
         membership: None,
@@ -144,7 +144,7 @@ fn rows<'a>(
             name: "",
             generation: Some(generation),
             index: None,
-            notation: "",
+            made_of: String::new(),
             objectives: objectives.into_iter().map(Some).collect(),
             constraints: vec![None; run.constraint_names().len()],
             membership: None,
@@ -190,7 +190,7 @@ fn table(rows: &[FrontRow<'_>], names: &[String]) -> Result<String, FigureError>
             row.set.to_owned(),
             row.generation.map_or_else(String::new, |n| n.to_string()),
             number(row.index),
-            row.notation.to_owned(),
+            row.made_of.clone(),
         ];
         let quantities = row.objectives.iter().chain(&row.constraints);
         cells.extend(quantities.copied().map(optional));

@@ -3,9 +3,8 @@
 use super::Page;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Metrics;
-use crate::keyword::Keyword;
 use crate::report::dominance::dominance;
-use crate::report::{Baseline, shown};
+use crate::report::{Baseline, ComparisonColumn, comparison_columns};
 use crate::scenario::{LaunchCost, Quantity};
 
 /// The compared constellations, one row each, and the GNSS alone.
@@ -35,17 +34,6 @@ pub(super) struct Cell {
     pub(super) is_best: bool,
 }
 
-/// Quantities that have a column in every table.
-const ALWAYS: [Quantity; 7] = [
-    Quantity::MeanVisible,
-    Quantity::MeanPdop,
-    Quantity::CvarPdop,
-    Quantity::MaxPdop,
-    Quantity::Availability,
-    Quantity::JPos,
-    Quantity::JCost,
-];
-
 impl Comparison {
     /// `None` if nothing is compared.
     pub(super) fn new(page: &Page<'_>) -> Option<Self> {
@@ -54,14 +42,7 @@ impl Comparison {
             return None;
         }
         let goals = scenario.goals();
-        let mut quantities = vec![Quantity::Satellites];
-        let wanted = goals.objectives.iter().copied().chain(ALWAYS);
-        for quantity in wanted.chain(goals.constrained()) {
-            if !quantities.contains(&quantity) {
-                quantities.push(quantity);
-            }
-        }
-        let compared: Vec<&Baseline> = page.compared.iter().map(|one| &one.baseline).collect();
+        let columns = comparison_columns(scenario);
         let cost = &goals.launch_cost;
         let values: Vec<Vec<Option<f64>>> = page
             .compared
@@ -69,22 +50,25 @@ impl Comparison {
             .map(|one| {
                 let (design, metrics) = (one.constellation.only_design(), &one.baseline.metrics);
                 let value =
-                    |q: &Quantity| q.value_of(one.baseline.satellites, design, metrics, cost);
-                quantities.iter().map(value).collect()
+                    |q: Quantity| q.value_of(one.baseline.satellites, design, metrics, cost);
+                let columns = columns.iter();
+                columns.map(|column| column.value(metrics, value)).collect()
             })
             .collect();
-        let is_judged = |quantity: &Quantity| {
-            *quantity != Quantity::Satellites || goals.objectives.contains(quantity)
+        let is_judged = |column: ComparisonColumn| {
+            column != ComparisonColumn::Quantity(Quantity::Satellites)
+                || goals.objectives.contains(&Quantity::Satellites)
         };
-        let best: Vec<Option<String>> = quantities
+        let best: Vec<Option<String>> = columns
             .iter()
             .enumerate()
-            .map(|(n, quantity)| {
-                let column = values.iter().map(|row| row[n]);
-                is_judged(quantity).then(|| best(*quantity, column))?
+            .map(|(n, &column)| {
+                let values = values.iter().map(|row| row[n]);
+                is_judged(column).then(|| best(column, values))?
             })
             .collect();
         let first = page.run.front.len();
+        let compared: Vec<&Baseline> = page.compared.iter().map(|one| &one.baseline).collect();
         let mut rows: Vec<Row> = compared
             .iter()
             .zip(&values)
@@ -92,20 +76,21 @@ impl Comparison {
             .map(|(n, (one, values))| Row {
                 place: Some(first + n),
                 name: one.name.clone(),
-                made_of: if one.notation == one.name {
+                made_of: if one.made_of == one.name {
                     String::new()
                 } else {
-                    one.notation.clone()
+                    one.made_of.clone()
                 },
-                cells: cells(&quantities, values, &best),
+                cells: cells(&columns, values, &best),
             })
             .collect();
         if let Some(metrics) = gnss_alone(page) {
-            rows.push(without_leo(&quantities, &metrics, cost));
+            rows.push(without_leo(&columns, &metrics, cost));
         }
         let names = page.run.objective_names();
+        let heading = |column: &ComparisonColumn| column.heading(scenario).replace('\n', " ");
         Some(Self {
-            columns: quantities.iter().map(|q| heading(*q).to_owned()).collect(),
+            columns: columns.iter().map(heading).collect(),
             rows,
             dominance: dominance(&compared, &names),
             has_best: best.iter().any(Option::is_some),
@@ -113,10 +98,14 @@ impl Comparison {
     }
 }
 
-fn cells(quantities: &[Quantity], values: &[Option<f64>], best: &[Option<String>]) -> Vec<Cell> {
-    let cells = quantities.iter().zip(values).zip(best);
-    let cell = |((quantity, value), best): ((&Quantity, &Option<f64>), &Option<String>)| {
-        let text = shown::quantity(*quantity, *value);
+fn cells(
+    columns: &[ComparisonColumn],
+    values: &[Option<f64>],
+    best: &[Option<String>],
+) -> Vec<Cell> {
+    let cells = columns.iter().zip(values).zip(best);
+    let cell = |((column, value), best): ((&ComparisonColumn, &Option<f64>), &Option<String>)| {
+        let text = column.text(*value);
         Cell {
             is_best: best.as_ref() == Some(&text),
             text,
@@ -126,10 +115,10 @@ fn cells(quantities: &[Quantity], values: &[Option<f64>], best: &[Option<String>
 }
 
 /// The text of the best value of a column; `None` if there are not two that differ as shown.
-fn best(quantity: Quantity, column: impl Iterator<Item = Option<f64>>) -> Option<String> {
-    let mut values: Vec<f64> = column.flatten().collect();
-    values.sort_by(|a, b| quantity.minimised(*a).total_cmp(&quantity.minimised(*b)));
-    let text = |value: Option<&f64>| shown::quantity(quantity, value.copied());
+fn best(column: ComparisonColumn, values: impl Iterator<Item = Option<f64>>) -> Option<String> {
+    let mut values: Vec<f64> = values.flatten().collect();
+    values.sort_by(|a, b| column.minimised(*a).total_cmp(&column.minimised(*b)));
+    let text = |value: Option<&f64>| column.text(value.copied());
     let first = text(values.first());
     (values.len() > 1 && first != text(values.last())).then_some(first)
 }
@@ -141,25 +130,18 @@ fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
     evaluator.evaluate_ephemeris(&nothing).ok()
 }
 
-fn without_leo(quantities: &[Quantity], metrics: &Metrics, cost: &LaunchCost) -> Row {
-    let value = |quantity: &Quantity| quantity.value_of(0, None, metrics, cost);
-    let values: Vec<Option<f64>> = quantities.iter().map(value).collect();
+fn without_leo(columns: &[ComparisonColumn], metrics: &Metrics, cost: &LaunchCost) -> Row {
+    let value = |quantity: Quantity| quantity.value_of(0, None, metrics, cost);
+    let values = columns.iter().map(|column| column.value(metrics, value));
     Row {
         place: None,
         name: "GNSS alone".to_owned(),
         made_of: String::new(),
-        cells: cells(quantities, &values, &vec![None; quantities.len()]),
-    }
-}
-
-/// The heading of a column.
-fn heading(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::MeanVisible => "mean visible",
-        Quantity::MeanPdop => "mean PDOP",
-        Quantity::CvarPdop => "CVaR of PDOP",
-        Quantity::MaxPdop => "maximum PDOP",
-        other => other.keyword(),
+        cells: cells(
+            columns,
+            &values.collect::<Vec<_>>(),
+            &vec![None; columns.len()],
+        ),
     }
 }
 
@@ -169,7 +151,9 @@ mod tests {
 
     #[test]
     fn the_best_of_a_column_has_the_direction_of_its_quantity() {
-        let of = |quantity, values: &[Option<f64>]| best(quantity, values.iter().copied());
+        let of = |quantity, values: &[Option<f64>]| {
+            best(ComparisonColumn::Quantity(quantity), values.iter().copied())
+        };
         let values = [Some(1.5), None, Some(0.5)];
         assert_eq!(of(Quantity::MeanPdop, &values).unwrap(), "0.5000");
         assert_eq!(of(Quantity::MeanVisible, &values).unwrap(), "1.5000");

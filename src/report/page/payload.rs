@@ -143,13 +143,13 @@ struct Budget {
     rms_km: [f64; 3],
 }
 
-/// Approximate bytes of the page for the cuts of one design.
-pub(super) fn cut_bytes(epochs: usize, points: usize) -> usize {
+/// Approximate bytes of the page for the cuts of one design of this many satellites, but for positions.
+pub(super) fn cut_bytes(epochs: usize, points: usize, satellites: usize) -> usize {
     let numbers = SERIES.len() * epochs.min(MOST_EPOCHS)
         + MAPS.len() * points
         + (SERIES.len() + 1) * drawn_levels().len();
     // Two bytes each, in base64, and the names.
-    numbers * 2 * 4 / 3 + 2500
+    (numbers + satellites) * 2 * 4 / 3 + 2500
 }
 
 impl Payload {
@@ -164,7 +164,7 @@ impl Payload {
         let setup = page.evaluator.map(|evaluator| evaluator.setup());
         let of_members = places.iter().zip(members).filter_map(|(&n, profile)| {
             let cuts = Cuts::new(profile.as_ref()?);
-            let design = run.front[n].design.design()?;
+            let design = run.front[n].only_design()?;
             Some((n, cuts.with_orbits(&design, setup?.model)))
         });
         let generations = earlier(run, &names).into_iter();
@@ -214,7 +214,7 @@ impl Beside {
         let setup = page.evaluator.map(|evaluator| evaluator.setup());
         let cuts = setup.zip(profile).map(|(setup, profile)| {
             let cuts = Cuts {
-                tracks: Tracks::new(&one.ephemeris),
+                tracks: Tracks::new(&one.ephemeris, page.track_bytes()),
                 ..Cuts::new(profile)
             };
             match &one.constellation.design {
@@ -224,7 +224,7 @@ impl Beside {
         });
         Self {
             name: baseline.name.clone(),
-            notation: baseline.notation.clone(),
+            notation: baseline.made_of.clone(),
             objectives: baseline.objectives.iter().map(|x| x.map(short)).collect(),
             tiles: readouts::all(run, &names)
                 .iter()
@@ -282,11 +282,11 @@ impl Front {
                 .collect::<Vec<_>>()
         };
         let of_design = |value: fn(&Design) -> Option<f64>| {
-            column(&move |m| m.design.design().as_ref().and_then(value))
+            column(&move |m| m.only_design().as_ref().and_then(value))
         };
         Self {
             index: members.iter().map(|m| m.index).collect(),
-            notation: members.iter().map(|m| m.design.notation.clone()).collect(),
+            notation: members.iter().map(FrontMember::made_of).collect(),
             objectives: names
                 .iter()
                 .map(|name| {
@@ -336,7 +336,7 @@ impl OtherFront {
         };
         Self {
             name: name.to_owned(),
-            notation: front.iter().map(|m| m.design.notation.clone()).collect(),
+            notation: front.iter().map(FrontMember::made_of).collect(),
             objectives: names.iter().map(objective).collect(),
         }
     }

@@ -187,8 +187,8 @@ fn found(run: &Run) -> String {
         return format!("The search found {members}.");
     };
     if search.is_of_given() {
-        let designs = crate::units::counted(run.front.len(), "design");
-        return format!("{designs} were evaluated as given, without a search.");
+        let given = crate::units::counted(run.front.len(), "constellation");
+        return format!("{given} evaluated as given, without a search.");
     }
     let mut text = format!(
         "{} (seed {}) evaluated {} designs and found {members}.",
@@ -212,7 +212,7 @@ fn choice(page: &Page<'_>) -> Option<String> {
     let member = &run.front[run.chosen()?];
     let mut text = format!(
         "The fuzzy pick is {} ({}), with the best worst-case membership on the front, {}.",
-        member.design.notation,
+        member.made_of(),
         shown::objectives(member),
         shown::membership(member.membership),
     );
@@ -257,7 +257,7 @@ pub(super) fn best(run: &Run) -> Vec<Best> {
         Some(Best {
             objective: quantity_label(name),
             place,
-            notation: member.design.notation.clone(),
+            notation: member.made_of(),
             value: shown::named(name, member.objective(name)),
         })
     };
@@ -316,7 +316,7 @@ fn row(place: usize, member: &FrontMember, further: &[String]) -> MemberRow {
     MemberRow {
         place,
         index: member.index,
-        notation: member.design.notation.clone(),
+        notation: member.made_of(),
         chosen: member.chosen,
         cells,
     }

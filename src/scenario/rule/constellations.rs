@@ -4,13 +4,13 @@ use serde_json::{Value as Json, json};
 
 use super::{Node, Reading, Rule, SectionTable};
 use crate::constellation::{Design, NotationError};
+use crate::exchange::constellation::{
+    GNSS_ONLY, LONGEST_NAME, NAME_CHARACTERS, accepted_name, is_name,
+};
 use crate::scenario::number::toml_text;
 use crate::scenario::problem::Fault;
 use crate::scenario::source::blanked;
 use crate::scenario::values::{ConstellationParts, NamedConstellation};
-
-/// Longest name in bytes, since it becomes the name of a folder and the head of a column.
-const LONGEST_NAME: usize = 64;
 
 /// A design in Walker notation.
 pub(in crate::scenario) struct Notation;
@@ -51,10 +51,6 @@ impl Constellations {
     fn accepted_parts() -> String {
         format!("{}, or {}", Notation.accepted(), Self::TABLE.accepted())
     }
-
-    fn accepted_name() -> String {
-        format!("a name of letters, digits, '-' and '_', 1 to {LONGEST_NAME} bytes")
-    }
 }
 
 impl Rule for Constellations {
@@ -68,10 +64,10 @@ impl Rule for Constellations {
         let read = |(name, node): (&toml::Spanned<_>, &Node<'_>)| {
             let name: &std::borrow::Cow<'_, str> = name.get_ref();
             let mut reading = reading.within(name, Self::accepted_parts());
-            let is_name = check_name(name, node, &mut reading);
+            let is_accepted = check_name(name, node, &mut reading);
             let parts = read_parts(node, &mut reading)?;
             let name = name.to_string();
-            is_name.then_some(NamedConstellation { name, parts })
+            is_accepted.then_some(NamedConstellation { name, parts })
         };
         // All of them, so that all problems are reported.
         let each: Vec<Option<NamedConstellation>> = table.iter().map(read).collect();
@@ -92,7 +88,11 @@ impl Rule for Constellations {
             .collect();
         json!({
             "type": "object",
-            "propertyNames": { "pattern": "^[A-Za-z0-9_-]+$", "maxLength": LONGEST_NAME },
+            "propertyNames": {
+                "pattern": format!("^[{NAME_CHARACTERS}]+$"),
+                "maxLength": LONGEST_NAME,
+                "not": { "const": GNSS_ONLY },
+            },
             "additionalProperties": { "anyOf": [Notation.schema(), table] },
         })
     }
@@ -113,17 +113,19 @@ impl Rule for Constellations {
 const FILE_KEYS: [&str; 3] = ["input-format", "only", "exclude"];
 
 fn check_name(name: &str, node: &Node<'_>, reading: &mut Reading<'_>) -> bool {
-    let allowed = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
-    let is_name = (1..=LONGEST_NAME).contains(&name.len()) && name.chars().all(allowed);
-    if !is_name {
+    let is_accepted = is_name(name) && name != GNSS_ONLY;
+    if !is_accepted {
         let found: String = blanked(name).take(LONGEST_NAME).collect();
-        let fault = Fault::NotAccepted {
-            found: format!("the name {found:?}"),
-            accepted: Constellations::accepted_name(),
+        let fault = match name {
+            GNSS_ONLY => Fault::ReservedName { name: GNSS_ONLY },
+            _ => Fault::NotAccepted {
+                found: format!("the name {found:?}"),
+                accepted: accepted_name(),
+            },
         };
         reading.report(node.span(), fault);
     }
-    is_name
+    is_accepted
 }
 
 fn read_parts(node: &Node<'_>, reading: &mut Reading<'_>) -> Option<ConstellationParts> {

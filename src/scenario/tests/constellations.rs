@@ -309,3 +309,44 @@ fn the_schema_describes_a_constellation() {
     assert_eq!(table["dependentRequired"]["only"][0], "files");
     assert_eq!(table["anyOf"][0]["required"][0], "design");
 }
+
+#[test]
+fn the_name_of_the_gnss_alone_is_reserved() {
+    let text = "[constellations]\na = \"delta:55:4/2/1@925\"\ngnss-only = \"delta:55:4/2/1@925\"\n";
+    let told = problems(text, &[]);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0]
+            .contains(":3: constellations.gnss-only: the name gnss-only is that of the GNSS alone"),
+        "{told:?}"
+    );
+    assert_eq!(
+        problems("", &["constellations.gnss-only.files=['a.tle']"]).len(),
+        1
+    );
+}
+
+#[test]
+fn names_of_designs_join_like_notations() {
+    let scenario = parse(TEXT, &["constellations.polar=star:90:4/2/1@925"]).unwrap();
+    let design = scenario.design("polar+delta:55:4/2/1@900+zulu").unwrap();
+    assert_eq!(
+        design.to_string(),
+        "star:90:4/2/1@925+delta:55:4/2/1@900+delta:53:160/10/1@1000+star:90:40/5/1@1100"
+    );
+    let with_files = scenario.design("polar+mixed").unwrap_err();
+    assert_eq!(with_files, NoDesign::HasFiles("mixed".to_owned()));
+    // What a reference design says is what counts, not how.
+    let by_name = parse(
+        TEXT,
+        &[
+            "constellations.polar=star:90:4/2/1@925",
+            "reference-design=polar+polar",
+        ],
+    );
+    let spelled = parse(
+        "",
+        &["reference-design=star:90:4/2/1@925+star:90:4/2/1@925"],
+    );
+    assert_eq!(by_name.unwrap().hash(&[]), spelled.unwrap().hash(&[]));
+}

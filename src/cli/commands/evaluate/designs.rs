@@ -2,13 +2,14 @@
 
 use super::EvaluationContext;
 use super::print::Printer;
+use crate::cli::study::Study;
 use crate::cli::{Status, output};
-use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, GNSS_ONLY};
 use crate::report::ConstellationEntry;
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
@@ -176,8 +177,12 @@ fn fields(line: &str) -> Result<Vec<String>, String> {
 }
 
 impl Layout {
-    /// The constellation of a line.
-    fn constellation(&self, line: &str) -> Result<Constellation, String> {
+    /// The constellation of a line, by its notation or its name in the scenario.
+    fn constellation(
+        &self,
+        line: &str,
+        known: &mut NamedConstellations<'_>,
+    ) -> Result<Constellation, String> {
         let (notation, name) = match self {
             Self::Notation => (line.to_owned(), None),
             Self::Table {
@@ -199,38 +204,70 @@ impl Layout {
         if notation.is_empty() {
             return Err("no design".to_owned());
         }
-        let design: Design = notation
-            .parse()
-            .map_err(|error| format!("{notation}: {error}"))?;
-        let one = Constellation::of_design(design);
-        Ok(match name.filter(|name| !name.is_empty()) {
-            Some(name) => one.named(name),
-            None => one,
-        })
+        let one = known.get(&notation)?;
+        match name.filter(|name| !name.is_empty()) {
+            Some(name) if name == GNSS_ONLY => Err(format!(
+                "the name {name} is that of the GNSS alone in tables"
+            )),
+            Some(name) => Ok(one.named(name)),
+            None => Ok(one),
+        }
+    }
+}
+
+/// The constellations that the scenario names, each read when a line names it first.
+struct NamedConstellations<'a> {
+    study: &'a Study,
+    read: BTreeMap<String, Result<Constellation, String>>,
+}
+
+impl NamedConstellations<'_> {
+    /// The constellation of this notation or name.
+    fn get(&mut self, text: &str) -> Result<Constellation, String> {
+        let Some(named) = self.study.scenario.constellation(text) else {
+            let design = self.study.scenario.design(text);
+            let design = design.map_err(|error| format!("{text}: {error}"))?;
+            return Ok(Constellation::of_design(design));
+        };
+        let read = || {
+            let read = self.study.constellation(named);
+            read.map_err(|error| format!("{error:#}"))
+        };
+        self.read
+            .entry(text.to_owned())
+            .or_insert_with(read)
+            .clone()
     }
 }
 
 /// Evaluates the designs of a list in parallel and prints them in its order.
 pub(super) fn evaluate(
     mut list: DesignList,
+    study: &Study,
     work: &EvaluationContext<'_>,
     printer: &mut Printer<'_>,
 ) -> Result<Status> {
     let size = BATCH_PER_THREAD * rayon::current_num_threads();
     let (mut good, mut bad) = (0_usize, 0_usize);
+    let mut known = NamedConstellations {
+        study,
+        read: BTreeMap::new(),
+    };
     loop {
         let lines = list.batch(size)?;
         if lines.is_empty() {
             break;
         }
-        let entries: Vec<_> = lines
+        let mut of_line = |line: String| -> Result<Constellation, String> {
+            list.layout.constellation(&line, &mut known)
+        };
+        let lines = lines.into_iter();
+        let constellations: Vec<_> = lines
+            .map(|(number, line)| (number, line.and_then(&mut of_line)))
+            .collect();
+        let entries: Vec<_> = constellations
             .into_par_iter()
-            .map(|(number, line)| {
-                (
-                    number,
-                    line.and_then(|line| entry(&list.layout, &line, work)),
-                )
-            })
+            .map(|(number, one)| (number, one.and_then(|one| entry(&one, work))))
             .collect();
         for (number, entry) in entries {
             match entry {
@@ -254,16 +291,11 @@ pub(super) fn evaluate(
     }
 }
 
-fn entry(
-    layout: &Layout,
-    line: &str,
-    work: &EvaluationContext<'_>,
-) -> Result<ConstellationEntry, String> {
-    let one = layout.constellation(line)?;
+fn entry(one: &Constellation, work: &EvaluationContext<'_>) -> Result<ConstellationEntry, String> {
     let setup = work.evaluator.setup();
     let evaluate = || -> Result<ConstellationEntry> {
         let ephemeris: Ephemeris = one.ephemeris(setup.grid, setup.model)?;
-        work.entry(&one, &ephemeris)
+        work.entry(one, &ephemeris)
     };
     evaluate().map_err(|error| format!("{}: {error}", one.made_of()))
 }

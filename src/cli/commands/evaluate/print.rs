@@ -8,6 +8,7 @@ use crate::cli::output;
 use crate::exchange::constellation::Constellation;
 use crate::report::{ConstellationColumns, ConstellationEntry};
 use crate::run::VERSION;
+use crate::scenario::Scenario;
 use anyhow::Result;
 use serde::Serialize;
 
@@ -42,7 +43,8 @@ impl<'a> Printer<'a> {
         let is_alone = list.is_none() && matches!(given, [one] if is_of_one_kind(one));
         let form = match work.args.format {
             OutputFormat::Csv => PrintForm::Csv {
-                has_files: given.iter().any(|one| one.files.is_some()),
+                has_files: given.iter().any(|one| one.files.is_some())
+                    || list.is_some() && names_files(work.scenario),
                 columns: None,
             },
             _ if is_alone => PrintForm::Alone(None),
@@ -103,6 +105,12 @@ impl<'a> Printer<'a> {
             },
         }
     }
+}
+
+/// Whether a list may name a constellation with satellites from files.
+fn names_files(scenario: &Scenario) -> bool {
+    let named = &scenario.constellations;
+    named.iter().any(|one| !one.parts.files.is_empty())
 }
 
 /// JSON in lines, indented as a part of a larger object.

@@ -5,22 +5,12 @@ use super::designs::DesignList;
 use crate::cli::output;
 use crate::evaluate::DopStatistics;
 use crate::exchange::constellation::Constellation;
-use crate::report::{Align, ConstellationEntry, Table, shown};
-use crate::search::Quantity;
-use crate::units::{counted, round_decimal};
+use crate::report::{
+    Align, ComparisonColumn, ConstellationEntry, Table, comparison_columns, shown,
+};
+use crate::search::{LaunchCost, Quantity};
+use crate::units::counted;
 use anyhow::Result;
-
-/// Quantities that have a column in every table.
-const ALWAYS: [Quantity; 8] = [
-    Quantity::Satellites,
-    Quantity::MeanVisible,
-    Quantity::MeanPdop,
-    Quantity::CvarPdop,
-    Quantity::MaxPdop,
-    Quantity::Availability,
-    Quantity::JPos,
-    Quantity::JCost,
-];
 
 /// Least width of the name in a table that is printed row by row, in characters: a notation with decimals.
 const NAME_WIDTH: usize = 32;
@@ -29,8 +19,9 @@ const NAME_WIDTH: usize = 32;
 pub(super) struct TextTable {
     title: String,
     columns: Vec<(String, Align)>,
-    /// Objectives and constrained quantities outside [`ALWAYS`].
-    further: Vec<Quantity>,
+    /// The numbers that every table has, and the objectives and constrained quantities.
+    numbers: Vec<ComparisonColumn>,
+    launch_cost: LaunchCost,
     /// Whether constellations have names of their own.
     has_names: bool,
     has_dops: bool,
@@ -52,16 +43,16 @@ impl TextTable {
         list: Option<&DesignList>,
     ) -> Self {
         let goals = &work.goals;
-        let quantities = goals.objectives.iter().copied();
-        let quantities = quantities.chain(goals.constrained());
-        let further: Vec<_> = quantities.filter(|one| !ALWAYS.contains(one)).collect();
+        let numbers = comparison_columns(work.scenario);
         let is_named = |one: &Constellation| one.name != one.made_of();
-        let has_names = given.iter().any(is_named) || list.is_some_and(DesignList::has_names);
+        let may_name =
+            |list: &DesignList| list.has_names() || !work.scenario.constellations.is_empty();
+        let has_names = given.iter().any(is_named) || list.is_some_and(may_name);
         let count = match list {
             Some(_) => "constellations".to_owned(),
             None => counted(given.len(), "constellation"),
         };
-        let columns = columns(work, has_names, &further);
+        let columns = columns(work, has_names, &numbers);
         let rows = match list {
             None => Rows::Kept(table(&columns)),
             Some(_) => {
@@ -73,7 +64,8 @@ impl TextTable {
         };
         Self {
             title: format!("{count} in scenario {}\n", work.scenario.name),
-            further,
+            numbers,
+            launch_cost: goals.launch_cost,
             has_names,
             has_dops: work.args.dops,
             has_constraints: !goals.constraints.is_empty(),
@@ -125,15 +117,12 @@ impl TextTable {
         if self.has_names {
             cells.push(entry.made_of());
         }
-        cells.push(entry.satellites.to_string());
-        cells.push(shown::pdop(Some(metrics.mean_visible)));
-        cells.extend([metrics.mean_pdop, metrics.cvar_pdop, metrics.max_pdop].map(shown::pdop));
-        cells
-            .extend([metrics.solved_fraction, metrics.availability].map(|x| shown::share(Some(x))));
-        cells.extend([metrics.j_pos, metrics.j_cost].map(shown::pdop));
-        for further in &self.further {
-            cells.push(shown::quantity(*further, evaluated.value(*further)));
-        }
+        let quantity = |one: Quantity| {
+            let of_metrics = || one.value_of(entry.satellites, None, metrics, &self.launch_cost);
+            evaluated.value(one).or_else(of_metrics)
+        };
+        let numbers = self.numbers.iter();
+        cells.extend(numbers.map(|one| one.text(one.value(metrics, quantity))));
         if self.has_dops {
             let dops = evaluated.dops.iter().flat_map(DopStatistics::named);
             let both = |(_, one): (String, Option<crate::stats::Summary>)| {
@@ -156,24 +145,10 @@ fn table(columns: &[(String, Align)]) -> Table {
 fn columns(
     work: &EvaluationContext<'_>,
     has_names: bool,
-    further: &[Quantity],
+    numbers: &[ComparisonColumn],
 ) -> Vec<(String, Align)> {
-    let options = work.evaluator.setup().metrics;
-    let tail = round_decimal(100.0 * (1.0 - options.cvar_level.get()), 4);
-    let mut names: Vec<String> = [
-        "satellites",
-        "mean\nvisible",
-        "mean\nPDOP",
-        &format!("CVaR of PDOP\n(worst {tail} %)"),
-        "maximum\nPDOP",
-        "solved\nfraction",
-        &format!("availability\n(PDOP <= {})", options.availability_pdop),
-        "J_pos",
-        "J_cost",
-    ]
-    .map(str::to_owned)
-    .into();
-    names.extend(further.iter().map(ToString::to_string));
+    let numbers = numbers.iter();
+    let mut names: Vec<String> = numbers.map(|one| one.heading(work.scenario)).collect();
     if work.args.dops {
         for name in work.evaluator.dop_names() {
             names.extend(["mean", "95 %"].map(|statistic| format!("{name}\n{statistic}")));

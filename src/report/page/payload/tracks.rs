@@ -5,7 +5,7 @@ use crate::report::page::pack::Packed;
 use crate::units::SECONDS_PER_HOUR;
 use serde::Serialize;
 
-/// Maximum bytes of the page for the samples of one constellation.
+/// Maximum bytes of the page for the samples of one constellation, however few there are.
 const MOST_BYTES: usize = 300_000;
 
 /// Bytes of a sample: three numbers of two bytes, in base64.
@@ -31,15 +31,16 @@ pub(super) struct Tracks {
 }
 
 impl Tracks {
-    /// `None` if every satellite is in a shell, whose elements are enough.
-    pub(super) fn new(ephemeris: &Ephemeris) -> Option<Self> {
+    /// Positions that take at most `bytes` of the page; `None` if every satellite is in a shell, whose elements are
+    /// enough.
+    pub(super) fn new(ephemeris: &Ephemeris, bytes: usize) -> Option<Self> {
         let others = ephemeris.outside_shells();
         if others.is_empty() {
             return None;
         }
         let grid = ephemeris.grid();
         let span_s = grid.step_s() * grid.len().saturating_sub(1) as f64;
-        let plan = Thinning::new(others.len(), span_s);
+        let plan = Thinning::new(others.len(), span_s, bytes.min(MOST_BYTES));
         let drawn = others.iter().step_by(plan.stride);
         let drawn = drawn.map(|place| &ephemeris.satellites()[*place]);
         let positions = drawn.flat_map(|satellite| {
@@ -68,8 +69,8 @@ struct Thinning {
 }
 
 impl Thinning {
-    fn new(satellites: usize, span_s: f64) -> Self {
-        let most = (MOST_BYTES / SAMPLE_BYTES / satellites).max(1);
+    fn new(satellites: usize, span_s: f64, bytes: usize) -> Self {
+        let most = (bytes / SAMPLE_BYTES / satellites).max(1);
         let count = |span_s: f64, step_s: f64| (span_s / step_s) as usize + 1;
         let whole = STEPS_S
             .into_iter()
@@ -86,7 +87,7 @@ impl Thinning {
         Self {
             step_s,
             instants,
-            stride: (instants * satellites * SAMPLE_BYTES).div_ceil(MOST_BYTES),
+            stride: (instants * satellites * SAMPLE_BYTES).div_ceil(bytes),
         }
     }
 
@@ -117,7 +118,7 @@ mod tests {
     #[test]
     fn only_satellites_outside_shells_are_sampled() {
         let mixed = files_between_shells();
-        let tracks = Tracks::new(&mixed).unwrap();
+        let tracks = Tracks::new(&mixed, MOST_BYTES).unwrap();
         let expected = mixed.satellites()[2..4].iter().flat_map(|satellite| {
             let states = (0..tracks.instants).map(|n| mixed.state(satellite, 300.0 * n as f64));
             states.flat_map(|state| state.unwrap().position_km.km().data.0[0].map(Some))
@@ -131,13 +132,12 @@ mod tests {
     fn what_does_not_fit_is_thinned_and_said_to_be() {
         let day = 86_340.0;
         let told = |satellites: usize| {
-            let plan = Thinning::new(satellites, day);
-            let drawn = satellites.div_ceil(plan.stride);
-            assert!(
-                drawn * plan.instants * SAMPLE_BYTES <= MOST_BYTES,
-                "{plan:?}"
-            );
-            plan.told(satellites, day)
+            for bytes in [MOST_BYTES, MOST_BYTES / 33] {
+                let plan = Thinning::new(satellites, day, bytes);
+                let drawn = satellites.div_ceil(plan.stride);
+                assert!(drawn * plan.instants * SAMPLE_BYTES <= bytes, "{plan:?}");
+            }
+            Thinning::new(satellites, day, MOST_BYTES).told(satellites, day)
         };
         assert!(told(66).ends_with("every 5 min, interpolated."));
         assert!(told(200).ends_with("every 10 min, interpolated."));
@@ -151,6 +151,6 @@ mod tests {
             many.contains("2.0 h only; 2500 of the 10000 are drawn"),
             "{many}"
         );
-        assert_eq!(Thinning::new(3, 0.0).instants, 1);
+        assert_eq!(Thinning::new(3, 0.0, MOST_BYTES).instants, 1);
     }
 }
