@@ -62,6 +62,7 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
         time_system: args.time_system,
         omm: args.omm_syntax,
         oem: args.oem_syntax,
+        opm: args.opm_syntax,
         oem_combined: args.oem_combined,
         elements: args.tle_theory,
         ccsds_version: args.ccsds_version,
