@@ -15,7 +15,7 @@ export_to() {
         --set time.duration-h=0.1 --set time.step-s=90 "$@" >"$work/log"
 }
 export_to kvn --as tle,omm,oem,opm,sp3,stk,csv,tle-states
-export_to xml --as omm,oem,stk,opm --omm-syntax xml --oem-syntax xml --frame GCRF
+export_to xml --as omm,oem,stk,opm --omm-syntax xml --oem-syntax xml --opm-syntax xml --frame GCRF
 export_to ndm --as oem,omm --oem-syntax xml --oem-combined --omm-syntax json --time-system TAI
 export_to v3 --as omm,oem,opm,sp3,stk --omm-syntax csv --ccsds-version 3.0 --sp3-version c --frame ITRF --time-system GPS
 export_to map --as czml --set region.step-deg=90 --set gnss.constellations='[]'
@@ -33,7 +33,7 @@ find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while
         *.tle) target=tle ;;
         *omm*) target=omm ;;
         *oem*) target=oem ;;
-        *.opm) target=opm ;;
+        *opm*) target=opm ;;
         *.sp3) target=sp3 ;;
         *.e) target=stk ;;
         *.csv) target=csv ;;

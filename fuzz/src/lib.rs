@@ -210,17 +210,34 @@ fn same_oem(
     }
 }
 
-/// Parameter messages.
+/// Parameter messages, keyword = value or XML.
 pub fn opm(bytes: &[u8]) {
-    let Ok(message) = opm::read(bytes) else {
-        return;
-    };
+    if format_of(bytes) == Some(Format::OpmXml) {
+        for message in opm::read_xml(bytes).unwrap_or_default() {
+            let read = |bytes: &[u8]| opm::read_xml(bytes).map(|mut read| read.remove(0));
+            same_opm(read, opm::OpmSyntax::Xml, &message);
+        }
+    } else if let Ok(message) = opm::read(bytes) {
+        same_opm(
+            |bytes: &[u8]| opm::read(bytes),
+            opm::OpmSyntax::Kvn,
+            &message,
+        );
+    }
+}
+
+fn same_opm(
+    read: impl Fn(&[u8]) -> Result<opm::Opm, ReadError>,
+    syntax: opm::OpmSyntax,
+    message: &opm::Opm,
+) {
     let write = |message: &opm::Opm| {
         let mut out = Vec::new();
-        message.write(&mut out).expect("memory takes the bytes");
+        let written = message.write_as(syntax, &mut out);
+        written.expect("memory takes the bytes");
         out
     };
-    let again = settled(|bytes: &[u8]| opm::read(bytes), write, &message);
+    let again = settled(read, write, message);
     assert_eq!(again.header, message.header);
     assert_eq!(again.epoch, message.epoch);
     assert_eq!(again.user_defined, message.user_defined);

@@ -227,18 +227,21 @@ impl Arc {
     /// the spacing, and so an upper estimate of the actual error. `None` if there are too few samples.
     #[must_use]
     pub fn left_out_error_km(&self) -> Option<f64> {
-        let kept: Vec<_> = self.nodes.iter().step_by(2).copied().collect();
-        if kept.len() < self.interpolation.nodes() {
+        let count = self.interpolation.nodes();
+        let kept = self.nodes.len().div_ceil(2);
+        if kept < count {
             return None;
         }
-        let dropped: Vec<_> = self.nodes.iter().skip(1).step_by(2).enumerate().collect();
-        let inner = dropped.iter().filter(|(place, _)| place + 1 < kept.len());
-        let stride = dropped.len().div_ceil(PLACES).max(1);
-        inner
+        // Those between two that are kept.
+        let dropped = kept - 1;
+        let stride = dropped.div_ceil(PLACES).max(1);
+        (0..dropped)
             .step_by(stride)
-            .map(|(place, (at, state))| {
-                let table: Vec<_> = window(&kept, place + 1, self.interpolation.nodes())
-                    .iter()
+            .map(|place| {
+                let (at, state) = &self.nodes[2 * place + 1];
+                let first = window_start(kept, place + 1, count);
+                let table: Vec<_> = (first..first + count)
+                    .map(|k| &self.nodes[2 * k])
                     .map(|(t, state)| (t.seconds_since(*at), *state))
                     .collect();
                 let found = self.interpolation.state(&table, 0.0);
@@ -251,10 +254,13 @@ impl Arc {
 /// The `count` nodes around the interval before `next`, the same number on each side, shifted at the ends.
 fn window<T>(nodes: &[T], next: usize, count: usize) -> &[T] {
     let count = count.min(nodes.len());
-    let first = next
-        .saturating_sub(count.div_ceil(2))
-        .min(nodes.len() - count);
+    let first = window_start(nodes.len(), next, count);
     &nodes[first..first + count]
+}
+
+/// The first of the `count` nodes around the interval before `next`, of `len` at least as many.
+fn window_start(len: usize, next: usize, count: usize) -> usize {
+    next.saturating_sub(count.div_ceil(2)).min(len - count)
 }
 
 /// Value and time derivative of the Lagrange polynomial through the positions.

@@ -18,7 +18,7 @@ use crate::exchange::manifest::{
 };
 use crate::formats::WriteError;
 use crate::formats::ccsds::CcsdsVersion;
-use crate::formats::ccsds::{oem, omm};
+use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::maps::scene::Scene;
 use crate::formats::metadata::{ElementChoice, Metadata};
 use crate::formats::sp3;
@@ -90,6 +90,8 @@ pub struct Choices {
     pub omm: omm::OmmSyntax,
     /// Notation of the OEM.
     pub oem: oem::OemSyntax,
+    /// Notation of the OPM.
+    pub opm: opm::OpmSyntax,
     /// Whether the OEMs of all satellites are combined in one file, which XML allows.
     pub oem_combined: bool,
     /// How element sets are derived from the design.
@@ -110,6 +112,7 @@ impl Default for Choices {
             ccsds_version: CcsdsVersion::V2,
             omm: omm::OmmSyntax::Kvn,
             oem: oem::OemSyntax::Kvn,
+            opm: opm::OpmSyntax::Kvn,
             oem_combined: false,
             elements: ElementChoice::Kozai,
             sp3_version: sp3::Sp3Version::D,

@@ -35,7 +35,6 @@ use crate::formats::yuma::Almanac;
 use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
 use crate::frames::{Frame, State};
 use crate::printable::printable;
-use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::io::{self, BufRead};
 use thiserror::Error;
@@ -146,15 +145,12 @@ impl Fleet {
                 Ok(Self::Sets(sets.collect()))
             }
             Format::Omm => omm(input, OmmSyntax::Kvn, findings),
-            Format::OmmXml | Format::OemXml => {
-                let messages = all(findings, |findings, take| {
-                    ndm::parse(input, kinds, findings, take)
-                })?;
-                Self::of_ndm(messages)
+            Format::OmmXml | Format::OemXml | Format::OpmXml => {
+                Self::of_ndm(kinds, input, findings)
             }
             Format::OmmJson => omm(input, OmmSyntax::Json, findings),
             Format::OmmCsv => omm(input, OmmSyntax::Csv, findings),
-            Format::Oem => Self::of_oem(&[oem::read(input)?]),
+            Format::Oem => Self::of_oem(input, findings),
             Format::Opm => Self::of_opm(opm::read(input)?),
             Format::Sp3 => Self::of_sp3(whole(findings, |findings| sp3::parse(input, findings))?),
             Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
@@ -175,19 +171,34 @@ impl Fleet {
     }
 
     /// Messages of a kind go together; the first message's kind comes first.
-    fn of_ndm(messages: Vec<NdmMessage>) -> Result<Self, ReadFleetError> {
-        let mut fleet: Option<Self> = None;
-        for message in messages {
-            let next = match message {
-                NdmMessage::Oem(message) => Self::of_oem(&[message])?,
-                NdmMessage::Omm(message) => Self::Sets(vec![message.set]),
-            };
-            match &mut fleet {
-                None => fleet = Some(next),
-                Some(fleet) => fleet.append(next),
-            }
+    fn of_ndm(
+        kinds: &[&str],
+        input: impl BufRead,
+        findings: &mut FindingList,
+    ) -> Result<Self, ReadFleetError> {
+        let fleet = gathered(
+            Self::Mixed(Vec::new()),
+            findings,
+            |findings, take| ndm::parse(input, kinds, findings, take),
+            |fleet, message| {
+                fleet.append(match message {
+                    NdmMessage::Oem(message) => Self::of_segments(message.segments)?,
+                    NdmMessage::Omm(message) => Self::Sets(vec![message.set]),
+                    NdmMessage::Opm(message) => Self::of_opm(*message)?,
+                });
+                Ok(())
+            },
+        )?;
+        Ok(fleet.simplified())
+    }
+
+    /// A fleet of one kind as such.
+    fn simplified(self) -> Self {
+        match self {
+            Self::Mixed(mut parts) if parts.len() == 1 => parts.remove(0),
+            Self::Mixed(parts) if parts.is_empty() => Self::Sets(Vec::new()),
+            other => other,
         }
-        Ok(fleet.unwrap_or(Self::Sets(Vec::new())))
     }
 
     fn of_omm(messages: Vec<omm::Omm>) -> Self {
@@ -199,11 +210,25 @@ impl Fleet {
         Self::Almanacs(almanacs.into_iter().filter(Almanac::is_healthy).collect())
     }
 
+    /// Each segment is turned into a trajectory as soon as it has been read.
+    fn of_oem(input: impl BufRead, findings: &mut FindingList) -> Result<Self, ReadFleetError> {
+        let trajectories = gathered(
+            Vec::new(),
+            findings,
+            |findings, take| oem::parse(input, findings, take).map(drop),
+            |trajectories, segment: oem::Segment| {
+                objects::unite(trajectories, segment.into_trajectory()?);
+                Ok(())
+            },
+        )?;
+        Ok(Self::Sampled(trajectories))
+    }
+
     /// The segments of one satellite follow each other.
-    fn of_oem(messages: &[oem::Oem]) -> Result<Self, ReadFleetError> {
+    fn of_segments(segments: Vec<oem::Segment>) -> Result<Self, ReadFleetError> {
         let mut trajectories = Vec::new();
-        for segment in messages.iter().flat_map(|message| &message.segments) {
-            objects::unite(&mut trajectories, segment.trajectory()?);
+        for segment in segments {
+            objects::unite(&mut trajectories, segment.into_trajectory()?);
         }
         Ok(Self::Sampled(trajectories))
     }
@@ -222,13 +247,15 @@ impl Fleet {
         }
     }
 
-    fn of_sp3(file: sp3::Sp3) -> Result<Self, ReadFleetError> {
+    fn of_sp3(mut file: sp3::Sp3) -> Result<Self, ReadFleetError> {
         let frame = frame_of_sp3_name(&file.frame).map_err(TrajectoryError::Name)?;
         let mut trajectories = Vec::new();
-        let given = file.ids.iter().zip(&file.states);
+        let states = std::mem::take(&mut file.states);
+        let given = file.ids.iter().zip(states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
             let name = file.name_of(id).unwrap_or(id);
-            let arcs = file.runs(samples).map(|run| sp3_arc(frame, run));
+            let runs = file.into_runs(samples).into_iter();
+            let arcs = runs.map(|run| sp3_arc(frame, run));
             let arcs = arcs.collect::<Option<Vec<Arc>>>();
             trajectories.push(Trajectory {
                 name: name.to_owned(),
@@ -259,7 +286,7 @@ impl Fleet {
         Self::Sampled(vec![Trajectory {
             name: name.to_owned(),
             id: name.to_owned(),
-            arcs: file.arcs(),
+            arcs: file.into_arcs(),
         }])
     }
 
@@ -394,24 +421,46 @@ fn all<T>(
     }
 }
 
-/// The arc of a run without gaps; velocities that are not given follow from the positions of the run.
-fn sp3_arc(frame: Frame, run: &[sp3::Sp3Sample]) -> Option<Arc> {
-    let derived = match run.iter().all(|sample| sample.velocity_km_s.is_some()) {
-        true => vec![Vector3::zeros(); run.len()],
-        false => {
-            let positions: Vec<_> = run.iter().map(|s| (s.at, s.position_km)).collect();
-            velocities(&positions)?
+/// Everything that a parser reads, added to `kept` part by part; or the first violation in the file, or else the first
+/// part that cannot be added.
+fn gathered<K, T>(
+    mut kept: K,
+    findings: &mut FindingList,
+    parse: impl FnOnce(&mut FindingList, &mut dyn FnMut(T)) -> io::Result<()>,
+    add: impl Fn(&mut K, T) -> Result<(), ReadFleetError>,
+) -> Result<K, ReadFleetError> {
+    let mut failed = Ok(());
+    parse(findings, &mut |part| {
+        if failed.is_ok() {
+            failed = add(&mut kept, part);
         }
+    })
+    .map_err(ReadError::Io)?;
+    match findings.first_error() {
+        Some(first) => Err(ReadError::from(first.clone()).into()),
+        None => failed.map(|()| kept),
+    }
+}
+
+/// The arc of a run without gaps; velocities that are not given follow from the positions of the run.
+fn sp3_arc(frame: Frame, run: Vec<sp3::Sp3Sample>) -> Option<Arc> {
+    let derived = match run.iter().all(|sample| sample.velocity_km_s.is_some()) {
+        true => Vec::new(),
+        false => velocities(run.len(), |place| (run[place].at, run[place].position_km))?,
     };
-    let state = |(sample, derived): (&sp3::Sp3Sample, Vector3<f64>)| {
+    let mut derived = derived.into_iter();
+    let node = |sample: sp3::Sp3Sample| {
+        let derived = derived.next();
         let state = State {
             position_km: sample.position_km,
-            velocity_km_s: sample.velocity_km_s.unwrap_or(derived),
+            velocity_km_s: sample.velocity_km_s.or(derived).unwrap_or_default(),
         };
         (sample.at, state)
     };
-    let states = run.iter().zip(derived).map(state).collect();
-    let arc = Arc::new(frame, SP3_INTERPOLATION, states)?;
+    // In the memory of the samples, of which the rest is given back.
+    let mut nodes: Vec<_> = run.into_iter().map(node).collect();
+    nodes.shrink_to_fit();
+    let arc = Arc::new(frame, SP3_INTERPOLATION, nodes)?;
     Some(Arc {
         is_open: true,
         ..arc

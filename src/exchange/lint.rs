@@ -31,6 +31,8 @@ keywords! {
         OmmCsv = "omm-csv",
         /// CCSDS Orbit Parameter Message, keyword = value.
         Opm = "opm",
+        /// The same in XML.
+        OpmXml = "opm-xml",
         /// SP3-a to SP3-d.
         Sp3 = "sp3",
         /// CZML, the satellites of a document.
@@ -114,7 +116,9 @@ pub fn lint(
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
         Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
-        Format::OemXml | Format::OmmXml => ndm::parse(input, kinds, &mut findings, |_| ())?,
+        Format::OemXml | Format::OmmXml | Format::OpmXml => {
+            ndm::parse(input, kinds, &mut findings, |_| ())?;
+        }
         Format::Omm => omm::parse(input, OmmSyntax::Kvn, &mut findings, |_| ())?,
         Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
         Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
@@ -139,6 +143,7 @@ pub(super) fn xml_kinds(asked: Option<Format>) -> &'static [&'static str] {
     match asked {
         Some(Format::OemXml) => &["oem"],
         Some(Format::OmmXml) => &["omm"],
+        Some(Format::OpmXml) => &["opm"],
         _ => ndm::READ,
     }
 }
@@ -187,10 +192,11 @@ mod tests {
         for oem_combined in [false, true] {
             let choices = Choices {
                 oem: oem::OemSyntax::Xml,
+                opm: opm::OpmSyntax::Xml,
                 oem_combined,
                 ..Choices::default()
             };
-            files.extend(in_memory(&subject, &[Product::Oem], choices).1);
+            files.extend(in_memory(&subject, &[Product::Oem, Product::Opm], choices).1);
         }
         files
     }

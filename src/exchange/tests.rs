@@ -11,7 +11,7 @@ use crate::exchange::export::testing::{in_memory, is_read, subject};
 use crate::exchange::export::{Choices, Product};
 use crate::exchange::lint::Format;
 use crate::exchange::recognise::recognise;
-use crate::formats::ccsds::{oem, omm};
+use crate::formats::ccsds::{oem, omm, opm};
 use crate::keyword::Keyword;
 use crate::time::{Epoch, TimeGrid};
 
@@ -47,13 +47,15 @@ fn samples() -> Vec<(Format, String)> {
         TimeGrid::new(epoch, 360.0, 90.0).unwrap(),
     );
     let mut found: Vec<(Format, String)> = Vec::new();
-    for (notation, oem) in omm::OmmSyntax::ALL
+    for ((notation, oem), opm) in omm::OmmSyntax::ALL
         .iter()
         .zip(oem::OemSyntax::ALL.iter().cycle())
+        .zip(opm::OpmSyntax::ALL.iter().cycle())
     {
         let choices = Choices {
             omm: *notation,
             oem: *oem,
+            opm: *opm,
             oem_combined: *oem == oem::OemSyntax::Xml,
             ..Choices::default()
         };

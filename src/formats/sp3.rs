@@ -367,6 +367,17 @@ impl Sp3 {
         samples.chunk_by(move |one, other| other.at.seconds_since(one.at) <= most_s)
     }
 
+    /// The same of samples that are not needed otherwise: those without a gap stay where they are in memory.
+    pub(crate) fn into_runs(&self, samples: Vec<Sp3Sample>) -> Vec<Vec<Sp3Sample>> {
+        let runs: Vec<usize> = self.runs(&samples).map(<[Sp3Sample]>::len).collect();
+        if runs.len() == 1 {
+            return vec![samples];
+        }
+        let mut samples = samples.into_iter();
+        let run = |length: usize| samples.by_ref().take(length).collect();
+        runs.into_iter().map(run).collect()
+    }
+
     /// The name that a comment `L01 = NAME` gives to an id, as SP3-d files of this program have it for
     /// every satellite.
     #[must_use]

@@ -54,7 +54,7 @@ pub struct StkEphemeris {
     pub interpolation: Option<StkInterpolation>,
     /// Number of samples of the interpolation minus one.
     pub interpolation_samples_m1: Option<usize>,
-    /// Seconds since the scenario epoch at which segments meet: nothing is interpolated across them.
+    /// Seconds since the scenario epoch at which segments meet, in order: nothing is interpolated across them.
     pub boundaries_s: Vec<f64>,
     /// Frame of the states.
     pub frame: Frame,
@@ -87,24 +87,43 @@ impl StkEphemeris {
 
     /// The states, one arc for each segment.
     #[must_use]
-    pub fn arcs(&self) -> Vec<Arc> {
-        let epoch = Epoch::from_utc(self.scenario_epoch.and_utc());
+    pub fn into_arcs(mut self) -> Vec<Arc> {
         let samples_m1 = self.interpolation_samples_m1.unwrap_or(SAMPLES_M1);
         let interpolation = match self.interpolation {
             Some(StkInterpolation::Hermite) => Interpolation::Hermite(2 * samples_m1 + 1),
             _ => Interpolation::Lagrange(samples_m1),
         };
+        let mut arcs = Vec::new();
+        for rows in segments(&self.states, &self.boundaries_s).into_iter().rev() {
+            let nodes = self.take_nodes(rows);
+            arcs.extend(Arc::new(self.frame, interpolation, nodes));
+        }
+        arcs.reverse();
+        arcs
+    }
+
+    /// The nodes of the last rows, from the end on: the memory of rows is given back while nodes fill theirs.
+    fn take_nodes(&mut self, rows: Range<usize>) -> Vec<(Epoch, State<Frame>)> {
+        let epoch = Epoch::from_utc(self.scenario_epoch.and_utc());
         let node =
             |(elapsed_s, state): &(f64, State<Frame>)| (epoch.plus_seconds(*elapsed_s), *state);
-        segments(&self.states, &self.boundaries_s)
-            .into_iter()
-            .filter_map(|rows| {
-                let nodes = self.states[rows].iter().map(node).collect();
-                Arc::new(self.frame, interpolation, nodes)
-            })
-            .collect()
+        let mut nodes = Vec::with_capacity(rows.len());
+        let mut end = rows.end;
+        while end > rows.start {
+            let from = end.saturating_sub(ROWS_AT_ONCE).max(rows.start);
+            nodes.extend(self.states[from..end].iter().rev().map(node));
+            // The first row may be the last one of the segment before.
+            self.states.truncate(from + 1);
+            self.states.shrink_to_fit();
+            end = from;
+        }
+        nodes.reverse();
+        nodes
     }
 }
+
+/// Rows whose memory is given back at once.
+const ROWS_AT_ONCE: usize = 1 << 16;
 
 /// The rows of each segment. A boundary of one row belongs to both sides; of two, each side has its own.
 fn segments(states: &[(f64, State<Frame>)], boundaries_s: &[f64]) -> Vec<Range<usize>> {
@@ -114,8 +133,10 @@ fn segments(states: &[(f64, State<Frame>)], boundaries_s: &[f64]) -> Vec<Range<u
         let next_s = states.get(k + 1).map(|(next_s, _)| *next_s);
         let at_boundary = is_boundary(boundaries_s, *elapsed_s) && k > from;
         let before_boundary = next_s.is_some_and(|next_s| {
-            let between = |t: &f64| *t > elapsed_s + SAME_INSTANT_S && *t < next_s - SAME_INSTANT_S;
-            boundaries_s.iter().any(between)
+            let after = boundaries_s.partition_point(|at| *at <= elapsed_s + SAME_INSTANT_S);
+            boundaries_s
+                .get(after)
+                .is_some_and(|at| *at < next_s - SAME_INSTANT_S)
         });
         if at_boundary || before_boundary {
             found.push(from..k + 1);
@@ -173,8 +194,10 @@ pub fn coordinate_system(frame: Frame) -> &'static str {
 
 /// Whether a time is one of the boundaries.
 fn is_boundary(boundaries_s: &[f64], elapsed_s: f64) -> bool {
-    let mut boundaries_s = boundaries_s.iter();
-    boundaries_s.any(|at| (at - elapsed_s).abs() <= SAME_INSTANT_S)
+    let nearest = boundaries_s.partition_point(|at| elapsed_s - at > SAME_INSTANT_S);
+    boundaries_s
+        .get(nearest)
+        .is_some_and(|at| at - elapsed_s <= SAME_INSTANT_S)
 }
 
 fn write_head(

@@ -243,6 +243,13 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "export",
+        "opm-syntax",
+        "DESIGN SMALL --as opm --out out",
+        "--opm-syntax xml",
+        Out,
+    ),
+    Row(
+        "export",
         "oem-combined",
         "DESIGN SMALL --as oem --oem-syntax xml --out out",
         "--oem-combined",

@@ -47,7 +47,7 @@ impl Written {
 }
 
 /// Every format that carries names: the export, the file, and how the name is written.
-const FORMATS: [(&str, &str, Written); 15] = [
+const FORMATS: [(&str, &str, Written); 16] = [
     ("--as tle", "constellation.tle", Written::Refused),
     ("--as omm", "omm/NW-P01-S01.omm", Written::Refused),
     ("--as omm --omm-syntax xml", "omm.xml", Written::Xml),
@@ -60,6 +60,11 @@ const FORMATS: [(&str, &str, Written); 15] = [
         Written::Xml,
     ),
     ("--as opm", "opm/NW-P01-S01.opm", Written::Refused),
+    (
+        "--as opm --opm-syntax xml",
+        "opm/NW-P01-S01.xml",
+        Written::Xml,
+    ),
     ("--as sp3", "sp3/part-01.sp3", Written::Refused),
     ("--as stk", "stk/NW-P01-S01.e", Written::InPath),
     ("--as csv", "elements.csv", Written::Csv),

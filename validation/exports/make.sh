@@ -23,6 +23,7 @@ oem-ndm --as oem --oem-syntax xml --oem-combined --frame GCRF
 oem-kvn-3.0 --as oem --ccsds-version 3.0 --frame ITRF --time-system GPS
 oem-teme --as oem --frame TEME --time-system TAI
 opm --as opm
+opm-xml --as opm --opm-syntax xml
 opm-3.0 --as opm --ccsds-version 3.0 --frame ITRF --time-system TT
 sp3-d --as sp3 --gnss beidou-3
 sp3-c --as sp3 --sp3-version c --sp3-letter X

@@ -337,20 +337,26 @@ def check_opm(folder, ours, report):
     """Ours, with the time in TAI; the state of the message at its epoch, and the mean elements over a day."""
     text = (GALLERY / "opm/opm/NW-P02-S01.opm").read_text()
     text = text.replace("TIME_SYSTEM = UTC", "TIME_SYSTEM = TAI").replace("EPOCH = 2025-01-01T00:00:00.000", "EPOCH = 2025-01-01T00:00:37.000")
-    path = folder / "tai.opm"
-    path.write_text(text)
+    for name, written in [("tai.opm", text), ("tai-opm.xml", reader_cases.opm_xml(text))]:
+        path = folder / name
+        path.write_text(written)
+        check_one_opm(path, ours, report)
+
+
+def check_one_opm(path, ours, report):
+    form = "OPM in XML" if path.suffix == ".xml" else "OPM"
     start = datetime(2025, 1, 1)
     data = builder().buildOpmParser().parseMessage(source(path)).getData()
     state = data.getStateVectorBlock().toTimeStampedPVCoordinates()
     late = state.getDate().durationFrom(date(0, start))
     state = np.concatenate([part[0] for part in vectors([state])])
     mine = ours.states(path, "EME2000", 1, 60, start)
-    Comparison(report, "Orekit").hold("OPM, state at the epoch", mine, {"NW-P02-S01": {late: state}}, SAMPLE_KM, KM_S)
+    Comparison(report, "Orekit").hold(f"{form}, state at the epoch", mine, {"NW-P02-S01": {late: state}}, SAMPLE_KM, KM_S)
     mean = dict(data.getUserDefinedBlock().getParameters())
     keys = ["SEMI_MAJOR_AXIS_KM", "ECCENTRICITY", "INCLINATION_DEG", "RA_OF_ASC_NODE_DEG", "ARG_OF_PERICENTER_DEG", "MEAN_ANOMALY_DEG"]
     elements = [float(str(mean[f"MEAN_{key}"])) for key in keys]
     theirs = {"NW-P02-S01": {float(t): secular_j2(elements, t - late) for t in range(0, 86401, 600)}}
-    Comparison(report, "Orekit, closed form").hold("OPM, mean elements over a day", ours.states(path, "TEME", 86401, 600, start), theirs, J2_KM)
+    Comparison(report, "Orekit, closed form").hold(f"{form}, mean elements over a day", ours.states(path, "TEME", 86401, 600, start), theirs, J2_KM)
 
 
 def check_tables(folder, ours, report):

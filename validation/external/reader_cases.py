@@ -285,6 +285,36 @@ def omm_xml(messages):
     return text + "</ndm>\n"
 
 
+OPM_SECTIONS = {
+    "metadata": ["OBJECT_NAME", "OBJECT_ID", "CENTER_NAME", "REF_FRAME", "TIME_SYSTEM"],
+    "stateVector": ["EPOCH", "X", "Y", "Z", "X_DOT", "Y_DOT", "Z_DOT"],
+    "keplerianElements": ["SEMI_MAJOR_AXIS", "ECCENTRICITY", "INCLINATION", "RA_OF_ASC_NODE", "ARG_OF_PERICENTER", "TRUE_ANOMALY", "GM"],
+}
+OPM_UNITS = {"X": "km", "Y_DOT": "km/s", "SEMI_MAJOR_AXIS": "km", "INCLINATION": "deg", "GM": "km**3/s**2"}
+
+
+def opm_xml(kvn):
+    """A message in keyword = value notation as XML, some of its numbers with their units, and with a manoeuvre."""
+    pairs = dict(line.split(" = ", 1) for line in kvn.splitlines() if " = " in line)
+
+    def tags(keys):
+        units = {key: f' units="{OPM_UNITS[key]}"' if key in OPM_UNITS else "" for key in keys}
+        return "".join(f"<{key}{units[key]}>{pairs[key]}</{key}>\n" for key in keys)
+
+    section = {name: f"<{name}>\n<COMMENT>x</COMMENT>{tags(keys)}</{name}>\n" for name, keys in OPM_SECTIONS.items()}
+    burn = {"EPOCH_IGNITION": pairs["EPOCH"], "DURATION": "0.0", "DELTA_MASS": "-1.0", "REF_FRAME": "RTN", "DV_1": "0.0", "DV_2": "0.0", "DV_3": "0.0"}
+    burn = "".join(f"<MAN_{key}>{value}</MAN_{key}>" for key, value in burn.items())
+    prefix = "USER_DEFINED_"
+    user = "".join(
+        f'<USER_DEFINED parameter="{key[len(prefix):]}">{value}</USER_DEFINED>\n' for key, value in pairs.items() if key.startswith(prefix)
+    )
+    text = '<?xml version="1.0" encoding="UTF-8"?>\n<opm id="CCSDS_OPM_VERS" version="2.0">\n'
+    text += f"<header>{tags(['CREATION_DATE', 'ORIGINATOR'])}</header>\n<body><segment>\n{section['metadata']}<data>\n"
+    text += f"{section['stateVector']}{section['keplerianElements']}<spacecraftParameters><MASS>100.0</MASS></spacecraftParameters>\n"
+    text += f"<maneuverParameters>{burn}</maneuverParameters>\n<userDefinedParameters>\n{user}</userDefinedParameters>\n"
+    return text + "</data>\n</segment></body>\n</opm>\n"
+
+
 def write_points(folder):
     """Columns in an order of their own, one that has no meaning, a comma in a name, and the antimeridian."""
     rows = ['7,"A, north",-179.5,2,89.5', "7,B,179.25,1,-45.125", "8,C,0,0.5,1e-6", "9,D,12.345678901,0.25,47.5"]

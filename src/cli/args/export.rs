@@ -3,7 +3,7 @@
 use super::{ChosenArgs, StudyArgs};
 use crate::constellation::gnss::Preset;
 use crate::exchange::export::Product;
-use crate::formats::ccsds::{CcsdsVersion, oem, omm};
+use crate::formats::ccsds::{CcsdsVersion, oem, omm, opm};
 use crate::formats::metadata::ElementChoice;
 use crate::formats::sp3::Sp3Version;
 use crate::formats::text::timestamp::TimeSystem;
@@ -52,6 +52,10 @@ pub(crate) struct ExportArgs {
     /// Syntax of OEM files: kvn or xml.
     #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
     pub(crate) oem_syntax: oem::OemSyntax,
+
+    /// Syntax of OPM files: kvn or xml.
+    #[arg(long, value_name = "SYNTAX", default_value = "kvn")]
+    pub(crate) opm_syntax: opm::OpmSyntax,
 
     /// Combine the OEMs of all satellites in one XML file; needs `--oem-syntax xml`.
     #[arg(long)]

@@ -98,6 +98,7 @@ fn choices(args: &ExportArgs) -> Choices {
         time_system: args.time_system,
         omm: args.omm_syntax,
         oem: args.oem_syntax,
+        opm: args.opm_syntax,
         oem_combined: args.oem_combined,
         elements: args.tle_theory,
         ccsds_version: args.ccsds_version,

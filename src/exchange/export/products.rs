@@ -253,11 +253,11 @@ impl ExportSource<'_> {
         let choices = self.choices;
         let mut metadata = self.propagated_metadata(choices.frame);
         metadata.time_system = choices.time_system;
-        let version = self.ccsds_version("kvn");
+        let version = self.ccsds_version(choices.opm.keyword());
         let epoch = self.subject.grid.epoch();
         self.each(|k| {
             let object = &self.objects[k];
-            let path = format!("opm/{}.opm", self.stems[k]);
+            let path = format!("opm/{}.{}", self.stems[k], choices.opm.extension());
             let format = ProductVersion {
                 product: Product::Opm,
                 version: version.as_str(),
@@ -274,7 +274,8 @@ impl ExportSource<'_> {
                     .origin
                     .mean_elements(epoch, self.subject.model);
                 let version = choices.ccsds_version;
-                Opm::new(version, &metadata, object, elements.as_ref(), epoch, state).write(out)?;
+                Opm::new(version, &metadata, object, elements.as_ref(), epoch, state)
+                    .write_as(choices.opm, out)?;
                 let state_only =
                     "the state at the epoch, without mean elements: the source has none of J2";
                 Ok(Loss {

@@ -46,7 +46,7 @@ fn our_own_files_are_recognised_over_any_preamble() {
             "{path}"
         );
         let preamble = match format {
-            Format::OemXml | Format::OmmXml => {
+            Format::OemXml | Format::OmmXml | Format::OpmXml => {
                 format!("<?xml version=\"1.0\"?>\n<!-- {long} -->\n")
             }
             Format::OmmJson | Format::Czml => "\n".repeat(100_000),
@@ -72,6 +72,8 @@ fn roots_are_recognised_whatever_their_prefix() {
         ),
         ("<ndm><!-- <omm> --><x:oem>", Ok(Format::OemXml)),
         ("<omm>", Ok(Format::OmmXml)),
+        ("<ndm:opm id='x'>", Ok(Format::OpmXml)),
+        ("<ndm>\n<opm>", Ok(Format::OpmXml)),
         ("<ocm>", Err("a CCSDS OCM in XML")),
         ("<!DOCTYPE html><html>", Err("a web page")),
         ("<kml xmlns='x'>", Err("KML")),

@@ -34,10 +34,11 @@ fn root(name: &str, after: &[u8], complete: bool) -> Option<Content> {
     Some(match name {
         "oem" => Content::Format(Format::OemXml),
         "omm" => Content::Format(Format::OmmXml),
+        "opm" => Content::Format(Format::OpmXml),
         "ndm" => return messages(after, complete),
         "html" => Content::other("a web page"),
         "kml" => Content::other("KML"),
-        "opm" | "ocm" | "aem" | "apm" | "acm" | "tdm" | "cdm" | "rdm" => {
+        "ocm" | "aem" | "apm" | "acm" | "tdm" | "cdm" | "rdm" => {
             Content::other(format_args!("a CCSDS {} in XML", name.to_uppercase()))
         }
         _ => Content::other(format_args!("XML with the root element <{name}>")),
@@ -60,10 +61,11 @@ fn messages(mut rest: &[u8], complete: bool) -> Option<Content> {
         match local(&rest[..length]).as_str() {
             "oem" => return Some(Content::Format(Format::OemXml)),
             "omm" => return Some(Content::Format(Format::OmmXml)),
+            "opm" => return Some(Content::Format(Format::OpmXml)),
             _ => {}
         }
     }
-    complete.then(|| Content::other("a CCSDS NDM without a supported message (oem, omm)"))
+    complete.then(|| Content::other("a CCSDS NDM without a supported message (oem, omm, opm)"))
 }
 
 fn is_name(byte: u8) -> bool {

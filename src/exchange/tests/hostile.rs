@@ -168,7 +168,7 @@ fn first_number(format: Format) -> (&'static str, &'static str) {
     match format {
         Format::Tle => ("\n2 90001 ", "55"),
         Format::Oem => ("META_STOP\n\n2025-01-01T00:00:00.000 ", "6"),
-        Format::OemXml => ("<X>", "6"),
+        Format::OemXml | Format::OpmXml => ("<X>", "6"),
         Format::Omm => ("INCLINATION = ", "55"),
         Format::OmmXml => ("<INCLINATION>", "55"),
         Format::OmmJson => ("\"INCLINATION\":", "55"),
@@ -273,7 +273,7 @@ fn tabs_are_read_as_blanks() {
         let other = match format {
             Format::Tle => text.replacen("1 9", "1\t9", 1),
             Format::Oem | Format::Omm | Format::Opm => text.replace(" = ", "\t=\t"),
-            Format::OemXml | Format::OmmXml => text.replace("\n<", "\n\t<"),
+            Format::OemXml | Format::OmmXml | Format::OpmXml => text.replace("\n<", "\n\t<"),
             Format::OmmJson | Format::Czml => text.replace("\n{", "\n\t{"),
             Format::Stk => text.replace(" J2000", "\t\t J2000"),
             Format::Yuma => text.replace(": ", ":\t"),

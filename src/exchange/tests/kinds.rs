@@ -84,6 +84,9 @@ fn what_is_valid_and_not_read_is_found_by_lint() {
         .split_inclusive('\n')
         .filter(|line| !line.starts_with("USER_DEFINED"))
         .collect();
+    let opm_xml = sample(Format::OpmXml);
+    let [begin, end] = ["<userDefinedParameters>", "</data>"].map(|tag| opm_xml.find(tag).unwrap());
+    let foreign_xml = format!("{}{}", &opm_xml[..begin], &opm_xml[end..]);
     for (format, text, at) in [
         (
             Format::Oem,
@@ -104,6 +107,7 @@ fn what_is_valid_and_not_read_is_found_by_lint() {
             "<CENTER_NAME",
         ),
         (Format::Opm, foreign, "EPOCH"),
+        (Format::OpmXml, foreign_xml, "<EPOCH"),
         (
             Format::Opm,
             changed(&opm, "TIME_SYSTEM = UTC", "TIME_SYSTEM = MET"),

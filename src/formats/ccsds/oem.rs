@@ -151,7 +151,8 @@ impl Segment {
     ///
     /// # Errors
     /// If the centre is not the Earth, or the frame or the time system is unknown.
-    pub fn trajectory(&self) -> Result<Trajectory, TrajectoryError> {
+    pub fn into_trajectory(self) -> Result<Trajectory, TrajectoryError> {
+        let interpolation = self.interpolation();
         let metadata = &self.metadata;
         if !metadata.center_name.eq_ignore_ascii_case("EARTH") {
             return Err(TrajectoryError::Center {
@@ -160,10 +161,12 @@ impl Segment {
             });
         }
         let time_system = time_system_of_name(&metadata.time_system)?;
-        let instant = |line: &StateLine| (time_system.epoch(line.epoch), line.state);
+        let instant = |line: StateLine| (time_system.epoch(line.epoch), line.state);
         let frame = frame_of_name(&metadata.ref_frame)?;
-        let nodes: Vec<_> = self.states.iter().map(instant).collect();
-        let arc = Arc::new(frame, self.interpolation(), nodes);
+        // In the memory of the lines, of which the rest is given back.
+        let mut nodes: Vec<_> = self.states.into_iter().map(instant).collect();
+        nodes.shrink_to_fit();
+        let arc = Arc::new(frame, interpolation, nodes);
         // The samples beyond the useable span are there to interpolate (5.2.4.4, table 5-3).
         let (first, last) = metadata.useable_span();
         let span = (time_system.epoch(first), time_system.epoch(last));

@@ -1,4 +1,4 @@
-//! CCSDS Orbit Parameter Messages in keyword = value notation, written and read.
+//! CCSDS Orbit Parameter Messages in keyword = value notation and in XML, written and read.
 //!
 //! Source: CCSDS 502.0-B-3, sections 3 and 7. The message holds the state at the epoch; the
 //! osculating elements beside it are of that state, in the same frame (table 3-3). The standard
@@ -7,25 +7,42 @@
 
 mod keplerian;
 mod read;
+mod xml;
 
 pub use keplerian::Keplerian;
 pub use read::{parse, read};
+pub(super) use xml::OpmXmlMessage;
+pub use xml::read_xml;
 
 use crate::earth::MU_KM3_S2;
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion, write_comments};
 use crate::formats::metadata::{Metadata, Object};
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::{Frame, State};
+use crate::keyword::keywords;
 use crate::orbit::MeanElements;
 use crate::time::Epoch;
 use chrono::NaiveDateTime;
 use std::io::{self, Write};
+
+keywords! {
+    /// How a message is written down.
+    OpmSyntax {
+        /// Keyword = value lines.
+        Kvn = "kvn",
+        /// XML.
+        Xml = "xml",
+    }
+}
 
 /// Keyword of the version.
 const VERSION: &str = "CCSDS_OPM_VERS";
 
 /// Beginning of the parameters that users define.
 const USER_DEFINED: &str = "USER_DEFINED_";
+
+/// The remark before osculating elements.
+const KEPLERIAN_COMMENT: &str = "Osculating elements of the state above";
 
 /// Names of the mean elements: semi-major axis, eccentricity, inclination, node, perigee, anomaly.
 const MEAN: [&str; 6] = [
@@ -66,6 +83,17 @@ pub struct Opm {
     pub user_defined: Vec<(String, String)>,
 }
 
+impl OpmSyntax {
+    /// The usual extension of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Kvn => "opm",
+            Self::Xml => "xml",
+        }
+    }
+}
+
 impl Opm {
     /// The message of a satellite whose state at `epoch` is given in the frame of `metadata`, with its mean elements
     /// in TEME if it has any.
@@ -95,38 +123,62 @@ impl Opm {
         }
     }
 
-    /// Writes the message.
+    /// Writes the message as a file.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn write_as(&self, syntax: OpmSyntax, out: &mut impl Write) -> io::Result<()> {
+        match syntax {
+            OpmSyntax::Kvn => self.write(out),
+            OpmSyntax::Xml => self.write_xml(out),
+        }
+    }
+
+    /// Writes the message in keyword = value notation.
     ///
     /// # Errors
     /// If writing fails.
     pub fn write(&self, out: &mut impl Write) -> io::Result<()> {
         self.header.write(out, VERSION)?;
-        let (r, v) = (self.state.position_km.km(), self.state.velocity_km_s);
-        let epoch = calendar(self.epoch, SecondDigits::of_stamp(self.epoch));
-        for (key, value) in [
-            ("OBJECT_NAME", &self.object_name),
-            ("OBJECT_ID", &self.object_id),
-            ("CENTER_NAME", &self.center_name),
-            ("REF_FRAME", &self.ref_frame),
-            ("TIME_SYSTEM", &self.time_system),
-            ("EPOCH", &epoch),
-        ] {
+        for (key, value) in self.metadata().into_iter().chain(self.state_vector()) {
             writeln!(out, "{key} = {value}")?;
         }
-        for (key, value) in [("X", r.x), ("Y", r.y), ("Z", r.z)] {
-            writeln!(out, "{key} = {value:.9}")?;
-        }
-        for (key, value) in [("X_DOT", v.x), ("Y_DOT", v.y), ("Z_DOT", v.z)] {
-            writeln!(out, "{key} = {value:.12}")?;
-        }
         if let Some(keplerian) = &self.keplerian {
-            write_comments(out, &["Osculating elements of the state above".to_owned()])?;
-            keplerian.write(out)?;
+            write_comments(out, &[KEPLERIAN_COMMENT.to_owned()])?;
+            for (key, value) in keplerian.pairs() {
+                writeln!(out, "{key} = {value}")?;
+            }
         }
         for (key, value) in &self.user_defined {
             writeln!(out, "{key} = {value}")?;
         }
         Ok(())
+    }
+
+    /// The keywords of table 3-2 and their values.
+    fn metadata(&self) -> [(&'static str, String); 5] {
+        [
+            ("OBJECT_NAME", self.object_name.clone()),
+            ("OBJECT_ID", self.object_id.clone()),
+            ("CENTER_NAME", self.center_name.clone()),
+            ("REF_FRAME", self.ref_frame.clone()),
+            ("TIME_SYSTEM", self.time_system.clone()),
+        ]
+    }
+
+    /// The epoch and the state (table 3-3).
+    fn state_vector(&self) -> [(&'static str, String); 7] {
+        let (r, v) = (self.state.position_km.km(), self.state.velocity_km_s);
+        let epoch = calendar(self.epoch, SecondDigits::of_stamp(self.epoch));
+        [
+            ("EPOCH", epoch),
+            ("X", format!("{:.9}", r.x)),
+            ("Y", format!("{:.9}", r.y)),
+            ("Z", format!("{:.9}", r.z)),
+            ("X_DOT", format!("{:.12}", v.x)),
+            ("Y_DOT", format!("{:.12}", v.y)),
+            ("Z_DOT", format!("{:.12}", v.z)),
+        ]
     }
 
     /// The mean elements of secular J2 in TEME at the epoch, when the message has them all.

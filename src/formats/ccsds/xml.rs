@@ -7,8 +7,9 @@
 use crate::formats::ccsds::kvn::{CcsdsHeader, CcsdsVersion};
 use crate::formats::text::finding::FindingList;
 use quick_xml::Reader;
-use quick_xml::escape::{escape, resolve_predefined_entity};
+use quick_xml::escape::{escape, resolve_predefined_entity, unescape};
 use quick_xml::events::{BytesRef, BytesStart, Event};
+use std::borrow::Cow;
 use std::io::{self, BufRead, Read, Write};
 
 /// Maximum length of a tag or text, in bytes.
@@ -35,6 +36,8 @@ pub(crate) struct XmlLeaf {
     pub(crate) text: String,
     /// Its `units` attribute.
     pub(crate) unit: Option<String>,
+    /// Its `parameter` attribute, which names what a user defines.
+    pub(crate) parameter: Option<String>,
 }
 
 /// A node and the place where it begins.
@@ -88,15 +91,19 @@ struct Held {
     name: String,
     version: Option<String>,
     unit: Option<String>,
+    parameter: Option<String>,
     text: String,
 }
 
 impl Held {
     fn leaf(self) -> LocatedNode {
-        let Self {
-            name, text, unit, ..
-        } = self;
-        (self.place, XmlNode::Leaf(XmlLeaf { name, text, unit }))
+        let leaf = XmlLeaf {
+            name: self.name,
+            text: self.text,
+            unit: self.unit,
+            parameter: self.parameter,
+        };
+        (self.place, XmlNode::Leaf(leaf))
     }
 }
 
@@ -266,7 +273,11 @@ fn opened(held: Held) -> LocatedNode {
 fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
     let attribute = |name: &str| {
         let found = tag.try_get_attribute(name).ok().flatten();
-        found.map(|attribute| name_of(attribute.value.as_ref()))
+        found.map(|attribute| {
+            let value = name_of(attribute.value.as_ref());
+            // What is not an entity stands for itself.
+            unescape(&value).map_or_else(|_| value.clone(), Cow::into_owned)
+        })
     };
     Held {
         place,
@@ -274,6 +285,7 @@ fn held(tag: &BytesStart<'_>, place: (usize, usize)) -> Held {
         name: name_of(tag.local_name().as_ref()),
         version: attribute("version"),
         unit: attribute("units"),
+        parameter: attribute("parameter"),
         text: String::new(),
     }
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::formats::text::finding::Finding;
+use crate::formats::text::finding::{Finding, Severity};
 
 const TWO: &str = "\
 2  CURRENT.ALM
@@ -48,11 +48,35 @@ fn validate_units_of_the_definition() {
     assert!(first.is_healthy() && !second.is_healthy());
 }
 
+/// A record taken out by hand, or a file cut between two records: read, but not without a word.
+#[test]
+fn records_that_are_not_there_are_told() {
+    let three = TWO.replacen("2  C", "3  C", 1);
+    let mut reader = FindingList::of_reader();
+    let almanacs = parse(three.as_bytes(), &mut reader).unwrap();
+    assert_eq!(almanacs, read(TWO.as_bytes()).unwrap());
+    let told = reader.left_out().to_string();
+    assert_eq!(
+        told,
+        "left out: 2 (unhealthy satellite: PRN-02; announced record that is not there: 1 of 3)"
+    );
+    let found = findings(&three);
+    let [finding] = found.as_slice() else {
+        panic!("{found:?}")
+    };
+    assert_eq!(
+        (finding.line, finding.rule, finding.severity),
+        (20, "sem-count", Severity::Warning)
+    );
+    let none = TWO.split_inclusive('\n').take(2).collect::<String>();
+    assert_eq!(findings(&none)[0].severity, Severity::Error);
+}
+
 #[test]
 fn broken_rules_are_named_with_their_place() {
     for (from, to, expected) in [
         ("2  C", "x  C", (1, 1, "sem-first-line")),
-        ("2  C", "3  C", (20, 1, "sem-count")),
+        ("2  C", "0  C", (2, 2, "sem-count")),
         ("2  C", "1  C", (13, 1, "sem-count")),
         ("63\n11\n", "63\n", (19, 1, "sem-truncated")),
         (

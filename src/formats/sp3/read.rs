@@ -343,10 +343,15 @@ impl Sp3Parser {
             if samples.is_empty() {
                 findings.pass_over("satellite without positions", &self.file.ids[index]);
             }
+            let is_lone = |run: &[Sp3Sample]| matches!(run, [lone] if lone.velocity_km_s.is_none());
+            if !self.file.runs(&samples).any(is_lone) {
+                self.file.states[index] = samples;
+                continue;
+            }
             let mut kept = Vec::with_capacity(samples.len());
             for run in self.file.runs(&samples) {
                 match run {
-                    [lone] if lone.velocity_km_s.is_none() => {
+                    [lone] if is_lone(run) => {
                         let name = format!("{} at {}", self.file.ids[index], lone.at);
                         findings.leave_out((number, 1), "lone position without velocity", &name);
                     }
@@ -365,11 +370,15 @@ impl Sp3Parser {
     /// axes.
     fn check_velocities(&self, number: usize, findings: &mut FindingList) {
         for (id, samples) in self.file.ids.iter().zip(&self.file.states) {
-            let sample = |s: &Sp3Sample| Some((s.at, s.position_km, s.velocity_km_s?));
-            let Some(samples) = samples.iter().map(sample).collect::<Option<Vec<_>>>() else {
+            if samples.iter().any(|sample| sample.velocity_km_s.is_none()) {
                 continue;
+            }
+            let sample = |place: usize| {
+                let sample: &Sp3Sample = &samples[place];
+                let velocity_km_s = sample.velocity_km_s.unwrap_or_default();
+                (sample.at, sample.position_km, velocity_km_s)
             };
-            if let Some(message) = velocity_fault(&samples) {
+            if let Some(message) = velocity_fault(samples.len(), sample) {
                 let message = format!("{id}: {message}; SP3 has dm/s in the axes of the positions");
                 findings.warning((number, 1), "sp3-velocity-unit", message);
                 return;

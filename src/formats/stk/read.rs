@@ -144,7 +144,10 @@ impl StkParser {
                 self.part = StkSection::Boundaries
             }
             StkSection::Keywords => self.keyword(place, (key, value), line, findings),
-            StkSection::Boundaries if is(key, "END") => self.part = StkSection::Keywords,
+            StkSection::Boundaries if is(key, "END") => {
+                self.boundaries_s.sort_by(f64::total_cmp);
+                self.part = StkSection::Keywords;
+            }
             StkSection::Boundaries => self.boundaries(line, findings),
             StkSection::Table | StkSection::Covariances
                 if is(key, "END") && is(value, "Ephemeris") =>
@@ -310,13 +313,14 @@ impl StkParser {
     fn derive_velocities(&mut self, number: usize, findings: &mut FindingList) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
-        let position = |(elapsed_s, state): &(f64, State<Frame>)| {
-            (epoch.plus_seconds(*elapsed_s), state.position_km)
-        };
         let mut done = 0;
         for rows in segments(&self.states, &self.boundaries_s) {
-            let positions: Vec<_> = self.states[rows.clone()].iter().map(position).collect();
-            let Some(velocities) = velocities(&positions) else {
+            let states = &self.states[rows.clone()];
+            let position = |place: usize| {
+                let (elapsed_s, state) = states[place];
+                (epoch.plus_seconds(elapsed_s), state.position_km)
+            };
+            let Some(velocities) = velocities(states.len(), position) else {
                 let message = "the positions have no velocities and are too few to derive them";
                 findings.error((number, 1), "stk-velocity", message);
                 return;
@@ -334,15 +338,12 @@ impl StkParser {
     fn check_velocities(&self, number: usize, findings: &mut FindingList) {
         let Some(epoch) = self.epoch else { return };
         let epoch = Epoch::from_utc(epoch.and_utc());
-        let rows: Vec<_> = self
-            .states
-            .iter()
-            .map(|(elapsed_s, state)| {
-                let at = epoch.plus_seconds(*elapsed_s);
-                (at, state.position_km, state.velocity_km_s)
-            })
-            .collect();
-        if let Some(message) = velocity_fault(&rows) {
+        let row = |place: usize| {
+            let (elapsed_s, state) = self.states[place];
+            let at = epoch.plus_seconds(elapsed_s);
+            (at, state.position_km, state.velocity_km_s)
+        };
+        if let Some(message) = velocity_fault(self.states.len(), row) {
             findings.warning((number, 1), "stk-velocity-unit", message);
         }
     }

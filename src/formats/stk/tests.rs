@@ -186,11 +186,15 @@ fn segments_are_arcs_of_their_own() {
         let text = changed(block, &rows(middle), "");
         assert_eq!(findings(&text), [], "{middle:?}");
         let file = read(text.as_bytes()).unwrap();
-        let arcs: Vec<usize> = file.arcs().iter().map(|arc| arc.nodes.len()).collect();
+        let arcs = file.clone().into_arcs();
+        let arcs: Vec<usize> = arcs.iter().map(|arc| arc.nodes.len()).collect();
         assert_eq!(arcs, counts, "{middle:?}");
         let mut again = Vec::new();
         file.write(&mut again).unwrap();
-        assert_eq!(read(again.as_slice()).unwrap().arcs(), file.arcs());
+        assert_eq!(
+            read(again.as_slice()).unwrap().into_arcs(),
+            file.into_arcs()
+        );
     }
     let three = changed(
         block,
@@ -244,7 +248,7 @@ fn the_interpolation_is_that_of_the_file() {
             "",
         );
         assert_eq!(
-            read(text.as_bytes()).unwrap().arcs()[0].interpolation,
+            read(text.as_bytes()).unwrap().into_arcs()[0].interpolation,
             expected,
             "{keywords}"
         );

@@ -45,6 +45,7 @@ fn units_are_those_of_the_table() {
         (Format::OemXml, "X", "km", "m"),
         (Format::OemXml, "X_DOT", "km/s", "m/s"),
         (Format::OmmXml, "INCLINATION", "deg", "rad"),
+        (Format::OpmXml, "X_DOT", "km/s", "m/s"),
     ] {
         let text = sample(format);
         let tag = format!("<{key}>");
@@ -149,7 +150,11 @@ fn a_theory_that_has_diverged_is_told_with_name_and_instant() {
 /// Long comments before the root, prefixes of namespaces.
 #[test]
 fn xml_is_recognised_by_its_root() {
-    for (format, root) in [(Format::OemXml, "oem"), (Format::OmmXml, "omm")] {
+    for (format, root) in [
+        (Format::OemXml, "oem"),
+        (Format::OmmXml, "omm"),
+        (Format::OpmXml, "opm"),
+    ] {
         let text = sample(format);
         let notice = format!(
             "?>\n<!-- {} <omm> <oem> -->\n",
@@ -173,7 +178,8 @@ fn xml_is_recognised_by_its_root() {
     }
 }
 
-/// A combined instantiation of an OEM, an OMM and an OPM: two are read, the third is named.
+/// A combined instantiation of an OEM, an OMM and two OPMs: those that can be propagated are read, the fourth is named,
+/// and so is a message of another kind.
 #[test]
 fn messages_of_several_kinds_are_read_or_named() {
     let message_of = |format: Format, name: &str| {
@@ -191,8 +197,13 @@ fn messages_of_several_kinds_are_read_or_named() {
         .replace("NW-P01-S01", "OTHER")
         .replace("90001", "90009")
         .replace("2025-900A", "2025-900Z");
-    let opm = "<opm id=\"CCSDS_OPM_VERS\" version=\"2.0\"><header><ORIGINATOR>X</ORIGINATOR></header></opm>";
-    let mixed = format!("<?xml version=\"1.0\"?>\n<ndm>\n{oem}\n{omm}\n{opm}\n</ndm>\n");
+    let opm = message_of(Format::OpmXml, "opm").replace("NW-P01-S01", "WITH");
+    let begin = opm.find("<userDefinedParameters>").unwrap();
+    let end = opm.find("</data>").unwrap();
+    let state = format!("{}{}", &opm[..begin], &opm[end..]).replace("WITH", "WITHOUT");
+    let tdm = "<tdm id=\"CCSDS_TDM_VERS\" version=\"2.0\"><header><ORIGINATOR>X</ORIGINATOR></header></tdm>";
+    let others = format!("{opm}\n{state}\n{tdm}");
+    let mixed = format!("<?xml version=\"1.0\"?>\n<ndm>\n{oem}\n{omm}\n{others}\n</ndm>\n");
     let report = lint(mixed.as_bytes(), None, None, 10).unwrap();
     let found: Vec<_> = report
         .findings
@@ -201,20 +212,32 @@ fn messages_of_several_kinds_are_read_or_named() {
         .collect();
     assert_eq!(
         (report.format, found),
-        (Some(Format::OemXml), vec![("left-out", Severity::Warning)])
+        (
+            Some(Format::OemXml),
+            vec![("left-out", Severity::Warning); 2]
+        )
     );
     let read = Fleet::read(mixed.as_bytes(), None, None).unwrap();
-    assert_eq!(read.left_out.to_string(), "left out: 1 (message: opm)");
-    assert_eq!(read.fleet.labels(), ["NW-P01-S01", "OTHER"]);
-    assert_eq!(read.fleet.content(), "sampled states, SGP4 element sets");
+    assert_eq!(
+        read.left_out.to_string(),
+        "left out: 2 (message: opm of WITHOUT without mean elements, tdm)"
+    );
+    assert_eq!(read.fleet.labels(), ["NW-P01-S01", "OTHER", "WITH"]);
+    assert_eq!(
+        read.fleet.content(),
+        "sampled states, SGP4 element sets, mean elements"
+    );
     let propagated = read.fleet.propagate(grid(), Model::J2).unwrap();
-    assert_eq!(propagated.satellites().len(), 2);
+    assert_eq!(propagated.satellites().len(), 3);
     // No supported message.
-    let alone = format!("<ndm>\n{opm}\n</ndm>\n");
+    let alone = format!("<ndm>\n{state}\n</ndm>\n");
     let error = Fleet::read(alone.as_bytes(), None, None)
         .unwrap_err()
         .to_string();
-    assert!(error.contains("supported message (oem, omm)"), "{error}");
+    assert!(
+        error.contains("supported message (oem, omm, opm)"),
+        "{error}"
+    );
 }
 
 /// Catalogues give empty identifiers: a warning, alike in every syntax.

@@ -3,7 +3,6 @@
 use crate::frames::State;
 use crate::units::wrap_360;
 use nalgebra::Vector3;
-use std::io::{self, Write};
 
 /// Eccentricity below which a state in doubles has no perigee: angles count from the node then.
 const CIRCULAR: f64 = 1e-11;
@@ -72,14 +71,16 @@ impl Keplerian {
         })
     }
 
-    /// Writes the keywords of table 3-3.
-    pub(super) fn write(&self, out: &mut impl Write) -> io::Result<()> {
-        writeln!(out, "SEMI_MAJOR_AXIS = {:.9}", self.semi_major_axis_km)?;
-        writeln!(out, "ECCENTRICITY = {:.12}", self.eccentricity)?;
-        writeln!(out, "INCLINATION = {:.9}", self.inclination_deg)?;
-        writeln!(out, "RA_OF_ASC_NODE = {:.9}", self.raan_deg)?;
-        writeln!(out, "ARG_OF_PERICENTER = {:.9}", self.arg_perigee_deg)?;
-        writeln!(out, "TRUE_ANOMALY = {:.9}", self.true_anomaly_deg)?;
-        writeln!(out, "GM = {:.9}", self.gm_km3_s2)
+    /// The keywords of table 3-3 and their values.
+    pub(super) fn pairs(&self) -> [(&'static str, String); 7] {
+        [
+            ("SEMI_MAJOR_AXIS", format!("{:.9}", self.semi_major_axis_km)),
+            ("ECCENTRICITY", format!("{:.12}", self.eccentricity)),
+            ("INCLINATION", format!("{:.9}", self.inclination_deg)),
+            ("RA_OF_ASC_NODE", format!("{:.9}", self.raan_deg)),
+            ("ARG_OF_PERICENTER", format!("{:.9}", self.arg_perigee_deg)),
+            ("TRUE_ANOMALY", format!("{:.9}", self.true_anomaly_deg)),
+            ("GM", format!("{:.9}", self.gm_km3_s2)),
+        ]
     }
 }

@@ -13,7 +13,7 @@ use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
 /// Tables 3-1 to 3-3 in their order, without manoeuvres and what users define.
-const MESSAGE: &[KvnKeyword] = &[
+pub(super) const MESSAGE: &[KvnKeyword] = &[
     must(VERSION),
     may("CLASSIFICATION"),
     must("CREATION_DATE"),
@@ -43,7 +43,7 @@ const MESSAGE: &[KvnKeyword] = &[
 ];
 
 /// A manoeuvre of table 3-3; there may be several.
-const MANOEUVRE: &[KvnKeyword] = &[
+pub(super) const MANOEUVRE: &[KvnKeyword] = &[
     must("MAN_EPOCH_IGNITION"),
     must("MAN_DURATION").unit("s"),
     must("MAN_DELTA_MASS").unit("kg"),
@@ -84,7 +84,8 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Opti
             Item::Comment(text) if in_header => block.comments.push(text.to_owned()),
             Item::Comment(_) => {}
             Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {
-                take_user_defined(&pair, &mut user_defined, findings);
+                let named = (pair.key, pair.value);
+                take_user_defined(named, pair.key_place, &mut user_defined, findings);
             }
             Item::Pair(pair) if pair.key.starts_with("MAN_") => {
                 take_manoeuvre(&pair, &mut manoeuvre, findings);
@@ -102,25 +103,30 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Opti
     if let Some(manoeuvre) = manoeuvre {
         manoeuvre.finish(end, findings);
     }
-    Ok(message(&block, user_defined, end, findings))
+    let message = message(&block, user_defined, end, findings);
+    if let Some((at, reason)) = message.as_ref().and_then(|one| unsupported(one, &block)) {
+        findings.unsupported(at, reason);
+    }
+    Ok(message)
 }
 
-fn take_user_defined(
-    pair: &Pair<'_>,
+/// Keeps a parameter that a user defines, given its name with the prefix, and its value.
+pub(super) fn take_user_defined(
+    (key, value): (&str, &str),
+    place: (usize, usize),
     kept: &mut Vec<(String, String)>,
     findings: &mut FindingList,
 ) {
     if kept.len() == MOST_USER_DEFINED {
         let message = format!("more than {MOST_USER_DEFINED} user-defined parameters");
-        findings.error(pair.key_place, "opm-user-defined", message);
+        findings.error(place, "opm-user-defined", message);
         return;
     }
-    if kept.iter().any(|(key, _)| key == pair.key) {
-        let message = format!("{} appears twice", pair.key);
-        findings.error(pair.key_place, "ccsds-repeated", message);
+    if kept.iter().any(|(known, _)| known == key) {
+        findings.error(place, "ccsds-repeated", format!("{key} appears twice"));
         return;
     }
-    kept.push((pair.key.to_owned(), pair.value.to_owned()));
+    kept.push((key.to_owned(), value.to_owned()));
 }
 
 /// The first keyword of a manoeuvre ends the one before it.
@@ -135,7 +141,8 @@ fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<KvnBlock>, findings: &mu
         .accept(pair, findings);
 }
 
-fn message(
+/// The message of its keywords.
+pub(super) fn message(
     block: &KvnBlock,
     user_defined: Vec<(String, String)>,
     end: (usize, usize),
@@ -151,7 +158,7 @@ fn message(
     let position = vector(["X", "Y", "Z"]);
     let velocity = vector(["X_DOT", "Y_DOT", "Z_DOT"]);
     let keplerian = keplerian(block, findings);
-    let message = Opm {
+    Some(Opm {
         header: header?,
         object_name: block.text_or_unknown("OBJECT_NAME"),
         object_id: block.text_or_unknown("OBJECT_ID"),
@@ -162,22 +169,20 @@ fn message(
         state: State::new(position?, velocity?),
         keplerian,
         user_defined,
-    };
-    note_unsupported(&message, block, findings);
-    Some(message)
+    })
 }
 
-/// What importing a message needs beyond the standard.
-fn note_unsupported(message: &Opm, block: &KvnBlock, findings: &mut FindingList) {
+/// Why a valid message cannot be propagated, and the place of the keyword that is the reason.
+pub(super) fn unsupported(message: &Opm, block: &KvnBlock) -> Option<((usize, usize), String)> {
     if let Err(unknown) = time_system_of_name(&message.time_system) {
-        let message = format!("TIME_SYSTEM: {unknown}");
-        findings.unsupported(block.place("TIME_SYSTEM"), message);
+        let reason = format!("TIME_SYSTEM: {unknown}");
+        return Some((block.place("TIME_SYSTEM"), reason));
     }
-    if message.mean_elements().is_none() {
-        let message = "EPOCH: a state at one instant is valid, but only messages with mean elements, such as \
-                       USER_DEFINED_MEAN_SEMI_MAJOR_AXIS_KM, can be propagated";
-        findings.unsupported(block.place("EPOCH"), message);
-    }
+    message.mean_elements().is_none().then(|| {
+        let reason = "EPOCH: a state at one instant is valid, but only messages with mean elements, such as \
+                      USER_DEFINED_MEAN_SEMI_MAJOR_AXIS_KM, can be propagated";
+        (block.place("EPOCH"), reason.to_owned())
+    })
 }
 
 /// Elements are given all or not at all, with one of the anomalies (3.2.4.4).

@@ -1,4 +1,5 @@
 use super::*;
+use crate::formats::ccsds::ndm;
 use crate::formats::metadata::Theory;
 use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::text::timestamp::TimeSystem;
@@ -43,9 +44,69 @@ MAN_DV_3 = 0.0
 USER_DEFINED_NOTE = kept
 ";
 
+/// The same message in XML, with units and comments where a file may have them.
+const VALLADO_XML: &str = "\
+<?xml version=\"1.0\" encoding=\"UTF-8\"?>
+<opm id=\"CCSDS_OPM_VERS\" version=\"2.0\">
+<header>
+<COMMENT>example</COMMENT>
+<CREATION_DATE>2025-01-01T00:00:00</CREATION_DATE>
+<ORIGINATOR>NOBODY</ORIGINATOR>
+</header>
+<body><segment>
+<metadata>
+<COMMENT>of no use</COMMENT>
+<OBJECT_NAME>A</OBJECT_NAME>
+<OBJECT_ID>2025-001A</OBJECT_ID>
+<CENTER_NAME>EARTH</CENTER_NAME>
+<REF_FRAME>EME2000</REF_FRAME>
+<TIME_SYSTEM>UTC</TIME_SYSTEM>
+</metadata>
+<data>
+<stateVector>
+<EPOCH>2025-01-01T00:00:00.000</EPOCH>
+<X units=\"km\">6524.834</X>
+<Y units=\"km\">6862.875</Y>
+<Z>6448.296</Z>
+<X_DOT units=\"km/s\">4.901327</X_DOT>
+<Y_DOT>5.533756</Y_DOT>
+<Z_DOT>-1.976341</Z_DOT>
+</stateVector>
+<keplerianElements>
+<SEMI_MAJOR_AXIS units=\"km\">36127.343</SEMI_MAJOR_AXIS>
+<ECCENTRICITY>0.832853</ECCENTRICITY>
+<INCLINATION units=\"deg\">87.870</INCLINATION>
+<RA_OF_ASC_NODE>227.898</RA_OF_ASC_NODE>
+<ARG_OF_PERICENTER>53.38</ARG_OF_PERICENTER>
+<TRUE_ANOMALY>92.335</TRUE_ANOMALY>
+<GM units=\"km**3/s**2\">398600.4418</GM>
+</keplerianElements>
+<spacecraftParameters><MASS units=\"kg\">100.0</MASS></spacecraftParameters>
+<maneuverParameters>
+<MAN_EPOCH_IGNITION>2025-01-01T01:00:00</MAN_EPOCH_IGNITION>
+<MAN_DURATION>0.0</MAN_DURATION>
+<MAN_DELTA_MASS>-1.0</MAN_DELTA_MASS>
+<MAN_REF_FRAME>RTN</MAN_REF_FRAME>
+<MAN_DV_1>0.0</MAN_DV_1>
+<MAN_DV_2>0.001</MAN_DV_2>
+<MAN_DV_3>0.0</MAN_DV_3>
+</maneuverParameters>
+<userDefinedParameters>
+<USER_DEFINED parameter=\"NOTE\">kept</USER_DEFINED>
+</userDefinedParameters>
+</data>
+</segment></body>
+</opm>
+";
+
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
     let mut findings = FindingList::of_linter(50);
-    parse(text.as_ref(), &mut findings).unwrap();
+    let text = text.as_ref();
+    if text.starts_with(b"<?xml") {
+        ndm::parse(text, &["opm"], &mut findings, |_| ()).unwrap();
+    } else {
+        parse(text, &mut findings).unwrap();
+    }
     let found = findings.into_vec();
     // These examples are of other orbits than those that are imported.
     let broken = found.into_iter().filter(|one| one.rule != "unsupported");
@@ -133,6 +194,7 @@ fn what_is_written_reads_back_and_writes_the_same() {
             message.write(&mut text).unwrap();
             assert_eq!(findings(&text), [], "{frame} {design}");
             let read = read(text.as_slice()).unwrap();
+            assert_eq!(xml_again(&message), [read.clone()], "{frame} {design}");
             assert_eq!(read.keplerian.is_some(), frame != Frame::EarthFixed);
             let mut again = Vec::new();
             read.write(&mut again).unwrap();
@@ -144,6 +206,54 @@ fn what_is_written_reads_back_and_writes_the_same() {
             assert!((mean.mean_anomaly_rad - elements.mean_anomaly_rad).abs() < 1e-14);
             assert!((mean.semi_major_axis_km - elements.semi_major_axis_km).abs() < 1e-9);
         }
+    }
+}
+
+/// The message by way of XML.
+fn xml_again(message: &Opm) -> Vec<Opm> {
+    let mut xml = Vec::new();
+    message.write_xml(&mut xml).unwrap();
+    assert_eq!(findings(&xml), []);
+    read_xml(xml.as_slice()).unwrap()
+}
+
+/// Both notations say the same, and broken rules have their place in XML too.
+#[test]
+fn xml_is_read_as_keyword_and_value() {
+    assert_eq!(findings(VALLADO_XML), []);
+    let read = read_xml(VALLADO_XML.as_bytes()).unwrap();
+    assert_eq!(read, [super::read(VALLADO.as_bytes()).unwrap()]);
+    let odd = Opm {
+        object_name: "A & <B>".to_owned(),
+        user_defined: vec![("USER_DEFINED_A\"B".to_owned(), "1 < 2".to_owned())],
+        ..read[0].clone()
+    };
+    assert_eq!(xml_again(&odd), [odd]);
+    for (from, to, (line, rule)) in [
+        ("<X units=\"km\">", "<X units=\"m\">", (20, "ccsds-unit")),
+        ("<Z>6448.296</Z>\n", "", (50, "ccsds-missing")),
+        ("<Z>6448.296", "<Z>6448,296", (22, "ccsds-number")),
+        ("<GM units", "<GN units", (34, "xml-syntax")),
+        ("<MAN_DV_2>0.001</MAN_DV_2>\n", "", (44, "ccsds-missing")),
+        (" parameter=\"NOTE\"", "", (47, "ccsds-missing")),
+        (
+            "<ECCENTRICITY>0.832853</ECCENTRICITY>\n",
+            "",
+            (28, "opm-elements"),
+        ),
+        (
+            "version=\"2.0\">\n<h",
+            "version=\"5.0\">\n<h",
+            (2, "ccsds-version"),
+        ),
+        ("</opm>\n", "", (51, "xml-truncated")),
+    ] {
+        assert!(VALLADO_XML.contains(from), "{from}");
+        let text = VALLADO_XML.replacen(from, to, 1);
+        let found = findings(&text);
+        let told = found.iter().any(|f| (f.line, f.rule) == (line, rule));
+        assert!(told, "{to}: {found:#?}");
+        assert!(read_xml(text.as_bytes()).is_err(), "{to}");
     }
 }
 
@@ -197,6 +307,14 @@ fn broken_rules_are_named_with_their_place() {
 }
 
 proptest! {
+    #[test]
+    fn damaged_xml_never_panics(at in 0..VALLADO_XML.len(), byte in any::<u8>(), cut in 0_usize..40) {
+        let mut bytes = VALLADO_XML.as_bytes().to_vec();
+        bytes[at] = byte;
+        bytes.drain(at..(at + cut).min(VALLADO_XML.len()));
+        let _ = findings(&bytes);
+    }
+
     #[test]
     fn damaged_files_never_panic(at in 0..VALLADO.len(), byte in any::<u8>(), cut in 0_usize..40) {
         let mut bytes = VALLADO.as_bytes().to_vec();

@@ -300,12 +300,11 @@ impl Piece {
             self.nodes.dedup_by_key(|(at, _)| *at);
         }
         if !self.has_velocities {
-            let positions: Vec<_> = self
-                .nodes
-                .iter()
-                .map(|(at, s)| (*at, s.position_km))
-                .collect();
-            let derived = velocities(&positions).unwrap_or_default();
+            let position = |place: usize| {
+                let (at, state) = self.nodes[place];
+                (at, state.position_km)
+            };
+            let derived = velocities(self.nodes.len(), position).unwrap_or_default();
             for ((_, state), velocity_km_s) in self.nodes.iter_mut().zip(derived) {
                 state.velocity_km_s = velocity_km_s;
             }
