@@ -64,9 +64,14 @@ pub(crate) fn study_and_constellations(
             bail!("a run has its own scenario; omit '{name}' or --run");
         }
         let loaded = Study::of_run(directory, &study.overrides)?;
-        let (picked, why) = run::pick(directory, &chosen.pick)?;
-        output::hint(&format!("{picked} of {}: {why}", directory.display()));
-        return Ok((loaded, vec![Constellation::of_design(picked)]));
+        let picked = run::pick(directory, &chosen.pick)?;
+        let (design, reason) = (picked.design, picked.reason);
+        output::hint(&format!("{design} of {}: {reason}", directory.display()));
+        let one = match picked.is_found {
+            true => loaded.with_fixed(design)?,
+            false => Constellation::of_design(design),
+        };
+        return Ok((loaded, vec![one]));
     }
     let loaded = Study::load(study, &[])?;
     let mut given = resolve(&chosen.given, &loaded)?;

@@ -437,8 +437,18 @@ impl Drop for RunDirectory {
     }
 }
 
+/// A design picked from a run.
+pub(crate) struct PickedDesign {
+    /// The design.
+    pub(crate) design: Design,
+    /// Whether a search found it, and not a user gave it.
+    pub(crate) is_found: bool,
+    /// Why it was picked.
+    pub(crate) reason: String,
+}
+
 /// The design that `pick` selects from the front of a run, and why.
-pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, String)> {
+pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<PickedDesign> {
     let path = directory.join(FRONT_JSON);
     let bytes = files::read_run(&path).with_context(|| {
         format!(
@@ -451,6 +461,9 @@ pub(crate) fn pick(directory: &Path, pick: &MemberPick) -> Result<(Design, Strin
     let picked = pick
         .apply(&found.front)
         .with_context(|| format!("cannot pick from {}", path.display()))?;
-    let design = found.front[picked.place].design.notation.parse()?;
-    Ok((design, picked.reason))
+    Ok(PickedDesign {
+        design: found.front[picked.place].design.notation.parse()?,
+        is_found: !found.search.is_of_given(),
+        reason: picked.reason,
+    })
 }

@@ -119,6 +119,9 @@ pub struct FrontMember {
     pub name: Option<String>,
     /// The design.
     pub design: DesignSummary,
+    /// The shells of a search among several, or beside something fixed, in their order; `None` for an empty one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shells: Vec<Option<DesignSummary>>,
     /// Its metrics.
     pub metrics: Metrics,
     /// Value of each objective by name, in its original sense.
@@ -137,6 +140,15 @@ pub struct FrontMember {
 }
 
 impl FrontMember {
+    /// A shell of the search by its place; `None` if it is empty.
+    #[must_use]
+    pub fn shell(&self, place: usize) -> Option<&DesignSummary> {
+        match self.shells.get(place) {
+            Some(shell) => shell.as_ref(),
+            None => (place == 0 && self.shells.is_empty()).then_some(&self.design),
+        }
+    }
+
     /// An objective by its name.
     #[must_use]
     pub fn objective(&self, name: &str) -> Option<f64> {

@@ -11,6 +11,7 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
         index,
         name: None,
         design: DesignSummary::from(&design),
+        shells: Vec::new(),
         metrics: Metrics {
             mean_visible: 8.0,
             mean_pdop: None,

@@ -6,7 +6,8 @@ use crate::evaluate::Metrics;
 use crate::keyword::Keyword;
 use crate::report::dominance::dominance;
 use crate::report::{Baseline, shown};
-use crate::scenario::{LaunchCost, Quantity};
+use crate::scenario::Quantity;
+use crate::search::Goals;
 
 /// The compared constellations, one row each, and the GNSS alone.
 pub(super) struct Comparison {
@@ -62,14 +63,13 @@ impl Comparison {
             }
         }
         let compared: Vec<&Baseline> = page.compared.iter().map(|one| &one.baseline).collect();
-        let cost = &goals.launch_cost;
         let values: Vec<Vec<Option<f64>>> = page
             .compared
             .iter()
             .map(|one| {
                 let (design, metrics) = (one.constellation.only_design(), &one.baseline.metrics);
-                let value =
-                    |q: &Quantity| q.value_of(one.baseline.satellites, design, metrics, cost);
+                let satellites = (one.baseline.satellites, design);
+                let value = |q: &Quantity| goals.value(*q, satellites, metrics);
                 quantities.iter().map(value).collect()
             })
             .collect();
@@ -101,7 +101,7 @@ impl Comparison {
             })
             .collect();
         if let Some(metrics) = gnss_alone(page) {
-            rows.push(without_leo(&quantities, &metrics, cost));
+            rows.push(without_leo(&quantities, &metrics, &goals));
         }
         let names = page.run.objective_names();
         Some(Self {
@@ -141,8 +141,8 @@ fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
     evaluator.evaluate_ephemeris(&nothing).ok()
 }
 
-fn without_leo(quantities: &[Quantity], metrics: &Metrics, cost: &LaunchCost) -> Row {
-    let value = |quantity: &Quantity| quantity.value_of(0, None, metrics, cost);
+fn without_leo(quantities: &[Quantity], metrics: &Metrics, goals: &Goals) -> Row {
+    let value = |quantity: &Quantity| goals.value(*quantity, (0, None), metrics);
     let values: Vec<Option<f64>> = quantities.iter().map(value).collect();
     Row {
         place: None,
