@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scenario = Scenario::parse("paper", builtin("paper")?.as_bytes(), &overrides)?;
     let evaluator = Evaluator::new(scenario.setup(&|path| Err(io::Error::other(path)))?)?;
     let problem = MassProblem {
-        designs: DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals())?,
+        designs: DesignProblem::new(&evaluator, scenario.design_space(), scenario.goals())?,
         names: ["mean-pdop".to_owned(), "launch-mass-kg".to_owned()],
     };
     let mut search = Method::Nsga2(Nsga2Config::default()).start(&problem, 1)?;

@@ -20,7 +20,7 @@
 //! println!("mean visible {:.2}, mean PDOP {:?}", reference.mean_visible, reference.mean_pdop);
 //!
 //! // Search for the Pareto set and pick one design from it.
-//! let problem = DesignProblem::new(&evaluator, scenario.search.designs, scenario.goals())?;
+//! let problem = DesignProblem::new(&evaluator, scenario.design_space(), scenario.goals())?;
 //! let mut search = scenario.method().start(&problem, scenario.optimizer.seed)?;
 //! while !search.is_done() {
 //!     search.step(&problem)?;

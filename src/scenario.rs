@@ -53,7 +53,7 @@ pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
     ConstellationParts, Earth, Export, GnssSetup, Grid, MaskPoint, NamedConstellation, Objectives,
-    Optimizer, Propagation, Region, Scenario, SearchSpace, TimeSpan, Visibility,
+    Optimizer, Propagation, Region, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;

@@ -459,8 +459,12 @@ pub(crate) fn pick(
     let picked = pick
         .apply(&found.front)
         .with_context(|| format!("cannot pick from {}", path.display()))?;
-    let picked_one = constellation_of(&found.front[picked.place], study)?;
-    Ok((picked_one, picked.reason))
+    let member = &found.front[picked.place];
+    let one = match (found.search.is_of_given(), member.only_design()) {
+        (false, Some(design)) => study.with_fixed(design)?,
+        _ => constellation_of(member, study)?,
+    };
+    Ok((one, picked.reason))
 }
 
 /// The constellation of a member of the run of `study`: its design, or what the scenario of the run has of it.

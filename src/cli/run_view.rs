@@ -3,8 +3,9 @@
 use crate::cli::args::{ConstellationArgs, MemberPick, ViewArgs};
 use crate::cli::study::Study;
 use crate::cli::{constellations, files, output, run};
+use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::report::figures::{Baseline, NamedFront};
 use crate::report::{Compared, shown};
 use crate::run::inputs::InputError;
@@ -32,6 +33,8 @@ pub(crate) struct View {
     /// The constellations that are compared.
     pub(crate) compared: Vec<Compared>,
     pub(crate) fronts: Vec<NamedFront>,
+    /// Satellites from files that every member of the front has beside its design.
+    pub(crate) fixed: Option<FileSatellites>,
     /// The files and directories that were read.
     pub(crate) inputs: Vec<PathBuf>,
 }
@@ -72,12 +75,14 @@ impl View {
             output::warning(gap);
         }
         let mut given = Vec::new();
+        let mut fixed = None;
         let (evaluator, compared) = match study {
             Some((study, evaluator)) => {
                 let shown = if run.is_of_given() {
                     given = std::mem::take(&mut run.front);
                     beside_given(&given, &args.constellations, &study)?
                 } else {
+                    fixed = study.fixed()?.and_then(|fixed| fixed.files);
                     beside_front(&args.constellations, &study)?
                 };
                 let compared = compared(shown, &study, &evaluator)?;
@@ -98,6 +103,7 @@ impl View {
             evaluator,
             compared,
             fronts: fronts(directory, args)?,
+            fixed,
             inputs: vec![directory.to_owned()],
         })
     }
@@ -138,6 +144,7 @@ impl View {
             evaluator: Some(evaluator),
             compared,
             fronts: Vec::new(),
+            fixed: None,
         })
     }
 
@@ -153,6 +160,14 @@ impl View {
         }
         let each = self.compared.iter();
         each.map(|one| one.baseline.clone()).collect()
+    }
+
+    /// A design of the front with what is fixed beside it.
+    pub(crate) fn with_fixed(&self, design: Design) -> Constellation {
+        Constellation {
+            files: self.fixed.clone(),
+            ..Constellation::of_design(design)
+        }
     }
 
     /// The picked member.
@@ -215,7 +230,7 @@ fn compared(
     study: &Study,
     evaluator: &Evaluator,
 ) -> Result<Vec<Compared>> {
-    let designs = study.scenario.search.designs;
+    let designs = study.scenario.design_space();
     let problem = DesignProblem::new(evaluator, designs, study.scenario.goals())?;
     let one = |one: Constellation| {
         let ephemeris = constellations::propagate(&one, evaluator.setup())?;

@@ -12,6 +12,7 @@ use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
 use crate::scenario::{
     Algorithm, KeyDifference, NamedConstellation, Region, Scenario, SetupError, builtin,
 };
+use crate::search::DesignProblem;
 use anyhow::{Context, Result};
 use std::cell::OnceCell;
 use std::io;
@@ -290,6 +291,33 @@ impl Study {
             overrides,
         } = &self.written;
         Scenario::setup_problem(label, bytes, overrides, error).into()
+    }
+
+    /// The search of the scenario, with the satellites from files that are fixed.
+    pub(crate) fn problem<'e>(&self, evaluator: &'e Evaluator) -> Result<DesignProblem<'e>> {
+        let (space, goals) = (self.scenario.design_space(), self.scenario.goals());
+        let problem = DesignProblem::new(evaluator, space, goals)?;
+        let Some(files) = self.fixed()?.and_then(|fixed| fixed.files) else {
+            return Ok(problem);
+        };
+        let setup = evaluator.setup();
+        let satellites = files.fleet.propagate(setup.grid, setup.model)?;
+        Ok(problem.with_satellites(&satellites)?)
+    }
+
+    /// What every design of the search has beside its own shells, if anything.
+    pub(crate) fn fixed(&self) -> Result<Option<Constellation>> {
+        let named = self.scenario.fixed()?;
+        named.map(|named| self.constellation(&named)).transpose()
+    }
+
+    /// A design of the search, which has the fixed shells, with the fixed satellites from files.
+    pub(crate) fn with_fixed(&self, design: Design) -> Result<Constellation> {
+        let files = self.fixed()?.and_then(|fixed| fixed.files);
+        Ok(Constellation {
+            files,
+            ..Constellation::of_design(design)
+        })
     }
 
     /// The evaluator of the scenario.

@@ -42,7 +42,7 @@ impl ExhaustiveConfig {
             let positive = step.is_finite() && step > 0.0;
             check_setting(positive, "grid step", step, "finite and greater than 0")?;
             let whole = matches!(variable.kind, VariableKind::Real { .. }) || step.fract() == 0.0;
-            check_setting(whole, "grid step", step, "whole for an integer variable")?;
+            check_setting(whole, "grid step", step, "whole for an integer or a choice")?;
         }
         check_count("batch", self.batch)?;
         check_objectives(problem, self.hypervolume_reference.as_deref())

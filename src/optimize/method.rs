@@ -142,7 +142,7 @@ impl Strategy for Search {
 #[cfg(test)]
 mod tests {
     use super::super::hypervolume;
-    use super::super::test_problems::mixed;
+    use super::super::test_problems::{CATEGORICAL_AREA, categorical, mixed};
     use super::*;
 
     fn methods() -> [Method; 4] {
@@ -294,5 +294,34 @@ mod tests {
         let random = mean_volume(&random);
         assert!(mean_volume(&nsga2) > random);
         assert!(mean_volume(&mopso) > random);
+    }
+
+    /// The front of a problem with a choice, in its whole by a sweep and better by the guided strategies than by
+    /// chance.
+    #[test]
+    fn every_strategy_makes_choices() {
+        let problem = categorical();
+        let share = |method: &Method| {
+            let mut search = method.clone().start(&problem, 2).unwrap();
+            while !search.is_done() {
+                search.step(&problem).unwrap();
+            }
+            let front = search.front();
+            let points: Vec<&[f64]> = front.iter().map(|a| a.objectives.as_slice()).collect();
+            hypervolume(&points, &[1.1, 1.1]) / CATEGORICAL_AREA
+        };
+        let [nsga2, mopso, random, _] = methods();
+        let sweep = Method::Exhaustive(ExhaustiveConfig {
+            steps: vec![1.0, 1.0, 0.25, 0.3],
+            batch: 100,
+            hypervolume_reference: None,
+        });
+        // Steps of 1/32 along the front: 32 triangles of 1/32 by 1/32 are lost.
+        let lost = 32.0 * 0.5 / 32.0 / 32.0;
+        let expected = 1.0 - lost / CATEGORICAL_AREA;
+        assert!((share(&sweep) - expected).abs() < 1e-12);
+        let random = share(&random);
+        assert!(share(&nsga2) > random);
+        assert!(share(&mopso) > random);
     }
 }

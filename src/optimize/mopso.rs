@@ -12,7 +12,9 @@
 //! is too weak beyond a few variables: with its inertia of 0.4 a swarm of 100
 //! reached less than half of ZDT1's hypervolume in 250 iterations.
 //!
-//! An integer variable moves like a real one, and its nearest integer is evaluated.
+//! An integer variable moves like a real one, and its nearest integer is evaluated. A
+//! choice has no direction: the particle keeps its own or takes that of its best or of
+//! the leader, each with the same probability.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +22,7 @@ use super::archive::offer;
 use super::error::OptimizeError;
 use super::generator::Generator;
 use super::history::History;
-use super::problem::{Individual, Problem, Space, admit, evaluate};
+use super::problem::{Individual, Problem, Space, VariableKind, admit, evaluate};
 use super::sorting::{constraint_dominates, crowding_distance, feasible_front, prune_one_by_one};
 use super::strategy::{
     Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
@@ -114,6 +116,11 @@ impl Particle {
             let (lo, hi) = variable.kind.bounds();
             let limit = 0.5 * (hi - lo);
             let position = self.position[k];
+            if let VariableKind::Category { .. } = variable.kind {
+                let choices = [position, self.best.genome[k], leader.genome[k]];
+                propagation.0[k] = choices[generator.below(choices.len())];
+                continue;
+            }
             let pull =
                 own * (self.best.genome[k] - position) + shared * (leader.genome[k] - position);
             let velocity = constriction * (INERTIA * self.velocity[k] + pull);

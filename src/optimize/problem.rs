@@ -26,6 +26,11 @@ pub enum VariableKind {
         /// The greatest value.
         hi: f64,
     },
+    /// One of some choices without an order, stored as its number from 0.
+    Category {
+        /// How many choices there are.
+        count: u32,
+    },
 }
 
 impl VariableKind {
@@ -35,16 +40,17 @@ impl VariableKind {
         match *self {
             Self::Integer { lo, hi } => (lo as f64, hi as f64),
             Self::Real { lo, hi } => (lo, hi),
+            Self::Category { count } => (0.0, f64::from(count) - 1.0),
         }
     }
 
-    /// The nearest value of the variable: rounded if it is an integer, then
+    /// The nearest value of the variable: rounded unless it is real, then
     /// clamped. A NaN becomes the lower bound, a negative zero a positive one.
     #[must_use]
     pub fn nearest(&self, value: f64) -> f64 {
         let (lo, hi) = self.bounds();
         let whole = match self {
-            Self::Integer { .. } => value.round(),
+            Self::Integer { .. } | Self::Category { .. } => value.round(),
             Self::Real { .. } => value,
         };
         whole.max(lo).min(hi) + 0.0
@@ -170,11 +176,11 @@ impl Space {
         }
     }
 
-    /// A genome drawn uniformly, every integer with the same probability.
+    /// A genome drawn uniformly, every integer and every choice with the same probability.
     pub(super) fn draw(&self, generator: &mut Generator) -> Vec<f64> {
         let draw = |variable: &Variable| match variable.kind {
-            VariableKind::Integer { lo, hi } => {
-                let (lo, hi) = (lo as f64, hi as f64);
+            VariableKind::Integer { .. } | VariableKind::Category { .. } => {
+                let (lo, hi) = variable.kind.bounds();
                 generator.between(lo, hi + 1.0).floor().min(hi)
             }
             VariableKind::Real { lo, hi } => variable.kind.nearest(generator.between(lo, hi)),

@@ -120,6 +120,32 @@ pub(super) fn constr() -> TestProblem {
     })
 }
 
+/// A choice of three, an integer, and two reals: t = (n + x)/8 and 1 - t, each plus a loss that is 0 if y = 0.3 and
+/// the choice is that of the third of the range in which t is, in an order of their own. The front is t + f = 1.
+pub(super) fn categorical() -> TestProblem {
+    let kinds = [
+        VariableKind::Category { count: 3 },
+        VariableKind::Integer { lo: 0, hi: 7 },
+        UNIT,
+        UNIT,
+    ];
+    TestProblem::new(&kinds, 2, |v| {
+        const BEST: [f64; 4] = [1.0, 2.0, 0.0, 0.0];
+        let t = (v[1] + v[2]) / 8.0;
+        let wrong = if v[0] == BEST[(3.0 * t) as usize] {
+            0.0
+        } else {
+            0.3
+        };
+        let loss = wrong + (v[3] - 0.3).powi(2);
+        (vec![t + loss, 1.0 - t + loss], 0.0)
+    })
+}
+
+/// The area that the front of [`categorical`] dominates at (1.1, 1.1): the triangle below (0, 1) and (1, 0), and
+/// two strips of width 0.1.
+pub(super) const CATEGORICAL_AREA: f64 = 0.5 + 0.1 + 0.1 + 0.01;
+
 /// Two integers and two reals: n and 12 - n, each plus a loss that is 0 if the
 /// other variables are at (4, 1, 0.3): an integer and a real at their upper
 /// bounds and a real inside. The front is every n in 0..=12 without loss.

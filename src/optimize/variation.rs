@@ -1,4 +1,4 @@
-//! Crossover and mutation of genomes that mix real and integer variables.
+//! Crossover and mutation of genomes that mix real, integer and categorical variables.
 //!
 //! Simulated binary crossover (K. Deb, R. B. Agrawal, "Simulated binary crossover
 //! for continuous search space", Complex Systems 9(2), 1995) and polynomial
@@ -13,6 +13,9 @@
 //!   values. They are changed by mutation, whose step is therefore rounded away
 //!   from zero: rounded to the nearest, nine of ten steps in a range of five values
 //!   would change nothing.
+//! - Choices have no order, so nothing lies between two of them: crossover swaps
+//!   those of the parents, and mutation draws one of the others, each with the same
+//!   probability.
 
 use super::generator::Generator;
 use super::problem::{Space, VariableKind};
@@ -35,6 +38,10 @@ pub(super) fn cross(
     for k in 0..space.variables().len() {
         let (a, b) = (parents[0][k], parents[1][k]);
         if a == b || !generator.chance(EVEN) {
+            continue;
+        }
+        if let VariableKind::Category { .. } = space.variables()[k].kind {
+            (children[0][k], children[1][k]) = (b, a);
             continue;
         }
         let (mean, half) = (0.5 * (a + b), 0.5 * (b - a));
@@ -82,14 +89,24 @@ pub(super) fn mutate(
             continue;
         }
         let (lo, hi) = variable.kind.bounds();
+        if let VariableKind::Category { count } = variable.kind {
+            *value = another_choice(*value, count, generator);
+            continue;
+        }
         let size = (hi - lo) * step_size(generator.unit(), index);
         let size = match variable.kind {
             VariableKind::Integer { .. } => size.ceil().max(1.0),
-            VariableKind::Real { .. } => size,
+            VariableKind::Real { .. } | VariableKind::Category { .. } => size,
         };
         *value += if generator.chance(EVEN) { -size } else { size };
     }
     space.clamp(genome);
+}
+
+/// A choice other than `value`, if there is one, each with the same probability.
+fn another_choice(value: f64, count: u32, generator: &mut Generator) -> f64 {
+    let drawn = generator.below(count.saturating_sub(1) as usize) as f64;
+    if drawn >= value { drawn + 1.0 } else { drawn }
 }
 
 /// The step of polynomial mutation in units of the range, for a uniform `draw`:
@@ -212,6 +229,36 @@ mod tests {
         // Two units or more: a step above 1/4 of the range, 0.75^11 = 4 % of moves.
         assert_share(shares[2], 0.1 * 0.75_f64.powi(11));
         assert!(distances[2] > 0);
+    }
+
+    #[test]
+    fn choices_are_swapped_and_drawn_again() {
+        let space = space(&[
+            VariableKind::Category { count: 4 },
+            VariableKind::Category { count: 1 },
+        ]);
+        let mut generator = Generator::new(1, 6);
+        let mut swapped = 0;
+        for _ in 0..DRAWS {
+            let [a, b] = cross(&space, [&[0.0, 0.0], &[3.0, 0.0]], 5.0, &mut generator);
+            // Those of the parents, never one between them.
+            assert!(
+                matches!((a[0], b[0]), (0.0, 3.0) | (3.0, 0.0)),
+                "{a:?} {b:?}"
+            );
+            swapped += u32::from(a[0] == 3.0);
+        }
+        assert_share(f64::from(swapped) / f64::from(DRAWS), 0.5);
+        let mut counts = [0_u32; 4];
+        for _ in 0..DRAWS {
+            let mut genome = [2.0, 0.0];
+            mutate(&space, &mut genome, 0.9, 10.0, &mut generator);
+            assert_eq!(space.check(&genome), Ok(()));
+            counts[genome[0] as usize] += 1;
+        }
+        for (choice, share) in [(0, 0.3), (1, 0.3), (2, 0.1), (3, 0.3)] {
+            assert_share(f64::from(counts[choice]) / f64::from(DRAWS), share);
+        }
     }
 
     #[test]

@@ -76,8 +76,7 @@ impl Baseline {
     ) -> Self {
         let goals = problem.goals();
         let (satellites, design) = (one.satellite_count(), one.only_design());
-        let cost = &goals.launch_cost;
-        let value = |quantity: &Quantity| quantity.value_of(satellites, design, &metrics, cost);
+        let value = |quantity: &Quantity| goals.value(*quantity, (satellites, design), &metrics);
         Self {
             name: shown::name(&one.name),
             made_of: shown::name(&one.made_of()),

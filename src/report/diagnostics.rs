@@ -42,9 +42,18 @@ pub fn diagnose(
 
 /// The names in a sentence, in backquotes: a, a and b, a, b and c.
 fn listed(names: &[&str]) -> String {
-    match names {
+    let names: Vec<String> = names.iter().map(|name| named(name)).collect();
+    match names.as_slice() {
         [] => String::new(),
-        [one] => format!("`{one}`"),
-        [first @ .., last] => format!("`{}` and `{last}`", first.join("`, `")),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} and {last}", first.join(", ")),
+    }
+}
+
+/// A variable in a sentence: `planes`, and `planes` of shell B for that of a shell of several.
+fn named(variable: &str) -> String {
+    match variable.split_once('.') {
+        Some((letters, name)) => format!("`{name}` of shell {letters}"),
+        None => format!("`{variable}`"),
     }
 }

@@ -58,9 +58,7 @@ impl Assessment {
         dops: Option<DopStatistics>,
         goals: &Goals,
     ) -> Self {
-        let value = |quantity: Quantity| {
-            quantity.value_of(satellites, design, &metrics, &goals.launch_cost)
-        };
+        let value = |quantity: Quantity| goals.value(quantity, (satellites, design), &metrics);
         let check = |constraint: &Constraint| {
             let quantity = constraint.quantity;
             let is_met = || constraint.violation(value(quantity), metrics.solved_fraction) == 0.0;
@@ -265,6 +263,7 @@ mod tests {
                 per_plane: 5.0,
                 per_1000_km: 0.2,
             },
+            fixed: None,
         }
     }
 

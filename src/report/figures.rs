@@ -91,6 +91,8 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::MaxPdop => "maximum PDOP",
         Quantity::Satellites => "satellites",
         Quantity::Planes => "planes",
+        Quantity::NewSatellites => "new satellites",
+        Quantity::NewPlanes => "new planes",
         Quantity::MeanVisible => "mean visible LEO satellites",
         Quantity::Availability => "availability",
         Quantity::LaunchCost => "launch cost (satellites)",

@@ -15,6 +15,7 @@ use super::figures::NamedFront;
 use super::profile::Profile;
 use crate::constellation::Design;
 use crate::evaluate::Evaluator;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::printable::printable_json;
 use crate::run::{Run, ScenarioStamp};
 use askama::Template;
@@ -51,9 +52,19 @@ pub struct Page<'a> {
     pub compared: &'a [Compared],
     /// Fronts of other runs.
     pub fronts: &'a [NamedFront],
+    /// Satellites from files that every member of the front has beside its design.
+    pub fixed: Option<&'a FileSatellites>,
 }
 
 impl Page<'_> {
+    /// A design of the front with what is fixed beside it.
+    fn with_fixed(&self, design: Design) -> Constellation {
+        Constellation {
+            files: self.fixed.cloned(),
+            ..Constellation::of_design(design)
+        }
+    }
+
     /// Whether two or more compared constellations have places in the plane of the objectives.
     fn has_plane_without_front(&self) -> bool {
         let is_placed = |one: &&Compared| {
@@ -146,13 +157,13 @@ struct Html<'a> {
 pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let places = members_with_cuts(page);
     let members = &page.run.front;
-    let designs: Vec<Design> = places
+    let constellations: Vec<Constellation> = places
         .iter()
-        .filter_map(|&n| members[n].only_design())
+        .filter_map(|&n| Some(page.with_fixed(members[n].only_design()?)))
         .collect();
     let profiles = match page.evaluator {
-        Some(evaluator) => Profile::of_designs(evaluator, &designs),
-        None => vec![None; designs.len()],
+        Some(evaluator) => Profile::of_constellations(evaluator, &constellations),
+        None => vec![None; constellations.len()],
     };
     let payload = Payload::new(page, &places, &profiles, &of_compared(page));
     let plotly = plotly::Plot::offline_js_sources();

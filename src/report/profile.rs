@@ -1,9 +1,9 @@
 //! The data of one constellation for the figures below the front: its cuts through space and time, and the
 //! distribution of PDOP.
 
-use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{EpochMetrics, Evaluator, PointMetrics};
+use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::stats::{Weighted, summarize_weighted, weighted_quantile};
 use rayon::prelude::*;
 
@@ -41,14 +41,17 @@ pub struct Tail {
 }
 
 impl Profile {
-    /// Evaluates one design.
+    /// Evaluates one constellation.
     ///
     /// # Errors
     /// If one of its satellites cannot be propagated.
-    pub fn of_design(evaluator: &Evaluator, design: &Design) -> Result<Self, EphemerisError> {
+    pub fn of_constellation(
+        evaluator: &Evaluator,
+        one: &Constellation,
+    ) -> Result<Self, ConstellationError> {
         let setup = evaluator.setup();
-        let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid)?;
-        Self::new(evaluator, &ephemeris)
+        let ephemeris = one.ephemeris(setup.grid, setup.model)?;
+        Ok(Self::new(evaluator, &ephemeris)?)
     }
 
     /// Evaluates some satellites, on the grid of the setup.
@@ -75,12 +78,12 @@ impl Profile {
         })
     }
 
-    /// Evaluates several designs, in parallel and in their order; `None` for one that cannot be
+    /// Evaluates several constellations, in parallel and in their order; `None` for one that cannot be
     /// propagated.
     #[must_use]
-    pub fn of_designs(evaluator: &Evaluator, designs: &[Design]) -> Vec<Option<Self>> {
-        let one = |design: &Design| Self::of_design(evaluator, design).ok();
-        designs.par_iter().map(one).collect()
+    pub fn of_constellations(evaluator: &Evaluator, all: &[Constellation]) -> Vec<Option<Self>> {
+        let one = |one: &Constellation| Self::of_constellation(evaluator, one).ok();
+        all.par_iter().map(one).collect()
     }
 }
 
@@ -169,8 +172,9 @@ mod tests {
             .setup(&|_| Err(std::io::ErrorKind::NotFound.into()))
             .unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let design = "delta:55:42/7/1@925".parse().unwrap();
-        let profile = Profile::of_design(&evaluator, &design).unwrap();
+        let design: crate::constellation::Design = "delta:55:42/7/1@925".parse().unwrap();
+        let one = Constellation::of_design(design.clone());
+        let profile = Profile::of_constellation(&evaluator, &one).unwrap();
         let metrics = evaluator.evaluate(&design).unwrap();
         // Sums in another order.
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");

@@ -5,11 +5,11 @@ use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Certificate, FrontMember, Hypervolume, MemberFiles, OptimizeResult, ScenarioStamp,
-    SearchSummary, VERSION, VolumeAt,
+    Certificate, DesignSummary, FrontMember, Hypervolume, MemberFiles, OptimizeResult,
+    ScenarioStamp, SearchSummary, VERSION, VolumeAt,
 };
 use crate::scenario::Scenario;
-use crate::search::{DesignProblem, Goals, Quantity};
+use crate::search::{DesignProblem, DesignSpace, Quantity};
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -107,6 +107,7 @@ impl OptimizeResult {
                 name: Some(entry.name.clone()),
                 design: entry.design.clone(),
                 files: of_scenario.map(of_files),
+                shells: Vec::new(),
                 metrics: entry.evaluated.metrics,
                 objectives: objectives
                     .iter()
@@ -250,8 +251,9 @@ fn front_members(
             name: None,
             design: Some((&design).into()),
             files: None,
+            shells: shells(problem.designs(), &individuals[n].genome),
             objectives: objectives(&individuals[n]),
-            constraints: constrained(&design, &metrics, problem.goals()),
+            constraints: constrained(&design, &metrics, problem),
             membership: memberships.minimum[n],
             membership_sum: memberships.share[n],
             chosen: chosen == Some(n),
@@ -265,8 +267,28 @@ fn front_members(
         .collect()
 }
 
+/// The shells of a vector in the order of the search; none where one shell is the whole design.
+fn shells(space: &DesignSpace, genome: &[f64]) -> Vec<Option<DesignSummary>> {
+    if space.is_of_one_shell() {
+        return Vec::new();
+    }
+    let shells = space.shells_of(genome).unwrap_or_default().into_iter();
+    shells
+        .map(|shell| shell.as_ref().map(DesignSummary::from))
+        .collect()
+}
+
 /// The constrained quantities that are not objectives, by name.
-fn constrained(design: &Design, metrics: &Metrics, goals: &Goals) -> Vec<(String, Option<f64>)> {
-    let value = |q: Quantity| (q.to_string(), q.value(design, metrics, &goals.launch_cost));
-    goals.constrained().into_iter().map(value).collect()
+fn constrained(
+    design: &Design,
+    metrics: &Metrics,
+    problem: &DesignProblem<'_>,
+) -> Vec<(String, Option<f64>)> {
+    let value = |q: Quantity| (q.to_string(), problem.value(q, design, metrics));
+    problem
+        .goals()
+        .constrained()
+        .into_iter()
+        .map(value)
+        .collect()
 }

@@ -18,7 +18,9 @@ const SIGNIFICANT: i32 = 5;
 #[must_use]
 pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
     match quantity {
-        Quantity::Satellites | Quantity::Planes => decimals(value, 0),
+        Quantity::Satellites | Quantity::Planes | Quantity::NewSatellites | Quantity::NewPlanes => {
+            decimals(value, 0)
+        }
         Quantity::Availability => share(value),
         Quantity::LaunchCost => value.map_or_else(|| NONE.to_owned(), significant),
         _ => decimals(value, 4),

@@ -122,6 +122,9 @@ pub struct FrontMember {
     /// Its satellites from files, in a run of given constellations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub files: Option<MemberFiles>,
+    /// The shells of a search among several, or beside something fixed, in their order; `None` for an empty one.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub shells: Vec<Option<DesignSummary>>,
     /// Its metrics.
     pub metrics: Metrics,
     /// Value of each objective by name, in its original sense.
@@ -165,6 +168,15 @@ impl FrontMember {
     pub fn only_design(&self) -> Option<Design> {
         let summary = self.design.as_ref().filter(|_| self.files.is_none());
         summary?.design()
+    }
+
+    /// A shell of the search by its place; `None` if it is empty.
+    #[must_use]
+    pub fn shell(&self, place: usize) -> Option<&DesignSummary> {
+        match self.shells.get(place) {
+            Some(shell) => shell.as_ref(),
+            None => (place == 0 && self.shells.is_empty()).then(|| self.design.as_ref())?,
+        }
     }
 
     /// An objective by its name.

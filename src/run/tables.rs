@@ -2,19 +2,23 @@
 
 use super::columns::{cells, fields, optional};
 use super::{DesignSummary, FrontMember};
+use crate::constellation::shell_letters;
 use crate::evaluate::Metrics;
 use crate::optimize::Record;
 use csv::Writer;
 use std::io;
 
 /// The front of a search, one member per row, including the fields of its design and metrics and the
-/// objectives and constrained quantities that are in neither; with names and files where members have them.
+/// objectives and constrained quantities that are in neither; with names and files where members have them, and the
+/// fields of each shell of a search among several (`a_planes`, `b_planes`), empty where it is.
 ///
 /// # Errors
 /// Never for a table in memory.
 pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     let further = further_quantities(front);
+    let shells = front.iter().map(|member| member.shells.len()).max();
+    let shells = 0..shells.unwrap_or(0);
     let has_names = front.iter().any(|member| member.name.is_some());
     let has_files = front.iter().any(|member| member.files.is_some());
     let is_column = |name: &&&str| match **name {
@@ -29,6 +33,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         .collect();
     let header = columns.iter().flat_map(|name| match *name {
         "design" => DesignSummary::columns().iter().map(|n| column(n)).collect(),
+        "shells" => shells.clone().flat_map(shell_columns).collect(),
         "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
         "objectives" => further.iter().map(|name| column(name)).collect(),
         "constraints" => Vec::new(),
@@ -46,6 +51,10 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
                 "files" => {
                     let files = member.files.as_ref();
                     vec![files.map_or_else(String::new, |files| files.names.join("+"))]
+                }
+                "shells" => {
+                    let each = shells.clone().map(|place| shell_cells(member, place));
+                    each.collect::<serde_json::Result<Vec<_>>>()?.concat()
                 }
                 "metrics" => cells(&member.metrics, fields::<Metrics>())?,
                 "objectives" => {
@@ -83,6 +92,21 @@ pub(crate) fn design_cells(
         }
     }
     Ok(row)
+}
+
+/// The columns of a shell of the search.
+fn shell_columns(place: usize) -> Vec<String> {
+    let letters = shell_letters(place).to_lowercase();
+    let columns = DesignSummary::columns().iter();
+    columns.map(|name| format!("{letters}_{name}")).collect()
+}
+
+/// The cells of a shell of the search.
+fn shell_cells(member: &FrontMember, place: usize) -> serde_json::Result<Vec<String>> {
+    match member.shell(place) {
+        Some(shell) => cells(shell, DesignSummary::columns()),
+        None => Ok(vec![String::new(); DesignSummary::columns().len()]),
+    }
 }
 
 /// The name of a quantity as a column.

@@ -12,6 +12,7 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
         name: None,
         design: Some(DesignSummary::from(&design)),
         files: None,
+        shells: Vec::new(),
         metrics: Metrics {
             mean_visible: 8.0,
             mean_pdop: None,

@@ -6,8 +6,10 @@ use std::fmt::Write as _;
 use sha2::{Digest, Sha256};
 
 use super::keys::{Key, KeyPath, Section, Walk, key};
-use super::rule::Rule;
-use super::values::{Export, GnssSetup, Optimizer, PointsFile, Region, Scenario};
+use super::rule::{Rule, parts_without_paths};
+use super::values::{
+    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
+};
 use crate::constellation::Design;
 
 impl Scenario {
@@ -38,26 +40,36 @@ impl Scenario {
     }
 
     /// The paths of the files that the scenario refers to, as written: the points, the GNSS files in their
-    /// order, then those of each constellation.
+    /// order, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
         let points = match &self.region {
             Region::Grid(_) => None,
             Region::Points { file } => Some(file),
         };
-        let compared = self.constellations.iter();
+        let (fixed, compared) = self
+            .constellations
+            .iter()
+            .partition(|one| self.is_fixed(one));
+        let named: [Vec<&NamedConstellation>; 2] = [fixed, compared];
         points
             .into_iter()
             .chain(&self.gnss.files)
-            .chain(compared.flat_map(|one| &one.parts.files))
+            .chain(named.into_iter().flatten().flat_map(|one| &one.parts.files))
             .map(String::as_str)
             .collect()
     }
 
-    /// How many of [`Scenario::files`] results depend on: all but those of constellations, which are the last.
+    /// Whether a constellation is part of every design of the search.
+    fn is_fixed(&self, one: &NamedConstellation) -> bool {
+        self.search.fixed.as_ref() == Some(&one.name)
+    }
+
+    /// How many of [`Scenario::files`] results depend on: all but those of constellations that are not fixed in the
+    /// search, which are the last.
     #[must_use]
     pub fn computed_files(&self) -> usize {
-        let compared = self.constellations.iter();
+        let compared = self.constellations.iter().filter(|one| !self.is_fixed(one));
         let compared: usize = compared.map(|one| one.parts.files.len()).sum();
         self.files().len() - compared
     }
@@ -72,11 +84,16 @@ impl Scenario {
             Region::Grid(_) => None,
             Region::Points { file } => Some(file),
         };
-        let compared = scenario.constellations.iter_mut();
+        let (fixed, compared) = scenario
+            .constellations
+            .iter_mut()
+            .partition(|one| self.is_fixed(one));
+        let named: [Vec<&mut NamedConstellation>; 2] = [fixed, compared];
+        let constellations = named.into_iter().flatten();
         let named = points
             .into_iter()
             .chain(&mut scenario.gnss.files)
-            .chain(compared.flat_map(|one| &mut one.parts.files));
+            .chain(constellations.flat_map(|one| &mut one.parts.files));
         for (file, path) in named.zip(&mut paths) {
             *file = path;
         }
@@ -103,12 +120,19 @@ impl Scenario {
             .collect()
     }
 
-    /// The same scenario with its reference design as a notation, if it is given by names.
+    /// The same scenario with its reference design as a notation, if it is given by name, and with what is behind the
+    /// name of what is fixed in the search, but for the paths of its files.
     fn resolved(&self) -> Self {
         let mut scenario = self.clone();
         let is_notation = self.reference_design.parse::<Design>().is_ok();
         if let (false, Ok(design)) = (is_notation, self.design(&self.reference_design)) {
             scenario.reference_design = design.to_string();
+        }
+        if let Ok(Some(fixed)) = self.fixed() {
+            scenario.search.fixed = Some(match fixed.only_design() {
+                Some(design) => design.to_string(),
+                None => parts_without_paths(&fixed.parts),
+            });
         }
         scenario
     }

@@ -93,6 +93,31 @@ impl Scenario {
     }
 }
 
+impl Scenario {
+    /// The constellation that every design of the search has beside its own shells, if any.
+    ///
+    /// # Errors
+    /// If it is neither a notation nor the name of a constellation.
+    pub fn fixed(&self) -> Result<Option<NamedConstellation>, NoDesign> {
+        let Some(text) = &self.search.fixed else {
+            return Ok(None);
+        };
+        if let Some(named) = self.constellation(text) {
+            return Ok(Some(named.clone()));
+        }
+        let design = self.design(text)?;
+        Ok(Some(NamedConstellation {
+            name: text.clone(),
+            parts: ConstellationParts::of_design(design),
+        }))
+    }
+
+    /// Shells that every design of the search has beside its own.
+    pub(super) fn fixed_shells(&self) -> Option<Design> {
+        self.fixed().ok()??.parts.design
+    }
+}
+
 impl NamedConstellation {
     /// The constellation, with notes on parts of its files that are not read. `read` returns the bytes of a
     /// file by the path as written.

@@ -14,7 +14,7 @@ use super::problem::{Fault, ProblemList};
 use super::reader::{Given, Reader};
 use super::rule::Node;
 use super::source::{Source, TableSources};
-use super::values::{ConstellationParts, Grid, Objectives, PointsFile};
+use super::values::{ConstellationParts, Grid, INTERVALS, Objectives, PointsFile, SHELLS};
 use crate::keyword::nearest;
 
 /// The known keys that were given; the last of several.
@@ -265,7 +265,7 @@ impl KeySite<'_, '_> {
 }
 
 /// The keys of a file that a `--set` of another key replaces: grid and points file exclude each other,
-/// and a reference point belongs to its list of objectives.
+/// a reference point belongs to its list of objectives, and a list of shells replaces the intervals of one.
 fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
     let (grid, points) = (paths::<Grid>(), key!(PointsFile.points));
     if path == points {
@@ -274,6 +274,8 @@ fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
         vec![points]
     } else if path == key!(Objectives.minimize) {
         vec![key!(Objectives.hypervolume_reference)]
+    } else if path == SHELLS {
+        INTERVALS.to_vec()
     } else {
         Vec::new()
     }

@@ -108,6 +108,31 @@ pub enum Fault {
         /// The interval as written.
         found: String,
     },
+    /// An interval of one shell beside a list of shells.
+    #[error(
+        "`search.shells` lists the shells: give this key in each [[search.shells]] instead, or leave out `search.shells`"
+    )]
+    OfOneShell,
+    /// A list of shells without one.
+    #[error("found an empty list, expected at least one shell")]
+    NoShells,
+    /// A shell without satellites.
+    #[error(
+        "the shell never has a satellite; expected at least 1 satellite per plane as the high limit"
+    )]
+    AlwaysEmpty,
+    /// A search in which all shells may be empty.
+    #[error(
+        "every shell can be empty, so that a design could have no satellite; let `satellites-per-plane` of one of them \
+         begin at 1, or give `search.fixed`"
+    )]
+    AllEmpty,
+    /// A step between nodes for a pattern that has none.
+    #[error(
+        "node-step-deg does not apply to lattice: its phases follow from nodes 360/P degrees apart; give lattice a shell \
+         of its own"
+    )]
+    NodeStepOfLattice,
     /// Two keys that exclude each other.
     #[error("excluded by `{other}`; give one of them")]
     Excluded {

@@ -71,6 +71,14 @@ impl<'r> Reader<'r> {
         self.given.contains_key(&key)
     }
 
+    /// Whether the table at a place of a list lacks a key.
+    pub(super) fn is_absent_in(&self, list: KeyPath, place: usize, key: KeyPath) -> bool {
+        let given = self.given.get(&list);
+        let tables = given.and_then(|given| given.node.get_ref().as_array());
+        let table = tables.and_then(|tables| tables.get(place)?.get_ref().as_table());
+        table.is_none_or(|table| !table.contains_key(key.name))
+    }
+
     /// Whether a key has its default because its value was rejected.
     pub(super) fn is_wrong(&self, key: KeyPath) -> bool {
         self.wrong.contains(&key)

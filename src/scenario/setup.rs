@@ -11,7 +11,7 @@ use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::{Goals, SweepSteps};
+use crate::search::{DesignSpace, Goals};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
@@ -301,6 +301,16 @@ impl Scenario {
             objectives: self.objectives.minimize.clone(),
             constraints: self.objectives.constraints.clone(),
             launch_cost: self.objectives.launch_cost,
+            fixed: self.fixed_shells(),
+        }
+    }
+
+    /// The space of the search, with the shells that are fixed.
+    #[must_use]
+    pub fn design_space(&self) -> DesignSpace {
+        DesignSpace {
+            shells: self.search.shells.as_slice().to_vec(),
+            fixed: self.fixed_shells(),
         }
     }
 
@@ -353,12 +363,7 @@ impl Scenario {
                 hypervolume_reference,
             }),
             Algorithm::Exhaustive => Method::Exhaustive(ExhaustiveConfig {
-                steps: self.search.designs.steps(SweepSteps {
-                    inclination_deg: self.search.inclination_step_deg,
-                    altitude_km: self.search.altitude_step_km,
-                    eccentricity: self.search.eccentricity_step,
-                    arg_perigee_deg: self.search.arg_perigee_step_deg,
-                }),
+                steps: self.design_space().steps(),
                 batch: SWEEP_BATCH,
                 hypervolume_reference,
             }),

@@ -9,6 +9,7 @@ mod problems;
 mod random;
 mod search;
 mod setting;
+mod shells;
 
 use super::{Problems, Scenario, ScenarioProblem};
 

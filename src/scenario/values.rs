@@ -3,29 +3,35 @@
 
 mod constellations;
 mod objectives;
+mod optimizer;
 mod region;
 mod search;
 mod setting;
+mod shell;
 
 pub use crate::ground::Grid;
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
+pub use optimizer::Optimizer;
 pub(super) use region::PointsFile;
 pub use region::Region;
 #[cfg(test)]
 pub(super) use region::points;
-pub use search::{Optimizer, SearchSpace};
+pub(super) use search::SHELLS;
+pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
+pub(super) use shell::INTERVALS;
 
 use chrono::{DateTime, Utc};
 
 use super::Algorithm;
 use super::keys::{key, section};
+use super::problem::Fault;
 use super::reader::Reader;
 use super::rule::{Constellations, Integer, Text, UtcInstant};
 use crate::ephemeris::NAME_PREFIX;
 use crate::formats::metadata::CatalogNumber;
-use crate::search::DesignSpace;
+use crate::search::{ShellSpace, SweepSteps};
 
 /// Lets a duration that is an integer number of steps, up to rounding, end before
 /// its last instant, and a grid that is an integer number of steps include its last
@@ -102,9 +108,20 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
     if !reader.is_given(key!(Scenario.constellations)) {
         scenario.constellations = Vec::new();
     }
+    check_fixed(scenario, reader);
     if reader.is_sound() {
         check_point_samples(scenario, reader);
         check_designs(scenario, reader);
+    }
+}
+
+/// What is fixed is a notation or the name of a constellation.
+fn check_fixed(scenario: &Scenario, reader: &mut Reader<'_>) {
+    // The constellations are not known if one of them is wrong.
+    let known = [key!(SearchSpace.fixed), key!(Scenario.constellations)];
+    if let Err(error) = scenario.fixed() {
+        let reason = error.to_string();
+        reader.refuse(&known, Fault::SetUp { reason });
     }
 }
 
@@ -126,11 +143,12 @@ fn check_designs(scenario: &Scenario, reader: &mut Reader<'_>) {
         return;
     }
     let keys = [
-        key!(SearchSpace.inclination_step_deg),
-        key!(SearchSpace.altitude_step_km),
-        key!(DesignSpace.phasing),
-        key!(DesignSpace.planes),
-        key!(DesignSpace.satellites_per_plane),
+        SHELLS,
+        key!(SweepSteps.inclination_step_deg),
+        key!(SweepSteps.altitude_step_km),
+        key!(ShellSpace.phasing),
+        key!(ShellSpace.planes),
+        key!(ShellSpace.satellites_per_plane),
         key!(Optimizer.algorithm),
     ];
     let count = scenario.search.design_count();

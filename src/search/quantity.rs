@@ -1,6 +1,6 @@
 //! The quantities that a search can optimise or bound, by name.
 
-use crate::constellation::Design;
+use crate::constellation::{Design, Shell};
 use crate::evaluate::Metrics;
 use crate::keyword::keywords;
 
@@ -25,17 +25,21 @@ keywords! {
         Satellites = "satellites",
         /// Planes P; minimised.
         Planes = "planes",
+        /// Satellites that are not fixed; minimised.
+        NewSatellites = "new-satellites",
+        /// Planes that are not fixed; minimised.
+        NewPlanes = "new-planes",
         /// Mean visible LEO satellites; maximised.
         MeanVisible = "mean-visible",
         /// Fraction of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
-        /// Cost of launching the satellites, in the unit of its parameters; minimised.
+        /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
 }
 
-/// Parameters of the launch cost c_T T (1 + c_h h/1000 km) + c_P P ([M-32](crate::models#m-32)), in
-/// a currency or unit of the user's choice.
+/// Parameters of the launch cost Σ c_T T (1 + c_h h/1000 km) + c_P P over the shells ([M-32](crate::models#m-32)),
+/// in a currency or unit of the user's choice.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LaunchCost {
     /// c_T, cost of launching one satellite to zero altitude.
@@ -44,6 +48,15 @@ pub struct LaunchCost {
     pub per_plane: f64,
     /// c_h, fraction by which a satellite costs more for each 1000 km of altitude.
     pub per_1000_km: f64,
+}
+
+impl LaunchCost {
+    /// The cost of launching a shell.
+    fn of_shell(&self, shell: &Shell) -> f64 {
+        let lift = 1.0 + self.per_1000_km * shell.altitude_km() / 1000.0;
+        let satellites = self.per_satellite * shell.satellite_count() as f64 * lift;
+        satellites + self.per_plane * shell.planes() as f64
+    }
 }
 
 impl Quantity {
@@ -85,6 +98,8 @@ impl Quantity {
             Self::JCost
             | Self::Satellites
             | Self::Planes
+            | Self::NewSatellites
+            | Self::NewPlanes
             | Self::MeanVisible
             | Self::Availability
             | Self::LaunchCost => None,
@@ -97,27 +112,26 @@ impl Quantity {
         if self.is_maximised() { -value } else { value }
     }
 
-    /// The value of a design; `None` if there is none, as for PDOP without solved samples.
-    #[must_use]
-    pub fn value(self, design: &Design, metrics: &Metrics, cost: &LaunchCost) -> Option<f64> {
-        self.value_of(design.satellite_count(), Some(design), metrics, cost)
-    }
-
     /// Whether only the satellites of a design have it: others are in no planes.
     #[must_use]
     pub fn needs_design(self) -> bool {
-        matches!(self, Self::Planes | Self::LaunchCost)
+        matches!(self, Self::Planes | Self::NewPlanes | Self::LaunchCost)
     }
 
-    /// The value of any satellites, which are those of a design if there is one; `None` if there is none.
-    #[must_use]
-    pub fn value_of(
+    /// The value for some satellites, which are those of a design if there is one, with the shells of it that
+    /// are new; `None` if there is none, as for PDOP without solved samples. Satellites of no design are all new.
+    pub(super) fn value(
         self,
         satellites: usize,
         design: Option<&Design>,
+        new: Option<&[&Shell]>,
         metrics: &Metrics,
         cost: &LaunchCost,
     ) -> Option<f64> {
+        let new_sum = |of: fn(&Shell) -> usize| {
+            let counts = new.map(|shells| shells.iter().map(|shell| of(shell)).sum());
+            counts.map(|sum: usize| sum as f64)
+        };
         let satellites = satellites as f64;
         match self {
             Self::JPos => metrics.j_pos,
@@ -129,16 +143,15 @@ impl Quantity {
             Self::MaxPdop => metrics.max_pdop,
             Self::Satellites => Some(satellites),
             Self::Planes => Some(design?.planes() as f64),
+            Self::NewSatellites => new_sum(Shell::satellite_count).or(Some(satellites)),
+            Self::NewPlanes => new_sum(Shell::planes),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
-            Self::LaunchCost => {
-                let design = design?;
-                let lift = 1.0 + cost.per_1000_km * design.highest_altitude_km() / 1000.0;
-                Some(
-                    cost.per_satellite * satellites * lift
-                        + cost.per_plane * design.planes() as f64,
-                )
-            }
+            // 0 and not -0 for no shell.
+            Self::LaunchCost => Some(
+                new?.iter()
+                    .fold(0.0, |sum, shell| sum + cost.of_shell(shell)),
+            ),
         }
     }
 }

@@ -27,7 +27,7 @@ use crate::evaluate::{Evaluator, Setup};
 use crate::ground::GroundError;
 use crate::keyword::UnknownKeyword;
 use crate::optimize::{DecisionError, Nsga2Config, OptimizeError};
-use crate::search::DesignSpace;
+use crate::search::ShellSpace;
 use crate::time::TimeError;
 use crate::visibility::MaskError;
 use measured::Measurements;
@@ -78,7 +78,7 @@ pub struct PaperStudy {
     /// The setup of all evaluations.
     pub setup: Setup,
     /// The designs among which the paper searches.
-    pub designs: DesignSpace,
+    pub designs: ShellSpace,
     /// Settings of its search; the swarm gets the same budget.
     pub nsga2: Nsga2Config,
     /// Seed of all searches.

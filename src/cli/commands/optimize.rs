@@ -7,8 +7,8 @@ use crate::cli::interrupt::Stoppable;
 use crate::cli::progress::SearchBar;
 use crate::cli::run::{Placed, RunDirectory};
 use crate::cli::study::{Study, read_manifest};
-use crate::cli::{Status, chart, coincidence, output};
-use crate::evaluate::Evaluator;
+use crate::cli::{Status, chart, coincidence, constellations, output};
+use crate::evaluate::{Evaluator, Setup};
 use crate::optimize::{Pick, Search, Strategy};
 use crate::report::front_table::front_table;
 use crate::report::shown;
@@ -71,6 +71,7 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     check_sweep(args, scenario)?;
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);
+    warn_of_space(study, &setup)?;
     let evaluator = Evaluator::new(setup)?;
     let mut directory = open(args, study, &out)?;
     let sweep = match sweep(args, study, &evaluator, &out)? {
@@ -96,6 +97,17 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
     }
     hint_what_next(result, &out.display().to_string());
     Ok(status(result))
+}
+
+/// Warns of what makes the search space larger than it need be, and of what is fixed in it.
+pub(super) fn warn_of_space(study: &Study, setup: &Setup) -> Result<()> {
+    for repetition in study.scenario.design_space().repetitions() {
+        output::warning(&repetition);
+    }
+    if let Some(fixed) = study.fixed()? {
+        constellations::propagate(&fixed, setup)?;
+    }
+    Ok(())
 }
 
 /// Refuses `--certify` for a search space that an exhaustive search refuses.
@@ -171,7 +183,7 @@ pub(super) fn search(
     sweep: Option<&OptimizeResult>,
 ) -> Result<Ended> {
     let scenario = &study.scenario;
-    let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals())?;
+    let problem = study.problem(evaluator)?;
     let mut search = start(args, directory, study, &problem)?;
     let progress = SearchBar::new(&search);
     let stoppable = Stoppable::begin();

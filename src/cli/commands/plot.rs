@@ -199,7 +199,7 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
         FirstShown::Member(design) => Shown {
             name: design.to_string(),
             notation: design.to_string(),
-            profile: Profile::of_design(evaluator, design)?,
+            profile: Profile::of_constellation(evaluator, &view.with_fixed(design.clone()))?,
         },
         FirstShown::Constellation(one) => of_constellation(one)?,
     };

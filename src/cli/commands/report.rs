@@ -43,6 +43,7 @@ fn write(args: &ViewArgs, out: &Path) -> Result<()> {
         evaluator: view.evaluator.as_ref(),
         compared: &view.compared,
         fronts: &view.fronts,
+        fixed: view.fixed.as_ref(),
     };
     page::write(&page, &mut html)?;
     staged.commit(&html)

@@ -8,6 +8,8 @@ use crate::report::{
     reproduction_markdown, reproduction_text,
 };
 use crate::run::{SCENARIO, ScenarioStamp, VERSION};
+use crate::scenario::Scenario;
+use crate::search::ShellSpace;
 use crate::study::paper::{PaperStudy, reproduce};
 use anyhow::{Result, bail};
 use serde::Deserialize;
@@ -19,10 +21,21 @@ const REPORT: &str = "report.json";
 /// The files beside the tables.
 const OTHERS: [&str; 3] = [SCENARIO, REPORT, "report.md"];
 
+/// The one shell of the search, since that of the paper is one.
+fn only_shell(scenario: &Scenario) -> Result<ShellSpace> {
+    match scenario.search.shells.as_slice() {
+        [shell] if scenario.search.fixed.is_none() => Ok(shell.clone()),
+        _ => bail!(
+            "reproduce repeats the paper's search among designs of one shell; leave out search.shells and search.fixed"
+        ),
+    }
+}
+
 pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
     let study = Study::load(&args.study, seed.as_slice())?;
     let scenario = &study.scenario;
+    let designs = only_shell(scenario)?;
     let stamp = study.stamp()?;
     if !holds(&args.out, &stamp.hash) {
         if !args.force && !files::is_vacant(&args.out)? {
@@ -39,7 +52,7 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     output::hint("reproducing the paper; this takes seconds to minutes");
     let repeated = reproduce(&PaperStudy {
         setup: study.setup()?,
-        designs: scenario.search.designs,
+        designs,
         nsga2: scenario.nsga2(),
         seed: scenario.optimizer.seed,
     })?;

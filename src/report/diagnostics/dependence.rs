@@ -1,6 +1,6 @@
 //! Variables that objectives do not depend on, found by varying one variable at a time.
 
-use super::listed;
+use super::{listed, named};
 use crate::optimize::{Individual, Problem};
 use crate::run::Diagnostic;
 use crate::search::{DesignProblem, Quantity};
@@ -32,7 +32,11 @@ pub(super) fn independent(problem: &DesignProblem<'_>, chosen: &Individual) -> V
         // Counts, and quantities that use few variables by definition, are not worth reporting.
         if matches!(
             objective,
-            Quantity::Satellites | Quantity::Planes | Quantity::LaunchCost
+            Quantity::Satellites
+                | Quantity::Planes
+                | Quantity::NewSatellites
+                | Quantity::NewPlanes
+                | Quantity::LaunchCost
         ) {
             continue;
         }
@@ -91,8 +95,9 @@ fn without_objective(
         return Some(Diagnostic::new(
             &format!("idle:{name}"),
             format!(
-                "{none} on `{name}`: at both ends and in the middle of its range, with the other \
-                 variables as in the chosen design, none changes by {percent} %"
+                "{none} on {}: at both ends and in the middle of its range, with the other \
+                 variables as in the chosen design, none changes by {percent} %",
+                named(name)
             ),
         ));
     }
@@ -100,10 +105,11 @@ fn without_objective(
     Some(Diagnostic::new(
         &format!("only-constrained:{name}"),
         format!(
-            "of the objectives and constraints, `{name}` affects only {}: at both ends and in the \
+            "of the objectives and constraints, {} affects only {}: at both ends and in the \
              middle of its range, with the other variables as in the chosen design, no objective changes by {percent} %, so \
              designs that differ only in it tie; add an objective that depends on it to choose \
              among them",
+            named(name),
             listed(&bound)
         ),
     ))
@@ -111,8 +117,11 @@ fn without_objective(
 
 /// The consequence of a cost that does not rise with the number of satellites.
 fn free_satellites(objective: Quantity, names: &[&str]) -> &'static str {
-    let sizes = ["planes", "satellites-per-plane"];
-    if objective == Quantity::JCost && sizes.iter().any(|size| names.contains(size)) {
+    let is_size = |name: &&str| {
+        let own = name.rsplit('.').next();
+        matches!(own, Some("planes" | "satellites-per-plane"))
+    };
+    if objective == Quantity::JCost && names.iter().any(is_size) {
         "; it is one over the fraction of satellites in view, so additional satellites cost nothing; \
          minimise satellites, planes or launch-cost if they should"
     } else {
@@ -130,7 +139,7 @@ fn variations(
     // The middle, since the ends of a full circle are one orbit.
     let varied: Vec<(usize, [f64; 3])> = variables
         .map(|(k, variable)| (k, variable.kind.bounds()))
-        .filter(|(_, (lo, hi))| lo < hi)
+        .filter(|(k, (lo, hi))| lo < hi && !problem.designs().is_idle(&chosen.genome, *k))
         .map(|(k, (lo, hi))| (k, [lo, 0.5 * (lo + hi), hi]))
         .collect();
     let points = varied
@@ -166,10 +175,9 @@ fn quantities(
     watched: &[Quantity],
 ) -> Vec<Option<f64>> {
     let evaluated = problem.evaluated(genome);
-    let cost = &problem.goals().launch_cost;
     let value = |quantity: &Quantity| {
         let (design, metrics) = evaluated.as_ref()?;
-        quantity.value(design, metrics, cost)
+        problem.value(*quantity, design, metrics)
     };
     watched.iter().map(value).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, Layer, PlaneChart, Plate, Style, quantity_label};
+use crate::constellation::shell_letters;
 use crate::report::Baseline;
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
@@ -19,6 +20,8 @@ pub struct NamedFront {
 /// constraints, membership, name of a constellation that is compared.
 struct FrontRow<'a> {
     set: &'a str,
+    /// Name of the layer of a member.
+    layer: String,
     name: &'a str,
     generation: Option<u64>,
     index: Option<usize>,
@@ -72,11 +75,21 @@ pub fn pareto(
             Style::Dots(n + 1),
         ));
     }
-    layers.push(layer(
-        "front",
-        points(&|row| row.set == "front"),
-        Style::Dots(0),
-    ));
+    let mut kinds: Vec<&str> = Vec::new();
+    for row in rows.iter().filter(|row| row.set == "front") {
+        if !kinds.contains(&row.layer.as_str()) {
+            kinds.push(&row.layer);
+        }
+    }
+    for (n, kind) in kinds.into_iter().enumerate() {
+        let own = points(&|row| row.set == "front" && row.layer == kind);
+        // The colours after the first are those of other fronts.
+        let style = match n {
+            0 => Style::Dots(0),
+            _ => Style::Dots(fronts.len() + n),
+        };
+        layers.push(layer(kind, own, style));
+    }
     for (n, baseline) in baselines.iter().enumerate() {
         let own = points(&|row| row.set == "baseline" && row.name == baseline.name);
         layers.push(layer(&baseline.name, own, Style::Marks(n + 1)));
@@ -115,6 +128,7 @@ fn rows<'a>(
         let (names, constrained) = (names.to_vec(), run.constraint_names());
         front.iter().map(move |member| FrontRow {
             set,
+            layer: used_shells(member),
             name: "",
             generation: None,
             index: Some(member.index),
@@ -130,6 +144,7 @@ fn rows<'a>(
     }
     rows.extend(baselines.iter().map(|baseline| FrontRow {
         set: "baseline",
+        layer: String::new(),
         name: &baseline.name,
         generation: None,
         index: None,
@@ -141,6 +156,7 @@ fn rows<'a>(
     for (generation, objectives) in earlier(run, names) {
         rows.push(FrontRow {
             set: "generation",
+            layer: String::new(),
             name: "",
             generation: Some(generation),
             index: None,
@@ -151,6 +167,21 @@ fn rows<'a>(
         });
     }
     rows
+}
+
+/// Which shells of the search a member has, in words: `front, shells A and B`; `front` where one shell is the
+/// whole design.
+fn used_shells(member: &FrontMember) -> String {
+    let used = member.shells.iter().enumerate();
+    let used: Vec<String> = used
+        .filter_map(|(n, shell)| shell.as_ref().map(|_| shell_letters(n)))
+        .collect();
+    match used.as_slice() {
+        _ if member.shells.len() < 2 => "front".to_owned(),
+        [] => "front, no new shell".to_owned(),
+        [one] => format!("front, shell {one} alone"),
+        [first @ .., last] => format!("front, shells {} and {last}", first.join(", ")),
+    }
 }
 
 /// The fronts of earlier generations, point by point, in the original sense of the objectives.

@@ -5,7 +5,8 @@ use crate::ephemeris::Ephemeris;
 use crate::evaluate::Metrics;
 use crate::report::dominance::dominance;
 use crate::report::{Baseline, ComparisonColumn, comparison_columns};
-use crate::scenario::{LaunchCost, Quantity};
+use crate::scenario::Quantity;
+use crate::search::Goals;
 
 /// The compared constellations, one row each, and the GNSS alone.
 pub(super) struct Comparison {
@@ -43,14 +44,13 @@ impl Comparison {
         }
         let goals = scenario.goals();
         let columns = comparison_columns(scenario);
-        let cost = &goals.launch_cost;
         let values: Vec<Vec<Option<f64>>> = page
             .compared
             .iter()
             .map(|one| {
                 let (design, metrics) = (one.constellation.only_design(), &one.baseline.metrics);
-                let value =
-                    |q: Quantity| q.value_of(one.baseline.satellites, design, metrics, cost);
+                let satellites = (one.baseline.satellites, design);
+                let value = |q: Quantity| goals.value(q, satellites, metrics);
                 let columns = columns.iter();
                 columns.map(|column| column.value(metrics, value)).collect()
             })
@@ -85,7 +85,7 @@ impl Comparison {
             })
             .collect();
         if let Some(metrics) = gnss_alone(page) {
-            rows.push(without_leo(&columns, &metrics, cost));
+            rows.push(without_leo(&columns, &metrics, &goals));
         }
         let names = page.run.objective_names();
         let heading = |column: &ComparisonColumn| column.heading(scenario).replace('\n', " ");
@@ -130,8 +130,8 @@ fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
     evaluator.evaluate_ephemeris(&nothing).ok()
 }
 
-fn without_leo(columns: &[ComparisonColumn], metrics: &Metrics, cost: &LaunchCost) -> Row {
-    let value = |quantity: Quantity| quantity.value_of(0, None, metrics, cost);
+fn without_leo(columns: &[ComparisonColumn], metrics: &Metrics, goals: &Goals) -> Row {
+    let value = |quantity: Quantity| goals.value(quantity, (0, None), metrics);
     let values = columns.iter().map(|column| column.value(metrics, value));
     Row {
         place: None,

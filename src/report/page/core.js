@@ -3,6 +3,9 @@
 const Core = (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
 
+  // What is fixed in a search is on the globe with every member of the front.
+  if (data.fixed_tracks) for (const cuts of Object.values(data.cuts)) cuts.tracks = data.fixed_tracks;
+
   const MISSING = 65535;
 
   /** The numbers of a packed row; null where there is none. */

@@ -2,7 +2,7 @@
 (() => {
   const { data, state, count, total, cutsOf, nameOf, notationOf, mark, unpack, plain, digits, figure, layout, select } = Core;
   const { front, objectives } = data;
-  const shown = { x: 0, y: objectives.length > 1 ? 1 : null };
+  const shown = { x: 0, y: objectives.length > 1 ? 1 : null, shell: front.shells.length > 0 ? front.shells.length - 1 : null };
 
   // A narrow screen has no room for more than the name.
   const label = (n) => plain(innerWidth < 600 ? objectives[n].name : objectives[n].label);
@@ -41,6 +41,18 @@
   const alongAxis = (n) => (n === null ? [...front.variables[0][1], ...data.baselines.map(() => null)]
     : [...front.objectives[n], ...data.baselines.map((b) => b.objectives[n])]);
 
+  /** The marks of the front: in one colour, or coloured by the satellites of a shell. */
+  function marker(colours) {
+    if (shown.shell === null) return { size: 9, color: colours.accent };
+    const [letter, satellites] = front.shells[shown.shell];
+    return { size: 10, color: satellites, colorscale: "Viridis", cmin: 0, line: { width: 1, color: colours.ink },
+      colorbar: { title: { text: "satellites of shell " + letter, side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line } };
+  }
+
+  /** The satellites of each shell of a member, in words. */
+  const byShell = (n) => (front.shells.length === 0 ? ""
+    : "<br>" + front.shells.map(([letter, satellites]) => letter + ": " + satellites[n]).join(", ") + " satellites");
+
   function pareto(colours) {
     const { x, y } = shown;
     const first = alongAxis(x), second = alongAxis(y);
@@ -59,8 +71,8 @@
     }
     if (count > 0) {
       traces.push({ type: "scatter", mode: "markers", name: "front", x: first.slice(0, count), y: second.slice(0, count),
-        customdata: members, text: members.map((n) => plain(front.notation[n]) + "<br>membership " + front.memberships_shown[n]),
-        hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: { size: 9, color: colours.accent } });
+        customdata: members, text: members.map((n) => plain(front.notation[n]) + byShell(n) + "<br>membership " + front.memberships_shown[n]),
+        hovertemplate: "%{text}<br>%{x}, %{y}<extra></extra>", marker: marker(colours) });
     }
     for (let place = count; place < total; place++) {
       const { colour, symbol } = mark(place);
@@ -283,8 +295,20 @@
 
   document.getElementById("close-up")?.addEventListener("change", () => Core.refresh(true));
 
-  // With more than two objectives, the reader chooses the two axes.
   const axes = document.getElementById("axes");
+  // With several shells, the reader chooses the one that gives the colours.
+  if (axes && front.shells.length > 0) {
+    axes.hidden = false;
+    const chooser = document.createElement("select");
+    chooser.id = "colour";
+    front.shells.forEach(([letter], n) => chooser.add(new Option("satellites of shell " + letter, n, false, n === shown.shell)));
+    chooser.add(new Option("none", "", false, false));
+    chooser.addEventListener("change", () => { shown.shell = chooser.value === "" ? null : Number(chooser.value); Core.refresh(true); });
+    const text = document.createElement("label");
+    text.append("colour ", chooser);
+    axes.append(text);
+  }
+  // With more than two objectives, the reader chooses the two axes.
   if (axes && objectives.length > 2) {
     axes.hidden = false;
     for (const axis of ["x", "y"]) {

@@ -3,11 +3,12 @@
 mod readouts;
 mod setting;
 mod tracks;
+mod variables;
 
 use super::Page;
 use super::pack::{Packed, short};
 use crate::constellation::{Design, Shell};
-use crate::evaluate::{EpochMetrics, PointMetrics};
+use crate::evaluate::{EpochMetrics, PointMetrics, Setup};
 use crate::optimize::Record;
 use crate::orbit::Model;
 use crate::orbit::j2::SecularRates;
@@ -44,6 +45,8 @@ pub(super) struct Payload {
     chosen: Option<usize>,
     generations: Vec<(u64, Vec<f64>)>,
     baselines: Vec<Beside>,
+    /// Of the satellites from files that every member of the front has.
+    fixed_tracks: Option<Tracks>,
     fronts: Vec<OtherFront>,
     history: Vec<Generation>,
     reference: Option<String>,
@@ -73,7 +76,9 @@ struct Front {
     /// The values shown for the selected design, with the digits of the table.
     tiles: Vec<(String, Vec<String>)>,
     memberships_shown: Vec<String>,
-    variables: Vec<(&'static str, Vec<Option<f64>>)>,
+    variables: Vec<(String, Vec<Option<f64>>)>,
+    /// Satellites of each shell of the search, by its letter; none if one shell is the whole design.
+    shells: Vec<(String, Vec<usize>)>,
 }
 
 #[derive(Serialize)]
@@ -181,6 +186,7 @@ impl Payload {
                 .zip(compared)
                 .map(|(one, profile)| Beside::new(one, profile.as_ref(), page))
                 .collect(),
+            fixed_tracks: setup.and_then(|setup| fixed_tracks(page, setup)),
             fronts: page
                 .fronts
                 .iter()
@@ -235,6 +241,12 @@ impl Beside {
     }
 }
 
+/// The positions of the fixed satellites.
+fn fixed_tracks(page: &Page<'_>, setup: &Setup) -> Option<Tracks> {
+    let ephemeris = page.fixed?.fleet.propagate(setup.grid, setup.model).ok()?;
+    Tracks::new(&ephemeris, page.track_bytes())
+}
+
 fn history(run: &Run) -> Vec<Generation> {
     let volumes = Record::volumes(&run.history);
     let records = run
@@ -281,9 +293,6 @@ impl Front {
                 .map(|m| value(m).map(short))
                 .collect::<Vec<_>>()
         };
-        let of_design = |value: fn(&Design) -> Option<f64>| {
-            column(&move |m| m.only_design().as_ref().and_then(value))
-        };
         Self {
             index: members.iter().map(|m| m.index).collect(),
             notation: members.iter().map(FrontMember::made_of).collect(),
@@ -304,26 +313,8 @@ impl Front {
                 .iter()
                 .map(|m| shown::membership(m.membership))
                 .collect(),
-            variables: vec![
-                (
-                    "satellites",
-                    of_design(|d| Some(d.satellite_count() as f64)),
-                ),
-                ("planes", of_design(|d| Some(d.planes() as f64))),
-                (
-                    "per plane",
-                    of_design(|d| Some(d.common(Shell::satellites_per_plane)? as f64)),
-                ),
-                (
-                    "phasing",
-                    of_design(|d| Some(d.common(Shell::phasing)? as f64)),
-                ),
-                (
-                    "inclination (\u{b0})",
-                    of_design(|d| d.common(Shell::inclination_deg)),
-                ),
-                ("altitude (km)", of_design(|d| d.common(Shell::altitude_km))),
-            ],
+            variables: variables::all(members),
+            shells: variables::satellites_by_shell(members),
         }
     }
 }

@@ -50,11 +50,12 @@ fn page<'a>(run: &'a Run, evaluator: Option<&'a Evaluator>) -> Page<'a> {
         evaluator,
         compared: &[],
         fronts: &[],
+        fixed: None,
     }
 }
 
 fn compared(one: Constellation, scenario: &Scenario, evaluator: &Evaluator) -> Compared {
-    let problem = DesignProblem::new(evaluator, scenario.search.designs, scenario.goals()).unwrap();
+    let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals()).unwrap();
     let setup = evaluator.setup();
     let ephemeris = one.ephemeris(setup.grid, setup.model).unwrap();
     Compared::new(one, ephemeris, &problem).unwrap()

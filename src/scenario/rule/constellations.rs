@@ -152,6 +152,14 @@ fn read_parts(node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Constellatio
     Some(parts)
 }
 
+/// What a constellation consists of as canonical TOML, but for the paths of its files.
+pub(in crate::scenario) fn parts_without_paths(parts: &ConstellationParts) -> String {
+    Constellations::TABLE.write(&ConstellationParts {
+        files: Vec::new(),
+        ..parts.clone()
+    })
+}
+
 fn write_parts(parts: &ConstellationParts) -> String {
     match &parts.design {
         Some(design) if parts.files.is_empty() => Notation.write(design),

@@ -95,6 +95,68 @@ impl<T: Keyword + Hash> Rule for SomeOf<T> {
     }
 }
 
+/// One word of `T`, or a list of different ones.
+pub(in crate::scenario) struct OneOrMore<T>(SomeOf<T>);
+
+impl<T> OneOrMore<T> {
+    pub(in crate::scenario) const fn new() -> Self {
+        Self(SomeOf::at_least(1))
+    }
+}
+
+impl<T: Keyword + Hash> Rule for OneOrMore<T> {
+    type Value = Vec<T>;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<T>> {
+        if node.get_ref().is_array() {
+            return self.0.read(node, reading);
+        }
+        self.0.of.read(node, reading).map(|word| vec![word])
+    }
+
+    fn accepted(&self) -> String {
+        format!("{}, or a list of them", self.0.of.accepted())
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [self.0.of.schema(), self.0.schema()] })
+    }
+
+    fn write(&self, value: &Vec<T>) -> String {
+        match value.as_slice() {
+            [one] => self.0.of.write(one),
+            _ => self.0.write(value),
+        }
+    }
+}
+
+/// A list of whatever a rule accepts.
+pub(in crate::scenario) struct ListOf<R>(pub(in crate::scenario) R);
+
+impl<R: Rule> Rule for ListOf<R> {
+    type Value = Vec<R::Value>;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Self::Value> {
+        read_list(&self.0, node, reading)
+    }
+
+    fn accepted(&self) -> String {
+        format!("a list, each {}", self.0.accepted())
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "array", "items": self.0.schema() })
+    }
+
+    fn is_absent(&self, value: &Self::Value) -> bool {
+        value.is_empty()
+    }
+
+    fn write(&self, value: &Self::Value) -> String {
+        write_list(&self.0, value)
+    }
+}
+
 /// A list of different texts of a kind, such as paths.
 pub(in crate::scenario) struct Texts {
     /// What the texts are, in the plural.

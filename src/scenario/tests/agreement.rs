@@ -10,7 +10,22 @@ fn with(overrides: &[&str]) -> Scenario {
 #[test]
 fn the_canonical_text_has_every_key_and_parses_back() {
     let text = defaults().to_toml();
-    for key in describe_keys().iter().filter(|key| key.name != "points") {
+    // What has no value unless it is given.
+    let absent = [
+        "points",
+        "raan-deg",
+        "arg-latitude-deg",
+        "node-step-deg",
+        "raan-step-deg",
+        "arg-latitude-step-deg",
+        "node-step-step-deg",
+        "shells",
+        "fixed",
+    ];
+    for key in describe_keys()
+        .iter()
+        .filter(|key| !absent.contains(&key.name))
+    {
         assert!(
             text.contains(&format!("\n{} = ", key.name)) || key.name == "name",
             "{}",
@@ -79,6 +94,14 @@ fn the_hash_moves_with_everything_that_is_computed() {
         "search.arg-perigee-deg=90",
         "search.eccentricity-step=0.002",
         "search.arg-perigee-step-deg=10",
+        "search.raan-deg=10",
+        "search.arg-latitude-deg=10",
+        "search.node-step-deg=10",
+        "search.raan-step-deg=10",
+        "search.arg-latitude-step-deg=10",
+        "search.node-step-step-deg=2",
+        "search.shells=[{ planes = 3 }, {}]",
+        "search.fixed=delta:55:4/2/1@800",
     ];
     let mut hashes: Vec<String> = changes
         .iter()

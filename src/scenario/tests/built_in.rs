@@ -56,8 +56,10 @@ fn an_empty_file_has_the_documented_search() {
     let parameters = (cost.per_satellite, cost.per_plane, cost.per_1000_km);
     assert_eq!(parameters, (1.0, 5.0, 0.2));
     let search = scenario.search;
-    let designs = search.designs;
-    assert_eq!(designs.pattern, Pattern::Delta);
+    let [designs] = search.shells.as_slice() else {
+        panic!("{search:?}");
+    };
+    assert_eq!(designs.pattern, [Pattern::Delta]);
     assert_eq!(
         (designs.planes, designs.satellites_per_plane),
         ([11, 15], [11, 15])
@@ -68,7 +70,10 @@ fn an_empty_file_has_the_documented_search() {
     );
     assert_eq!(designs.phasing, [1, 1]);
     assert_eq!(
-        (search.inclination_step_deg, search.altitude_step_km),
+        (
+            designs.steps.inclination_step_deg,
+            designs.steps.altitude_step_km
+        ),
         (0.5, 50.0)
     );
     let optimizer = scenario.optimizer;
@@ -132,11 +137,28 @@ fn the_template_parses_to_the_defaults() {
 #[test]
 fn the_template_uncommented_is_still_a_scenario() {
     // The lines of keys that follow others are examples, and must be valid ones; points
-    // exclude the grid, and no constellations are the default, so these lines stay out.
+    // exclude the grid and shells the intervals of one, and no constellations, nothing fixed and no
+    // orientation are the default, so these lines stay out.
+    let left_out = [
+        "points",
+        "constellations",
+        "shells",
+        "fixed",
+        "raan-deg",
+        "arg-latitude-deg",
+        "node-step-deg",
+        "raan-step-deg",
+        "arg-latitude-step-deg",
+        "node-step-step-deg",
+    ];
     let uncommented: String = template()
         .lines()
         .map(|line| match line.strip_prefix("# ") {
-            Some(key) if key.starts_with("points = ") || key.starts_with("constellations = ") => {
+            Some(key)
+                if key
+                    .split_once(" = ")
+                    .is_some_and(|(name, _)| left_out.contains(&name)) =>
+            {
                 String::new()
             }
             Some(key) if key.contains(" = ") => format!("{key}\n"),

@@ -1,6 +1,6 @@
 //! What declarations can carry beyond the present keys: lists of tables, tables with free names, and
 //! values of one type or another. A rule for each is all that it takes; they move to `rule/` with
-//! the first key that needs them, as [`SectionTable`] did.
+//! the first key that needs them, as [`SectionTable`] and [`ListOf`] did.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use toml::de::{DeTable, DeValue};
 use crate::scenario::keys::{list, paths, section};
 use crate::scenario::problem::{ProblemList, Problems};
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Integer, Node, Number, OneOf, Reading, Rule, SectionTable};
+use crate::scenario::rule::{Integer, ListOf, Node, Number, OneOf, Reading, Rule, SectionTable};
 use crate::scenario::source::{Source, TableSources};
 use crate::scenario::{KeyDescription, Pattern};
 
@@ -47,36 +47,6 @@ section! {
         /// A list of words or a single word.
         pub patterns: Either<Vec<Pattern>, Pattern> =
             OneOrOther(ListOf(OneOf::new()), OneOf::new()), default Either::Other(Pattern::Star);
-    }
-}
-
-/// A list of whatever a rule accepts.
-struct ListOf<R>(R);
-
-impl<R: Rule> Rule for ListOf<R> {
-    type Value = Vec<R::Value>;
-
-    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Self::Value> {
-        let Some(elements) = node.get_ref().as_array() else {
-            reading.refuse(node);
-            return None;
-        };
-        let read = |element| self.0.read(element, reading);
-        let values: Vec<Option<R::Value>> = elements.iter().map(read).collect();
-        values.into_iter().collect()
-    }
-
-    fn accepted(&self) -> String {
-        format!("a list, each {}", self.0.accepted())
-    }
-
-    fn schema(&self) -> Json {
-        json!({ "type": "array", "items": self.0.schema() })
-    }
-
-    fn write(&self, value: &Self::Value) -> String {
-        let each: Vec<String> = value.iter().map(|value| self.0.write(value)).collect();
-        format!("[{}]", each.join(", "))
     }
 }
 

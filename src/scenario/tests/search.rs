@@ -5,9 +5,11 @@ use crate::scenario::{Constraint, Quantity, Relation};
 
 #[test]
 fn searches_are_bounded() {
-    let each = "expected [low, high], each an integer >= 1 and <= 100000, or one for both";
-    for key in ["planes", "satellites-per-plane"] {
-        refuses("search", &format!("{key} = [0, 5]"), key, each);
+    for (key, least) in [("planes", 1), ("satellites-per-plane", 0)] {
+        let each = &format!(
+            "expected [low, high], each an integer >= {least} and <= 100000, or one for both"
+        );
+        refuses("search", &format!("{key} = [-1, 5]"), key, each);
         refuses(
             "search",
             &format!("{key} = [11.5, 15]"),
@@ -23,7 +25,8 @@ fn searches_are_bounded() {
         assert_eq!(
             accepts("search", "planes = [11.0, 15]")
                 .search
-                .designs
+                .shells
+                .as_slice()[0]
                 .planes,
             [11, 15]
         );
@@ -43,7 +46,8 @@ fn searches_are_bounded() {
     assert_eq!(
         accepts("search", "altitude-km = 925")
             .search
-            .designs
+            .shells
+            .as_slice()[0]
             .altitude_km,
         [925.0, 925.0]
     );
@@ -77,11 +81,10 @@ fn phasing_is_below_the_number_of_planes() {
         "low limit is above the high",
     );
     let search = accepts("search", "phasing = [0, 20]").search;
-    assert_eq!(search.designs.phasing, [0, 20]);
-    assert_eq!(search.phasing_for(11), [0, 10]);
+    assert_eq!(search.shells.as_slice()[0].phasing, [0, 20]);
     // One plane alone has no phasing but 0, also by default.
     assert_eq!(
-        accepts("search", "planes = 1").search.designs.phasing,
+        accepts("search", "planes = 1").search.shells.as_slice()[0].phasing,
         [0, 0]
     );
 }
@@ -127,7 +130,7 @@ fn optimizers_are_bounded() {
 fn objectives_are_known_and_different() {
     let choices = "unknown name \"mean-pdp\", did you mean \"mean-pdop\"? (choices: j-pos, j-cost, \
                    mean-pdop, cvar-pdop, p95-pdop, p99-pdop, max-pdop, satellites, planes, \
-                   mean-visible, availability, launch-cost)";
+                   new-satellites, new-planes, mean-visible, availability, launch-cost)";
     refuses(
         "objectives",
         "minimize = [\"mean-pdp\"]",

@@ -5,7 +5,7 @@ use super::{PaperError, PaperStudy};
 use crate::constellation::{Design, Pattern};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Method, MopsoConfig, Nsga2Config, Strategy, best, fuzzy};
-use crate::search::{DesignProblem, DesignSpace, Goals, LaunchCost, Quantity};
+use crate::search::{DesignProblem, Goals, LaunchCost, Quantity, ShellSpace};
 use serde::Serialize;
 
 /// Inclinations of the Iridium-like rows of Table II, degrees.
@@ -63,7 +63,7 @@ impl FoundSet {
 /// One search to run.
 struct Plan {
     name: &'static str,
-    space: DesignSpace,
+    space: ShellSpace,
     objectives: Vec<Quantity>,
     swarm: bool,
 }
@@ -76,19 +76,19 @@ pub(super) const SATELLITES: &str = "satellites and max-pdop";
 /// Names of the sets of the baselines.
 pub(super) const BASELINES: [&str; 3] = ["polar", "iridium-like", "optimized-lfc"];
 
-fn plans(own: DesignSpace) -> Vec<Plan> {
+fn plans(own: ShellSpace) -> Vec<Plan> {
     let both = vec![Quantity::JPos, Quantity::JCost];
-    let star = |inclination_deg| DesignSpace {
-        pattern: Pattern::Star,
+    let star = |inclination_deg| ShellSpace {
+        pattern: vec![Pattern::Star],
         inclination_deg,
-        ..own
+        ..own.clone()
     };
-    let lattice = DesignSpace {
-        pattern: Pattern::Lattice,
+    let lattice = ShellSpace {
+        pattern: vec![Pattern::Lattice],
         // Its rows of Table II are at 78.2° and 83.9°, outside the bounds of the paper's own designs.
         inclination_deg: [own.inclination_deg[0], own.inclination_deg[1].max(90.0)],
         phasing: [0, own.planes[1].saturating_sub(1)],
-        ..own
+        ..own.clone()
     };
     let plan = |name, space, objectives, swarm| Plan {
         name,
@@ -97,11 +97,11 @@ fn plans(own: DesignSpace) -> Vec<Plan> {
         swarm,
     };
     vec![
-        plan(PROPOSED, own, both.clone(), false),
-        plan(SINGLE, own, vec![Quantity::MaxPdop], false),
+        plan(PROPOSED, own.clone(), both.clone(), false),
+        plan(SINGLE, own.clone(), vec![Quantity::MaxPdop], false),
         plan(
             SATELLITES,
-            own,
+            own.clone(),
             vec![Quantity::Satellites, Quantity::MaxPdop],
             false,
         ),
@@ -113,7 +113,7 @@ fn plans(own: DesignSpace) -> Vec<Plan> {
 
 /// Runs all of them.
 pub(super) fn all(evaluator: &Evaluator, study: &PaperStudy) -> Result<Vec<FoundSet>, PaperError> {
-    let plans = plans(study.designs);
+    let plans = plans(study.designs.clone());
     plans
         .into_iter()
         .map(|plan| run(evaluator, study, plan))
@@ -130,9 +130,10 @@ fn run(evaluator: &Evaluator, study: &PaperStudy, plan: Plan) -> Result<FoundSet
             per_plane: 0.0,
             per_1000_km: 0.0,
         },
+        fixed: None,
     };
     let what = described(&plan.space, &goals.objectives, plan.swarm);
-    let problem = DesignProblem::new(evaluator, plan.space, goals)?;
+    let problem = DesignProblem::new(evaluator, plan.space.into(), goals)?;
     let mut search = method(&study.nsga2, plan.swarm).start(&problem, study.seed)?;
     while !search.is_done() {
         search.step(&problem)?;
@@ -171,12 +172,12 @@ fn method(nsga2: &Nsga2Config, swarm: bool) -> Method {
     }
 }
 
-fn described(space: &DesignSpace, objectives: &[Quantity], swarm: bool) -> String {
+fn described(space: &ShellSpace, objectives: &[Quantity], swarm: bool) -> String {
     let names: Vec<String> = objectives.iter().map(ToString::to_string).collect();
     let [low, high] = space.inclination_deg;
     format!(
         "{} {low}° to {high}°, {} by {}",
-        space.pattern,
+        space.pattern[0],
         names.join(" and "),
         if swarm { "MOPSO" } else { "NSGA-II" }
     )

@@ -23,7 +23,7 @@ fn study(overrides: &[&str]) -> PaperStudy {
     let no_file = |_: &str| Err(std::io::ErrorKind::NotFound.into());
     PaperStudy {
         setup: scenario.setup(&no_file).unwrap(),
-        designs: scenario.search.designs,
+        designs: scenario.search.shells.as_slice()[0].clone(),
         nsga2: scenario.nsga2(),
         seed: scenario.optimizer.seed,
     }

@@ -8,7 +8,7 @@ use crate::exchange::constellation::Constellation;
 use crate::report::{
     Align, ComparisonColumn, ConstellationEntry, Table, comparison_columns, shown,
 };
-use crate::search::{LaunchCost, Quantity};
+use crate::search::{Goals, Quantity};
 use crate::units::counted;
 use anyhow::Result;
 
@@ -21,7 +21,7 @@ pub(super) struct TextTable {
     columns: Vec<(String, Align)>,
     /// The numbers that every table has, and the objectives and constrained quantities.
     numbers: Vec<ComparisonColumn>,
-    launch_cost: LaunchCost,
+    goals: Goals,
     /// Whether constellations have names of their own.
     has_names: bool,
     has_dops: bool,
@@ -65,7 +65,7 @@ impl TextTable {
         Self {
             title: format!("{count} in scenario {}\n", work.scenario.name),
             numbers,
-            launch_cost: goals.launch_cost,
+            goals: goals.clone(),
             has_names,
             has_dops: work.args.dops,
             has_constraints: !goals.constraints.is_empty(),
@@ -118,7 +118,7 @@ impl TextTable {
             cells.push(entry.made_of());
         }
         let quantity = |one: Quantity| {
-            let of_metrics = || one.value_of(entry.satellites, None, metrics, &self.launch_cost);
+            let of_metrics = || self.goals.value(one, (entry.satellites, None), metrics);
             evaluated.value(one).or_else(of_metrics)
         };
         let numbers = self.numbers.iter();

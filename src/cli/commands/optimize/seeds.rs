@@ -2,6 +2,7 @@
 
 use super::{
     Ended, Sweep, check_sweep, hint_interrupted, load, open, resumed, search, status, sweep, text,
+    warn_of_space,
 };
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::{Status, coincidence, files, output};
@@ -32,6 +33,7 @@ pub(super) fn run(args: &OptimizeArgs, count: u64) -> Result<Status> {
     check_sweep(args, &study.scenario)?;
     let setup = study.setup()?;
     coincidence::warn(&setup.gnss, setup.grid, None);
+    warn_of_space(&study, &setup)?;
     if !args.force {
         require_seeds(&out)?;
     }
