@@ -288,10 +288,13 @@ impl<'a> DesignProblem<'a> {
             .goals
             .constraints
             .iter()
-            .map(|c| c.violation(value(c.quantity), metrics.solved_fraction))
+            .map(|c| c.violation(value(c.quantity), c.quantity.solved_fraction(metrics)))
             .sum();
         // A design is infeasible if unsolved samples make an objective infinite.
-        let unsolved = |quantity: &Quantity| quantity.unsolved_share(metrics.solved_fraction);
+        let unsolved = |quantity: &Quantity| {
+            let solved = quantity.solved_fraction(metrics);
+            quantity.unsolved_share(solved)
+        };
         violation += self
             .goals
             .objectives
@@ -398,6 +401,13 @@ mod tests {
             availability: 0.0,
             j_pos: None,
             j_cost: None,
+            information_pdop: None,
+            sigma_3d_m: None,
+            sigma_h_m: None,
+            sigma_v_m: None,
+            error95_3d_m: None,
+            error95_h_m: None,
+            error95_v_m: None,
         };
         // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
         let value = Quantity::LaunchCost.value(&design, &metrics, &cost);

@@ -169,6 +169,7 @@ fn of_files(args: &ConstellationArgs, path: &PathBuf) -> Result<Constellation> {
         names: vec![output::shown_path(Path::new(name))],
         formats,
         fleet,
+        file_of: Vec::new(),
     }))
 }
 

@@ -1,6 +1,7 @@
 //! A constellation: the shells of a design, satellites from files, or both.
 //!
-//! It is what every command works on. All satellites of a constellation share one clock state.
+//! It is what every command works on. All satellites of a constellation share one clock state, unless a setup gives
+//! each shell and file its own.
 
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -31,6 +32,8 @@ pub struct FileSatellites {
     pub formats: Vec<Format>,
     /// The satellites.
     pub fleet: Fleet,
+    /// The file of each satellite, from 0 in the order of the names; empty if all are of one.
+    pub file_of: Vec<usize>,
 }
 
 /// Why a constellation cannot be propagated.
@@ -112,7 +115,13 @@ impl Constellation {
     /// If a satellite cannot be propagated.
     pub fn ephemeris(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, ConstellationError> {
         let of_files = match &self.files {
-            Some(files) => Some(files.fleet.propagate(grid, model)?),
+            Some(files) => {
+                let propagated = files.fleet.propagate(grid, model)?;
+                Some(match files.file_of.as_slice() {
+                    [] => propagated,
+                    file_of => propagated.with_parts(file_of.to_vec()),
+                })
+            }
             None => None,
         };
         let Some(design) = &self.design else {
@@ -124,6 +133,7 @@ impl Constellation {
         };
         let taken = shells.satellites().iter().map(|one| one.name.clone());
         let mut taken: HashSet<String> = taken.collect();
+        let parts = of_files.parts().to_vec();
         let mut added = of_files.into_satellites();
         for satellite in &mut added {
             let name = satellite.name.clone();
@@ -133,7 +143,7 @@ impl Constellation {
                 satellite.name = format!("{name} #{number}");
             }
         }
-        Ok(shells.joined(Ephemeris::new(grid, added)))
+        Ok(shells.joined(Ephemeris::new(grid, added).with_parts(parts)))
     }
 }
 
@@ -157,6 +167,7 @@ mod tests {
             names: vec!["two.csv".to_owned()],
             formats: vec![imported.format],
             fleet: imported.fleet,
+            file_of: Vec::new(),
         }
     }
 
@@ -177,6 +188,7 @@ mod tests {
             ["NW-P01-S01", "NW-P01-S02", "NW-P01-S01 #2", "OTHER"]
         );
         assert_eq!(ephemeris.shells().len(), 1);
+        assert_eq!(ephemeris.parts(), [0, 0, 1, 1]);
         let alone = Constellation::of_files(of_files());
         assert_eq!(
             (alone.name.as_str(), alone.satellite_count()),

@@ -66,7 +66,8 @@ impl Assessment {
         };
         let check = |constraint: &Constraint| {
             let quantity = constraint.quantity;
-            let is_met = || constraint.violation(value(quantity), metrics.solved_fraction) == 0.0;
+            let solved = quantity.solved_fraction(&metrics);
+            let is_met = || constraint.violation(value(quantity), solved) == 0.0;
             ConstraintCheck {
                 constraint: constraint.to_string(),
                 quantity: quantity.to_string(),

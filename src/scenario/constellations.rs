@@ -7,6 +7,7 @@ use crate::constellation::{Design, NotationError};
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::exchange::import::{Fleet, NoSuchSatellite, ReadFleetError, SatelliteFilter};
 use crate::keyword::nearest;
+use std::collections::HashSet;
 use std::io;
 use thiserror::Error;
 
@@ -125,6 +126,7 @@ impl NamedConstellation {
         let mut names = Vec::new();
         let mut formats = Vec::new();
         let mut whole: Option<Fleet> = None;
+        let mut labels: Vec<HashSet<String>> = Vec::new();
         for file in files {
             let error = |error| self.error(file, error);
             let name = file.rsplit('/').next().unwrap_or(file);
@@ -135,6 +137,7 @@ impl NamedConstellation {
                 notes.push(format!("{file}: {}", imported.left_out));
             }
             names.push(name.to_owned());
+            labels.push(imported.fleet.labels().into_iter().collect());
             if !formats.contains(&imported.format) {
                 formats.push(imported.format);
             }
@@ -151,9 +154,14 @@ impl NamedConstellation {
         fleet
             .choose(&filter)
             .map_err(|source| self.error(&names.join(", "), source.into()))?;
+        // States that continue those of an earlier file are of that file.
+        let file_of = |label: &String| labels.iter().position(|own| own.contains(label));
+        let known = fleet.labels();
+        let file_of = known.iter().map(|label| file_of(label).unwrap_or(0));
         Ok(FileSatellites {
             names,
             formats,
+            file_of: file_of.collect(),
             fleet,
         })
     }

@@ -149,6 +149,8 @@ fn preset_title(preset: Preset) -> &'static str {
         Preset::Gps => "GPS",
         Preset::Galileo => "Galileo",
         Preset::Glonass => "GLONASS",
+        Preset::Qzss => "QZSS",
+        Preset::Navic => "NavIC",
     }
 }
 

@@ -1,0 +1,40 @@
+//! The LEO satellites at one instant, by the clocks that they share.
+
+use super::Setup;
+use super::fixed::PlainPositions;
+use crate::dop::{Clocks, LeoClocks};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::EarthRotation;
+
+impl Setup {
+    /// Whether the satellites have more than one LEO clock. With one clock for all systems they have none of
+    /// their own.
+    #[must_use]
+    pub fn has_several_leo_clocks(&self, ephemeris: &Ephemeris) -> bool {
+        self.leo_clocks == LeoClocks::PerPart
+            && self.clocks == Clocks::PerSystem
+            && ephemeris.part_count() > 1
+    }
+}
+
+/// Fills `clocks` with the Earth-fixed positions of the satellites that have one at an instant, clock by clock. There is
+/// always one clock, even of no satellites.
+pub(super) fn positions(
+    setup: &Setup,
+    ephemeris: &Ephemeris,
+    elapsed_s: f64,
+    rotation: EarthRotation,
+    clocks: &mut Vec<PlainPositions>,
+) -> Result<(), EphemerisError> {
+    let several = setup.has_several_leo_clocks(ephemeris);
+    let count = if several { ephemeris.part_count() } else { 1 };
+    clocks.resize_with(count, Vec::new);
+    clocks.iter_mut().for_each(Vec::clear);
+    for (satellite, &part) in ephemeris.satellites().iter().zip(ephemeris.parts()) {
+        if let Some(state) = ephemeris.state_or_gap(satellite, elapsed_s)? {
+            let clock = if several { part } else { 0 };
+            clocks[clock].push(rotation.to_earth_fixed(state.position_km));
+        }
+    }
+    Ok(())
+}
