@@ -11,6 +11,7 @@ mod kernel;
 mod leo;
 mod metrics;
 mod on_demand;
+mod phases;
 mod plain;
 mod series;
 mod window;
@@ -20,6 +21,7 @@ pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
+pub use phases::PhaseError;
 pub use series::{EpochMetrics, PointMetrics, Series};
 pub use window::InformationPdop;
 

@@ -14,6 +14,7 @@ pub mod figures;
 pub(crate) mod front_table;
 #[cfg(feature = "figures")]
 pub mod page;
+pub(crate) mod phases;
 pub mod profile;
 mod reproduction;
 mod results;
@@ -31,6 +32,7 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult, GNSS_ONLY,
 };
+pub use phases::{PhaseSpread, Range};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
     reproduction_markdown, reproduction_text,

@@ -11,9 +11,11 @@ use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
 use crate::orbit::kepler::eccentric_anomaly;
 use crate::orbit::sgp4::Sgp4Orbit;
-use crate::orbit::{PropagationError, Propagator};
+use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::time::Epoch;
+use crate::units::wrap_two_pi;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
 
@@ -47,6 +49,32 @@ impl Preset {
             Self::Qzss => nominal::qzss(epoch),
             Self::Navic => nominal::navic(epoch),
         }
+    }
+}
+
+impl Preset {
+    /// Sidereal days after which the ground tracks of all its satellites repeat: of the medium orbits, which take longest.
+    #[must_use]
+    pub fn cycle_sidereal_days(self) -> u32 {
+        match self {
+            Self::Beidou3 => 7,
+            Self::Galileo => 10,
+            Self::Glonass => 8,
+            Self::Gps | Self::Qzss | Self::Navic => 1,
+        }
+    }
+
+    /// The satellites for a study that starts at `epoch`, but as they are over the Earth a share of the cycle
+    /// later.
+    #[must_use]
+    pub fn satellites_at_phase(self, epoch: Epoch, share: f64) -> Vec<GnssSatellite> {
+        let sidereal_day_s = TAU / GMST_RATE_RAD_S;
+        let later_s = share * f64::from(self.cycle_sidereal_days()) * sidereal_day_s;
+        let later = |satellite: GnssSatellite| GnssSatellite {
+            orbit: satellite.orbit.later(later_s),
+            ..satellite
+        };
+        self.satellites(epoch).into_iter().map(later).collect()
     }
 }
 
@@ -184,6 +212,28 @@ impl GeosynchronousOrbit {
             in_plane(cos - e, minor * sin) * GEOSYNCHRONOUS_RADIUS_KM,
             in_plane(-sin, minor * cos) * (speed_km_s / (1.0 - e * cos)),
         )
+    }
+}
+
+impl GnssOrbit {
+    /// The orbit that is over the Earth now where this one is later: nominal orbits alone, others are left as they are.
+    fn later(self, later_s: f64) -> Self {
+        let turned_rad = GMST_RATE_RAD_S * later_s;
+        match self {
+            Self::Secular(orbit) => {
+                let elements = orbit.elements_at(later_s);
+                Self::Secular(SecularOrbit::j2(&MeanElements {
+                    raan_rad: wrap_two_pi(elements.raan_rad - turned_rad),
+                    ..elements
+                }))
+            }
+            Self::Geosynchronous(orbit) => Self::Geosynchronous(GeosynchronousOrbit {
+                raan_rad: orbit.raan_rad - turned_rad,
+                argument_of_latitude_rad: orbit.argument_of_latitude_rad + turned_rad,
+                ..orbit
+            }),
+            other @ (Self::Geostationary { .. } | Self::Sgp4(_) | Self::Given(_)) => other,
+        }
     }
 }
 

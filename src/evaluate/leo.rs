@@ -7,6 +7,32 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
 impl Setup {
+    /// What is computed sample by sample by the plain path beside or in place of the lanes, in a sentence; `None` if
+    /// nothing is.
+    #[must_use]
+    pub fn plain_path_note(&self) -> Option<String> {
+        let per_part = self.leo_clocks == LeoClocks::PerPart && self.clocks == Clocks::PerSystem;
+        let parts = [
+            (
+                self.accuracy.is_some(),
+                "the accuracy in metres ([accuracy])",
+            ),
+            (
+                self.window_s.is_some(),
+                "the PDOP of windows (metrics.window-min)",
+            ),
+            (per_part, "several LEO clocks (gnss.leo-clocks)"),
+        ];
+        let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);
+        let slow: Vec<&str> = slow.map(|(_, what)| what).collect();
+        (!slow.is_empty()).then(|| {
+            format!(
+                "note: computed sample by sample, which takes longer: {}",
+                slow.join(", ")
+            )
+        })
+    }
+
     /// Whether the satellites have more than one LEO clock. With one clock for all systems they have none of
     /// their own.
     #[must_use]

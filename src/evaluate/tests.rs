@@ -1,3 +1,4 @@
+mod clocks;
 mod limits;
 mod products;
 mod skies;

@@ -1,6 +1,7 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::evaluated::ConstellationEntry;
+use super::phases::{PhaseSpread, Range};
 use crate::evaluate::DopStatistics;
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
@@ -24,6 +25,8 @@ pub struct ConstellationColumns {
     quantities: Vec<Quantity>,
     /// The dilutions of precision, if there are any, as they are named in columns.
     dops: Vec<String>,
+    /// The metrics whose range over phases of the GNSS is given.
+    phases: Vec<String>,
 }
 
 impl ConstellationColumns {
@@ -43,6 +46,7 @@ impl ConstellationColumns {
                 .filter(|one| !one.is_on_demand())
                 .collect(),
             dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
+            phases: ranges(entry).into_iter().map(|(name, _)| name).collect(),
         }
     }
 
@@ -67,6 +71,9 @@ impl ConstellationColumns {
         names.extend(self.quantities.iter().map(|one| column(&one.to_string())));
         for dop in &self.dops {
             names.extend(fields::<Summary>().iter().map(|one| format!("{dop}_{one}")));
+        }
+        for name in &self.phases {
+            names.extend(["min", "mean", "max"].map(|part| format!("{name}_phases_{part}")));
         }
         line(&names)
     }
@@ -107,8 +114,23 @@ impl ConstellationColumns {
                 None => vec![String::new(); fields::<Summary>().len()],
             });
         }
+        for (_, range) in ranges(entry) {
+            let parts = [
+                range.map(|of| of.min),
+                range.map(|of| of.mean),
+                range.map(|of| of.max),
+            ];
+            row.extend(parts.map(optional));
+        }
         line(&row)
     }
+}
+
+/// The range of each metric over the phases of the GNSS.
+fn ranges(entry: &ConstellationEntry) -> Vec<(String, Option<Range>)> {
+    let phases = entry.evaluated.gnss_phases.iter();
+    let rows = phases.flat_map(PhaseSpread::rows);
+    rows.map(|(name, range)| (name.to_owned(), range)).collect()
 }
 
 /// A name as a column.

@@ -1,5 +1,6 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
+use super::PhaseSpread;
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::exchange::constellation::Constellation;
@@ -18,6 +19,9 @@ pub struct Assessment {
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
+    /// The spread over phases of the GNSS, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gnss_phases: Option<PhaseSpread>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -82,6 +86,7 @@ impl Assessment {
         Self {
             metrics,
             dops,
+            gnss_phases: None,
             constraints,
             quantities,
         }

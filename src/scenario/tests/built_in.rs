@@ -132,11 +132,21 @@ fn the_template_parses_to_the_defaults() {
 #[test]
 fn the_template_uncommented_is_still_a_scenario() {
     // The lines of keys that follow others are examples, and must be valid ones; points
-    // exclude the grid, and no constellations are the default, so these lines stay out.
+    // exclude the grid, and no constellations, range errors and windows are the default, so these lines stay out.
+    let on_demand = describe_keys().into_iter();
+    let on_demand = on_demand.filter(|key| ["accuracy", "metrics"].contains(&key.section));
+    let absent: Vec<&str> = on_demand
+        .map(|key| key.name)
+        .chain(["points", "constellations"])
+        .collect();
     let uncommented: String = template()
         .lines()
         .map(|line| match line.strip_prefix("# ") {
-            Some(key) if key.starts_with("points = ") || key.starts_with("constellations = ") => {
+            Some(key)
+                if absent
+                    .iter()
+                    .any(|name| key.starts_with(&format!("{name} = "))) =>
+            {
                 String::new()
             }
             Some(key) if key.contains(" = ") => format!("{key}\n"),

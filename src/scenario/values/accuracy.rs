@@ -6,7 +6,7 @@ use crate::scenario::keys::{KeyPath, key, section};
 use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Number, Optional, Pair};
-use crate::scenario::{Preset, Quantity};
+use crate::scenario::{GnssSetup, Keyword, Preset, Quantity};
 
 /// Limits of a range error, metres. Its ratio between two systems enters the normal matrix squared: beyond 1e6 the
 /// more accurate one leaves no digits for the other.
@@ -147,6 +147,20 @@ impl RangeErrors {
         let files = std::iter::repeat_n(error(self.files_m, self.files_elevation), from_files);
         let gnss = presets.chain(files).collect::<Option<_>>()?;
         Some(Accuracy { leo, gnss })
+    }
+}
+
+impl RangeErrors {
+    /// The name and the range error of each system in use that has one, the LEO satellites first.
+    #[must_use]
+    pub fn in_use(&self, gnss: &GnssSetup) -> Vec<(&'static str, RangeError)> {
+        let leo = Some("LEO").zip(error(self.leo_m, self.leo_elevation));
+        let presets = gnss.constellations.iter();
+        let presets = presets.filter_map(|one| Some(one.keyword()).zip(self.of_preset(*one)));
+        let files = error(self.files_m, self.files_elevation);
+        let files = files.filter(|_| !gnss.files.is_empty());
+        let files = files.map(|error| ("GNSS from files", error));
+        leo.into_iter().chain(presets).chain(files).collect()
     }
 }
 

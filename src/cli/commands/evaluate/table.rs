@@ -3,7 +3,7 @@
 use super::EvaluationContext;
 use super::designs::DesignList;
 use crate::cli::output;
-use crate::evaluate::DopStatistics;
+use crate::evaluate::{DopStatistics, Metrics};
 use crate::exchange::constellation::Constellation;
 use crate::report::{Align, ConstellationEntry, Table, shown};
 use crate::search::Quantity;
@@ -31,6 +31,10 @@ pub(super) struct TextTable {
     columns: Vec<(String, Align)>,
     /// Objectives and constrained quantities outside [`ALWAYS`].
     further: Vec<Quantity>,
+    /// Metrics on demand.
+    on_demand: Vec<OnDemandColumn>,
+    /// Metrics whose range over phases of the GNSS is shown.
+    phases: &'static [(&'static str, &'static str)],
     /// Whether constellations have names of their own.
     has_names: bool,
     has_dops: bool,
@@ -54,7 +58,8 @@ impl TextTable {
         let goals = &work.goals;
         let quantities = goals.objectives.iter().copied();
         let quantities = quantities.chain(goals.constrained());
-        let further: Vec<_> = quantities.filter(|one| !ALWAYS.contains(one)).collect();
+        let further = quantities.filter(|one| !ALWAYS.contains(one) && !one.is_on_demand());
+        let further: Vec<_> = further.collect();
         let is_named = |one: &Constellation| one.name != one.made_of();
         let has_names = given.iter().any(is_named) || list.is_some_and(DesignList::has_names);
         let count = match list {
@@ -73,6 +78,8 @@ impl TextTable {
         };
         Self {
             title: format!("{count} in scenario {}\n", work.scenario.name),
+            on_demand: on_demand(work),
+            phases: phases(work),
             further,
             has_names,
             has_dops: work.args.dops,
@@ -134,6 +141,17 @@ impl TextTable {
         for further in &self.further {
             cells.push(shown::quantity(*further, evaluated.value(*further)));
         }
+        for (_, value) in &self.on_demand {
+            cells.push(shown::pdop(value(metrics)));
+        }
+        for (_, name) in self.phases {
+            let spread = evaluated.gnss_phases.as_ref();
+            let range = spread.and_then(|of| *of.metrics.get(*name)?);
+            cells.push(match range {
+                Some(of) => format!("{:.4}-{:.4}", of.min, of.max),
+                None => shown::NONE.to_owned(),
+            });
+        }
         if self.has_dops {
             let dops = evaluated.dops.iter().flat_map(DopStatistics::named);
             let both = |(_, one): (String, Option<crate::stats::Summary>)| {
@@ -174,6 +192,12 @@ fn columns(
     .map(str::to_owned)
     .into();
     names.extend(further.iter().map(ToString::to_string));
+    names.extend(on_demand(work).iter().map(|(name, _)| (*name).to_owned()));
+    names.extend(
+        phases(work)
+            .iter()
+            .map(|(name, _)| format!("{name}\nover phases")),
+    );
     if work.args.dops {
         for name in work.evaluator.dop_names() {
             names.extend(["mean", "95 %"].map(|statistic| format!("{name}\n{statistic}")));
@@ -191,6 +215,46 @@ fn columns(
         columns.push(("constraints".to_owned(), Align::Left));
     }
     columns
+}
+
+/// Heading and value of a metric on demand.
+type OnDemandColumn = (&'static str, fn(&Metrics) -> Option<f64>);
+
+/// The columns of what the scenario asks for.
+fn on_demand(work: &EvaluationContext<'_>) -> Vec<OnDemandColumn> {
+    let setup = work.evaluator.setup();
+    let mut columns: Vec<OnDemandColumn> = Vec::new();
+    if setup.window_s.is_some() {
+        columns.push(("mean PDOP\nof a window", |m| m.information_pdop?.mean));
+    }
+    if setup.accuracy.is_some() {
+        columns.extend([
+            (
+                "position\n1 sigma (m)",
+                (|m| Some(m.sigma_3d_m??.mean)) as fn(&Metrics) -> Option<f64>,
+            ),
+            ("horizontal\n1 sigma (m)", |m| Some(m.sigma_h_m??.mean)),
+            ("height\n1 sigma (m)", |m| Some(m.sigma_v_m??.mean)),
+            ("position\n95 % (m)", |m| m.error95_3d_m?),
+            ("horizontal\n95 % (m)", |m| m.error95_h_m?),
+            ("height\n95 % (m)", |m| m.error95_v_m?),
+        ]);
+    }
+    columns
+}
+
+/// Heading and name of the metrics whose range over phases of the GNSS is shown.
+fn phases(work: &EvaluationContext<'_>) -> &'static [(&'static str, &'static str)] {
+    const SHOWN: [(&str, &str); 3] = [
+        ("mean PDOP", "mean_pdop"),
+        ("maximum PDOP", "max_pdop"),
+        ("availability", "availability"),
+    ];
+    if work.args.gnss_phases.is_some() {
+        &SHOWN
+    } else {
+        &[]
+    }
 }
 
 /// `met`, or the constraints that are not.
