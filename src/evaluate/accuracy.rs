@@ -1,5 +1,5 @@
-//! The accuracy of positions in metres, from a range error of each system ([M-41](crate::models#m-41) and
-//! [M-42](crate::models#m-42)), by the plain path.
+//! The accuracy of positions in metres, from a range error of each system ([M-49](crate::models#m-49) and
+//! [M-50](crate::models#m-50)), by the plain path.
 
 use super::fixed::{self, PlainPositions};
 use super::{Evaluator, Setup, leo};

@@ -19,7 +19,7 @@ pub enum PhaseError {
 
 impl Setup {
     /// The same setup with every GNSS later by a share of its cycle, 0 <= share < 1, while the Earth and the LEO satellites
-    /// stay where they are ([M-44](crate::models#m-44)).
+    /// stay where they are ([M-52](crate::models#m-52)).
     ///
     /// # Errors
     /// If there is no GNSS, or one is not a nominal constellation.

@@ -1,4 +1,4 @@
-//! The information of the observations in a window of time ([M-43](crate::models#m-43)), by the plain path.
+//! The information of the observations in a window of time ([M-51](crate::models#m-51)), by the plain path.
 //!
 //! One position and, at each instant, clocks of their own: the contributions to the normal matrix of the position add up
 //! over the instants. How far the lines of sight turn within the window is thereby part of the geometry.

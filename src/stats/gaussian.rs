@@ -2,7 +2,7 @@
 //!
 //! With the principal variances λ of its covariance, |e|² = Σ λ z² is a quadratic form of standard normal
 //! numbers z. Its characteristic function is a product, and the distribution follows by inverting the
-//! Laplace transform ([M-42](crate::models#m-42)), for any ratio of the variances, zero included.
+//! Laplace transform ([M-50](crate::models#m-50)), for any ratio of the variances, zero included.
 
 use nalgebra::Complex;
 use rayon::prelude::*;
