@@ -30,6 +30,16 @@ keywords! {
     }
 }
 
+keywords! {
+    /// Which LEO satellites share a clock state, where each system has its own.
+    LeoClocks {
+        /// All of a constellation.
+        Shared = "shared",
+        /// Those of each shell and of each file.
+        PerPart = "per-part",
+    }
+}
+
 /// A symmetric 3x3 matrix: the upper triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Symmetric3 {
@@ -119,6 +129,16 @@ pub struct Geometry {
     weight: f64,
     satellites: u32,
     clocks: u32,
+}
+
+impl AddAssign for Geometry {
+    /// Adds the observations of another geometry, with clocks of their own.
+    fn add_assign(&mut self, other: Self) {
+        self.normal += other.normal;
+        self.weight += other.weight;
+        self.satellites += other.satellites;
+        self.clocks += other.clocks;
+    }
 }
 
 /// The solution of a geometry.

@@ -61,17 +61,30 @@ pub struct Ephemeris {
     grid: TimeGrid,
     satellites: Vec<EphemerisSatellite>,
     shells: Vec<ShellSpan>,
+    /// The part of the constellation to which each satellite belongs.
+    parts: Vec<usize>,
 }
 
 impl Ephemeris {
-    /// Any satellites on a grid.
+    /// Any satellites on a grid, all of one part.
     #[must_use]
     pub fn new(grid: TimeGrid, satellites: Vec<EphemerisSatellite>) -> Self {
         Self {
             grid,
+            parts: vec![0; satellites.len()],
             satellites,
             shells: Vec::new(),
         }
+    }
+
+    /// The same satellites divided into parts, numbered from 0: one number for each satellite.
+    ///
+    /// # Panics
+    /// If there are more or fewer numbers than satellites.
+    #[must_use]
+    pub fn with_parts(self, parts: Vec<usize>) -> Self {
+        assert_eq!(parts.len(), self.satellites.len(), "a part of each");
+        Self { parts, ..self }
     }
 
     /// A design propagated by `model` from the epoch of the grid.
@@ -109,18 +122,24 @@ impl Ephemeris {
             first += shell.satellite_count();
             span
         };
-        let shells = design.shells().iter().map(span).collect();
+        let shells: Vec<ShellSpan> = design.shells().iter().map(span).collect();
+        let parts = shells.iter().enumerate();
+        let parts = parts.flat_map(|(part, span)| span.places().map(move |_| part));
         Ok(Self {
             grid,
             satellites,
+            parts: parts.collect(),
             shells,
         })
     }
 
-    /// The same satellites and those of another ephemeris on the same grid after them.
+    /// The same satellites and those of another ephemeris on the same grid after them, in parts of their own.
     #[must_use]
     pub fn joined(mut self, other: Self) -> Self {
         let first = self.satellites.len();
+        let parts = self.part_count();
+        let others = other.parts.iter().map(|part| parts + part);
+        self.parts.extend(others);
         let moved = |span: ShellSpan| ShellSpan {
             first: first + span.first,
             ..span
@@ -173,6 +192,18 @@ impl Ephemeris {
         }
         let places = 0..is_inside.len();
         places.filter(|place| !is_inside[*place]).collect()
+    }
+
+    /// The part of the constellation to which each satellite belongs, from 0: its shell, or its file.
+    #[must_use]
+    pub fn parts(&self) -> &[usize] {
+        &self.parts
+    }
+
+    /// Number of parts.
+    #[must_use]
+    pub fn part_count(&self) -> usize {
+        self.parts.iter().max().map_or(0, |last| last + 1)
     }
 
     /// The satellites, without the grid.

@@ -4,21 +4,30 @@
 //! rotation of every instant and the geometry of the GNSS. It is immutable and can be shared between
 //! threads; the result of a design does not depend on the thread.
 
+mod accuracy;
 mod dops;
 mod fixed;
 mod kernel;
+mod leo;
 mod metrics;
+mod on_demand;
+mod phases;
 mod plain;
 mod series;
+mod window;
 
+pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, Spread};
 pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
+pub use on_demand::OnDemand;
+pub use phases::PhaseError;
 pub use series::{EpochMetrics, PointMetrics, Series};
+pub use window::InformationPdop;
 
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
-use crate::dop::{Clocks, ObservationWeights};
+use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::ground::Site;
@@ -51,6 +60,8 @@ pub struct Setup {
     pub gnss: Vec<System>,
     /// Clock states.
     pub clocks: Clocks,
+    /// Clock states of the LEO satellites, if each system has its own.
+    pub leo_clocks: LeoClocks,
     /// The weights of observations in least squares.
     pub observation_weights: ObservationWeights,
     /// PDOP above which a sample counts as unsolved.
@@ -59,6 +70,10 @@ pub struct Setup {
     pub model: Model,
     /// Parameters of the metrics.
     pub metrics: MetricOptions,
+    /// Range errors, if the accuracy in metres is asked for.
+    pub accuracy: Option<Accuracy>,
+    /// Length of the windows whose information is asked for, seconds.
+    pub window_s: Option<f64>,
 }
 
 impl Setup {
@@ -74,10 +89,13 @@ impl Setup {
             skyline: None,
             gnss: Vec::new(),
             clocks: Clocks::PerSystem,
+            leo_clocks: LeoClocks::Shared,
             observation_weights: ObservationWeights::Unit,
             pdop_cap: 100.0,
             model: Model::J2,
             metrics: MetricOptions::default(),
+            accuracy: None,
+            window_s: None,
         }
     }
 
@@ -118,6 +136,12 @@ impl Setup {
         Self { clocks, ..self }
     }
 
+    /// The clock states of the LEO satellites.
+    #[must_use]
+    pub fn with_leo_clocks(self, leo_clocks: LeoClocks) -> Self {
+        Self { leo_clocks, ..self }
+    }
+
     /// The weights of observations in least squares.
     #[must_use]
     pub fn with_observation_weights(self, observation_weights: ObservationWeights) -> Self {
@@ -145,6 +169,24 @@ impl Setup {
         Self { metrics, ..self }
     }
 
+    /// The range errors of all systems: the accuracy in metres is computed too.
+    #[must_use]
+    pub fn with_accuracy(self, accuracy: Accuracy) -> Self {
+        Self {
+            accuracy: Some(accuracy),
+            ..self
+        }
+    }
+
+    /// The length of windows, seconds: the PDOP of all observations in each is computed too.
+    #[must_use]
+    pub fn with_window_s(self, window_s: f64) -> Self {
+        Self {
+            window_s: Some(window_s),
+            ..self
+        }
+    }
+
     /// Points times samples.
     #[must_use]
     pub fn sample_count(&self) -> usize {
@@ -161,9 +203,28 @@ impl Setup {
     /// Maximum memory of an [`Evaluator`] and `threads` concurrent evaluations, bytes.
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
-        if self.suits_kernel() {
-            return kernel::memory_bytes(self, threads) as u64;
-        }
+        let metrics = if self.suits_kernel() {
+            kernel::memory_bytes(self, threads) as u64
+        } else {
+            self.plain_bytes(threads)
+        };
+        metrics.saturating_add(self.on_demand_bytes(threads))
+    }
+
+    /// Of that, what is computed on demand.
+    fn on_demand_bytes(&self, threads: usize) -> u64 {
+        let samples = self.sample_count();
+        let errors = self.accuracy.as_ref().map_or(0, |_| accuracy::SAMPLE_BYTES);
+        let windows = self.window_s.map_or(0, |window_s| {
+            let sums = window::site_bytes(window_s, self.grid.step_s());
+            sums.saturating_mul(self.sites.len())
+        });
+        let each = samples.saturating_mul(errors).saturating_add(windows);
+        each.saturating_mul(threads) as u64
+    }
+
+    /// Memory of the plain path.
+    fn plain_bytes(&self, threads: usize) -> u64 {
         let samples = self.sample_count() as u64;
         let fixed = samples * size_of::<fixed::PlainGnssSample>() as u64;
         let per_thread = samples * size_of::<crate::stats::Weighted>() as u64;
@@ -279,11 +340,13 @@ impl Evaluator {
     }
 
     fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let Some(kernel) = &self.kernel else {
+        // The lanes have one LEO clock.
+        let is_suited = |_: &&Kernel| !self.setup.has_several_leo_clocks(ephemeris);
+        let Some(kernel) = self.kernel.as_ref().filter(is_suited) else {
             return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
         };
         let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
-        Ok((self.metrics(&evaluated, ephemeris), rechecks))
+        Ok((self.metrics(&evaluated, ephemeris)?, rechecks))
     }
 
     /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in
@@ -293,7 +356,7 @@ impl Evaluator {
     /// If a satellite cannot be propagated.
     pub fn evaluate_plain(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
         let evaluated = plain::evaluate(self, ephemeris)?;
-        Ok(self.metrics(&evaluated, ephemeris))
+        self.metrics(&evaluated, ephemeris)
     }
 
     /// The GNSS part of the plain path.
@@ -305,9 +368,15 @@ impl Evaluator {
         Ok(self.fixed.get_or_init(|| made))
     }
 
-    fn metrics(&self, evaluated: &Evaluated, ephemeris: &Ephemeris) -> Metrics {
+    fn metrics(
+        &self,
+        evaluated: &Evaluated,
+        ephemeris: &Ephemeris,
+    ) -> Result<Metrics, EphemerisError> {
         let satellites = ephemeris.satellites().len();
-        Metrics::new(evaluated, self.setup.metrics, satellites)
+        let metrics = Metrics::new(evaluated, self.setup.metrics, satellites);
+        let information = self.information_pdop(ephemeris)?;
+        Ok(metrics.with_on_demand(information, self.accuracy(ephemeris)?))
     }
 }
 

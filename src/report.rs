@@ -15,6 +15,7 @@ pub mod figures;
 pub(crate) mod front_table;
 #[cfg(feature = "figures")]
 pub mod page;
+pub(crate) mod phases;
 pub mod profile;
 mod reproduction;
 mod results;
@@ -33,6 +34,7 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use phases::{PhaseSpread, Range};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
     reproduction_markdown, reproduction_text,

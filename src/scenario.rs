@@ -36,7 +36,7 @@ mod tests;
 
 pub use crate::constellation::Pattern;
 pub use crate::constellation::gnss::Preset;
-pub use crate::dop::{Clocks, ObservationWeights};
+pub use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 pub use crate::earth::Surface;
 pub use crate::ground::PointWeights;
 pub use crate::keyword::{Keyword, UnknownKeyword};
@@ -52,8 +52,9 @@ pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
-    ConstellationParts, Earth, Export, GnssSetup, Grid, MaskPoint, NamedConstellation, Objectives,
-    Optimizer, Propagation, Region, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
+    ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
+    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, Scenario,
+    SearchShells, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;

@@ -204,10 +204,13 @@ impl<'a> DesignProblem<'a> {
             .goals
             .constraints
             .iter()
-            .map(|c| c.violation(value(c.quantity), metrics.solved_fraction))
+            .map(|c| c.violation(value(c.quantity), c.quantity.solved_fraction(metrics)))
             .sum();
         // A design is infeasible if unsolved samples make an objective infinite.
-        let unsolved = |quantity: &Quantity| quantity.unsolved_share(metrics.solved_fraction);
+        let unsolved = |quantity: &Quantity| {
+            let solved = quantity.solved_fraction(metrics);
+            quantity.unsolved_share(solved)
+        };
         violation += self
             .goals
             .objectives

@@ -1,5 +1,6 @@
 //! Quantiles and conditional value-at-risk of a finite sample.
 
+pub mod gaussian;
 mod weighted;
 
 pub use weighted::{Weighted, summarize_weighted, weighted_cvar, weighted_mean, weighted_quantile};

@@ -322,7 +322,11 @@ impl Study {
 
     /// The evaluator of the scenario.
     pub(crate) fn evaluator(&self) -> Result<Evaluator> {
-        Ok(Evaluator::new(self.setup()?)?)
+        let setup = self.setup()?;
+        if let Some(note) = setup.plain_path_note() {
+            output::hint(&note);
+        }
+        Ok(Evaluator::new(setup)?)
     }
 }
 

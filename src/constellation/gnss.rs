@@ -9,10 +9,13 @@ use crate::earth::{GEOSYNCHRONOUS_RADIUS_KM, GMST_RATE_RAD_S};
 use crate::frames::{EarthRotation, OrbitPlane, State, Teme};
 use crate::keyword::{Keyword, keywords};
 use crate::orbit::j2::SecularOrbit;
+use crate::orbit::kepler::eccentric_anomaly;
 use crate::orbit::sgp4::Sgp4Orbit;
-use crate::orbit::{PropagationError, Propagator};
+use crate::orbit::{MeanElements, PropagationError, Propagator};
 use crate::time::Epoch;
+use crate::units::wrap_two_pi;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 use std::fmt;
 use std::sync::Arc;
 
@@ -27,6 +30,10 @@ keywords! {
         Galileo = "galileo",
         /// GLONASS: Walker 24/3/1.
         Glonass = "glonass",
+        /// QZSS: three in quasi-zenith orbits, one GEO.
+        Qzss = "qzss",
+        /// NavIC: four in inclined geosynchronous orbits, three GEO.
+        Navic = "navic",
     }
 }
 
@@ -39,7 +46,35 @@ impl Preset {
             Self::Gps => nominal::gps(),
             Self::Galileo => nominal::galileo(),
             Self::Glonass => nominal::glonass(),
+            Self::Qzss => nominal::qzss(epoch),
+            Self::Navic => nominal::navic(epoch),
         }
+    }
+}
+
+impl Preset {
+    /// Sidereal days after which the ground tracks of all its satellites repeat: of the medium orbits, which take longest.
+    #[must_use]
+    pub fn cycle_sidereal_days(self) -> u32 {
+        match self {
+            Self::Beidou3 => 7,
+            Self::Galileo => 10,
+            Self::Glonass => 8,
+            Self::Gps | Self::Qzss | Self::Navic => 1,
+        }
+    }
+
+    /// The satellites for a study that starts at `epoch`, but as they are over the Earth a share of the cycle
+    /// later.
+    #[must_use]
+    pub fn satellites_at_phase(self, epoch: Epoch, share: f64) -> Vec<GnssSatellite> {
+        let sidereal_day_s = TAU / GMST_RATE_RAD_S;
+        let later_s = share * f64::from(self.cycle_sidereal_days()) * sidereal_day_s;
+        let later = |satellite: GnssSatellite| GnssSatellite {
+            orbit: satellite.orbit.later(later_s),
+            ..satellite
+        };
+        self.satellites(epoch).into_iter().map(later).collect()
     }
 }
 
@@ -132,26 +167,73 @@ impl fmt::Debug for GivenOrbit {
     }
 }
 
-/// A circular geosynchronous orbit whose argument of latitude advances at the rate of GMST.
+/// A geosynchronous orbit whose mean argument of latitude advances at the rate of GMST, with its node and perigee at rest:
+/// its ground track closes after a sidereal day.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeosynchronousOrbit {
+    /// Eccentricity.
+    pub eccentricity: f64,
+    /// Argument of perigee, radians.
+    pub arg_perigee_rad: f64,
     /// Inclination, radians.
     pub inclination_rad: f64,
     /// Right ascension of the ascending node in TEME, radians.
     pub raan_rad: f64,
-    /// Argument of latitude at the epoch, radians.
+    /// Mean argument of latitude at the epoch, perigee plus mean anomaly, radians.
     pub argument_of_latitude_rad: f64,
 }
 
 impl GeosynchronousOrbit {
     fn state(&self, elapsed_s: f64) -> State<Teme> {
-        let (sin, cos) = (self.argument_of_latitude_rad + GMST_RATE_RAD_S * elapsed_s).sin_cos();
+        let mean_rad = self.argument_of_latitude_rad + GMST_RATE_RAD_S * elapsed_s;
         let plane = OrbitPlane::new(self.raan_rad, self.inclination_rad);
         let speed_km_s = GEOSYNCHRONOUS_RADIUS_KM * GMST_RATE_RAD_S;
+        let e = self.eccentricity;
+        if e == 0.0 {
+            let (sin, cos) = mean_rad.sin_cos();
+            return State::new(
+                plane.vector(cos, sin) * GEOSYNCHRONOUS_RADIUS_KM,
+                plane.vector(-sin, cos) * speed_km_s,
+            );
+        }
+        let anomaly = eccentric_anomaly(mean_rad - self.arg_perigee_rad, e);
+        let (sin, cos) = anomaly.sin_cos();
+        let minor = (1.0 - e * e).sqrt();
+        let (sin_perigee, cos_perigee) = self.arg_perigee_rad.sin_cos();
+        // From the axes of the ellipse to those of the node.
+        let in_plane = |along: f64, across: f64| {
+            let (from_node, beyond) = (
+                along * cos_perigee - across * sin_perigee,
+                along * sin_perigee + across * cos_perigee,
+            );
+            plane.vector(from_node, beyond)
+        };
         State::new(
-            plane.vector(cos, sin) * GEOSYNCHRONOUS_RADIUS_KM,
-            plane.vector(-sin, cos) * speed_km_s,
+            in_plane(cos - e, minor * sin) * GEOSYNCHRONOUS_RADIUS_KM,
+            in_plane(-sin, minor * cos) * (speed_km_s / (1.0 - e * cos)),
         )
+    }
+}
+
+impl GnssOrbit {
+    /// The orbit that is over the Earth now where this one is later: nominal orbits alone, others are left as they are.
+    fn later(self, later_s: f64) -> Self {
+        let turned_rad = GMST_RATE_RAD_S * later_s;
+        match self {
+            Self::Secular(orbit) => {
+                let elements = orbit.elements_at(later_s);
+                Self::Secular(SecularOrbit::j2(&MeanElements {
+                    raan_rad: wrap_two_pi(elements.raan_rad - turned_rad),
+                    ..elements
+                }))
+            }
+            Self::Geosynchronous(orbit) => Self::Geosynchronous(GeosynchronousOrbit {
+                raan_rad: orbit.raan_rad - turned_rad,
+                argument_of_latitude_rad: orbit.argument_of_latitude_rad + turned_rad,
+                ..orbit
+            }),
+            other @ (Self::Geostationary { .. } | Self::Sgp4(_) | Self::Given(_)) => other,
+        }
     }
 }
 

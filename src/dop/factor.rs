@@ -88,6 +88,22 @@ impl Factor {
             + (1.0 + lower_21 * lower_21 + corner * corner) / third
     }
 
+    /// A⁻¹ v.
+    pub(crate) fn solve(&self, v: Vector3<f64>) -> Vector3<f64> {
+        let [lower_1, lower_2, lower_21] = self.lower;
+        let [first, second, third] = self.axes.map(|axis| v[axis]);
+        let second = second - lower_1 * first;
+        let third = third - lower_2 * first - lower_21 * second;
+        let third = third / self.pivots[2];
+        let second = second / self.pivots[1] - lower_21 * third;
+        let first = first / self.pivots[0] - lower_1 * second - lower_2 * third;
+        let mut solution = Vector3::zeros();
+        for (axis, value) in self.axes.into_iter().zip([first, second, third]) {
+            solution[axis] = value;
+        }
+        solution
+    }
+
     /// vᵀ A⁻¹ v as Σ y²/d with L y = v; all terms are non-negative if the pivots are positive.
     pub(crate) fn inverse_form(&self, v: Vector3<f64>) -> f64 {
         let [lower_1, lower_2, lower_21] = self.lower;

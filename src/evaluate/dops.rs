@@ -1,7 +1,7 @@
 //! All dilutions of precision of a constellation with its GNSS, by the plain path.
 
 use super::fixed::PlainPositions;
-use super::{Evaluator, Setup, fixed, plain};
+use super::{Evaluator, Setup, fixed, leo, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::LocalFrame;
@@ -49,7 +49,8 @@ fn names<'a>(clocks: impl Iterator<Item = &'a str>) -> Vec<String> {
 /// The dilution of precision of one clock.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ClockDop {
-    /// The system of the clock: `leo`, or the name of a GNSS; `shared` for one clock of all.
+    /// The system of the clock: `leo`, or the name of a GNSS; `shared` for one clock of all. Several LEO clocks
+    /// are one entry, with a sample for each clock.
     pub system: String,
     /// Statistics over the solved samples with a satellite of the system in view.
     pub tdop: Option<Summary>,
@@ -78,9 +79,9 @@ impl Evaluator {
         let systems = fixed::systems(setup);
         let clocks = self.clock_names();
         let mut collected = Collected::new(clocks.len());
-        let mut leo = Vec::with_capacity(ephemeris.satellites().len());
+        let mut leo = Vec::new();
         for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
-            plain::earth_fixed(ephemeris, elapsed_s, rotation, &mut leo)?;
+            leo::positions(setup, ephemeris, elapsed_s, rotation, &mut leo)?;
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
             for site in &setup.sites {
                 let groups = groups(setup, &site.local, &leo, &gnss);
@@ -111,25 +112,30 @@ impl Evaluator {
     }
 }
 
-/// The observations of each clock: the systems one by one and the LEO satellites last, or all in
+/// The observations of each clock: the systems one by one and the LEO clocks last, or all in
 /// one. The sums are those of [`plain::geometry`], so that the decisions are the same.
 fn groups(
     setup: &Setup,
     site: &LocalFrame,
-    leo: &PlainPositions,
+    leo: &[PlainPositions],
     gnss: &[PlainPositions],
 ) -> Vec<ClockGroup> {
-    let mut leo = plain::observe(setup, setup.mask, site, leo);
+    let leo = leo
+        .iter()
+        .map(|positions| plain::observe(setup, setup.mask, site, positions));
     let systems = gnss
         .iter()
         .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions));
     match setup.clocks {
-        Clocks::PerSystem => systems.chain([leo]).collect(),
+        Clocks::PerSystem => systems.chain(leo).collect(),
         Clocks::Shared => {
             let mut shared = ClockGroup::default();
             systems.for_each(|system| shared += system);
-            leo += shared;
-            vec![leo]
+            let with_gnss = |mut leo: ClockGroup| {
+                leo += shared;
+                leo
+            };
+            leo.map(with_gnss).collect()
         }
     }
 }
@@ -156,8 +162,10 @@ impl Collected {
         self.pdop.push(weighted(dops.pdop));
         self.hdop.push(weighted(dops.hdop));
         self.vdop.push(weighted(dops.vdop));
-        for (samples, tdop) in self.tdop.iter_mut().zip(&dops.tdop) {
-            samples.extend(tdop.map(weighted));
+        // The last entry is that of all LEO clocks.
+        let last = self.tdop.len() - 1;
+        for (clock, tdop) in dops.tdop.iter().enumerate() {
+            self.tdop[clock.min(last)].extend(tdop.map(weighted));
         }
     }
 

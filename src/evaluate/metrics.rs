@@ -1,5 +1,8 @@
 //! The figures of merit of a constellation over points and times.
 
+use super::accuracy::{AccuracyMetrics, Spread};
+use super::on_demand::{self, OnDemand};
+use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +28,7 @@ impl Default for MetricOptions {
     }
 }
 
-/// The metrics of a constellation. Every one is without unit.
+/// The metrics of a constellation. Those in metres say so; all others are without unit.
 ///
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved
 /// samples, and `None` if there are none. Every point counts with its weight in all of them:
@@ -56,6 +59,51 @@ pub struct Metrics {
     pub j_pos: Option<f64>,
     /// Satellites / mean visible (equation 9); `None` if none is ever visible.
     pub j_cost: Option<f64>,
+    /// PDOP of all observations in a window.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub information_pdop: Option<InformationPdop>,
+    /// Standard deviation of the position, metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub sigma_3d_m: OnDemand<Spread>,
+    /// Standard deviation of the horizontal position (DRMS), metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub sigma_h_m: OnDemand<Spread>,
+    /// Standard deviation of the height, metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub sigma_v_m: OnDemand<Spread>,
+    /// Length that 5 % of the position errors exceed, metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub error95_3d_m: OnDemand<f64>,
+    /// Length that 5 % of the horizontal errors exceed, metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub error95_h_m: OnDemand<f64>,
+    /// Length that 5 % of the height errors exceed, metres.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub error95_v_m: OnDemand<f64>,
 }
 
 /// Summary of the samples of an evaluation, weighted by point.
@@ -87,6 +135,31 @@ impl Metrics {
             availability: evaluated.available,
             j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
             j_cost: (mean_visible > 0.0).then(|| satellites as f64 / mean_visible),
+            information_pdop: None,
+            sigma_3d_m: None,
+            sigma_h_m: None,
+            sigma_v_m: None,
+            error95_3d_m: None,
+            error95_h_m: None,
+            error95_v_m: None,
+        }
+    }
+
+    /// The same with what is computed on demand.
+    pub(super) fn with_on_demand(
+        self,
+        information_pdop: Option<InformationPdop>,
+        accuracy: Option<AccuracyMetrics>,
+    ) -> Self {
+        Self {
+            information_pdop,
+            sigma_3d_m: accuracy.map(|of| of.sigma_3d_m),
+            sigma_h_m: accuracy.map(|of| of.sigma_h_m),
+            sigma_v_m: accuracy.map(|of| of.sigma_v_m),
+            error95_3d_m: accuracy.map(|of| of.error95_3d_m),
+            error95_h_m: accuracy.map(|of| of.error95_h_m),
+            error95_v_m: accuracy.map(|of| of.error95_v_m),
+            ..self
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::fixed::PlainGnssSample;
 use super::metrics::Evaluated;
-use super::{Evaluator, Setup};
+use super::{Evaluator, Setup, leo};
 use crate::dop::{ClockGroup, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
@@ -65,43 +65,56 @@ pub(super) fn visit(
     ephemeris: &Ephemeris,
     mut see: impl FnMut(PlainSample),
 ) -> Result<(), EphemerisError> {
+    let cap = evaluator.setup().pdop_cap;
+    visit_geometries(evaluator, ephemeris, |time, site, (visible, geometry)| {
+        see(PlainSample {
+            time,
+            site,
+            visible,
+            pdop: geometry.pdop(cap),
+        });
+    })
+}
+
+/// Calls `see` with the instant, the point, and the visible LEO satellites and geometry of every sample.
+pub(super) fn visit_geometries(
+    evaluator: &Evaluator,
+    ephemeris: &Ephemeris,
+    mut see: impl FnMut(usize, usize, (u32, Geometry)),
+) -> Result<(), EphemerisError> {
     let setup = evaluator.setup();
     let fixed = evaluator.fixed()?;
-    let mut positions = Vec::with_capacity(ephemeris.satellites().len());
+    let mut positions = Vec::new();
     for time in 0..setup.grid.len() {
         let elapsed_s = setup.grid.elapsed_s(time);
-        earth_fixed(
-            ephemeris,
-            elapsed_s,
-            evaluator.rotations[time],
-            &mut positions,
-        )?;
+        let rotation = evaluator.rotations[time];
+        leo::positions(setup, ephemeris, elapsed_s, rotation, &mut positions)?;
         for (site, gnss) in fixed.at(time).iter().enumerate() {
             let local = &setup.sites[site].local;
-            let (visible, geometry) = geometry(setup, local, &positions, gnss);
-            see(PlainSample {
-                time,
-                site,
-                visible,
-                pdop: geometry.pdop(setup.pdop_cap),
-            });
+            see(time, site, geometry(setup, local, &positions, gnss));
         }
     }
     Ok(())
 }
 
-/// Visible LEO satellites and the geometry of one sample. Every path that has to decide whether a
-/// sample is solved where rounding could turn the decision makes these sums, in this order.
+/// Visible LEO satellites, given clock by clock, and the geometry of one sample. Every path that has to decide
+/// whether a sample is solved where rounding could turn the decision makes these sums, in this order.
 pub(super) fn geometry(
     setup: &Setup,
     site: &LocalFrame,
-    positions: &[Position<EarthFixed>],
+    clocks: &[impl AsRef<[Position<EarthFixed>]>],
     gnss: &PlainGnssSample,
 ) -> (u32, Geometry) {
-    let (visible, mut leo) = observe_counted(setup, setup.mask, site, positions);
-    leo += gnss.shared_clock;
+    let mut visible = 0;
+    let mut shared_clock = gnss.shared_clock;
     let mut geometry = gnss.own_clocks;
-    geometry.add(&leo);
+    for positions in clocks {
+        let (seen, mut leo) = observe_counted(setup, setup.mask, site, positions.as_ref());
+        // Where the GNSS shares a clock, there is only this one.
+        leo += std::mem::take(&mut shared_clock);
+        geometry.add(&leo);
+        visible += seen;
+    }
     (visible, geometry)
 }
 

@@ -1,4 +1,6 @@
+mod clocks;
 mod limits;
+mod metres;
 mod products;
 mod skies;
 

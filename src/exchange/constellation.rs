@@ -1,6 +1,7 @@
 //! A constellation: the shells of a design, satellites from files, or both.
 //!
-//! It is what every command works on. All satellites of a constellation share one clock state.
+//! It is what every command works on. All satellites of a constellation share one clock state, unless a setup gives
+//! each shell and file its own.
 
 mod name;
 
@@ -36,6 +37,22 @@ pub struct FileSatellites {
     pub formats: Vec<Format>,
     /// The satellites.
     pub fleet: Fleet,
+    /// The file of each satellite, from 0 in the order of the names; empty if all are of one.
+    pub file_of: Vec<usize>,
+}
+
+impl FileSatellites {
+    /// The satellites as `propagate` gives them, each of the part that its file is.
+    fn by_parts(
+        &self,
+        propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
+    ) -> Result<Ephemeris, FleetError> {
+        let propagated = propagate(&self.fleet)?;
+        Ok(match self.file_of.as_slice() {
+            [] => propagated,
+            file_of => propagated.with_parts(file_of.to_vec()),
+        })
+    }
 }
 
 /// Why a constellation cannot be propagated.
@@ -139,8 +156,8 @@ impl Constellation {
         model: Model,
         propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
     ) -> Result<Ephemeris, ConstellationError> {
-        let fleet = self.files.as_ref().map(|files| &files.fleet);
-        let of_files = fleet.map(propagate).transpose()?;
+        let of_files = self.files.as_ref().map(|files| files.by_parts(&propagate));
+        let of_files = of_files.transpose()?;
         let Some(design) = &self.design else {
             return Ok(of_files.unwrap_or_else(|| Ephemeris::new(grid, Vec::new())));
         };
@@ -152,11 +169,12 @@ impl Constellation {
         for satellite in shells.satellites() {
             names.take(satellite.name.clone(), NUMBERED);
         }
+        let parts = of_files.parts().to_vec();
         let mut added = of_files.into_satellites();
         for satellite in &mut added {
             satellite.name = names.take(std::mem::take(&mut satellite.name), NUMBERED);
         }
-        Ok(shells.joined(Ephemeris::new(grid, added)))
+        Ok(shells.joined(Ephemeris::new(grid, added).with_parts(parts)))
     }
 }
 
@@ -180,6 +198,7 @@ mod tests {
             names: vec!["two.csv".to_owned()],
             formats: vec![imported.format],
             fleet: imported.fleet,
+            file_of: Vec::new(),
         }
     }
 
@@ -200,6 +219,7 @@ mod tests {
             ["NW-P01-S01", "NW-P01-S02", "NW-P01-S01 #2", "OTHER"]
         );
         assert_eq!(ephemeris.shells().len(), 1);
+        assert_eq!(ephemeris.parts(), [0, 0, 1, 1]);
         let alone = Constellation::of_files(of_files());
         assert_eq!(
             (alone.name.as_str(), alone.satellite_count()),

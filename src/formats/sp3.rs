@@ -100,6 +100,8 @@ pub fn letter_of(preset: Preset) -> char {
         Preset::Gps => 'G',
         Preset::Galileo => 'E',
         Preset::Glonass => 'R',
+        Preset::Qzss => 'J',
+        Preset::Navic => 'I',
     }
 }
 

@@ -68,6 +68,12 @@ impl ComparisonColumn {
         }
     }
 
+    /// Whether it is computed only where the scenario asks for it.
+    #[must_use]
+    pub fn is_on_demand(self) -> bool {
+        matches!(self, Self::Quantity(quantity) if quantity.is_on_demand())
+    }
+
     /// The value of a constellation with these metrics, of which `quantity` has the quantities.
     pub fn value(
         self,

@@ -1,10 +1,11 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::evaluated::ConstellationEntry;
-use crate::evaluate::{DopStatistics, Metrics};
+use super::phases::{PhaseSpread, Range};
+use crate::evaluate::DopStatistics;
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
-use crate::run::columns::{cells, fields, optional};
+use crate::run::columns::{cells, fields, metric_columns, optional};
 use crate::run::tables::{design_cells, text};
 use crate::search::Quantity;
 use crate::stats::Summary;
@@ -18,10 +19,14 @@ use std::io;
 pub struct ConstellationColumns {
     /// Whether a constellation has satellites from files.
     has_files: bool,
+    /// The metrics that are computed on demand, if they are.
+    on_demand: Vec<String>,
     /// Objectives and constrained quantities that are in no other column.
     quantities: Vec<Quantity>,
     /// The dilutions of precision, if there are any, as they are named in columns.
     dops: Vec<String>,
+    /// The metrics whose range over phases of the GNSS is given.
+    phases: Vec<String>,
 }
 
 impl ConstellationColumns {
@@ -29,15 +34,19 @@ impl ConstellationColumns {
     /// files.
     #[must_use]
     pub fn of(entry: &ConstellationEntry, has_files: bool) -> Self {
-        let known = [DesignSummary::columns(), fields::<Metrics>()].concat();
+        let known = [DesignSummary::columns(), &metric_columns()].concat();
         let quantities = entry.evaluated.quantities.iter().map(|(one, _)| *one);
         let dops = entry.evaluated.dops.iter().flat_map(DopStatistics::named);
+        let on_demand = entry.evaluated.metrics.on_demand().into_iter();
         Self {
             has_files,
+            on_demand: on_demand.map(|(name, _)| name).collect(),
             quantities: quantities
                 .filter(|one| !known.contains(&column(&one.to_string()).as_str()))
+                .filter(|one| !one.is_on_demand())
                 .collect(),
             dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
+            phases: ranges(entry).into_iter().map(|(name, _)| name).collect(),
         }
     }
 
@@ -57,10 +66,14 @@ impl ConstellationColumns {
         if self.has_files {
             names.extend(own(&["files", "format", "content"]));
         }
-        names.extend(own(fields::<Metrics>()));
+        names.extend(own(&metric_columns()));
+        names.extend(self.on_demand.iter().cloned());
         names.extend(self.quantities.iter().map(|one| column(&one.to_string())));
         for dop in &self.dops {
             names.extend(fields::<Summary>().iter().map(|one| format!("{dop}_{one}")));
+        }
+        for name in &self.phases {
+            names.extend(["min", "mean", "max"].map(|part| format!("{name}_phases_{part}")));
         }
         line(&names)
     }
@@ -79,7 +92,9 @@ impl ConstellationColumns {
             row.extend([entry.files.join("+"), format, content]);
         }
         let evaluated = &entry.evaluated;
-        row.extend(cells(&evaluated.metrics, fields::<Metrics>())?);
+        row.extend(cells(&evaluated.metrics, &metric_columns())?);
+        let on_demand = evaluated.metrics.on_demand().into_iter();
+        row.extend(on_demand.map(|(_, value)| optional(value)));
         for quantity in &self.quantities {
             row.push(optional(evaluated.value(*quantity)));
         }
@@ -91,8 +106,23 @@ impl ConstellationColumns {
                 None => vec![String::new(); fields::<Summary>().len()],
             });
         }
+        for (_, range) in ranges(entry) {
+            let parts = [
+                range.map(|of| of.min),
+                range.map(|of| of.mean),
+                range.map(|of| of.max),
+            ];
+            row.extend(parts.map(optional));
+        }
         line(&row)
     }
+}
+
+/// The range of each metric over the phases of the GNSS.
+fn ranges(entry: &ConstellationEntry) -> Vec<(String, Option<Range>)> {
+    let phases = entry.evaluated.gnss_phases.iter();
+    let rows = phases.flat_map(PhaseSpread::rows);
+    rows.map(|(name, range)| (name.to_owned(), range)).collect()
 }
 
 /// A name as a column.

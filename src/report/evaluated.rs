@@ -1,5 +1,6 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
+use super::PhaseSpread;
 use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
 use crate::exchange::constellation::{Constellation, GNSS_ONLY};
@@ -15,6 +16,9 @@ pub struct Assessment {
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
+    /// The spread over phases of the GNSS, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gnss_phases: Option<PhaseSpread>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -61,7 +65,8 @@ impl Assessment {
         let value = |quantity: Quantity| goals.value(quantity, (satellites, design), &metrics);
         let check = |constraint: &Constraint| {
             let quantity = constraint.quantity;
-            let is_met = || constraint.violation(value(quantity), metrics.solved_fraction) == 0.0;
+            let solved = quantity.solved_fraction(&metrics);
+            let is_met = || constraint.violation(value(quantity), solved) == 0.0;
             ConstraintCheck {
                 constraint: constraint.to_string(),
                 quantity: quantity.to_string(),
@@ -76,6 +81,7 @@ impl Assessment {
         Self {
             metrics,
             dops,
+            gnss_phases: None,
             constraints,
             quantities,
         }

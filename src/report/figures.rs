@@ -95,6 +95,13 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::NewPlanes => "new planes",
         Quantity::MeanVisible => "mean visible LEO satellites",
         Quantity::Availability => "availability",
+        Quantity::InformationPdop => "mean PDOP of a window",
+        Quantity::Sigma3dM => "1-sigma position error (m)",
+        Quantity::SigmaHM => "1-sigma horizontal error (m)",
+        Quantity::SigmaVM => "1-sigma height error (m)",
+        Quantity::Error953dM => "95 % position error (m)",
+        Quantity::Error95HM => "95 % horizontal error (m)",
+        Quantity::Error95VM => "95 % height error (m)",
         Quantity::LaunchCost => "launch cost (satellites)",
     };
     label.to_owned()

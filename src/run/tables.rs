@@ -1,9 +1,8 @@
 //! The tables of a run, with the unit of each column in its header.
 
-use super::columns::{cells, fields, optional};
+use super::columns::{cells, fields, metric_columns, optional};
 use super::{DesignSummary, FrontMember};
 use crate::constellation::shell_letters;
-use crate::evaluate::Metrics;
 use crate::optimize::Record;
 use csv::Writer;
 use std::io;
@@ -34,7 +33,12 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
     let header = columns.iter().flat_map(|name| match *name {
         "design" => DesignSummary::columns().iter().map(|n| column(n)).collect(),
         "shells" => shells.clone().flat_map(shell_columns).collect(),
-        "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
+        "metrics" => {
+            let first = front.iter().take(1);
+            let on_demand = first.flat_map(|member| member.metrics.on_demand());
+            let always = metric_columns().into_iter().map(column);
+            always.chain(on_demand.map(|(name, _)| name)).collect()
+        }
         "objectives" => further.iter().map(|name| column(name)).collect(),
         "constraints" => Vec::new(),
         _ => vec![column(name)],
@@ -56,7 +60,12 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
                     let each = shells.clone().map(|place| shell_cells(member, place));
                     each.collect::<serde_json::Result<Vec<_>>>()?.concat()
                 }
-                "metrics" => cells(&member.metrics, fields::<Metrics>())?,
+                "metrics" => {
+                    let mut own = cells(&member.metrics, &metric_columns())?;
+                    let on_demand = member.metrics.on_demand().into_iter();
+                    own.extend(on_demand.map(|(_, value)| optional(value)));
+                    own
+                }
                 "objectives" => {
                     let values = further.iter().map(|name| member.quantity(name));
                     values.map(optional).collect()
@@ -116,7 +125,7 @@ fn column(name: &str) -> String {
 
 /// Objectives and constrained quantities that are not columns of the design or the metrics.
 fn further_quantities(front: &[FrontMember]) -> Vec<String> {
-    let columns = [DesignSummary::columns(), fields::<Metrics>()].concat();
+    let columns = [DesignSummary::columns(), &metric_columns()].concat();
     let first = front.first().into_iter();
     let names = first.flat_map(|member| {
         let objectives = member.objectives.iter().map(|(name, _)| name);

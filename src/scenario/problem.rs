@@ -139,6 +139,45 @@ pub enum Fault {
         /// The other key.
         other: String,
     },
+    /// Clocks for each part where all systems share one.
+    #[error(
+        "\"per-part\" needs `{other}` = \"per-system\": with \"shared\" there is one clock for all satellites"
+    )]
+    OneClock {
+        /// The key of the clocks.
+        other: String,
+    },
+    /// The elevation part of a range error that is not given.
+    #[error("this is about a range error that is not given; set `{other}`")]
+    NoRangeError {
+        /// The key of the range error.
+        other: String,
+    },
+    /// A range error of zero.
+    #[error("a and b are both 0: the range error would be 0")]
+    NoError,
+    /// A system in use without a range error, where others have one.
+    #[error("every system in use needs a range error; `{key}` is missing")]
+    MissingRangeError {
+        /// The key of its range error.
+        key: String,
+    },
+    /// A window that does not fit into the span.
+    #[error("a window of {window_min} min is longer than the span of {span_min} min")]
+    WindowTooLong {
+        /// The window, minutes.
+        window_min: f64,
+        /// The span, minutes.
+        span_min: f64,
+    },
+    /// A quantity that the scenario does not compute.
+    #[error("{quantity} needs {needs}")]
+    Needs {
+        /// The quantity.
+        quantity: String,
+        /// What is missing.
+        needs: String,
+    },
     /// More of something than a run allows.
     #[error("{count:.0} {what}, expected at most {most}")]
     TooMany {

@@ -194,9 +194,18 @@ impl Scenario {
             None => setup,
         };
         let (systems, notes) = self.systems(setup.grid, read)?;
+        let presets = &self.gnss.constellations;
+        let setup = Setup {
+            accuracy: self
+                .accuracy
+                .accuracy(presets, systems.len() - presets.len()),
+            window_s: self.metrics.window_min.map(|window| 60.0 * window),
+            ..setup
+        };
         let setup = setup
             .with_gnss(systems)
             .with_clocks(self.gnss.clocks)
+            .with_leo_clocks(self.gnss.leo_clocks)
             .with_observation_weights(visibility.weighting)
             .with_pdop_cap(visibility.pdop_cap)
             .with_model(self.propagation.model)

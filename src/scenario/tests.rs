@@ -3,6 +3,7 @@
 mod agreement;
 mod built_in;
 mod constellations;
+mod metres;
 mod nested;
 mod overrides;
 mod problems;

@@ -1,6 +1,7 @@
 //! The validated scenario: every default filled in, every range checked. The keys of a scenario
 //! file are declared here, each with its field.
 
+mod accuracy;
 mod constellations;
 mod objectives;
 mod optimizer;
@@ -10,6 +11,7 @@ mod setting;
 mod shell;
 
 pub use crate::ground::Grid;
+pub use accuracy::{FurtherMetrics, RangeErrors};
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
 pub use optimizer::Optimizer;
@@ -71,6 +73,10 @@ section! {
         pub visibility: Visibility;
         /// The GNSS to augment.
         pub gnss: GnssSetup;
+        /// The range errors of the systems.
+        pub accuracy: RangeErrors;
+        /// Metrics on demand.
+        pub metrics: FurtherMetrics;
         /// The objectives and constraints.
         pub objectives: Objectives;
         /// The search space.
@@ -112,6 +118,7 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
     if reader.is_sound() {
         check_point_samples(scenario, reader);
         check_designs(scenario, reader);
+        accuracy::check(scenario, reader);
     }
 }
 

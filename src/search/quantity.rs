@@ -33,6 +33,20 @@ keywords! {
         MeanVisible = "mean-visible",
         /// Fraction of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
+        /// Mean PDOP of all observations in a window of `metrics.window-min`; dimensionless, minimised.
+        InformationPdop = "information-pdop",
+        /// Mean standard deviation of the position, metres; minimised.
+        Sigma3dM = "sigma-3d-m",
+        /// Mean standard deviation of the horizontal position (DRMS), metres; minimised.
+        SigmaHM = "sigma-h-m",
+        /// Mean standard deviation of the height, metres; minimised.
+        SigmaVM = "sigma-v-m",
+        /// 95 % error of the position, metres; minimised.
+        Error953dM = "error95-3d-m",
+        /// 95 % error of the horizontal position, metres; minimised.
+        Error95HM = "error95-h-m",
+        /// 95 % error of the height, metres; minimised.
+        Error95VM = "error95-v-m",
         /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
@@ -66,6 +80,36 @@ impl Quantity {
         matches!(self, Self::MeanVisible | Self::Availability)
     }
 
+    /// Whether it is an accuracy in metres, which needs range errors.
+    #[must_use]
+    pub fn is_in_metres(self) -> bool {
+        matches!(
+            self,
+            Self::Sigma3dM
+                | Self::SigmaHM
+                | Self::SigmaVM
+                | Self::Error953dM
+                | Self::Error95HM
+                | Self::Error95VM
+        )
+    }
+
+    /// Whether it is computed only where the scenario asks for it.
+    #[must_use]
+    pub fn is_on_demand(self) -> bool {
+        self.is_in_metres() || self == Self::InformationPdop
+    }
+
+    /// Fraction of its samples that are solved: of the windows for a statistic over windows, else of points and
+    /// instants.
+    #[must_use]
+    pub fn solved_fraction(self, metrics: &Metrics) -> f64 {
+        match (self, metrics.information_pdop) {
+            (Self::InformationPdop, Some(of)) => of.solved_fraction,
+            _ => metrics.solved_fraction,
+        }
+    }
+
     /// The default coordinate of the hypervolume's reference point.
     #[must_use]
     pub fn default_reference(self) -> Option<f64> {
@@ -88,12 +132,13 @@ impl Quantity {
         }
     }
 
-    /// Fraction of the samples that must be solved: all for a mean, a tail or a maximum of PDOP, q for
-    /// its quantile of level q. `None` for a quantity that is not a statistic of PDOP.
+    /// Fraction of the samples that must be solved: all for a mean, a tail or a maximum, q for
+    /// a quantile of level q. `None` for a quantity that is not a statistic of the solved samples.
     fn solved_share_needed(self) -> Option<f64> {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
-            Self::P95Pdop => Some(0.95),
+            Self::InformationPdop | Self::Sigma3dM | Self::SigmaHM | Self::SigmaVM => Some(1.0),
+            Self::P95Pdop | Self::Error953dM | Self::Error95HM | Self::Error95VM => Some(0.95),
             Self::P99Pdop => Some(0.99),
             Self::JCost
             | Self::Satellites
@@ -147,6 +192,13 @@ impl Quantity {
             Self::NewPlanes => new_sum(Shell::planes),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
+            Self::InformationPdop => metrics.information_pdop?.mean,
+            Self::Sigma3dM => metrics.sigma_3d_m?.map(|of| of.mean),
+            Self::SigmaHM => metrics.sigma_h_m?.map(|of| of.mean),
+            Self::SigmaVM => metrics.sigma_v_m?.map(|of| of.mean),
+            Self::Error953dM => metrics.error95_3d_m?,
+            Self::Error95HM => metrics.error95_h_m?,
+            Self::Error95VM => metrics.error95_v_m?,
             // 0 and not -0 for no shell.
             Self::LaunchCost => Some(
                 new?.iter()

@@ -16,6 +16,13 @@ fn no_metrics() -> Metrics {
         availability: 0.0,
         j_pos: None,
         j_cost: None,
+        information_pdop: None,
+        sigma_3d_m: None,
+        sigma_h_m: None,
+        sigma_v_m: None,
+        error95_3d_m: None,
+        error95_h_m: None,
+        error95_v_m: None,
     }
 }
 

@@ -136,6 +136,13 @@ const ROWS: &[Row] = &[
         Stdout,
     ),
     Row("evaluate", "dops", "DESIGN SMALL", "--dops", Stdout),
+    Row(
+        "evaluate",
+        "gnss-phases",
+        "DESIGN SMALL",
+        "--gnss-phases 2",
+        Stdout,
+    ),
     Row("evaluate", "series", "DESIGN SMALL", "--series out", Out),
     Row(
         "evaluate",

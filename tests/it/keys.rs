@@ -41,6 +41,14 @@ const EXPORT_TLE: &str =
 const EVALUATE_OWN: &str = "evaluate --format json --set constellations.two=delta:55:6/3/1@925 \
      --set constellations.three=delta:60:6/3/1@925 --set time.step-s=3600 --set region.step-deg=25";
 
+const EVALUATE_HYBRID: &str = "evaluate --format json --design delta:55:24/6/1@925+star:90:24/4/1@1000 --set time.step-s=3600 \
+     --set region.step-deg=25";
+/// Every system is in use and has a range error.
+const METRES: &str = "evaluate --format json --design delta:55:60/6/1@925 --set time.step-s=7200 --set region.step-deg=30 \
+     --set gnss.constellations=[\"beidou-3\",\"gps\",\"galileo\",\"glonass\",\"qzss\",\"navic\"] --set gnss.files=[\"gnss.alm\"] \
+     --set accuracy.leo-m=1 --set accuracy.beidou-3-m=1 --set accuracy.gps-m=1 --set accuracy.galileo-m=1 \
+     --set accuracy.glonass-m=1 --set accuracy.qzss-m=1 --set accuracy.navic-m=1 --set accuracy.files-m=1";
+
 const fn row(
     key: &'static str,
     value: &'static str,
@@ -56,7 +64,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 56] = [
+const ROWS: [Row; 74] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
@@ -165,6 +173,74 @@ const ROWS: [Row; 56] = [
         "/metrics/mean_pdop",
     ),
     row("gnss.clocks", "shared", EVALUATE, "/metrics/mean_pdop"),
+    row(
+        "gnss.leo-clocks",
+        "per-part",
+        EVALUATE_HYBRID,
+        "/metrics/mean_pdop",
+    ),
+    row(
+        "metrics.window-min",
+        "40",
+        EVALUATE,
+        "/metrics/information_pdop/mean",
+    ),
+    row("accuracy.leo-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.leo-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.beidou-3-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.beidou-3-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.gps-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.gps-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.galileo-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.galileo-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.glonass-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.glonass-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.qzss-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.qzss-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.navic-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.navic-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
+    row("accuracy.files-m", "9", METRES, "/metrics/error95_3d_m"),
+    row(
+        "accuracy.files-elevation",
+        "[1,2]",
+        METRES,
+        "/metrics/sigma_3d_m/mean",
+    ),
     row(
         "objectives.minimize",
         "[\"j-pos\",\"satellites\"]",

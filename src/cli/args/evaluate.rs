@@ -18,12 +18,19 @@ pub(crate) struct EvaluateArgs {
     /// Blank lines and lines that begin with `#` are skipped. Results are printed in the order of the list as they
     /// come. A line that cannot be evaluated is named on stderr and left out, and the exit status is 1; it is 2 if
     /// no line can be. There are no warnings about satellites in one place or on collision course.
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out", "gnss_phases"])]
     pub(crate) designs: Option<PathBuf>,
 
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,
+
+    /// Evaluate at N equally spaced phases of the built-in GNSS constellations, over the cycle of their ground tracks,
+    /// and add the minimum, mean and maximum of each metric.
+    ///
+    /// A nominal constellation begins at an arbitrary place; the metrics of a scenario are those of one phase.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]
+    pub(crate) gnss_phases: Option<u32>,
 
     /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
     /// constellations to a folder each.

@@ -86,7 +86,7 @@ pub(crate) struct ExportArgs {
     pub(crate) creation_date: Option<String>,
 
     /// Also write SP3 files of these nominal constellations, one file each, under gnss/:
-    /// beidou-3 (ids C01 ...), gps (G01 ...), galileo (E01 ...), glonass (R01 ...).
+    /// beidou-3 (ids C01 ...), gps (G01 ...), galileo (E01 ...), glonass (R01 ...), qzss (J01 ...), navic (I01 ...).
     #[arg(long, value_name = "SYSTEMS", value_delimiter = ',')]
     pub(crate) gnss: Vec<Preset>,
 

@@ -2,6 +2,7 @@
 
 mod designs;
 mod given_run;
+mod phases;
 mod print;
 mod series;
 mod single;
@@ -21,6 +22,7 @@ use crate::search::Goals;
 use anyhow::{Result, bail};
 use designs::DesignList;
 use given_run::GivenRun;
+use phases::GnssPhases;
 use print::Printer;
 use series::SeriesDirectory;
 
@@ -33,7 +35,8 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
-    let work = EvaluationContext {
+    let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
+    let mut work = EvaluationContext {
         args,
         scenario: &study.scenario,
         stamp: study.stamp()?,
@@ -42,12 +45,19 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
         evaluator: &evaluator,
     };
     let mut entries = Vec::new();
+    let mut ephemerides = Vec::new();
     for (n, one) in given.iter().enumerate() {
         let ephemeris = constellations::propagate(one, evaluator.setup())?;
         entries.push(work.entry(one, &ephemeris)?);
         if let Some(series) = &series {
             series.write(n, &evaluator, &ephemeris)?;
         }
+        if phases.is_some() {
+            ephemerides.push(ephemeris);
+        }
+    }
+    if let Some(phases) = &phases {
+        phases.add(&mut work, &mut entries, &ephemerides)?;
     }
     let run = match run {
         Some(run) => Some((run.result(&work, &entries)?, run)),

@@ -20,28 +20,44 @@ use std::f64::consts::TAU;
 /// ground track that crosses the equator at 118°E.
 pub(super) fn beidou3(epoch: Epoch) -> Vec<GnssSatellite> {
     let mut satellites = walker_24_3_1("MEO", 56.0, 21_528.0);
-    let gmst = epoch.gmst_rad(0.0);
     for member in 0..3 {
-        let offset = TAU * f64::from(member) / 3.0;
         satellites.push(GnssSatellite {
             name: format!("IGSO-{}", member + 1),
-            orbit: GnssOrbit::Geosynchronous(GeosynchronousOrbit {
-                inclination_rad: 55_f64.to_radians(),
-                raan_rad: 118_f64.to_radians() + gmst + offset,
-                argument_of_latitude_rad: -offset,
-            }),
+            orbit: figure_of_eight(epoch, 55.0, 118.0, TAU * f64::from(member) / 3.0),
         });
     }
-    for (member, longitude_deg) in [80.0_f64, 110.5, 140.0].into_iter().enumerate() {
-        satellites.push(GnssSatellite {
-            name: format!("GEO-{}", member + 1),
+    satellites.extend(geostationary(epoch, &[80.0, 110.5, 140.0]));
+    satellites
+}
+
+/// Geostationary satellites over these longitudes, degrees.
+fn geostationary(epoch: Epoch, longitudes_deg: &[f64]) -> impl Iterator<Item = GnssSatellite> {
+    (1..)
+        .zip(longitudes_deg)
+        .map(move |(number, longitude_deg)| GnssSatellite {
+            name: format!("GEO-{number}"),
             orbit: GnssOrbit::Geostationary {
                 longitude_rad: longitude_deg.to_radians(),
                 epoch,
             },
-        });
-    }
-    satellites
+        })
+}
+
+/// A circular orbit whose ground track crosses the equator at a longitude; northwards when the Earth has turned by
+/// `behind_rad` since the epoch.
+fn figure_of_eight(
+    epoch: Epoch,
+    inclination_deg: f64,
+    longitude_deg: f64,
+    behind_rad: f64,
+) -> GnssOrbit {
+    GnssOrbit::Geosynchronous(GeosynchronousOrbit {
+        eccentricity: 0.0,
+        arg_perigee_rad: 0.0,
+        inclination_rad: inclination_deg.to_radians(),
+        raan_rad: longitude_deg.to_radians() + epoch.gmst_rad(0.0) + behind_rad,
+        argument_of_latitude_rad: -behind_rad,
+    })
 }
 
 /// GPS as the 24 slots of the baseline constellation: six planes 60° apart with four satellites
@@ -97,6 +113,50 @@ pub(super) fn galileo() -> Vec<GnssSatellite> {
 /// constellation: three planes 120° apart, eight satellites 45° apart, planes shifted by 15°.
 pub(super) fn glonass() -> Vec<GnssSatellite> {
     walker_24_3_1("GLO", 64.8, 25_508.0 - RADIUS_KM)
+}
+
+/// QZSS as the system of four satellites in service since 2018: three in quasi-zenith orbits that share one ground track, a third
+/// of a sidereal day after each other, and one GEO. The perigee is at the southernmost point.
+///
+/// Sources: *Quasi-Zenith Satellite System Interface Specification, Satellite Positioning, Navigation and Timing Service*
+/// (IS-QZSS-PNT; e = 0.075, ω = 270°, GEO at 127°E); inclination 41° and centre of the figure of eight at 135°E as reported by JAXA for the
+/// first satellite (press release of 27 September 2010: apogee 38 950 km, perigee 32 618 km, 41.0°, about 135°).
+pub(super) fn qzss(epoch: Epoch) -> Vec<GnssSatellite> {
+    let perigee_rad = 270_f64.to_radians();
+    let orbit = |member: u32| {
+        let behind_rad = TAU * f64::from(member) / 3.0;
+        // The longitude of perigee is the centre of the track; the first satellite is there at the epoch.
+        GnssOrbit::Geosynchronous(GeosynchronousOrbit {
+            eccentricity: 0.075,
+            arg_perigee_rad: perigee_rad,
+            inclination_rad: 41_f64.to_radians(),
+            raan_rad: 135_f64.to_radians() + epoch.gmst_rad(0.0) - perigee_rad + behind_rad,
+            argument_of_latitude_rad: perigee_rad - behind_rad,
+        })
+    };
+    let quasi_zenith = (0..3).map(|member| GnssSatellite {
+        name: format!("QZO-{}", member + 1),
+        orbit: orbit(member),
+    });
+    quasi_zenith.chain(geostationary(epoch, &[127.0])).collect()
+}
+
+/// NavIC as the system of seven satellites: four in circular geosynchronous orbits of 29°, two on each of two ground tracks, half a
+/// sidereal day apart, and three GEO.
+///
+/// Source: ISRO, *Indian Regional Navigation Satellite System, Signal in Space ICD for Standard Positioning Service* 1.1
+/// (2017): GEO at 32.5°, 83° and 131.5°E; inclined orbits that cross the equator at 55° and 111.75°E. The document gives no phase
+/// from one ground track to the other; here they are a quarter of a sidereal day apart.
+pub(super) fn navic(epoch: Epoch) -> Vec<GnssSatellite> {
+    let tracks = [(55.0, 0.0), (55.0, 0.5), (111.75, 0.25), (111.75, 0.75)];
+    let satellite = |(number, (longitude_deg, behind)): (u32, (f64, f64))| GnssSatellite {
+        name: format!("GSO-{number}"),
+        orbit: figure_of_eight(epoch, 29.0, longitude_deg, TAU * behind),
+    };
+    let inclined = (1..).zip(tracks).map(satellite);
+    inclined
+        .chain(geostationary(epoch, &[32.5, 83.0, 131.5]))
+        .collect()
 }
 
 /// A circular Walker delta 24/3/1 under secular J2; the first satellite has Ω = M = 0.

@@ -1,5 +1,7 @@
 use super::*;
 use crate::earth::GMST_RATE_RAD_S;
+use crate::earth::Surface;
+use crate::frames::{LocalFrame, Position};
 use crate::orbit::j2::SecularRates;
 use std::f64::consts::TAU;
 
@@ -43,7 +45,9 @@ fn validate_igso_share_one_ground_track() {
 
 #[test]
 fn velocities_are_derivatives() {
-    for satellite in Preset::Beidou3.satellites(epoch()).iter().step_by(5) {
+    let satellites = Preset::Beidou3.satellites(epoch());
+    let quasi_zenith = Preset::Qzss.satellites(epoch());
+    for satellite in satellites.iter().step_by(5).chain(&quasi_zenith) {
         let at = |t: f64| satellite.orbit.state_at(t).unwrap();
         let slope = (at(1001.0).position_km - at(999.0).position_km) / 2.0;
         // Central difference over 2 s: r n³/6 = 2e-8 km/s for the MEO.
@@ -165,5 +169,134 @@ fn names_are_unique_and_round_trip() {
         names.sort();
         names.dedup();
         assert_eq!(names.len(), satellites.len(), "{preset}");
+    }
+}
+
+/// Look angles over a day, every five minutes: the elevation of each satellite, degrees.
+fn elevations_deg(preset: Preset, latitude_deg: f64, longitude_deg: f64) -> Vec<Vec<f64>> {
+    let [latitude, longitude] = [latitude_deg, longitude_deg].map(f64::to_radians);
+    let site = LocalFrame::new(Surface::Wgs84, latitude, longitude);
+    let elevation = |satellite: &GnssSatellite, k: u32| {
+        let position = earth_fixed(&satellite.orbit, 300.0 * f64::from(k));
+        site.look_angles(Position::new(position)).0.to_degrees()
+    };
+    let satellites = preset.satellites(epoch());
+    let at = |k| satellites.iter().map(|one| elevation(one, k)).collect();
+    (0..288).map(at).collect()
+}
+
+/// The orbit of the first quasi-zenith satellite as JAXA reported it on 27 September 2010: apogee height 38 950 km, perigee height
+/// 32 618 km, inclination 41.0°, centre of the figure of eight at about 135°E. The period fixes the semi-major axis, so the heights
+/// differ by what the eccentricity is rounded by: 0.0001 is 4 km.
+#[test]
+fn validate_quasi_zenith_orbit() {
+    let satellites = Preset::Qzss.satellites(epoch());
+    assert_eq!(satellites.len(), 4);
+    let day_s = TAU / GMST_RATE_RAD_S;
+    for (member, satellite) in satellites[..3].iter().enumerate() {
+        let states: Vec<_> = (0..2880)
+            .map(|k| earth_fixed(&satellite.orbit, day_s * f64::from(k) / 2880.0))
+            .collect();
+        let heights = states.iter().map(|p| p.norm() - crate::earth::RADIUS_KM);
+        let highest = heights.clone().fold(0.0, f64::max);
+        let lowest = heights.fold(f64::INFINITY, f64::min);
+        assert!((highest - 38_950.0).abs() < 5.0, "{highest}");
+        assert!((lowest - 32_618.0).abs() < 10.0, "{lowest}");
+        let northernmost = states.iter().map(|p| (p.z / p.norm()).asin().to_degrees());
+        assert!((northernmost.fold(0.0, f64::max) - 41.0).abs() < 1e-3);
+        let longitudes = states.iter().map(|p| p.y.atan2(p.x).to_degrees());
+        let (west, east) = longitudes.fold((360.0_f64, 0.0_f64), |(west, east), x| {
+            (west.min(x), east.max(x))
+        });
+        assert!(((west + east) / 2.0 - 135.0).abs() < 0.01, "{west} {east}");
+        // The track closes, and all three are on it, a third of a sidereal day after each other.
+        let start = earth_fixed(&satellite.orbit, 0.0);
+        assert!((earth_fixed(&satellite.orbit, day_s) - start).norm() < 0.01);
+        let behind = earth_fixed(&satellite.orbit, day_s * member as f64 / 3.0);
+        assert!((behind - earth_fixed(&satellites[0].orbit, 0.0)).norm() < 0.01);
+    }
+    let geo = earth_fixed(&satellites[3].orbit, 0.0);
+    assert!((geo.y.atan2(geo.x).to_degrees() - 127.0).abs() < 1e-9);
+}
+
+/// JAXA on the system: a satellite is near the zenith over Japan for about eight hours each day, so that three are always so. One
+/// quasi-zenith satellite is above 70° in Tokyo at any time, each for more than eight hours; the GEO is high all day.
+#[test]
+fn validate_quasi_zenith_over_tokyo() {
+    let elevations = elevations_deg(Preset::Qzss, 35.68, 139.77);
+    let best = elevations
+        .iter()
+        .map(|sky| sky[..3].iter().copied().fold(0.0, f64::max));
+    assert!(best.fold(90.0, f64::min) > 70.0);
+    for satellite in 0..3 {
+        let high = elevations
+            .iter()
+            .filter(|sky| sky[satellite] > 70.0)
+            .count();
+        let hours = high as f64 / 12.0;
+        assert!((8.0..10.0).contains(&hours), "{hours}");
+    }
+    // 20° is what the system specifies its services for.
+    let in_view = |sky: &Vec<f64>| sky.iter().filter(|e| **e > 20.0).count();
+    assert!(elevations.iter().map(in_view).min() >= Some(3));
+}
+
+/// NavIC as its interface document has it: GEO at 32.5, 83 and 131.5°E, tracks of 29° that cross the equator at 55 and 111.75°E, in both
+/// directions, with two satellites half a sidereal day apart on each.
+#[test]
+fn validate_navic_tracks() {
+    let satellites = Preset::Navic.satellites(epoch());
+    assert_eq!(satellites.len(), 7);
+    let day_s = TAU / GMST_RATE_RAD_S;
+    let longitude = |p: Vector3<f64>| p.y.atan2(p.x).to_degrees();
+    let crossings = [(55.0, 0.0), (55.0, 0.5), (111.75, 0.25), (111.75, 0.75)];
+    for (satellite, (expected_deg, share)) in satellites.iter().zip(crossings) {
+        for half in [0.0, 0.5] {
+            let p = earth_fixed(&satellite.orbit, day_s * (share + half));
+            assert!(
+                (longitude(p) - expected_deg).abs() < 1e-7,
+                "{}",
+                satellite.name
+            );
+            assert!(p.z.abs() < 1e-5);
+        }
+        let north = earth_fixed(&satellite.orbit, day_s * (share + 0.25));
+        assert!(((north.z / north.norm()).asin().to_degrees() - 29.0).abs() < 1e-9);
+    }
+    for (satellite, expected_deg) in satellites[4..].iter().zip([32.5, 83.0, 131.5]) {
+        assert!((longitude(earth_fixed(&satellite.orbit, 0.0)) - expected_deg).abs() < 1e-9);
+    }
+}
+
+/// The system was laid out so that all its satellites are in view of India at all times (ISRO on IRNSS).
+#[test]
+fn validate_navic_is_always_in_view_of_india() {
+    for (latitude_deg, longitude_deg) in [(28.61, 77.21), (12.97, 77.59)] {
+        let elevations = elevations_deg(Preset::Navic, latitude_deg, longitude_deg);
+        let lowest = elevations.iter().flatten().copied().fold(90.0, f64::min);
+        assert!(lowest > 10.0, "{latitude_deg}: {lowest}");
+    }
+}
+
+/// A phase is the place over the Earth some time later. After a whole cycle of sidereal days the satellites of medium orbits
+/// are back but for the drift of their nodes, at most 0.04° or 20 km a day, and the 0.015° of `validate_ground_tracks_repeat`.
+#[test]
+fn a_phase_is_a_later_place_over_the_earth() {
+    for &preset in Preset::ALL {
+        let days = f64::from(preset.cycle_sidereal_days());
+        let later_s = 0.3 * days * TAU / GMST_RATE_RAD_S;
+        let nominal = preset.satellites(epoch());
+        let later = preset.satellites_at_phase(epoch(), 0.3);
+        let again = preset.satellites_at_phase(epoch(), 1.0);
+        for ((nominal, later), again) in nominal.iter().zip(&later).zip(&again) {
+            for t in [0.0, 5000.0] {
+                let place = earth_fixed(&nominal.orbit, t + later_s);
+                // The rate of GMST is that of the epoch: 1e-8° a day, or 7 m.
+                let apart = (earth_fixed(&later.orbit, t) - place).norm();
+                assert!(apart < 0.02 * days, "{preset} {}: {apart}", nominal.name);
+                let apart = (earth_fixed(&again.orbit, t) - earth_fixed(&nominal.orbit, t)).norm();
+                assert!(apart < 27.0 * days, "{preset} {}: {apart}", nominal.name);
+            }
+        }
     }
 }

@@ -113,7 +113,7 @@ impl<'a> Settling<'a> {
             }
         };
         let gnss = PlainGnssSample::new(self.setup, local, gnss);
-        let (visible, geometry) = plain::geometry(self.setup, local, positions, &gnss);
+        let (visible, geometry) = plain::geometry(self.setup, local, &[positions], &gnss);
         let pdop = geometry.pdop(self.setup.pdop_cap);
         Ok(Settled { visible, pdop })
     }

@@ -1,15 +1,17 @@
 //! The texts and tables of the page.
 
+mod conventions;
+
+pub(super) use conventions::conventions;
+
 use super::Page;
 use crate::constellation::gnss::Preset;
-use crate::earth;
 use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
-use crate::run::{FrontMember, Run, VERSION};
-use crate::scenario::{ObservationWeights, Quantity, Region, Scenario, Visibility};
-use crate::time::leap_seconds_note;
+use crate::run::{FrontMember, Run};
+use crate::scenario::{Quantity, Region, Scenario, Visibility};
 use crate::units::round_decimal;
 use crate::validate::Tally;
 
@@ -149,6 +151,8 @@ fn preset_title(preset: Preset) -> &'static str {
         Preset::Gps => "GPS",
         Preset::Galileo => "Galileo",
         Preset::Glonass => "GLONASS",
+        Preset::Qzss => "QZSS",
+        Preset::Navic => "NavIC",
     }
 }
 
@@ -350,126 +354,6 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
     row.collect()
 }
 
-/// The conventions behind the numbers.
-pub(super) fn conventions(page: &Page<'_>) -> Vec<(&'static str, String)> {
-    let run = page.run;
-    let mut rows = vec![
-        (
-            "Constants",
-            format!(
-                "\u{3bc} = {} km\u{b3}/s\u{b2}, R = {} km, J2 = {:e} (EGM96), f = 1/298.257223563",
-                earth::MU_KM3_S2,
-                earth::RADIUS_KM,
-                earth::J2
-            ),
-        ),
-        (
-            "Frames",
-            "mean elements and propagation in TEME; Earth-fixed by GMST (IAU 1982), UT1 = UTC at the \
-             epoch, no polar motion"
-                .to_owned(),
-        ),
-        (
-            "Time",
-            format!(
-                "SI seconds from the epoch; the Earth rotates evenly through leap seconds; {}",
-                leap_seconds_note()
-            ),
-        ),
-        (
-            "PDOP",
-            match run.scenario.as_ref().map(|s| s.visibility.weighting) {
-                None | Some(ObservationWeights::Unit) => "unit-weight least squares".to_owned(),
-                Some(weighting) => format!("least squares with weights {weighting}"),
-            } + "; unsolved samples are excluded",
-        ),
-        (
-            "Quantiles and CVaR",
-            "order statistics; CVaR is the mean of the worst 1 - \u{3b1} of the samples, with fractional weight \
-             on the quantile (Rockafellar and Uryasev)"
-                .to_owned(),
-        ),
-    ];
-    if let Some(scenario) = &run.scenario {
-        rows.extend(of_scenario(scenario));
-    }
-    let of_search = run.search.as_ref().map(|search| &search.scenario);
-    if let Some(stamp) = of_search.or(page.stamp) {
-        rows.push(("Scenario hash", stamp.hash.clone()));
-    }
-    rows.push(match (&run.search, page.stamp) {
-        (None, Some(_)) => ("Version", format!("this page by navwalker {VERSION}")),
-        (search, _) => {
-            let by = search.as_ref().map_or("unknown", |search| &search.version);
-            let text = format!("run by navwalker {by}; this page by navwalker {VERSION}");
-            ("Versions", text)
-        }
-    });
-    rows.push((
-        "Credits",
-        "figures by plotly.js (MIT licence), through the plotly crate; coastlines from Natural Earth \
-         (public domain)"
-            .to_owned(),
-    ));
-    rows
-}
-
-fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
-    let objectives = &scenario.objectives;
-    vec![
-        ("Surface", scenario.earth.surface.to_string()),
-        ("LEO propagation", scenario.propagation.model.to_string()),
-        ("Receiver clocks", scenario.gnss.clocks.to_string()),
-        ("Masks", masks(&scenario.visibility)),
-        (
-            "Unsolved",
-            format!(
-                "no solution, or PDOP above {}",
-                scenario.visibility.pdop_cap
-            ),
-        ),
-        ("Constraints", constraints(scenario)),
-        (
-            "Objectives",
-            format!(
-                "{}; CVaR weight \u{3bb} = {}, CVaR level \u{3b1} = {}; available if PDOP is at most {}",
-                run_names(scenario),
-                objectives.cvar_weight,
-                objectives.cvar_level,
-                objectives.availability_pdop
-            ),
-        ),
-    ]
-}
-
-/// The lowest elevations at which satellites are visible, by system and azimuth.
-fn masks(visibility: &Visibility) -> String {
-    let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
-    let mut text = format!("LEO {leo}\u{b0}, GNSS {gnss}\u{b0}");
-    let table = &visibility.mask_table;
-    if !table.is_empty() {
-        let points: Vec<String> = table
-            .iter()
-            .map(|point| format!("{}\u{b0} at {}\u{b0}", point.mask_deg, point.azimuth_deg))
-            .collect();
-        text += &format!(
-            "; a skyline at every point, which applies where it is higher: elevation by azimuth \
-             (clockwise from north), linear between {}",
-            points.join(", ")
-        );
-    }
-    text
-}
-
-fn constraints(scenario: &Scenario) -> String {
-    let texts = scenario.objectives.constraints.iter();
-    let texts: Vec<String> = texts.map(ToString::to_string).collect();
-    if texts.is_empty() {
-        return "none".to_owned();
-    }
-    texts.join(", ")
-}
-
 /// The masks in a sentence; only one if both are the same.
 fn mask_clause(visibility: &Visibility) -> String {
     let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
@@ -483,14 +367,4 @@ fn mask_clause(visibility: &Visibility) -> String {
         text += &format!(", with a skyline of up to {highest}\u{b0}");
     }
     text
-}
-
-fn run_names(scenario: &Scenario) -> String {
-    let names: Vec<&str> = scenario
-        .objectives
-        .minimize
-        .iter()
-        .map(|q| q.keyword())
-        .collect();
-    names.join(", ")
 }

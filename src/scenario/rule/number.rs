@@ -271,6 +271,29 @@ impl Rule for Eastward {
     }
 }
 
+/// Two numbers.
+pub(in crate::scenario) struct Pair(pub(in crate::scenario) Number);
+
+impl Rule for Pair {
+    type Value = [f64; 2];
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<[f64; 2]> {
+        read_pair([&self.0; 2], node, reading)
+    }
+
+    fn accepted(&self) -> String {
+        format!("two numbers, each {}", self.0.accepted())
+    }
+
+    fn schema(&self) -> Json {
+        pair_schema(&self.0)
+    }
+
+    fn write(&self, value: &[f64; 2]) -> String {
+        write_pair(&self.0, value)
+    }
+}
+
 /// One step for both directions, or one for each.
 pub(in crate::scenario) struct Steps(pub(in crate::scenario) Number);
 

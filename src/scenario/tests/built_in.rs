@@ -137,9 +137,12 @@ fn the_template_parses_to_the_defaults() {
 #[test]
 fn the_template_uncommented_is_still_a_scenario() {
     // The lines of keys that follow others are examples, and must be valid ones; points
-    // exclude the grid and shells the intervals of one, and no constellations, nothing fixed and no
-    // orientation are the default, so these lines stay out.
-    let left_out = [
+    // exclude the grid and shells the intervals of one, and no constellations, nothing fixed, no
+    // orientation, range errors and windows are the default, so these lines stay out.
+    let on_demand = describe_keys().into_iter();
+    let on_demand = on_demand.filter(|key| ["accuracy", "metrics"].contains(&key.section));
+    let mut left_out: Vec<&str> = on_demand.map(|key| key.name).collect();
+    left_out.extend([
         "points",
         "constellations",
         "shells",
@@ -150,7 +153,7 @@ fn the_template_uncommented_is_still_a_scenario() {
         "raan-step-deg",
         "arg-latitude-step-deg",
         "node-step-step-deg",
-    ];
+    ]);
     let uncommented: String = template()
         .lines()
         .map(|line| match line.strip_prefix("# ") {

@@ -58,7 +58,7 @@ fn unknown_keys_suggest_the_nearest() {
         "mask-deg",
         "did you mean `visibility.mask-deg`?",
     );
-    refuses("region", "q = 5", "q", &format!("unknown key {region}"));
+    refuses("region", "j = 5", "j", &format!("unknown key {region}"));
     refuses(
         "region",
         "step-deg.x = 5",
@@ -125,14 +125,14 @@ study.toml:4: time.step-s: found 0, expected a number > 0, in s
 study.toml:5: time.duration-s: unknown key, did you mean `time.duration-h`? (choices: epoch, duration-h, step-s)
   5 | duration-s = 5
     | ^^^^^^^^^^
-study.toml:7: gnss.constellations: unknown name \"beidou\", did you mean \"beidou-3\"? (choices: beidou-3, gps, galileo, glonass)
+study.toml:7: gnss.constellations: unknown name \"beidou\", did you mean \"beidou-3\"? (choices: beidou-3, gps, galileo, glonass, qzss, navic)
   7 | constellations = [\"beidou\", \"gps\", \"gps\"]
     |                   ^^^^^^^^
 study.toml:7: gnss.constellations: \"gps\" appears more than once
   7 | constellations = [\"beidou\", \"gps\", \"gps\"]
     |                                    ^^^^^
 --set optimizer.population=2: optimizer.population: found 2, expected an integer >= 4 and <= 10000
---set tme.step-s=5: tme.step-s: unknown key, did you mean `time.step-s`? (choices: time, earth, propagation, region, visibility, gnss, objectives, search, optimizer, export)";
+--set tme.step-s=5: tme.step-s: unknown key, did you mean `time.step-s`? (choices: time, earth, propagation, region, visibility, gnss, accuracy, metrics, objectives, search, optimizer, export)";
     assert_eq!(problems.to_string(), expected);
 }
 

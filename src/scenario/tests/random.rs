@@ -8,9 +8,10 @@ use proptest::sample::{select, subsequence};
 
 use super::parse;
 use crate::scenario::{
-    Algorithm, ConstellationParts, Constraint, Earth, Export, GnssSetup, Grid, Keyword, LaunchCost,
-    MaskPoint, NamedConstellation, Objectives, Optimizer, Pattern, Preset, Propagation, Quantity,
-    Region, Relation, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility, template,
+    Algorithm, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics, GnssSetup,
+    Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives, Optimizer,
+    Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Scenario, SearchShells,
+    SearchSpace, TimeSpan, Visibility, template,
 };
 use crate::search::{ShellSpace, SweepSteps};
 
@@ -26,6 +27,29 @@ fn rising<T: Clone + PartialOrd + std::fmt::Debug>(
     value: impl Strategy<Value = T> + Clone,
 ) -> impl Strategy<Value = [T; 2]> {
     (value.clone(), value).prop_map(|(a, b)| if a <= b { [a, b] } else { [b, a] })
+}
+
+/// Range errors of all systems, so that every quantity can be computed.
+fn all_range_errors() -> RangeErrors {
+    let elevation = Some([0.5, 0.25]);
+    RangeErrors {
+        leo_m: Some(0.5),
+        leo_elevation: elevation,
+        beidou_3_m: Some(0.6),
+        beidou_3_elevation: None,
+        gps_m: Some(0.7),
+        gps_elevation: elevation,
+        galileo_m: Some(0.8),
+        galileo_elevation: None,
+        glonass_m: Some(0.9),
+        glonass_elevation: elevation,
+        qzss_m: Some(1.0),
+        qzss_elevation: None,
+        navic_m: Some(1.1),
+        navic_elevation: elevation,
+        files_m: Some(1.2),
+        files_elevation: None,
+    }
 }
 
 /// A path with the characters that need escaping.
@@ -93,14 +117,18 @@ fn visibility() -> impl Strategy<Value = Visibility> {
 }
 
 fn gnss() -> impl Strategy<Value = GnssSetup> {
-    (some::<Preset>(0), vec(file(), 0..3), word()).prop_map(
-        |(constellations, mut files, clocks)| {
+    (some::<Preset>(0), vec(file(), 0..3), word(), word()).prop_map(
+        |(constellations, mut files, clocks, leo_clocks)| {
             files.dedup();
             files.truncate(2);
             GnssSetup {
                 constellations,
                 files,
                 clocks,
+                leo_clocks: match clocks {
+                    Clocks::PerSystem => leo_clocks,
+                    Clocks::Shared => LeoClocks::Shared,
+                },
             }
         },
     )
@@ -342,6 +370,10 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             region,
             visibility,
             gnss,
+            accuracy: all_range_errors(),
+            metrics: FurtherMetrics {
+                window_min: Some(time.duration_h * 30.0),
+            },
             objectives,
             search,
             optimizer,

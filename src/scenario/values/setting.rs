@@ -5,9 +5,10 @@ use chrono::{DateTime, Utc};
 use super::{JANUARY_2025, STEP_SLACK};
 use crate::dop::MOST_PDOP_CAP;
 use crate::scenario::keys::{key, section};
+use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
 use crate::scenario::rule::{Number, OneOf, Skyline, SomeOf, Texts, UtcInstant};
-use crate::scenario::{Clocks, Model, ObservationWeights, Preset, Surface};
+use crate::scenario::{Clocks, LeoClocks, Model, ObservationWeights, Preset, Surface};
 
 /// Maximum number of instants: 366 days at every 3.2 seconds.
 const MAX_SAMPLES: u64 = 10_000_000;
@@ -98,12 +99,22 @@ fn share_mask(visibility: &mut Visibility, reader: &mut Reader<'_>) {
 section! {
     /// The GNSS that is augmented.
     #[derive(Debug, Clone, PartialEq, Eq)]
-    pub struct GnssSetup in "gnss" {
+    pub struct GnssSetup in "gnss", finish check_clocks {
         /// Built-in GNSS constellations that the design augments.
         pub constellations: Vec<Preset> = SomeOf::at_least(0), default vec![Preset::Beidou3];
         /// TLE, OMM, SP3, OEM or almanacs of GNSS satellites, paths relative to this file.
         pub files: Vec<String> = Texts::any("paths"), default Vec::new();
         /// Receiver clocks solved for in addition to the position.
         pub clocks: Clocks = OneOf::new(), default Clocks::PerSystem;
+        /// Clocks of the LEO satellites: one for all of a constellation, or one for each of its shells and files.
+        pub leo_clocks: LeoClocks = OneOf::new(), default LeoClocks::Shared;
+    }
+}
+
+/// One clock for all systems leaves none for the parts of a constellation.
+fn check_clocks(gnss: &mut GnssSetup, reader: &mut Reader<'_>) {
+    if gnss.clocks == Clocks::Shared && gnss.leo_clocks == LeoClocks::PerPart {
+        let other = key!(GnssSetup.clocks).to_string();
+        reader.refuse(&[key!(GnssSetup.leo_clocks)], Fault::OneClock { other });
     }
 }

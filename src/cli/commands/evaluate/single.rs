@@ -4,7 +4,7 @@ use super::EvaluationContext;
 use crate::cli::args::OutputFormat;
 use crate::cli::output;
 use crate::evaluate::{DopStatistics, Metrics};
-use crate::report::{Align, Alone, ConstellationEntry, ConstraintCheck, Table, shown};
+use crate::report::{Align, Alone, ConstellationEntry, ConstraintCheck, PhaseSpread, Table, shown};
 use crate::scenario::Scenario;
 use crate::units::counted;
 use anyhow::Result;
@@ -35,6 +35,8 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
     };
     let dops = evaluated.dops.as_ref();
     let text = text(work.scenario, &title, &evaluated.metrics, dops);
+    let phases = evaluated.gnss_phases.as_ref();
+    let text = text + &phases.map_or_else(String::new, phases_table);
     output::result(&(text + &constraint_lines(&evaluated.constraints)))
 }
 
@@ -97,10 +99,75 @@ fn text(
         4,
         "satellites / mean visible".to_owned(),
     );
+    for row in on_demand_rows(metrics) {
+        table.row(row);
+    }
     let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
     format!(
         "{title} in scenario {}\n{}{dops}",
         scenario.name,
+        table.to_text()
+    )
+}
+
+/// What is computed on demand: the information of windows, and the accuracy in metres.
+fn on_demand_rows(metrics: &Metrics) -> Vec<[String; 3]> {
+    let value = |value: Option<f64>| shown::pdop(value);
+    let spread = |p95, cvar| format!("mean; 95 % quantile {}, CVaR {}", value(p95), value(cvar));
+    let mut rows = Vec::new();
+    if let Some(of) = metrics.information_pdop {
+        let note = spread(of.p95, of.cvar);
+        let note = format!("{note}; solved {:.5} of the windows", of.solved_fraction);
+        rows.push(["PDOP of a window".to_owned(), value(of.mean), note]);
+    }
+    let sigmas = [
+        ("position", metrics.sigma_3d_m),
+        ("horizontal", metrics.sigma_h_m),
+        ("height", metrics.sigma_v_m),
+    ];
+    for (name, sigma) in sigmas {
+        let Some(sigma) = sigma else { continue };
+        let note = spread(sigma.map(|of| of.p95), sigma.map(|of| of.cvar));
+        let mean = value(sigma.map(|of| of.mean));
+        rows.push([format!("1-sigma {name} error (m)"), mean, note]);
+    }
+    let errors = [
+        ("position", metrics.error95_3d_m),
+        ("horizontal", metrics.error95_h_m),
+        ("height", metrics.error95_v_m),
+    ];
+    for (name, error) in errors {
+        let Some(error) = error else { continue };
+        let note = "exceeded by 5 % of all errors".to_owned();
+        rows.push([format!("95 % {name} error (m)"), value(error), note]);
+    }
+    rows
+}
+
+/// The range of each metric over the phases of the GNSS.
+fn phases_table(spread: &PhaseSpread) -> String {
+    let mut table = Table::new(&[
+        ("metric", Align::Left),
+        ("minimum", Align::Right),
+        ("mean", Align::Right),
+        ("maximum", Align::Right),
+    ]);
+    for (name, range) in spread.rows() {
+        let parts = [
+            range.map(|of| of.min),
+            range.map(|of| of.mean),
+            range.map(|of| of.max),
+        ];
+        let digits = |value| match name {
+            "solved_fraction" | "availability" => shown::share(value),
+            _ => shown::pdop(value),
+        };
+        let name = name.replace('_', " ").replace("pdop", "PDOP");
+        table.row([name].into_iter().chain(parts.map(digits)));
+    }
+    format!(
+        "\nover {} phases of the GNSS, the first of which is that above\n{}",
+        spread.phases,
         table.to_text()
     )
 }

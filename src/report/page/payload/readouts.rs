@@ -1,9 +1,11 @@
 //! The values shown for the selected constellation, with the digits of the tables.
 
 use crate::evaluate::Metrics;
+use crate::keyword::Keyword;
 use crate::report::page::words;
 use crate::report::shown;
 use crate::run::{FrontMember, Run};
+use crate::search::Quantity;
 
 /// A value shown for a selected constellation.
 pub(super) enum Readout {
@@ -51,7 +53,44 @@ pub(super) fn all(run: &Run, names: &[String]) -> Vec<Readout> {
             tiles.push(Readout::Metric(label, name, value));
         }
     }
-    tiles.extend(words::further(run).into_iter().map(Readout::Quantity));
+    let in_metres: [(&str, &str, Value); 6] = [
+        ("1-sigma position error (m)", "sigma-3d-m", |m| {
+            Some(m.sigma_3d_m??.mean)
+        }),
+        ("1-sigma horizontal error (m)", "sigma-h-m", |m| {
+            Some(m.sigma_h_m??.mean)
+        }),
+        ("1-sigma height error (m)", "sigma-v-m", |m| {
+            Some(m.sigma_v_m??.mean)
+        }),
+        ("95 % position error (m)", "error95-3d-m", |m| {
+            m.error95_3d_m?
+        }),
+        ("95 % horizontal error (m)", "error95-h-m", |m| {
+            m.error95_h_m?
+        }),
+        ("95 % height error (m)", "error95-v-m", |m| m.error95_v_m?),
+    ];
+    let of_window: [(&str, &str, Value); 1] =
+        [("mean PDOP of a window", "information-pdop", |m| {
+            m.information_pdop?.mean
+        })];
+    let scenario = run.scenario.as_ref();
+    let has_metres = scenario.is_some_and(|one| one.accuracy.leo_m.is_some());
+    let has_window = scenario.is_some_and(|one| one.metrics.window_min.is_some());
+    let metres = in_metres.into_iter().filter(|_| has_metres);
+    for (label, name, value) in metres.chain(of_window.into_iter().filter(|_| has_window)) {
+        if !names.iter().any(|objective| objective == name) {
+            tiles.push(Readout::Metric(label, name, value));
+        }
+    }
+    let is_shown = |name: &String| Quantity::from_keyword(name).is_ok_and(Quantity::is_on_demand);
+    tiles.extend(
+        words::further(run)
+            .into_iter()
+            .filter(|name| !is_shown(name))
+            .map(Readout::Quantity),
+    );
     tiles
 }
 

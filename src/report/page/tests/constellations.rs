@@ -32,6 +32,7 @@ fn of_many(name: &str) -> Constellation {
         names: vec![name.to_owned()],
         formats: vec![imported.format],
         fleet: imported.fleet,
+        file_of: Vec::new(),
     })
 }
 

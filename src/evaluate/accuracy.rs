@@ -1,0 +1,241 @@
+//! The accuracy of positions in metres, from a range error of each system ([M-49](crate::models#m-49) and
+//! [M-50](crate::models#m-50)), by the plain path.
+
+use super::fixed::{self, PlainPositions};
+use super::{Evaluator, Setup, leo};
+use crate::dop::{ClockGroup, Clocks, Factor, Geometry};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::frames::LocalFrame;
+use crate::stats::gaussian::length_exceeded_by;
+use crate::stats::{Level, Weighted, weighted_cvar, weighted_mean, weighted_quantile};
+use nalgebra::{Matrix2, Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
+
+/// The share of the errors beyond a 95 % error.
+const BEYOND: f64 = 0.05;
+
+/// The error of the ranges to the satellites of a system: zero-mean, Gaussian and uncorrelated, with the standard
+/// deviation sigma √(a² + b²/sin² E) at the elevation E.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RangeError {
+    /// Standard deviation sigma, metres.
+    pub sigma_m: f64,
+    /// The part a that is the same at all elevations.
+    pub constant: f64,
+    /// The part b that grows towards the horizon.
+    pub by_elevation: f64,
+}
+
+impl RangeError {
+    /// An error that is the same at all elevations.
+    #[must_use]
+    pub fn constant(sigma_m: f64) -> Self {
+        Self {
+            sigma_m,
+            constant: 1.0,
+            by_elevation: 0.0,
+        }
+    }
+
+    /// The weight 1/σ² of a range to a satellite whose elevation has this sine, 1/m²; 0 on the horizon if the error
+    /// grows towards it.
+    #[must_use]
+    pub fn weight(&self, sin_elevation: f64) -> f64 {
+        let [a2, b2] = [self.constant, self.by_elevation].map(|part| part * part);
+        let sigma2 = self.sigma_m * self.sigma_m;
+        if b2 == 0.0 {
+            return 1.0 / (sigma2 * a2);
+        }
+        let sin2 = sin_elevation * sin_elevation;
+        sin2 / (sigma2 * (a2 * sin2 + b2))
+    }
+}
+
+/// The range errors of all systems of a setup.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Accuracy {
+    /// Of the LEO satellites.
+    pub leo: RangeError,
+    /// Of each GNSS, in the order of the setup; a system beyond the list has no part in the position.
+    pub gnss: Vec<RangeError>,
+}
+
+/// Statistics of a standard deviation over the solved samples, weighted by point, metres.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Mean.
+    pub mean: f64,
+    /// 95 % quantile.
+    pub p95: f64,
+    /// Conditional value-at-risk at the level of the metrics.
+    pub cvar: f64,
+}
+
+impl Spread {
+    /// The statistics of a sample; `None` if it is empty. Reorders `sample`.
+    pub(super) fn of(sample: &mut [Weighted], level: Level) -> Option<Self> {
+        Some(Self {
+            mean: weighted_mean(sample)?,
+            p95: weighted_quantile(sample, Level::new(0.95).ok()?)?,
+            cvar: weighted_cvar(sample, level)?,
+        })
+    }
+}
+
+/// The accuracy of positions; a value is `None` if no sample is solved.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AccuracyMetrics {
+    /// Standard deviation of the position.
+    pub sigma_3d_m: Option<Spread>,
+    /// Standard deviation of the horizontal position (DRMS).
+    pub sigma_h_m: Option<Spread>,
+    /// Standard deviation of the height.
+    pub sigma_v_m: Option<Spread>,
+    /// Length that 5 % of the position errors exceed, over all solved samples.
+    pub error95_3d_m: Option<f64>,
+    /// Length that 5 % of the horizontal errors exceed.
+    pub error95_h_m: Option<f64>,
+    /// Length that 5 % of the height errors exceed.
+    pub error95_v_m: Option<f64>,
+}
+
+/// The principal variances of the error of one sample, m², with the weight of its point.
+#[derive(Default)]
+struct Errors {
+    whole: Vec<(f64, [f64; 3])>,
+    horizontal: Vec<(f64, [f64; 2])>,
+    vertical: Vec<(f64, [f64; 1])>,
+}
+
+/// Memory of one sample, bytes.
+pub(super) const SAMPLE_BYTES: usize =
+    size_of::<(f64, [f64; 3])>() + size_of::<(f64, [f64; 2])>() + size_of::<(f64, [f64; 1])>();
+
+impl Evaluator {
+    /// The accuracy of positions with some satellites and the GNSS of the setup, under its range errors; `None` without.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn accuracy(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Option<AccuracyMetrics>, EphemerisError> {
+        let setup = self.setup();
+        let Some(accuracy) = &setup.accuracy else {
+            return Ok(None);
+        };
+        let systems = fixed::systems(setup);
+        let (mut errors, mut clocks) = (Errors::default(), Vec::new());
+        for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
+            leo::positions(setup, ephemeris, elapsed_s, rotation, &mut clocks)?;
+            let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
+            for site in &setup.sites {
+                let sky = Sky::new(setup, accuracy, &site.local, &clocks, &gnss);
+                if let Some(factor) = sky.solve(setup) {
+                    errors.add(&factor, &site.local, site.weight);
+                }
+            }
+        }
+        Ok(Some(errors.metrics(setup.metrics.cvar_level)))
+    }
+}
+
+/// The observations at one point and instant by clock, each with its weight in the DOPs and by its range error.
+struct Sky {
+    dop: Geometry,
+    metres: Geometry,
+}
+
+/// A clock group with the weights of the DOPs, and one with those of the range errors.
+type Pair = [ClockGroup; 2];
+
+impl Sky {
+    fn new(
+        setup: &Setup,
+        accuracy: &Accuracy,
+        site: &LocalFrame,
+        leo: &[PlainPositions],
+        gnss: &[PlainPositions],
+    ) -> Self {
+        let observe = |mask, error: Option<&RangeError>, positions: &PlainPositions| -> Pair {
+            let mut pair = Pair::default();
+            for &position in positions {
+                if let Some(unit) = setup.line_of_sight(mask, site, position) {
+                    let metres = error.map_or(0.0, |error| error.weight(unit.dot(&site.up)));
+                    pair[0].add(unit, setup.observation_weight(site, unit));
+                    pair[1].add(unit, metres);
+                }
+            }
+            pair
+        };
+        let mut geometries = [Geometry::default(); 2];
+        let mut shared = Pair::default();
+        // The order of the sums is that of the plain path, so that the same samples are solved.
+        for (n, positions) in gnss.iter().enumerate() {
+            let pair = observe(setup.gnss_mask, accuracy.gnss.get(n), positions);
+            for (n, group) in pair.into_iter().enumerate() {
+                match setup.clocks {
+                    Clocks::PerSystem => geometries[n].add(&group),
+                    Clocks::Shared => shared[n] += group,
+                }
+            }
+        }
+        for positions in leo {
+            let pair = observe(setup.mask, Some(&accuracy.leo), positions);
+            for (n, mut group) in pair.into_iter().enumerate() {
+                group += std::mem::take(&mut shared[n]);
+                geometries[n].add(&group);
+            }
+        }
+        let [dop, metres] = geometries;
+        Self { dop, metres }
+    }
+
+    /// The factor of the normal matrix by range errors, where the PDOP is solved.
+    fn solve(&self, setup: &Setup) -> Option<Factor> {
+        self.dop.solve(setup.pdop_cap)?;
+        Some(self.metres.solve(f64::INFINITY)?.factor)
+    }
+}
+
+impl Errors {
+    fn add(&mut self, factor: &Factor, site: &LocalFrame, weight: f64) {
+        let [east, north, up] = [site.east, site.north, site.up];
+        let columns = [east, north, up].map(|axis| factor.solve(axis));
+        let element = |axis: &Vector3<f64>, column: usize| axis.dot(&columns[column]);
+        let [ee, en, eu] = [0, 1, 2].map(|column| element(&east, column));
+        let [nn, nu, uu] = [element(&north, 1), element(&north, 2), element(&up, 2)];
+        let whole = Matrix3::new(ee, en, eu, en, nn, nu, eu, nu, uu).symmetric_eigenvalues();
+        let plane = Matrix2::new(ee, en, en, nn).symmetric_eigenvalues();
+        // Rounding may leave a variance of 0 below it.
+        let variance = |value: f64| value.max(0.0);
+        self.whole
+            .push((weight, [whole.x, whole.y, whole.z].map(variance)));
+        self.horizontal
+            .push((weight, [plane.x, plane.y].map(variance)));
+        self.vertical.push((weight, [variance(uu)]));
+    }
+
+    fn metrics(&self, level: Level) -> AccuracyMetrics {
+        AccuracyMetrics {
+            sigma_3d_m: sigma(&self.whole, level),
+            sigma_h_m: sigma(&self.horizontal, level),
+            sigma_v_m: sigma(&self.vertical, level),
+            error95_3d_m: length_exceeded_by(BEYOND, &self.whole),
+            error95_h_m: length_exceeded_by(BEYOND, &self.horizontal),
+            error95_v_m: length_exceeded_by(BEYOND, &self.vertical),
+        }
+    }
+}
+
+fn sigma<const D: usize>(errors: &[(f64, [f64; D])], level: Level) -> Option<Spread> {
+    let one = |&(weight, variances): &(f64, [f64; D])| Weighted {
+        value: variances.iter().sum::<f64>().sqrt(),
+        weight,
+    };
+    let mut sample: Vec<Weighted> = errors.iter().map(one).collect();
+    Spread::of(&mut sample, level)
+}
+
+#[cfg(test)]
+mod tests;

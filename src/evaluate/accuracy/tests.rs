@@ -1,0 +1,204 @@
+use super::*;
+use crate::constellation::Design;
+use crate::constellation::gnss::Preset;
+use crate::earth::Surface;
+use crate::evaluate::testing::{self, design_matrix, observed};
+use crate::ground::Site;
+use crate::time::{Epoch, TimeGrid};
+use nalgebra::{DMatrix, DVector};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+const LEO: RangeError = RangeError {
+    sigma_m: 0.5,
+    constant: 1.0,
+    by_elevation: 0.0,
+};
+const BEIDOU: RangeError = RangeError {
+    sigma_m: 1.5,
+    constant: 0.5,
+    by_elevation: 0.4,
+};
+const GPS: RangeError = RangeError {
+    sigma_m: 2.5,
+    constant: 0.0,
+    by_elevation: 0.6,
+};
+
+/// Three points of unequal weights and seven instants.
+fn study() -> (Setup, Ephemeris) {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let grid = TimeGrid::new(epoch, 7200.0, 1100.0).unwrap();
+    let site = |latitude, weight| Site::new(Surface::Wgs84, latitude, 100.0, weight).unwrap();
+    let sites = vec![site(-30.0, 1.0), site(20.0, 3.0), site(55.0, 2.0)];
+    let setup = testing::setup(grid, sites, 5.0)
+        .with_gnss(vec![Preset::Beidou3.into(), Preset::Gps.into()])
+        .with_accuracy(Accuracy {
+            leo: LEO,
+            gnss: vec![BEIDOU, GPS],
+        });
+    let design: Design = "delta:55:72/8/3@925".parse().unwrap();
+    let ephemeris = Ephemeris::of_design(&design, setup.model, grid).unwrap();
+    (setup, ephemeris)
+}
+
+fn accuracy(setup: &Setup, ephemeris: &Ephemeris) -> AccuracyMetrics {
+    let evaluator = Evaluator::new(setup.clone()).unwrap();
+    evaluator.accuracy(ephemeris).unwrap().unwrap()
+}
+
+/// A standard normal number, by Box and Muller.
+fn normal(random: &mut impl Rng) -> f64 {
+    let mut unit = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let (u, v) = (unit(), unit());
+    (-2.0 * (1.0 - u).ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// Fixes of simulated ranges: the geometry matrix in full, weighted least squares, 1e5 draws in proportion to
+/// the weights of the points. The 95 % error of so many draws is good to 0.3 % (1 sigma).
+#[test]
+fn validate_metres_by_monte_carlo() {
+    const DRAWS: usize = 100_000;
+    let (setup, ephemeris) = study();
+    let ours = accuracy(&setup, &ephemeris);
+    let total: f64 = setup.sites.iter().map(|site| site.weight).sum();
+    let total = total * setup.grid.len() as f64;
+    let mut random = ChaCha8Rng::seed_from_u64(20);
+    let mut errors: [Vec<f64>; 3] = Default::default();
+    let mut sigmas = [0.0; 3];
+    for elapsed_s in setup.grid.iter() {
+        for site in &setup.sites {
+            let found = observed(&setup, &ephemeris, site, elapsed_s);
+            let found: Vec<_> = found.iter().collect();
+            let sigma = |sin: f64, system: usize| {
+                let error = [LEO, BEIDOU, GPS][system];
+                let [a, b] = [error.constant, error.by_elevation / sin];
+                error.sigma_m * a.hypot(b)
+            };
+            let sigma = found.iter().map(|one| sigma(one.unit[2], one.system));
+            let sigma = DVector::from_iterator(found.len(), sigma);
+            let clocks: Vec<usize> = found.iter().map(|one| one.system).collect();
+            let rows = design_matrix(&found, &clocks);
+            let weights = DMatrix::from_diagonal(&sigma.map(|sigma| 1.0 / (sigma * sigma)));
+            let weighted = rows.transpose() * weights;
+            let gain = (&weighted * rows).try_inverse().unwrap() * weighted;
+            let share = site.weight / total;
+            let draws = (share * DRAWS as f64).round() as usize;
+            let mut squares = [0.0; 3];
+            for _ in 0..draws {
+                let noise = sigma.map(|sigma| sigma * normal(&mut random));
+                let fix = &gain * noise;
+                let lengths = [
+                    fix.fixed_rows::<3>(0).norm(),
+                    fix[0].hypot(fix[1]),
+                    fix[2].abs(),
+                ];
+                for (n, length) in lengths.into_iter().enumerate() {
+                    errors[n].push(length);
+                    squares[n] += length * length;
+                }
+            }
+            for n in 0..3 {
+                sigmas[n] += share * (squares[n] / draws as f64).sqrt();
+            }
+        }
+    }
+    let level = Level::new(0.95).unwrap();
+    let quantiles = errors.map(|mut all| crate::stats::quantile(&mut all, level).unwrap());
+    for (ours, drawn) in [
+        (ours.error95_3d_m.unwrap(), quantiles[0]),
+        (ours.error95_h_m.unwrap(), quantiles[1]),
+        (ours.error95_v_m.unwrap(), quantiles[2]),
+        (ours.sigma_3d_m.unwrap().mean, sigmas[0]),
+        (ours.sigma_h_m.unwrap().mean, sigmas[1]),
+        (ours.sigma_v_m.unwrap().mean, sigmas[2]),
+    ] {
+        assert!(
+            (ours / drawn - 1.0).abs() < 0.02,
+            "{ours} m, drawn {drawn} m"
+        );
+    }
+    // The errors of these samples differ enough that a quantile of a sigma is none of an error.
+    assert!(ours.error95_v_m.unwrap() < 1.8 * ours.sigma_v_m.unwrap().p95);
+}
+
+/// With 1 m for every range, the standard deviations are the DOPs in metres.
+#[test]
+fn validate_one_metre_against_the_dops() {
+    let (setup, ephemeris) = study();
+    for clocks in [Clocks::PerSystem, Clocks::Shared] {
+        let metre = RangeError::constant(1.0);
+        let setup = setup.clone().with_clocks(clocks).with_accuracy(Accuracy {
+            leo: metre,
+            gnss: vec![metre; 2],
+        });
+        let ours = accuracy(&setup, &ephemeris);
+        let dops = Evaluator::new(setup).unwrap().dops(&ephemeris).unwrap();
+        for (sigma, dop) in [
+            (ours.sigma_3d_m, dops.pdop),
+            (ours.sigma_h_m, dops.hdop),
+            (ours.sigma_v_m, dops.vdop),
+        ] {
+            let (sigma, dop) = (sigma.unwrap(), dop.unwrap());
+            for (sigma, dop) in [
+                (sigma.mean, dop.mean),
+                (sigma.p95, dop.p95),
+                (sigma.cvar, dop.cvar),
+            ] {
+                // The variances are those of other sums: a few ulp times the condition.
+                assert!((sigma / dop - 1.0).abs() < 1e-12, "{sigma} {dop}");
+            }
+        }
+    }
+}
+
+/// σ² = sigma² (a² + b²/sin² E): at 30° the second part counts four times, on the horizon without end.
+#[test]
+fn validate_weights_of_range_errors() {
+    let error = RangeError {
+        sigma_m: 2.0,
+        constant: 0.5,
+        by_elevation: 0.25,
+    };
+    for (sin, variance) in [(1.0, 4.0 * (0.25 + 0.0625)), (0.5, 4.0 * (0.25 + 0.25))] {
+        assert!((error.weight(sin) * variance - 1.0).abs() < 1e-15);
+    }
+    assert_eq!(error.weight(0.0), 0.0);
+    assert_eq!(RangeError::constant(2.0).weight(0.0), 0.25);
+}
+
+/// Only where the PDOP is solved, and without a sample there is no value.
+#[test]
+fn what_is_not_solved_has_no_accuracy() {
+    let (setup, ephemeris) = study();
+    let least = Evaluator::new(setup.clone())
+        .unwrap()
+        .series(&ephemeris)
+        .unwrap()
+        .pdop[0]
+        .value;
+    let capped = accuracy(&setup.with_pdop_cap(least.next_down()), &ephemeris);
+    assert_eq!(capped, AccuracyMetrics::default());
+}
+
+/// The weights of the DOPs do not move metres, and range errors do not move DOPs.
+#[test]
+fn metres_and_dops_have_their_own_weights() {
+    use crate::dop::ObservationWeights;
+    let (setup, ephemeris) = study();
+    let sine = setup
+        .clone()
+        .with_observation_weights(ObservationWeights::SineElevation);
+    assert_eq!(accuracy(&sine, &ephemeris), accuracy(&setup, &ephemeris));
+    let metrics = |setup: Setup| {
+        let metrics = Evaluator::new(setup)
+            .unwrap()
+            .evaluate_ephemeris(&ephemeris);
+        metrics.unwrap().mean_pdop
+    };
+    let without = Setup {
+        accuracy: None,
+        ..setup.clone()
+    };
+    assert_eq!(metrics(setup), metrics(without));
+}
