@@ -11,7 +11,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use navwalker::exchange::export::{Choices, Product};
 use navwalker::exchange::import::Fleet;
-use navwalker::formats::ccsds::{oem, omm};
+use navwalker::formats::ccsds::{oem, omm, opm};
 use navwalker::orbit::Model;
 use std::io::Write;
 
@@ -26,13 +26,14 @@ const ELEMENTS: &str = "delta:55:1000/20/1@925";
 const STATES: &str = "delta:55:24/6/1@925";
 const SAMPLES: usize = 1440;
 
-const CASES: [&str; 16] = [
+const CASES: [&str; 17] = [
     "tle",
     "omm-kvn",
     "omm-xml",
     "omm-json",
     "omm-csv",
     "opm",
+    "opm-xml",
     "yuma",
     "sem",
     "elements-csv",
@@ -72,6 +73,13 @@ fn files(name: &str) -> Vec<(String, Vec<u8>)> {
         "omm-json" => omm(omm::OmmSyntax::Json),
         "omm-csv" => omm(omm::OmmSyntax::Csv),
         "opm" => plain(ELEMENTS, Product::Opm),
+        "opm-xml" => {
+            let choices = Choices {
+                opm: opm::OpmSyntax::Xml,
+                ..Choices::default()
+            };
+            exported(ELEMENTS, Product::Opm, choices)
+        }
         "yuma" => vec![("a.alm".to_owned(), yuma().into_bytes())],
         "sem" => vec![("a.al3".to_owned(), sem().into_bytes())],
         "elements-csv" | "states-csv" => {

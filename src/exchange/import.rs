@@ -234,6 +234,12 @@ impl Fleet {
     }
 
     fn of_opm(message: opm::Opm) -> Result<Self, ReadFleetError> {
+        if !message.is_about_earth() {
+            return Err(ReadFleetError::Trajectory(TrajectoryError::Center {
+                name: printable(&message.object_name).into_owned(),
+                center: printable(&message.center_name).into_owned(),
+            }));
+        }
         let system = time_system_of_name(&message.time_system).map_err(TrajectoryError::Name)?;
         match message.mean_elements() {
             Some(elements) => Ok(Self::Elements(vec![ElementsRow {
@@ -254,7 +260,7 @@ impl Fleet {
         let given = file.ids.iter().zip(states);
         for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
             let name = file.name_of(id).unwrap_or(id);
-            let runs = file.into_runs(samples).into_iter();
+            let runs = file.split_at_gaps(samples).into_iter();
             let arcs = runs.map(|run| sp3_arc(frame, run));
             let arcs = arcs.collect::<Option<Vec<Arc>>>();
             trajectories.push(Trajectory {

@@ -370,7 +370,7 @@ impl Sp3 {
     }
 
     /// The same of samples that are not needed otherwise: those without a gap stay where they are in memory.
-    pub(crate) fn into_runs(&self, samples: Vec<Sp3Sample>) -> Vec<Vec<Sp3Sample>> {
+    pub(crate) fn split_at_gaps(&self, samples: Vec<Sp3Sample>) -> Vec<Vec<Sp3Sample>> {
         let runs: Vec<usize> = self.runs(&samples).map(<[Sp3Sample]>::len).collect();
         if runs.len() == 1 {
             return vec![samples];

@@ -110,6 +110,20 @@ fn what_is_valid_and_not_read_is_found_by_lint() {
         (Format::OpmXml, foreign_xml, "<EPOCH"),
         (
             Format::Opm,
+            changed(
+                &opm,
+                "MEAN_SEMI_MAJOR_AXIS_KM = 7",
+                "MEAN_SEMI_MAJOR_AXIS_KM = x",
+            ),
+            "EPOCH",
+        ),
+        (
+            Format::Opm,
+            changed(&opm, "CENTER_NAME = EARTH", "CENTER_NAME = MARS"),
+            "CENTER_NAME",
+        ),
+        (
+            Format::Opm,
             changed(&opm, "TIME_SYSTEM = UTC", "TIME_SYSTEM = MET"),
             "TIME_SYSTEM",
         ),

@@ -97,7 +97,8 @@ impl OpenMessage {
                 let (message, unsupported) = message.end(place, findings)?;
                 match unsupported {
                     Some(_) if is_combined => {
-                        let name = format!("opm of {} without mean elements", message.object_name);
+                        let name =
+                            format!("opm of {} that cannot be propagated", message.object_name);
                         findings.leave_out(place, "message", &name);
                         return None;
                     }

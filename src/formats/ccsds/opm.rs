@@ -181,6 +181,12 @@ impl Opm {
         ]
     }
 
+    /// Whether the Earth is its centre.
+    #[must_use]
+    pub fn is_about_earth(&self) -> bool {
+        self.center_name.eq_ignore_ascii_case("EARTH")
+    }
+
     /// The mean elements of secular J2 in TEME at the epoch, when the message has them all.
     #[must_use]
     pub fn mean_elements(&self) -> Option<MeanElements> {

@@ -220,7 +220,7 @@ fn messages_of_several_kinds_are_read_or_named() {
     let read = Fleet::read(mixed.as_bytes(), None, None).unwrap();
     assert_eq!(
         read.left_out.to_string(),
-        "left out: 2 (message: opm of WITHOUT without mean elements, tdm)"
+        "left out: 2 (message: opm of WITHOUT that cannot be propagated, tdm)"
     );
     assert_eq!(read.fleet.labels(), ["NW-P01-S01", "OTHER", "WITH"]);
     assert_eq!(

@@ -1,12 +1,13 @@
 //! Reads messages strictly, line by line.
 
-use super::{Keplerian, Opm, USER_DEFINED, VERSION};
+use super::{Keplerian, MEAN, Opm, USER_DEFINED, VERSION};
 use crate::formats::ReadError;
 use crate::formats::ccsds::keywords::{COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named};
 use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, Pair, item, lines};
 use crate::formats::text::finding::FindingList;
-use crate::formats::trajectory::time_system_of_name;
+use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::State;
+use crate::orbit::earth_orbit::check_state;
 use crate::orbit::kepler::eccentric_anomaly;
 use crate::units::wrap_360;
 use nalgebra::Vector3;
@@ -158,7 +159,7 @@ pub(super) fn message(
     let position = vector(["X", "Y", "Z"]);
     let velocity = vector(["X_DOT", "Y_DOT", "Z_DOT"]);
     let keplerian = keplerian(block, findings);
-    Some(Opm {
+    let message = Opm {
         header: header?,
         object_name: block.text_or_unknown("OBJECT_NAME"),
         object_id: block.text_or_unknown("OBJECT_ID"),
@@ -169,18 +170,42 @@ pub(super) fn message(
         state: State::new(position?, velocity?),
         keplerian,
         user_defined,
-    })
+    };
+    check_orbit(&message, block.place("X"), findings);
+    Some(message)
+}
+
+/// Refuses a state that is no Earth orbit, in a frame that is known.
+fn check_orbit(message: &Opm, place: (usize, usize), findings: &mut FindingList) {
+    let frame = frame_of_name(&message.ref_frame);
+    if let (true, Ok(frame)) = (message.is_about_earth(), frame)
+        && let Err(fault) = check_state(frame, &message.state)
+    {
+        let text = format!("{} at {}: {fault}", message.object_name, message.epoch);
+        findings.error(place, "implausible-state", text);
+    }
 }
 
 /// Why a valid message cannot be propagated, and the place of the keyword that is the reason.
 pub(super) fn unsupported(message: &Opm, block: &KvnBlock) -> Option<((usize, usize), String)> {
+    if !message.is_about_earth() {
+        let center = &message.center_name;
+        let reason =
+            format!("CENTER_NAME: {center} is valid, but only orbits about the Earth are read");
+        return Some((block.place("CENTER_NAME"), reason));
+    }
     if let Err(unknown) = time_system_of_name(&message.time_system) {
         let reason = format!("TIME_SYSTEM: {unknown}");
         return Some((block.place("TIME_SYSTEM"), reason));
     }
     message.mean_elements().is_none().then(|| {
-        let reason = "EPOCH: a state at one instant is valid, but only messages with mean elements, such as \
-                      USER_DEFINED_MEAN_SEMI_MAJOR_AXIS_KM, can be propagated";
+        let is_mean = |(key, _): &(String, String)| MEAN.contains(&key.as_str());
+        let reason = match message.user_defined.iter().any(is_mean) {
+            true => "EPOCH: the mean elements USER_DEFINED_MEAN_... are not all there, numbers and in range, and a \
+                     state at one instant cannot be propagated",
+            false => "EPOCH: a state at one instant is valid, but only messages with mean elements, such as \
+                      USER_DEFINED_MEAN_SEMI_MAJOR_AXIS_KM, can be propagated",
+        };
         (block.place("EPOCH"), reason.to_owned())
     })
 }

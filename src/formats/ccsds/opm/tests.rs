@@ -284,6 +284,12 @@ fn broken_rules_are_named_with_their_place() {
         ("MAN_DV_2 = 0.001\n", "", (30, 1, "ccsds-missing")),
         ("MAN_DV_2 =", "MAN_DV_3 =", (30, 1, "ccsds-repeated")),
         ("= 2.0", "= 5.0", (1, 18, "ccsds-version")),
+        // Metres, which CCSDS does not have.
+        (
+            "X = 6524.834 [km]",
+            "X = 6524834.0",
+            (11, 5, "implausible-state"),
+        ),
         (
             "EPOCH = 2025-01-01T00",
             "EPOCH = 2025-01-01 00",
