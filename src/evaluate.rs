@@ -4,13 +4,16 @@
 //! rotation of every instant and the geometry of the GNSS. It is immutable and can be shared between
 //! threads; the result of a design does not depend on the thread.
 
+mod counts;
 mod dops;
 mod fixed;
 mod kernel;
 mod metrics;
 mod plain;
 mod series;
+mod weights;
 
+pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
@@ -30,6 +33,7 @@ use kernel::Kernel;
 use metrics::Evaluated;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
+use weights::WholeWeights;
 
 /// Everything that an evaluation depends on, except the design.
 ///
@@ -170,11 +174,9 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only equal weights and a mask that does not depend on azimuth.
+    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth.
     fn suits_kernel(&self) -> bool {
-        self.has_equal_weights()
-            && self.skyline.is_none()
-            && self.observation_weights == ObservationWeights::Unit
+        self.skyline.is_none() && self.observation_weights == ObservationWeights::Unit
     }
 
     /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.
@@ -203,6 +205,7 @@ impl Setup {
 pub struct Evaluator {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
+    weights: WholeWeights,
     /// For the setups that it supports.
     kernel: Option<Kernel>,
     /// For the plain path, created on first use.
@@ -234,14 +237,21 @@ impl Evaluator {
             .iter()
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
-        let kernel = setup
-            .suits_kernel()
-            .then(|| Kernel::new(Arc::clone(&setup), Arc::clone(&rotations), instructions))
-            .transpose()?;
+        let weights = WholeWeights::new(&setup);
+        let new = || {
+            Kernel::new(
+                Arc::clone(&setup),
+                &weights,
+                Arc::clone(&rotations),
+                instructions,
+            )
+        };
+        let kernel = setup.suits_kernel().then(new).transpose()?;
         let fixed = OnceLock::new();
         Ok(Self {
             setup,
             rotations,
+            weights,
             kernel,
             fixed,
         })
@@ -307,7 +317,14 @@ impl Evaluator {
 
     fn metrics(&self, evaluated: &Evaluated, ephemeris: &Ephemeris) -> Metrics {
         let satellites = ephemeris.satellites().len();
-        Metrics::new(evaluated, self.setup.metrics, satellites)
+        let step_s = self.setup.grid.step_s();
+        Metrics::new(evaluated, self.setup.metrics, satellites, step_s)
+    }
+
+    /// Satellites of all GNSS.
+    fn gnss_count(&self) -> usize {
+        let systems = fixed::systems(&self.setup);
+        systems.iter().map(|system| system.satellites().len()).sum()
     }
 }
 

@@ -335,6 +335,7 @@ impl Problem for DesignProblem<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::Coverage;
 
     fn space() -> DesignSpace {
         DesignSpace {
@@ -398,6 +399,13 @@ mod tests {
             availability: 0.0,
             j_pos: None,
             j_cost: None,
+            least_visible: 0,
+            coverage: Coverage::default(),
+            mean_gnss_visible: 0.0,
+            mean_total_visible: 0.0,
+            coverage_total: Coverage::default(),
+            longest_outage_s: 0.0,
+            longest_outage_cut: false,
         };
         // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
         let value = Quantity::LaunchCost.value(&design, &metrics, &cost);

@@ -119,10 +119,10 @@ fn groups(
     leo: &PlainPositions,
     gnss: &[PlainPositions],
 ) -> Vec<ClockGroup> {
-    let mut leo = plain::observe(setup, setup.mask, site, leo);
+    let (_, mut leo) = plain::observe(setup, setup.mask, site, leo);
     let systems = gnss
         .iter()
-        .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions));
+        .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions).1);
     match setup.clocks {
         Clocks::PerSystem => systems.chain([leo]).collect(),
         Clocks::Shared => {

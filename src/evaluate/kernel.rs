@@ -46,17 +46,19 @@ mod propagation;
 mod refine;
 mod sample;
 mod settle;
+mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
 
 use super::Setup;
 use super::metrics::Evaluated;
+use super::weights::WholeWeights;
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use fixed::{Fixed, FixedTiles, SampleInstant};
+use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
@@ -66,6 +68,7 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, Workspace};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
+use tally::{Tally, TallySample};
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -102,7 +105,8 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES)
+    let tallies = setup.sites.len().div_ceil(LANES) * Tally::TILE_BYTES;
+    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
 }
 
 /// Samples recomputed in f64.
@@ -117,6 +121,16 @@ pub struct Rechecks {
     pub near_limit: u64,
 }
 
+impl Rechecks {
+    fn merged(self, other: Self) -> Self {
+        Self {
+            near_mask: self.near_mask + other.near_mask,
+            large_pdop: self.large_pdop + other.large_pdop,
+            near_limit: self.near_limit + other.near_limit,
+        }
+    }
+}
+
 /// The part of the kernel that is the same for all designs.
 pub(super) struct Kernel {
     setup: Arc<Setup>,
@@ -126,46 +140,34 @@ pub(super) struct Kernel {
     instructions: InstructionSet,
     places: Places,
     kept_values: usize,
+    /// Weight of all samples.
+    total: u64,
 }
 
-/// Counts of one piece of work.
-#[derive(Debug, Clone, Copy, Default)]
-struct Tallies {
-    visible: u64,
-    available: u64,
-    rechecks: Rechecks,
-}
-
-impl Tallies {
-    fn merged(self, other: Self) -> Self {
-        Self {
-            visible: self.visible + other.visible,
-            available: self.available + other.available,
-            rechecks: Rechecks {
-                near_mask: self.rechecks.near_mask + other.rechecks.near_mask,
-                large_pdop: self.rechecks.large_pdop + other.rechecks.large_pdop,
-                near_limit: self.rechecks.near_limit + other.rechecks.near_limit,
-            },
-        }
-    }
+/// One instant that is evaluated.
+struct Evaluating<'a> {
+    outcome: &'a SampleOutcome,
+    fixed: FixedSample<'a>,
 }
 
 impl Kernel {
     pub(super) fn new(
         setup: Arc<Setup>,
+        weights: &WholeWeights,
         rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
-        Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
+        Self::keeping_at_most(Keep::default(), setup, weights, rotations, instructions)
     }
 
     fn keeping_at_most(
         keep: Keep,
         setup: Arc<Setup>,
+        weights: &WholeWeights,
         rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
-        let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
+        let tiles = Tiles::new(&setup.sites, weights, setup.mask, setup.gnss_mask);
         let fixed = Fixed::new(&setup, &tiles, &rotations, instructions, keep.fixed_bytes)?;
         let scene = SampleContext {
             tiles,
@@ -189,6 +191,7 @@ impl Kernel {
             setup,
             rotations,
             kept_values: keep.values,
+            total: weights.total(),
         })
     }
 
@@ -214,16 +217,18 @@ impl Kernel {
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
-        let mut tallies = Tallies::default();
+        let mut tally = self.tally(propagation);
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(propagation, chunk, self.scene.limits, |tiles| {
-                values.extend_from_slice(tiles);
+            let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
+                values.extend_from_slice(&instant.outcome.pdop);
+                self.tally_instant(&instant, &mut tally);
             })?;
-            tallies = tallies.merged(part);
+            tally.rechecks = tally.rechecks.merged(rechecks);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
+        let level = self.setup.metrics.cvar_level;
+        let summary = match RankSearch::new(&counts, tally.solved(), level) {
             Some(search) => {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
@@ -233,8 +238,7 @@ impl Kernel {
             }
             None => None,
         };
-        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
-        Ok((evaluated, tallies.rechecks))
+        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
     }
 
     /// Recomputes the order statistics in f64.
@@ -256,7 +260,8 @@ impl Kernel {
             value: *statistics[number],
         });
         let windows: [_; 4] = self.instructions.run(Surround {
-            tiles: values,
+            tiles: &self.scene.tiles.tiles,
+            values,
             ranked,
         });
         let exact = Limits {
@@ -264,12 +269,16 @@ impl Kernel {
             ..self.scene.limits
         };
         let tiles = self.scene.tiles.tiles.len();
+        let weight = |n: usize, lane: usize| self.scene.tiles.tiles[n].weights.whole.0[lane];
         for (statistic, window) in statistics.into_iter().zip(&windows) {
             let mut again = Vec::with_capacity(window.places.len());
             for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
                 let k = together[0].0 / tiles;
-                self.run(propagation, k..k + 1, exact, |sample| {
-                    again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
+                self.run(propagation, k..k + 1, exact, |instant| {
+                    again.extend(together.iter().map(|&(n, lane)| {
+                        let n = n % tiles;
+                        (instant.outcome.pdop[n].0[lane], weight(n, lane))
+                    }));
                 })?;
             }
             if let Some(value) = window.pick(again) {
@@ -285,52 +294,55 @@ impl Kernel {
         propagation: &Propagation<'_>,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
-        let (counts, parts) = self.pass(
+        let ((counts, mut tally), parts) = self.pass(
             propagation,
             &chunks,
-            || Counts::new(self.places),
-            |tiles, counts| self.count(tiles, counts),
+            || (Counts::new(self.places), self.tally(propagation)),
+            |instant, (counts, tally)| {
+                self.tally_instant(instant, tally);
+                self.count(&instant.outcome.pdop, counts)
+            },
         )?;
+        for (rechecks, _) in &parts {
+            tally.rechecks = tally.rechecks.merged(*rechecks);
+        }
         // The chunks stay in order, so the sum does not depend on the number of threads.
-        let tallies = parts
-            .iter()
-            .fold(Tallies::default(), |all, part| all.merged(part.0));
         let sum = parts.iter().map(|part| part.1).sum();
-        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
+        let level = self.setup.metrics.cvar_level;
+        let summary = match RankSearch::new(&counts, tally.solved(), level) {
             Some(search) => {
                 let (found, parts) =
-                    self.pass(propagation, &chunks, Found::new, |tiles, found| {
-                        self.find(tiles, &search, found)
+                    self.pass(propagation, &chunks, Found::new, |instant, found| {
+                        self.find(&instant.outcome.pdop, &search, found)
                     })?;
                 let tail = parts.iter().map(|part| part.1).sum();
                 Some(search.summary(&found, sum, tail))
             }
             None => None,
         };
-        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
-        Ok((evaluated, tallies.rechecks))
+        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
     }
 
-    /// One pass over the samples on all threads. `note` adds the values of a sample to an accumulator of
-    /// integers, in any order, and returns a sum, which is stored for each chunk.
+    /// One pass over the samples on all threads. `note` adds an instant to an accumulator of integers, which
+    /// are merged in the order of time, and returns a sum, which is stored for each chunk.
     fn pass<A: Merge + Send>(
         &self,
         propagation: &Propagation<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
-        note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
-    ) -> Result<(A, Vec<(Tallies, f64)>), EphemerisError> {
+        note: impl Fn(&Evaluating<'_>, &mut A) -> f64 + Sync,
+    ) -> Result<(A, Vec<(Rechecks, f64)>), EphemerisError> {
         chunks
             .par_iter()
             .try_fold(
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
                     let mut sum = 0.0;
-                    let tallies =
-                        self.run(propagation, chunk.clone(), self.scene.limits, |tiles| {
-                            sum += note(tiles, &mut all);
-                        })?;
-                    parts.push((tallies, sum));
+                    let limits = self.scene.limits;
+                    let rechecks = self.run(propagation, chunk.clone(), limits, |instant| {
+                        sum += note(&instant, &mut all);
+                    })?;
+                    parts.push((rechecks, sum));
                     Ok((all, parts))
                 },
             )
@@ -343,13 +355,36 @@ impl Kernel {
             )
     }
 
-    fn count(&self, tiles: &[Lanes<f32>], counts: &mut Counts) -> f64 {
-        self.instructions.run(Count { tiles, counts })
+    /// An empty tally of some satellites.
+    fn tally(&self, propagation: &Propagation<'_>) -> Tally {
+        let leo = propagation.ephemeris.satellites().len();
+        let systems = self.fixed.systems.iter();
+        let gnss = systems.map(|system| system.satellites().len()).sum();
+        Tally::new(self.scene.tiles.tiles.len(), leo, gnss)
     }
 
-    fn find(&self, tiles: &[Lanes<f32>], search: &RankSearch, found: &mut Found) -> f64 {
+    fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut Tally) {
+        self.instructions.run(TallySample {
+            tiles: &self.scene.tiles.tiles,
+            outcome: instant.outcome,
+            fixed: instant.fixed,
+            available: self.scene.limits.available_in_single(),
+            to,
+        });
+    }
+
+    fn count(&self, values: &[Lanes<f32>], counts: &mut Counts) -> f64 {
+        self.instructions.run(Count {
+            tiles: &self.scene.tiles.tiles,
+            values,
+            counts,
+        })
+    }
+
+    fn find(&self, values: &[Lanes<f32>], search: &RankSearch, found: &mut Found) -> f64 {
         self.instructions.run(Find {
-            tiles,
+            tiles: &self.scene.tiles.tiles,
+            values,
             search,
             found,
         })
@@ -364,18 +399,18 @@ impl Kernel {
             .collect()
     }
 
-    /// Evaluates some samples and passes the values of each to `take`.
+    /// Evaluates some instants and passes each to `take`.
     fn run(
         &self,
         propagation: &Propagation<'_>,
         chunk: Range<usize>,
         limits: Limits,
-        mut take: impl FnMut(&[Lanes<f32>]),
-    ) -> Result<Tallies, EphemerisError> {
+        mut take: impl FnMut(Evaluating<'_>),
+    ) -> Result<Rechecks, EphemerisError> {
         let mut work = Workspace::new(propagation.ephemeris.satellites().len());
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
-        let mut tallies = Tallies::default();
+        let mut rechecks = Rechecks::default();
         for k in chunk {
             let elapsed_s = self.setup.grid.elapsed_s(k);
             let rotation = self.rotations[k];
@@ -399,33 +434,32 @@ impl Kernel {
             });
             for undecided in &outcome.doubts {
                 match undecided.doubt {
-                    Doubt::Mask => tallies.rechecks.near_mask += 1,
-                    Doubt::Geometry => tallies.rechecks.near_limit += 1,
+                    Doubt::Mask => rechecks.near_mask += 1,
+                    Doubt::Geometry => rechecks.near_limit += 1,
                 }
             }
-            tallies.rechecks.large_pdop += outcome.doubled;
+            rechecks.large_pdop += outcome.doubled;
             let settling = Settling::new(&self.setup, &self.scene, instant, fixed);
             settling.settle(propagation.ephemeris, &self.fixed.systems, &mut outcome)?;
-            tallies.visible += outcome.visible;
-            tallies.available += outcome.available;
-            take(&outcome.pdop);
+            take(Evaluating {
+                outcome: &outcome,
+                fixed,
+            });
         }
-        Ok(tallies)
+        Ok(rechecks)
     }
-}
 
-fn evaluated(
-    setup: &Setup,
-    tallies: Tallies,
-    counts: &Counts,
-    summary: Option<Summary>,
-) -> Evaluated {
-    let samples = setup.sample_count() as f64;
-    Evaluated {
-        mean_visible: tallies.visible as f64 / samples,
-        solved: counts.solved() as f64 / samples,
-        available: tallies.available as f64 / samples,
-        summary,
+    fn evaluated(&self, tally: &Tally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+        let share = |weight: u64| weight as f64 / self.total as f64;
+        let [leo, all] = tally.views();
+        Evaluated {
+            leo,
+            all,
+            solved: share(counts.solved()),
+            available: share(tally.available()),
+            longest_outage: tally.longest_outage(&self.scene.tiles.tiles),
+            summary,
+        }
     }
 }
 

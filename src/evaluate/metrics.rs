@@ -1,5 +1,6 @@
 //! The figures of merit of a constellation over points and times.
 
+use super::counts::{Coverage, LongestOutage, Views};
 use crate::stats::{Level, Summary};
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +26,7 @@ impl Default for MetricOptions {
     }
 }
 
-/// The metrics of a constellation. Every one is without unit.
+/// The metrics of a constellation, without unit unless the name has one.
 ///
 /// `mean_visible` is over all samples; the statistics of PDOP and `j_pos` are over the solved
 /// samples, and `None` if there are none. Every point counts with its weight in all of them:
@@ -56,23 +57,47 @@ pub struct Metrics {
     pub j_pos: Option<f64>,
     /// Satellites / mean visible (equation 9); `None` if none is ever visible.
     pub j_cost: Option<f64>,
+    /// Least number of visible LEO satellites in any sample, whatever the weight of its point.
+    pub least_visible: u32,
+    /// Fraction of samples with at least n visible LEO satellites.
+    pub coverage: Coverage,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
+    /// Fraction of samples with at least n visible satellites, LEO and GNSS.
+    pub coverage_total: Coverage,
+    /// Longest outage of any point, seconds: samples in a row that are unsolved or above the availability
+    /// threshold, times the step. What is shorter than a step may be missed.
+    pub longest_outage_s: f64,
+    /// Whether the start or the end of the span cuts an outage of that length, which may be longer.
+    pub longest_outage_cut: bool,
 }
 
 /// Summary of the samples of an evaluation, weighted by point.
 pub(super) struct Evaluated {
-    /// Mean visible LEO satellites.
-    pub(super) mean_visible: f64,
+    /// LEO satellites in view.
+    pub(super) leo: Views,
+    /// LEO and GNSS satellites in view.
+    pub(super) all: Views,
     /// Fraction of samples that are solved.
     pub(super) solved: f64,
     /// Fraction of samples that are solved with PDOP at most the availability threshold.
     pub(super) available: f64,
+    pub(super) longest_outage: LongestOutage,
     /// Statistics of the PDOP of the solved samples.
     pub(super) summary: Option<Summary>,
 }
 
 impl Metrics {
-    pub(super) fn new(evaluated: &Evaluated, options: MetricOptions, satellites: usize) -> Self {
-        let mean_visible = evaluated.mean_visible;
+    pub(super) fn new(
+        evaluated: &Evaluated,
+        options: MetricOptions,
+        satellites: usize,
+        step_s: f64,
+    ) -> Self {
+        let (mean_visible, mean_total_visible) = (evaluated.leo.mean(), evaluated.all.mean());
+        let longest_outage = evaluated.longest_outage;
         let summary = evaluated.summary;
         Self {
             mean_visible,
@@ -87,6 +112,13 @@ impl Metrics {
             availability: evaluated.available,
             j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
             j_cost: (mean_visible > 0.0).then(|| satellites as f64 / mean_visible),
+            least_visible: evaluated.leo.least(),
+            coverage: evaluated.leo.coverage(),
+            mean_gnss_visible: evaluated.all.mean_beyond(&evaluated.leo),
+            mean_total_visible,
+            coverage_total: evaluated.all.coverage(),
+            longest_outage_s: f64::from(longest_outage.samples) * step_s,
+            longest_outage_cut: longest_outage.is_cut,
         }
     }
 }

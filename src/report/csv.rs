@@ -1,10 +1,10 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::evaluated::ConstellationEntry;
-use crate::evaluate::{DopStatistics, Metrics};
+use crate::evaluate::DopStatistics;
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
-use crate::run::columns::{cells, fields, optional};
+use crate::run::columns::{cells, fields, metric_columns, optional};
 use crate::run::tables::text;
 use crate::search::Quantity;
 use crate::stats::Summary;
@@ -29,7 +29,7 @@ impl ConstellationColumns {
     /// files.
     #[must_use]
     pub fn of(entry: &ConstellationEntry, has_files: bool) -> Self {
-        let known = [DesignSummary::columns(), fields::<Metrics>()].concat();
+        let known = [DesignSummary::columns(), &metric_columns()].concat();
         let quantities = entry.evaluated.quantities.iter().map(|(one, _)| *one);
         let dops = entry.evaluated.dops.iter().flat_map(DopStatistics::named);
         Self {
@@ -57,7 +57,7 @@ impl ConstellationColumns {
         if self.has_files {
             names.extend(own(&["files", "format", "content"]));
         }
-        names.extend(own(fields::<Metrics>()));
+        names.extend(own(&metric_columns()));
         names.extend(self.quantities.iter().map(|one| column(&one.to_string())));
         for dop in &self.dops {
             names.extend(fields::<Summary>().iter().map(|one| format!("{dop}_{one}")));
@@ -87,7 +87,7 @@ impl ConstellationColumns {
             row.extend([entry.files.join("+"), format, content]);
         }
         let evaluated = &entry.evaluated;
-        row.extend(cells(&evaluated.metrics, fields::<Metrics>())?);
+        row.extend(cells(&evaluated.metrics, &metric_columns())?);
         for quantity in &self.quantities {
             row.push(optional(evaluated.value(*quantity)));
         }

@@ -1,8 +1,7 @@
 //! The tables of a run, with the unit of each column in its header.
 
-use super::columns::{cells, fields, optional};
+use super::columns::{cells, fields, metric_columns, optional};
 use super::{DesignSummary, FrontMember};
-use crate::evaluate::Metrics;
 use crate::optimize::Record;
 use csv::Writer;
 use std::io;
@@ -24,7 +23,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         .collect();
     let header = columns.iter().flat_map(|name| match *name {
         "design" => DesignSummary::columns().iter().map(|n| column(n)).collect(),
-        "metrics" => fields::<Metrics>().iter().map(|n| column(n)).collect(),
+        "metrics" => metric_columns().into_iter().map(column).collect(),
         "objectives" => further.iter().map(|name| column(name)).collect(),
         "constraints" => Vec::new(),
         _ => vec![column(name)],
@@ -35,7 +34,7 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         for name in &columns {
             row.extend(match *name {
                 "design" => cells(&member.design, DesignSummary::columns())?,
-                "metrics" => cells(&member.metrics, fields::<Metrics>())?,
+                "metrics" => cells(&member.metrics, &metric_columns())?,
                 "objectives" => {
                     let values = further.iter().map(|name| member.quantity(name));
                     values.map(optional).collect()
@@ -56,7 +55,7 @@ fn column(name: &str) -> String {
 
 /// Objectives and constrained quantities that are not columns of the design or the metrics.
 fn further_quantities(front: &[FrontMember]) -> Vec<String> {
-    let columns = [DesignSummary::columns(), fields::<Metrics>()].concat();
+    let columns = [DesignSummary::columns(), &metric_columns()].concat();
     let first = front.first().into_iter();
     let names = first.flat_map(|member| {
         let objectives = member.objectives.iter().map(|(name, _)| name);

@@ -29,6 +29,7 @@ pub(super) struct FixedTiles {
     normals: Vec<Normal>,
     remainders: Vec<Normal>,
     surpluses: Vec<[u16; LANES]>,
+    visible: Vec<[u16; LANES]>,
     /// Empty if all systems have their own clocks.
     shared: Vec<SharedClock>,
 }
@@ -40,13 +41,14 @@ impl FixedTiles {
             Clocks::PerSystem => 0,
             Clocks::Shared => size_of::<SharedClock>(),
         };
-        2 * size_of::<Normal>() + size_of::<[u16; LANES]>() + shared
+        2 * size_of::<Normal>() + 2 * size_of::<[u16; LANES]>() + shared
     }
 
     fn clear(&mut self) {
         self.normals.clear();
         self.remainders.clear();
         self.surpluses.clear();
+        self.visible.clear();
         self.shared.clear();
     }
 
@@ -54,6 +56,7 @@ impl FixedTiles {
         self.normals.reserve_exact(count);
         self.remainders.reserve_exact(count);
         self.surpluses.reserve_exact(count);
+        self.visible.reserve_exact(count);
     }
 
     #[inline(always)]
@@ -64,6 +67,7 @@ impl FixedTiles {
                 normal,
                 remainder: &self.remainders[n],
                 surplus: &self.surpluses[n],
+                visible: &self.visible[n],
                 shared: self.shared.get(n),
             })
     }
@@ -162,7 +166,7 @@ impl Fixed {
     #[inline(always)]
     fn push_tile(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
-        let mut surplus = [0_u16; LANES];
+        let (mut surplus, mut visible) = ([0_u16; LANES], [0_u16; LANES]);
         let together = match self.clocks {
             Clocks::PerSystem => 1,
             Clocks::Shared => systems.len(),
@@ -173,11 +177,13 @@ impl Fixed {
                 system.add_to(&mut sums, tile, &self.mask);
             }
             add_group(&sums, &mut normal);
+            for (visible, &seen) in visible.iter_mut().zip(&sums.count.0) {
+                *visible = visible.saturating_add(at_most_u16(seen));
+            }
             match self.clocks {
                 Clocks::PerSystem => {
                     for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
-                        let spare = u16::try_from(seen.saturating_sub(1)).unwrap_or(u16::MAX);
-                        *surplus = surplus.saturating_add(spare);
+                        *surplus = surplus.saturating_add(at_most_u16(seen.saturating_sub(1)));
                     }
                 }
                 Clocks::Shared => to.shared.push(shared_clock(&sums)),
@@ -188,7 +194,13 @@ impl Fixed {
         to.remainders
             .push(std::array::from_fn(|n| remainder(&normal[n])));
         to.surpluses.push(surplus);
+        to.visible.push(visible);
     }
+}
+
+#[inline(always)]
+fn at_most_u16(count: u32) -> u16 {
+    u16::try_from(count).unwrap_or(u16::MAX)
 }
 
 /// One system at one sample.

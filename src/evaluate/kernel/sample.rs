@@ -45,8 +45,25 @@ impl Limits {
 
     #[inline(always)]
     fn holds_in_single(&self, pdop: f32) -> bool {
-        let available = self.available as f32;
+        let available = self.available_in_single();
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
+    }
+
+    /// The threshold of availability with which stored values are compared; [`UNSOLVED`] is above it.
+    #[inline(always)]
+    pub(super) fn available_in_single(&self) -> f32 {
+        (self.available as f32).min(f32::MAX)
+    }
+
+    /// A solved value as it is stored, on the same side of the threshold of availability.
+    #[inline(always)]
+    pub(super) fn stored(&self, pdop: f64) -> f32 {
+        let (value, available) = (pdop as f32, self.available_in_single());
+        if pdop > self.available && value <= available {
+            available.next_up()
+        } else {
+            value
+        }
     }
 
     /// Whether the sums of the lanes, or others of the same accuracy, decide a sample with this finite
@@ -122,10 +139,8 @@ pub(super) struct Undecided {
 pub(super) struct SampleOutcome {
     /// PDOP of each slot, tile by tile; [`UNSOLVED`] if there is none.
     pub(super) pdop: Vec<Lanes<f32>>,
-    /// Visible satellites, summed over the points without doubt.
-    pub(super) visible: u64,
-    /// Points without doubt that are available.
-    pub(super) available: u64,
+    /// Visible satellites of each slot.
+    pub(super) visible: Vec<Lanes<u32>>,
     /// Points whose PDOP was recomputed in f64.
     pub(super) doubled: u64,
     /// Points to recompute.
@@ -136,8 +151,7 @@ impl SampleOutcome {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
             pdop: vec![Lanes([UNSOLVED; LANES]); tiles],
-            visible: 0,
-            available: 0,
+            visible: vec![Lanes([0; LANES]); tiles],
             doubled: 0,
             doubts: Vec::new(),
         }
@@ -190,7 +204,6 @@ fn evaluate(
     let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
-    let (mut visible, mut available) = ([0; LANES], [0; LANES]);
     for group in &scene.tiles.groups {
         work.near.select(&work.all, &group.cap, slack_km);
         let blocks = work.near.blocks();
@@ -210,16 +223,13 @@ fn evaluate(
             let fixed = fixed.tile(number);
             let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
             let verdict = LaneVerdict::new(&sums, &fixed, &limits);
-            for l in 0..LANES {
-                visible[l] += verdict.visible.0[l];
-                available[l] += verdict.available.0[l];
-            }
             out.pdop[number] = verdict.pdop;
+            out.visible[number] = sums.count;
             if any(&verdict.doubtful) {
                 doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
             }
             if any(&verdict.coarse) {
-                available[0] += compute_again(
+                compute_again(
                     scene,
                     number,
                     &fixed,
@@ -231,8 +241,6 @@ fn evaluate(
             }
         }
     }
-    out.visible = visible.into_iter().map(u64::from).sum();
-    out.available = available.into_iter().map(u64::from).sum();
 }
 
 #[inline(always)]
@@ -278,10 +286,6 @@ struct LaneVerdict {
     doubtful: Lanes<u32>,
     /// PDOP too large for f32, or too close to a threshold.
     coarse: Lanes<u32>,
-    /// Visible satellites of points without doubt.
-    visible: Lanes<u32>,
-    /// Available, and neither doubtful nor coarse.
-    available: Lanes<u32>,
 }
 
 impl LaneVerdict {
@@ -294,20 +298,15 @@ impl LaneVerdict {
             pdop: Lanes([UNSOLVED; LANES]),
             doubtful: zero,
             coarse: zero,
-            visible: zero,
-            available: zero,
         };
         for l in 0..LANES {
             let pdop = single.0[l];
             let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
             let counted = u32::from(system.surplus.0[l] >= POSITION_STATES);
             let fine = u32::from(limits.holds_in_single(pdop));
-            let reached = u32::from(pdop <= limits.available as f32);
             verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
             verdict.doubtful.0[l] = 1 - sure;
             verdict.coarse.0[l] = counted & (1 - fine) & sure;
-            verdict.visible.0[l] = sums.count.0[l] * sure;
-            verdict.available.0[l] = counted & fine & sure & reached;
         }
         verdict
     }
@@ -334,8 +333,7 @@ fn doubt(
     }
 }
 
-/// Recomputes a tile in f64 for the points for which f32 is too coarse. Returns how many of
-/// them are available.
+/// Recomputes a tile in f64 for the points for which f32 is too coarse.
 #[inline(always)]
 fn compute_again(
     scene: &SampleContext,
@@ -345,7 +343,7 @@ fn compute_again(
     positions: &Positions,
     candidates: TileCandidates<'_>,
     out: &mut SampleOutcome,
-) -> u32 {
+) {
     let mut sums = Sums::<f64>::zero();
     let sites = &scene.tiles.tiles[number].double;
     for (block, &word) in candidates.blocks.iter().zip(candidates.words) {
@@ -356,15 +354,17 @@ fn compute_again(
     let limits = &scene.limits;
     let system = NormalLanes::new(&sums, fixed);
     let double = system.pdop(limits.clocks);
-    let mut available = 0;
     let mut undecided = Lanes([0; LANES]);
     for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
         let pdop = double.0[lane];
         let satellites = system.surplus.0[lane] + limits.clocks;
         if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
             let solved = pdop <= limits.cap;
-            out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
-            available += u32::from(solved && pdop <= limits.available);
+            out.pdop[number].0[lane] = if solved {
+                limits.stored(pdop)
+            } else {
+                UNSOLVED
+            };
         } else {
             undecided.0[lane] = 1;
         }
@@ -373,5 +373,4 @@ fn compute_again(
     if any(&undecided) {
         doubt(number, Doubt::Geometry, &undecided, candidates, out);
     }
-    available
 }

@@ -64,15 +64,9 @@ impl<'a> Settling<'a> {
                 Some(settled) => settled,
                 None => self.by_plain_sums(local, &positions, systems)?,
             };
-            let available = settled
-                .pdop
-                .is_some_and(|pdop| pdop <= self.setup.metrics.availability_pdop);
-            // The lanes have not counted the satellites close to the mask yet.
-            if undecided.doubt == Doubt::Mask {
-                outcome.visible += u64::from(settled.visible);
-            }
-            outcome.available += u64::from(available);
-            outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, |pdop| pdop as f32);
+            let stored = |pdop: f64| self.scene.limits.stored(pdop);
+            outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, stored);
+            outcome.visible[tile].0[lane] = settled.visible;
         }
         Ok(())
     }

@@ -35,6 +35,12 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
     prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
     prop_assert_eq!(fast.availability, plain.availability);
     prop_assert_eq!(fast.j_cost, plain.j_cost);
+    prop_assert_eq!(fast.least_visible, plain.least_visible);
+    prop_assert_eq!(fast.coverage, plain.coverage);
+    prop_assert_eq!(fast.mean_gnss_visible, plain.mean_gnss_visible);
+    prop_assert_eq!(fast.coverage_total, plain.coverage_total);
+    prop_assert_eq!(fast.longest_outage_s, plain.longest_outage_s);
+    prop_assert_eq!(fast.longest_outage_cut, plain.longest_outage_cut);
     for (name, ours, theirs) in [
         ("mean", fast.mean_pdop, plain.mean_pdop),
         ("cvar", fast.cvar_pdop, plain.cvar_pdop),
@@ -127,6 +133,30 @@ fn sites() -> impl Strategy<Value = Vec<Site>> {
     ]
 }
 
+/// Weights, and heights up to 9 km: of none of the points, or of all.
+fn weighted_sites() -> impl Strategy<Value = Vec<Site>> {
+    let weights = prop_oneof![
+        Just(None),
+        Just(Some(0.3..0.3000001_f64)),
+        Just(Some(1e-3..1.0)),
+        Just(Some(1.0..1e6)),
+    ];
+    let drawn = |weights: Option<std::ops::Range<f64>>| match weights {
+        None => prop::collection::vec(Just(1.0), 16).boxed(),
+        Some(weights) => prop::collection::vec(weights, 16).boxed(),
+    };
+    let heights = prop_oneof![Just(0.0), Just(9.0)];
+    (sites(), weights.prop_flat_map(drawn), heights).prop_map(|(mut sites, weights, height_km)| {
+        for (n, site) in sites.iter_mut().enumerate() {
+            site.weight = weights[n % weights.len()];
+            let origin_km = site.local.origin_km.km();
+            let height_km = height_km * (n as f64 * 0.618).fract();
+            site.local.origin_km = Position::new(origin_km + site.local.up * height_km);
+        }
+        sites
+    })
+}
+
 fn setups() -> impl Strategy<Value = Setup> {
     let mask = prop_oneof![Just(0.0), Just(7.0), 0.0..60.0_f64];
     let clocks = prop::sample::select(vec![Clocks::PerSystem, Clocks::Shared]);
@@ -137,7 +167,7 @@ fn setups() -> impl Strategy<Value = Setup> {
     ]);
     let caps = prop::sample::select(vec![(100.0, 6.0), (1.9, 1.2), (8.0, 2.0)]);
     (
-        sites(),
+        weighted_sites(),
         mask,
         0.0..30.0_f64,
         clocks,
@@ -314,8 +344,14 @@ fn streaming_equals_keeping() {
             fixed_bytes: 0,
         };
         let (setup, rotations) = (Arc::clone(&kept.setup), Arc::clone(&kept.rotations));
-        streamed.kernel =
-            Kernel::keeping_at_most(nothing, setup, rotations, InstructionSet::detect()).ok();
+        streamed.kernel = Kernel::keeping_at_most(
+            nothing,
+            setup,
+            &kept.weights,
+            rotations,
+            InstructionSet::detect(),
+        )
+        .ok();
         let expected = kept.evaluate(&design).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -344,7 +380,8 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
     let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
     let propagation = PatternPropagator::new(&ephemeris.shells()[0]).unwrap();
-    let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
+    let weights = WholeWeights::new(&setup);
+    let tiles = Tiles::new(&setup.sites, &weights, setup.mask, setup.gnss_mask);
     assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
     let count = design.satellite_count();
     let mut positions = Positions::new(count);
@@ -444,7 +481,9 @@ fn single_values_hold_six_digits() {
             };
             let propagation = &Propagation::new(&ephemeris);
             let mut all = Vec::new();
-            let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
+            let take = |instant: Evaluating<'_>| {
+                all.extend(instant.outcome.pdop.iter().flat_map(|tile| tile.0));
+            };
             kernel.run(propagation, 0..200, limits, take).unwrap();
             all
         };
