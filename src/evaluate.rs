@@ -289,11 +289,18 @@ impl Evaluator {
     }
 
     fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let Some(kernel) = &self.kernel else {
-            return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
+        let (metrics, rechecks) = match &self.kernel {
+            Some(kernel) => {
+                let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
+                (self.metrics(&evaluated, ephemeris), rechecks)
+            }
+            None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
         };
-        let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
-        Ok((self.metrics(&evaluated, ephemeris), rechecks))
+        if !self.setup.metrics.asks_for_hdop {
+            return Ok((metrics, rechecks));
+        }
+        let dops = self.dops_beside(&metrics, ephemeris)?;
+        Ok((metrics.with_dops(&dops), rechecks))
     }
 
     /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in

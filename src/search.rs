@@ -406,6 +406,8 @@ mod tests {
             coverage_total: Coverage::default(),
             longest_outage_s: 0.0,
             longest_outage_cut: false,
+            p95_hdop: None,
+            p95_vdop: None,
         };
         // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
         let value = Quantity::LaunchCost.value(&design, &metrics, &cost);
@@ -456,14 +458,22 @@ mod tests {
             // The excess of the solved samples is added.
             assert_eq!(violation(&text, 30.0, 0.75), 0.5 + 0.25);
         }
-        for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99)] {
+        for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99), ("p95-hdop", 0.95)] {
             let text = format!("{quantity} <= 20");
             assert_eq!(violation(&text, 2.0, level), 0.0);
             assert_eq!(violation(&text, 30.0, level), 0.5);
             let fewer = level - 1e-6;
             assert_eq!(violation(&text, 2.0, fewer), 1.0 - fewer);
         }
-        for quantity in ["satellites", "mean-visible", "availability", "j-cost"] {
+        for quantity in [
+            "satellites",
+            "mean-visible",
+            "availability",
+            "j-cost",
+            "least-visible",
+            "coverage-4",
+            "longest-outage-s",
+        ] {
             assert_eq!(violation(&format!("{quantity} <= 20"), 2.0, 0.1), 0.0);
         }
     }

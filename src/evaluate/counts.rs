@@ -109,6 +109,29 @@ impl Views {
     }
 }
 
+/// PDOP up to which a sample is available, and how values in f32 are compared with it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Threshold(pub(super) f64);
+
+impl Threshold {
+    /// The threshold with which stored values are compared; an infinite one is above it.
+    #[inline(always)]
+    pub(super) fn single(self) -> f32 {
+        (self.0 as f32).min(f32::MAX)
+    }
+
+    /// A solved value as it is stored, on the same side of the threshold.
+    #[inline(always)]
+    pub(super) fn stored(self, pdop: f64) -> f32 {
+        let (value, threshold) = (pdop as f32, self.single());
+        if pdop > self.0 && value <= threshold {
+            threshold.next_up()
+        } else {
+            value
+        }
+    }
+}
+
 /// The outages of one point: runs of samples that are unsolved or above the availability threshold.
 /// Lengths are in samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -119,26 +142,30 @@ pub(super) struct Outages {
     /// The one that the first sample is in, and the one that the last sample is in.
     pub(super) first: u32,
     pub(super) last: u32,
+    /// Number of samples.
+    pub(super) samples: u32,
 }
 
 impl Outages {
     /// From sample to sample.
     pub(super) fn of(is_out: impl Iterator<Item = bool>) -> Self {
         let mut outages = Self::default();
-        let mut is_first = true;
-        for is_out in is_out {
-            if is_out {
-                outages.number += u32::from(outages.last == 0);
-                outages.total += 1;
-                outages.last += 1;
-                outages.longest = outages.longest.max(outages.last);
-                outages.first += u32::from(is_first);
-            } else {
-                outages.last = 0;
-                is_first = false;
-            }
-        }
+        is_out.for_each(|is_out| outages.add(is_out));
         outages
+    }
+
+    /// The next sample.
+    pub(super) fn add(&mut self, is_out: bool) {
+        if is_out {
+            self.number += u32::from(self.last == 0);
+            self.total += 1;
+            self.last += 1;
+            self.longest = self.longest.max(self.last);
+            self.first += u32::from(self.first == self.samples);
+        } else {
+            self.last = 0;
+        }
+        self.samples += 1;
     }
 
     /// Whether an outage of the greatest length is cut by an end of the span.
@@ -226,6 +253,25 @@ mod tests {
         );
     }
 
+    /// A value is stored on its side of the threshold, however close.
+    #[test]
+    fn stored_values_keep_their_side() {
+        for threshold in [6.0, 1.2, 2.5 + 1e-9, 0.1] {
+            let available = Threshold(threshold);
+            for (pdop, is_available) in [
+                (threshold, true),
+                (threshold.next_down(), true),
+                (threshold.next_up(), false),
+                (threshold * (1.0 + 1e-9), false),
+            ] {
+                let stored = available.stored(pdop);
+                assert_eq!(stored <= available.single(), is_available, "{pdop}");
+                assert!((f64::from(stored) / pdop - 1.0).abs() < 2e-7, "{pdop}");
+            }
+        }
+        assert!(f32::INFINITY > Threshold(f64::INFINITY).single());
+    }
+
     #[test]
     fn outages_are_runs() {
         let of = |text: &str| Outages::of(text.chars().map(|c| c == 'x'));
@@ -235,10 +281,11 @@ mod tests {
             total: 6,
             first: 1,
             last: 2,
+            samples: 9,
         };
         assert_eq!(of("x..xxx.xx"), expected);
         assert!(!expected.is_longest_cut());
-        assert_eq!(of("..."), Outages::default());
+        assert_eq!((of("...").number, of("...").total), (0, 0));
         let all = of("xxxx");
         assert_eq!((all.number, all.first, all.last), (1, 4, 4));
         assert!(all.is_longest_cut() && of(".x").is_longest_cut() && !of(".x.").is_longest_cut());

@@ -38,6 +38,7 @@
 //! Values are never sorted, and beyond a certain number not even stored ([`order_statistics`]).
 
 mod candidates;
+mod dilutions;
 mod fixed;
 mod instructions;
 mod lanes;
@@ -52,19 +53,22 @@ mod tiles;
 pub use instructions::InstructionSet;
 
 use super::Setup;
+use super::counts::Threshold;
 use super::metrics::Evaluated;
+use super::series::Instant;
 use super::weights::WholeWeights;
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
+use dilutions::{Dilution, DilutionRows};
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
-use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, Workspace};
+use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
@@ -144,8 +148,23 @@ pub(super) struct Kernel {
     total: u64,
 }
 
+/// The sums of each chunk, in order.
+type Parts = Vec<(Rechecks, Vec<f64>)>;
+
+/// A sum over all chunks. They stay in order, so it does not depend on the number of threads.
+fn summed(parts: &Parts, number: usize) -> f64 {
+    parts.iter().map(|(_, sums)| sums[number]).sum()
+}
+
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
+fn largest_dilution(pdop_cap: f64, clocks: usize) -> f64 {
+    (pdop_cap * pdop_cap + clocks as f64 * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
+}
+
 /// One instant that is evaluated.
 struct Evaluating<'a> {
+    instant: SampleInstant,
+    work: &'a mut Workspace,
     outcome: &'a SampleOutcome,
     fixed: FixedSample<'a>,
 }
@@ -176,7 +195,7 @@ impl Kernel {
             limits: Limits {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,
-                available: setup.metrics.availability_pdop,
+                available: Threshold(setup.metrics.availability_pdop),
                 clocks: match setup.clocks {
                     Clocks::PerSystem => 1 + setup.gnss.len() as u32,
                     Clocks::Shared => 1,
@@ -208,6 +227,36 @@ impl Kernel {
         }
     }
 
+    /// Passes all instants to `see`, one after the other.
+    pub(super) fn visit(
+        &self,
+        ephemeris: &Ephemeris,
+        mut see: impl FnMut(&Instant),
+    ) -> Result<(), EphemerisError> {
+        let propagation = &Propagation::new(ephemeris);
+        let mut instant = Instant::new(self.setup.sites.len());
+        let samples = 0..self.setup.grid.len();
+        self.run(propagation, samples, self.scene.limits, |evaluating| {
+            instant.number = evaluating.instant.number;
+            for (number, tile) in self.scene.tiles.tiles.iter().enumerate() {
+                let gnss = evaluating.fixed.tile(number).visible;
+                let (leo, pdop) = (
+                    &evaluating.outcome.visible[number].0,
+                    &evaluating.outcome.pdop[number].0,
+                );
+                for (lane, &site) in tile.members.iter().enumerate() {
+                    let point = &mut instant.points[site as usize];
+                    point.visible = leo[lane];
+                    point.gnss_visible = u32::from(gnss[lane]);
+                    point.pdop = (pdop[lane] < UNSOLVED).then_some(pdop[lane]);
+                }
+            }
+            see(&instant);
+            Ok(())
+        })?;
+        Ok(())
+    }
+
     /// One pass over the samples and two over the stored values.
     fn keeping(
         &self,
@@ -222,13 +271,14 @@ impl Kernel {
             let first = values.len();
             let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
                 values.extend_from_slice(&instant.outcome.pdop);
-                self.tally_instant(&instant, &mut tally);
+                self.tally_instant(instant, &mut tally);
+                Ok(())
             })?;
             tally.rechecks = tally.rechecks.merged(rechecks);
             sum += self.count(&values[first..], &mut counts);
         }
         let level = self.setup.metrics.cvar_level;
-        let summary = match RankSearch::new(&counts, tally.solved(), level) {
+        let summary = match RankSearch::new(&counts, level) {
             Some(search) => {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
@@ -279,6 +329,7 @@ impl Kernel {
                         let n = n % tiles;
                         (instant.outcome.pdop[n].0[lane], weight(n, lane))
                     }));
+                    Ok(())
                 })?;
             }
             if let Some(value) = window.pick(again) {
@@ -298,25 +349,26 @@ impl Kernel {
             propagation,
             &chunks,
             || (Counts::new(self.places), self.tally(propagation)),
-            |instant, (counts, tally)| {
+            |instant, (counts, tally), sums| {
                 self.tally_instant(instant, tally);
-                self.count(&instant.outcome.pdop, counts)
+                sums[0] += self.count(&instant.outcome.pdop, counts);
+                Ok(())
             },
+            1,
         )?;
         for (rechecks, _) in &parts {
             tally.rechecks = tally.rechecks.merged(*rechecks);
         }
-        // The chunks stay in order, so the sum does not depend on the number of threads.
-        let sum = parts.iter().map(|part| part.1).sum();
+        let sum = summed(&parts, 0);
         let level = self.setup.metrics.cvar_level;
-        let summary = match RankSearch::new(&counts, tally.solved(), level) {
+        let summary = match RankSearch::new(&counts, level) {
             Some(search) => {
-                let (found, parts) =
-                    self.pass(propagation, &chunks, Found::new, |instant, found| {
-                        self.find(&instant.outcome.pdop, &search, found)
-                    })?;
-                let tail = parts.iter().map(|part| part.1).sum();
-                Some(search.summary(&found, sum, tail))
+                let note = |instant: &mut Evaluating<'_>, found: &mut _, tails: &mut [f64]| {
+                    tails[0] += self.find(&instant.outcome.pdop, &search, found);
+                    Ok(())
+                };
+                let (found, parts) = self.pass(propagation, &chunks, Found::new, note, 1)?;
+                Some(search.summary(&found, sum, summed(&parts, 0)))
             }
             None => None,
         };
@@ -324,25 +376,26 @@ impl Kernel {
     }
 
     /// One pass over the samples on all threads. `note` adds an instant to an accumulator of integers, which
-    /// are merged in the order of time, and returns a sum, which is stored for each chunk.
+    /// are merged in the order of time, and to so many sums, which are stored for each chunk.
     fn pass<A: Merge + Send>(
         &self,
         propagation: &Propagation<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
-        note: impl Fn(&Evaluating<'_>, &mut A) -> f64 + Sync,
-    ) -> Result<(A, Vec<(Rechecks, f64)>), EphemerisError> {
+        note: impl Fn(&mut Evaluating<'_>, &mut A, &mut [f64]) -> Result<(), EphemerisError> + Sync,
+        sums: usize,
+    ) -> Result<(A, Parts), EphemerisError> {
         chunks
             .par_iter()
             .try_fold(
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
-                    let mut sum = 0.0;
+                    let mut part = vec![0.0; sums];
                     let limits = self.scene.limits;
                     let rechecks = self.run(propagation, chunk.clone(), limits, |instant| {
-                        sum += note(&instant, &mut all);
+                        note(instant, &mut all, &mut part)
                     })?;
-                    parts.push((rechecks, sum));
+                    parts.push((rechecks, part));
                     Ok((all, parts))
                 },
             )
@@ -353,6 +406,86 @@ impl Kernel {
                     Ok((all.merged(&more), parts))
                 },
             )
+    }
+
+    /// Statistics of all dilutions: GDOP, PDOP, HDOP, VDOP and the TDOP of each clock.
+    pub(super) fn dops(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
+        let propagation = &Propagation::new(ephemeris);
+        let dilution = Dilution {
+            setup: &self.setup,
+            scene: &self.scene,
+            fixed: &self.fixed,
+            leo: ephemeris,
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        let clocks = self.scene.limits.clocks as usize;
+        let rows = || DilutionRows::new(clocks, tiles);
+        let chunks = self.chunks(self.setup.grid.len());
+        let places = Places::new(largest_dilution(self.setup.pdop_cap, clocks));
+        let level = self.setup.metrics.cvar_level;
+        let channels = rows().0.len();
+        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+            let mut kept = vec![Vec::new(); channels];
+            for chunk in chunks {
+                let mut rows = rows();
+                self.run(propagation, chunk, self.scene.limits, |instant| {
+                    dilution.compute(instant, &mut rows)?;
+                    let pairs = kept.iter_mut().zip(&rows.0);
+                    pairs.for_each(|(kept, row)| kept.extend_from_slice(row));
+                    Ok(())
+                })?;
+            }
+            let summary = |values: &Vec<Lanes<f32>>| {
+                let (mut counts, mut found) = (Counts::new(places), Found::new());
+                let sum = self.count(values, &mut counts);
+                let search = RankSearch::new(&counts, level)?;
+                let tail = self.find(values, &search, &mut found);
+                Some(search.summary(&found, sum, tail))
+            };
+            return Ok(kept.iter().map(summary).collect());
+        }
+        let (counts, sums) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Counts::new(places); channels],
+            |instant, counts, sums| {
+                let mut rows = rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, row) in rows.0.iter().enumerate() {
+                    sums[n] += self.count(row, &mut counts[n]);
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let searches: Vec<_> = counts
+            .iter()
+            .map(|counts| RankSearch::new(counts, level))
+            .collect();
+        let (found, tails) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Found::new(); channels],
+            |instant, found, tails| {
+                let mut rows = rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, (row, search)) in rows.0.iter().zip(&searches).enumerate() {
+                    if let Some(search) = search {
+                        tails[n] += self.find(row, search, &mut found[n]);
+                    }
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let summary = |(n, search): (usize, &Option<RankSearch>)| {
+            let search = search.as_ref()?;
+            Some(search.summary(&found[n], summed(&sums, n), summed(&tails, n)))
+        };
+        Ok(searches.iter().enumerate().map(summary).collect())
     }
 
     /// An empty tally of some satellites.
@@ -368,7 +501,7 @@ impl Kernel {
             tiles: &self.scene.tiles.tiles,
             outcome: instant.outcome,
             fixed: instant.fixed,
-            available: self.scene.limits.available_in_single(),
+            available: self.scene.limits.available.single(),
             to,
         });
     }
@@ -405,7 +538,7 @@ impl Kernel {
         propagation: &Propagation<'_>,
         chunk: Range<usize>,
         limits: Limits,
-        mut take: impl FnMut(Evaluating<'_>),
+        mut take: impl FnMut(&mut Evaluating<'_>) -> Result<(), EphemerisError>,
     ) -> Result<Rechecks, EphemerisError> {
         let mut work = Workspace::new(propagation.ephemeris.satellites().len());
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
@@ -441,10 +574,12 @@ impl Kernel {
             rechecks.large_pdop += outcome.doubled;
             let settling = Settling::new(&self.setup, &self.scene, instant, fixed);
             settling.settle(propagation.ephemeris, &self.fixed.systems, &mut outcome)?;
-            take(Evaluating {
+            take(&mut Evaluating {
+                instant,
+                work: &mut work,
                 outcome: &outcome,
                 fixed,
-            });
+            })?;
         }
         Ok(rechecks)
     }

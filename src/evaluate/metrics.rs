@@ -1,5 +1,6 @@
 //! The figures of merit of a constellation over points and times.
 
+use super::DopStatistics;
 use super::counts::{Coverage, LongestOutage, Views};
 use crate::stats::{Level, Summary};
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ pub struct MetricOptions {
     pub cvar_level: Level,
     /// PDOP up to which a sample counts as available.
     pub availability_pdop: f64,
+    /// Whether the quantiles of HDOP and VDOP are computed too, which takes several times as long.
+    pub asks_for_hdop: bool,
 }
 
 impl Default for MetricOptions {
@@ -22,6 +25,7 @@ impl Default for MetricOptions {
             cvar_weight: 0.5,
             cvar_level: Level::default(),
             availability_pdop: 6.0,
+            asks_for_hdop: false,
         }
     }
 }
@@ -72,6 +76,10 @@ pub struct Metrics {
     pub longest_outage_s: f64,
     /// Whether the start or the end of the span cuts an outage of that length, which may be longer.
     pub longest_outage_cut: bool,
+    /// 95 % quantile of HDOP, where it is asked for.
+    pub p95_hdop: Option<f64>,
+    /// 95 % quantile of VDOP, where it is asked for.
+    pub p95_vdop: Option<f64>,
 }
 
 /// Summary of the samples of an evaluation, weighted by point.
@@ -90,6 +98,28 @@ pub(super) struct Evaluated {
 }
 
 impl Metrics {
+    /// The same with the quantiles of HDOP and VDOP.
+    #[must_use]
+    pub fn with_dops(self, dops: &DopStatistics) -> Self {
+        Self {
+            p95_hdop: dops.hdop.map(|hdop| hdop.p95),
+            p95_vdop: dops.vdop.map(|vdop| vdop.p95),
+            ..self
+        }
+    }
+
+    /// The statistics of PDOP; `None` without solved samples.
+    pub(super) fn pdop_summary(&self) -> Option<Summary> {
+        Some(Summary {
+            mean: self.mean_pdop?,
+            p50: self.p50_pdop?,
+            p95: self.p95_pdop?,
+            p99: self.p99_pdop?,
+            max: self.max_pdop?,
+            cvar: self.cvar_pdop?,
+        })
+    }
+
     pub(super) fn new(
         evaluated: &Evaluated,
         options: MetricOptions,
@@ -119,6 +149,8 @@ impl Metrics {
             coverage_total: evaluated.all.coverage(),
             longest_outage_s: f64::from(longest_outage.samples) * step_s,
             longest_outage_cut: longest_outage.is_cut,
+            p95_hdop: None,
+            p95_vdop: None,
         }
     }
 }

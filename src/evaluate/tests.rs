@@ -1,3 +1,4 @@
+mod counted;
 mod limits;
 mod products;
 mod skies;

@@ -31,6 +31,8 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
             coverage_total: Coverage::default(),
             longest_outage_s: 0.0,
             longest_outage_cut: false,
+            p95_hdop: None,
+            p95_vdop: None,
         },
         objectives: Vec::new(),
         constraints: Vec::new(),

@@ -2,7 +2,7 @@
 
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
-use crate::keyword::keywords;
+use crate::keyword::{Keyword, keywords};
 
 keywords! {
     /// A quantity of a design.
@@ -29,6 +29,64 @@ keywords! {
         MeanVisible = "mean-visible",
         /// Fraction of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
+        /// Least number of visible LEO satellites in any sample; maximised.
+        LeastVisible = "least-visible",
+        /// Mean visible satellites, LEO and GNSS; maximised.
+        MeanTotalVisible = "mean-total-visible",
+        /// Longest outage of any point, seconds; minimised.
+        LongestOutageS = "longest-outage-s",
+        /// 95 % quantile of HDOP; dimensionless, minimised.
+        P95Hdop = "p95-hdop",
+        /// 95 % quantile of VDOP; dimensionless, minimised.
+        P95Vdop = "p95-vdop",
+        /// Fraction of samples with at least 1 visible LEO satellite; maximised.
+        Coverage1 = "coverage-1",
+        /// Fraction of samples with at least 2 visible LEO satellites; maximised.
+        Coverage2 = "coverage-2",
+        /// Fraction of samples with at least 3 visible LEO satellites; maximised.
+        Coverage3 = "coverage-3",
+        /// Fraction of samples with at least 4 visible LEO satellites; maximised.
+        Coverage4 = "coverage-4",
+        /// Fraction of samples with at least 5 visible LEO satellites; maximised.
+        Coverage5 = "coverage-5",
+        /// Fraction of samples with at least 6 visible LEO satellites; maximised.
+        Coverage6 = "coverage-6",
+        /// Fraction of samples with at least 7 visible LEO satellites; maximised.
+        Coverage7 = "coverage-7",
+        /// Fraction of samples with at least 8 visible LEO satellites; maximised.
+        Coverage8 = "coverage-8",
+        /// Fraction of samples with at least 9 visible LEO satellites; maximised.
+        Coverage9 = "coverage-9",
+        /// Fraction of samples with at least 10 visible LEO satellites; maximised.
+        Coverage10 = "coverage-10",
+        /// Fraction of samples with at least 11 visible LEO satellites; maximised.
+        Coverage11 = "coverage-11",
+        /// Fraction of samples with at least 12 visible LEO satellites; maximised.
+        Coverage12 = "coverage-12",
+        /// Fraction of samples with at least 1 visible satellite, LEO and GNSS; maximised.
+        CoverageTotal1 = "coverage-total-1",
+        /// Fraction of samples with at least 2 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal2 = "coverage-total-2",
+        /// Fraction of samples with at least 3 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal3 = "coverage-total-3",
+        /// Fraction of samples with at least 4 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal4 = "coverage-total-4",
+        /// Fraction of samples with at least 5 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal5 = "coverage-total-5",
+        /// Fraction of samples with at least 6 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal6 = "coverage-total-6",
+        /// Fraction of samples with at least 7 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal7 = "coverage-total-7",
+        /// Fraction of samples with at least 8 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal8 = "coverage-total-8",
+        /// Fraction of samples with at least 9 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal9 = "coverage-total-9",
+        /// Fraction of samples with at least 10 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal10 = "coverage-total-10",
+        /// Fraction of samples with at least 11 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal11 = "coverage-total-11",
+        /// Fraction of samples with at least 12 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal12 = "coverage-total-12",
         /// Cost of launching the satellites, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
@@ -50,7 +108,25 @@ impl Quantity {
     /// Whether larger is better.
     #[must_use]
     pub fn is_maximised(self) -> bool {
-        matches!(self, Self::MeanVisible | Self::Availability)
+        self.coverage_levels().is_some()
+            || matches!(
+                self,
+                Self::MeanVisible
+                    | Self::Availability
+                    | Self::LeastVisible
+                    | Self::MeanTotalVisible
+            )
+    }
+
+    /// For a coverage: the number of satellites, and whether they are of LEO and GNSS.
+    #[must_use]
+    pub fn coverage_levels(self) -> Option<(usize, bool)> {
+        let level = self.keyword().strip_prefix("coverage-")?;
+        let (level, is_total) = match level.strip_prefix("total-") {
+            Some(level) => (level, true),
+            None => (level, false),
+        };
+        Some((level.parse().ok()?, is_total))
     }
 
     /// The default coordinate of the hypervolume's reference point.
@@ -80,14 +156,9 @@ impl Quantity {
     fn solved_share_needed(self) -> Option<f64> {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
-            Self::P95Pdop => Some(0.95),
+            Self::P95Pdop | Self::P95Hdop | Self::P95Vdop => Some(0.95),
             Self::P99Pdop => Some(0.99),
-            Self::JCost
-            | Self::Satellites
-            | Self::Planes
-            | Self::MeanVisible
-            | Self::Availability
-            | Self::LaunchCost => None,
+            _ => None,
         }
     }
 
@@ -131,6 +202,11 @@ impl Quantity {
             Self::Planes => Some(design?.planes() as f64),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
+            Self::LeastVisible => Some(metrics.least_visible.into()),
+            Self::MeanTotalVisible => Some(metrics.mean_total_visible),
+            Self::LongestOutageS => Some(metrics.longest_outage_s),
+            Self::P95Hdop => metrics.p95_hdop,
+            Self::P95Vdop => metrics.p95_vdop,
             Self::LaunchCost => {
                 let design = design?;
                 let lift = 1.0 + cost.per_1000_km * design.highest_altitude_km() / 1000.0;
@@ -138,6 +214,15 @@ impl Quantity {
                     cost.per_satellite * satellites * lift
                         + cost.per_plane * design.planes() as f64,
                 )
+            }
+            _ => {
+                let (satellites, is_total) = self.coverage_levels()?;
+                let coverage = if is_total {
+                    metrics.coverage_total
+                } else {
+                    metrics.coverage
+                };
+                coverage.of(satellites)
             }
         }
     }

@@ -17,8 +17,8 @@ use crate::frames::EarthRotation;
 pub(super) struct Fixed {
     pub(super) systems: Vec<Ephemeris>,
     clocks: Clocks,
-    mask: MaskTerms<f64>,
-    instructions: InstructionSet,
+    pub(super) mask: MaskTerms<f64>,
+    pub(super) instructions: InstructionSet,
     /// Empty if there is no GNSS, or too much to store.
     kept: FixedTiles,
 }
@@ -116,8 +116,13 @@ impl Fixed {
         if !fixed.systems.is_empty() && count * FixedTiles::bytes(setup.clocks) <= kept_bytes {
             let mut kept = FixedTiles::default();
             kept.reserve(count);
-            for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
-                fixed.make(tiles, elapsed_s, *rotation, &mut kept)?;
+            for (number, (elapsed_s, &rotation)) in setup.grid.iter().zip(rotations).enumerate() {
+                let instant = SampleInstant {
+                    number,
+                    elapsed_s,
+                    rotation,
+                };
+                fixed.make(tiles, instant, &mut kept)?;
             }
             fixed.kept = kept;
         }
@@ -136,7 +141,7 @@ impl Fixed {
             return Ok(FixedSample { tiles, first });
         }
         scratch.clear();
-        self.make(tiles, instant.elapsed_s, instant.rotation, scratch)?;
+        self.make(tiles, instant, scratch)?;
         let (tiles, first) = (scratch, 0);
         Ok(FixedSample { tiles, first })
     }
@@ -144,16 +149,10 @@ impl Fixed {
     fn make(
         &self,
         tiles: &Tiles,
-        elapsed_s: f64,
-        rotation: EarthRotation,
+        instant: SampleInstant,
         to: &mut FixedTiles,
     ) -> Result<(), EphemerisError> {
-        let mut systems = Vec::with_capacity(self.systems.len());
-        for system in &self.systems {
-            let mut positions = Positions::new(system.satellites().len());
-            positions.propagate(system, elapsed_s, rotation)?;
-            systems.push(FixedSystem::new(positions, &tiles.fixed_horizon));
-        }
+        let systems = self.systems_at(tiles, instant)?;
         self.instructions.run(Make {
             fixed: self,
             tiles: &tiles.tiles,
@@ -161,6 +160,20 @@ impl Fixed {
             to,
         });
         Ok(())
+    }
+
+    /// The satellites of each system at an instant.
+    pub(super) fn systems_at(
+        &self,
+        tiles: &Tiles,
+        instant: SampleInstant,
+    ) -> Result<Vec<FixedSystem>, EphemerisError> {
+        let at_instant = |system: &Ephemeris| {
+            let mut positions = Positions::new(system.satellites().len());
+            positions.propagate(system, instant.elapsed_s, instant.rotation)?;
+            Ok(FixedSystem::new(positions, &tiles.fixed_horizon))
+        };
+        self.systems.iter().map(at_instant).collect()
     }
 
     #[inline(always)]
@@ -204,7 +217,7 @@ fn at_most_u16(count: u32) -> u16 {
 }
 
 /// One system at one sample.
-struct FixedSystem {
+pub(super) struct FixedSystem {
     positions: Positions,
     candidates: Candidates,
     slack_km: f32,
@@ -223,7 +236,7 @@ impl FixedSystem {
 
     /// Adds the satellites visible from the points of a tile.
     #[inline(always)]
-    fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
+    pub(super) fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
         for block in self.candidates.blocks() {
             for n in bits(block.inside(&tile.fixed_cap, self.slack_km)) {
                 sums.add(&tile.double, self.positions.at(block.index(n)), mask);
@@ -253,7 +266,7 @@ impl Work for Make<'_> {
 
 /// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
 #[inline(always)]
-fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
+pub(super) fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     for l in 0..LANES {
         let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
         let scale = 1.0 / f64::from(count.max(1));

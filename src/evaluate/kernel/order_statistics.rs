@@ -66,6 +66,13 @@ pub(super) trait Merge {
     fn merged(self, other: &Self) -> Self;
 }
 
+impl<A: Merge> Merge for Vec<A> {
+    fn merged(self, other: &Self) -> Self {
+        let pairs = self.into_iter().zip(other);
+        pairs.map(|(mine, theirs)| mine.merged(theirs)).collect()
+    }
+}
+
 impl<A: Merge, B: Merge> Merge for (A, B) {
     fn merged(self, other: &Self) -> Self {
         (self.0.merged(&other.0), self.1.merged(&other.1))
@@ -73,9 +80,12 @@ impl<A: Merge, B: Merge> Merge for (A, B) {
 }
 
 /// First pass: weight of the values in each place.
+#[derive(Debug, Clone)]
 pub(super) struct Counts {
     places: Places,
     counts: Vec<u64>,
+    /// Number of solved values, whatever their weight.
+    number: u64,
 }
 
 impl Counts {
@@ -83,6 +93,7 @@ impl Counts {
         Self {
             places,
             counts: vec![0; places.count()],
+            number: 0,
         }
     }
 
@@ -111,6 +122,7 @@ impl Counts {
 impl Merge for Counts {
     fn merged(mut self, other: &Self) -> Self {
         add(&mut self.counts, &other.counts);
+        self.number += other.number;
         self
     }
 }
@@ -133,7 +145,7 @@ impl Work for Count<'_> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let mut sums = [0.0; LANES];
+        let (mut sums, mut numbers) = ([0.0; LANES], [0_u64; LANES]);
         let numbering = self.counts.places;
         for values in self.values.chunks_exact(self.tiles.len()) {
             for (tile, values) in self.tiles.iter().zip(values) {
@@ -142,6 +154,7 @@ impl Work for Count<'_> {
                 for l in 0..LANES {
                     let value = values.0[l];
                     places[l] = numbering.of(value);
+                    numbers[l] += u64::from(value < UNSOLVED);
                     let solved = f64::from(if value < UNSOLVED { value } else { 0.0 });
                     sums[l] += weights.real.0[l] * solved;
                 }
@@ -150,6 +163,7 @@ impl Work for Count<'_> {
                 }
             }
         }
+        self.counts.number += numbers.iter().sum::<u64>();
         sums.iter().sum()
     }
 }
@@ -176,6 +190,7 @@ pub(super) struct RankSearch {
 }
 
 /// Second pass: weight of the values in the wanted places by their trailing bits.
+#[derive(Debug, Clone)]
 pub(super) struct Found([Vec<u64>; WANTED]);
 
 impl Found {
@@ -261,11 +276,11 @@ fn quantile_rank(q: f64, weight: u64, number: u64) -> u64 {
 }
 
 impl RankSearch {
-    /// The search among `number` solved values; `None` if there are none.
-    pub(super) fn new(counts: &Counts, number: u64, level: Level) -> Option<Self> {
+    /// `None` if no value is solved.
+    pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
         let solved = counts.solved();
-        let ranked = |q: f64| counts.locate(quantile_rank(q, solved, number));
-        (number > 0).then(|| Self {
+        let ranked = |q: f64| counts.locate(quantile_rank(q, solved, counts.number));
+        (counts.number > 0).then(|| Self {
             places: counts.places,
             level,
             solved,

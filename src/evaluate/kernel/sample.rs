@@ -1,11 +1,12 @@
 //! One instant at all points with all satellites: the code that is compiled for each instruction set.
 
+use super::super::counts::Threshold;
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, NormalLanes, SiteLanes, Sums};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
+use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
 use crate::dop::pivot_floor;
 
 /// Marks an unsolved sample among the values of PDOP.
@@ -22,7 +23,7 @@ pub(super) struct Limits {
     /// PDOP above which a sample is unsolved.
     pub(super) cap: f64,
     /// PDOP up to which a sample is available.
-    pub(super) available: f64,
+    pub(super) available: Threshold,
     /// Maximum number of clock states.
     pub(super) clocks: u32,
 }
@@ -45,25 +46,8 @@ impl Limits {
 
     #[inline(always)]
     fn holds_in_single(&self, pdop: f32) -> bool {
-        let available = self.available_in_single();
+        let available = self.available.single();
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
-    }
-
-    /// The threshold of availability with which stored values are compared; [`UNSOLVED`] is above it.
-    #[inline(always)]
-    pub(super) fn available_in_single(&self) -> f32 {
-        (self.available as f32).min(f32::MAX)
-    }
-
-    /// A solved value as it is stored, on the same side of the threshold of availability.
-    #[inline(always)]
-    pub(super) fn stored(&self, pdop: f64) -> f32 {
-        let (value, available) = (pdop as f32, self.available_in_single());
-        if pdop > self.available && value <= available {
-            available.next_up()
-        } else {
-            value
-        }
     }
 
     /// Whether the sums of the lanes, or others of the same accuracy, decide a sample with this finite
@@ -75,7 +59,7 @@ impl Limits {
             let band = Self::DOUBLE_BAND + floor * threshold * threshold;
             (pdop - threshold).abs() > threshold * band
         };
-        is_apart(self.cap) && is_apart(self.available)
+        is_apart(self.cap) && is_apart(self.available.0)
     }
 }
 
@@ -101,6 +85,42 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
+    /// Selects the satellites that the tiles of a group may see.
+    #[inline(always)]
+    pub(super) fn select(&mut self, scene: &SampleContext, group: &Group) {
+        let slack_km = Horizon::cap_slack_km(&self.positions);
+        self.near.select(&self.all, &group.cap, slack_km);
+        let blocks = self.near.blocks();
+        let tiles = &scene.tiles.tiles[group.tiles.clone()];
+        for (tile, words) in tiles.iter().zip(self.words.chunks_exact_mut(self.blocks)) {
+            for (block, word) in blocks.iter().zip(words) {
+                *word = block.inside(&tile.cap, slack_km);
+            }
+        }
+    }
+
+    /// The satellites that a tile of the selected group may see.
+    #[inline(always)]
+    fn candidates(&self, number: usize, group: &Group) -> TileCandidates<'_> {
+        let place = number - group.tiles.start;
+        TileCandidates {
+            blocks: self.near.blocks(),
+            words: &self.words[place * self.blocks..(place + 1) * self.blocks],
+        }
+    }
+
+    /// The sums of a tile of the selected group in f64.
+    #[inline(always)]
+    pub(super) fn double_sums(
+        &self,
+        scene: &SampleContext,
+        number: usize,
+        group: &Group,
+    ) -> Sums<f64> {
+        let candidates = self.candidates(number, group);
+        candidates.double_sums(scene, number, &self.positions)
+    }
+
     pub(super) fn new(satellites: usize) -> Self {
         let all = Candidates::with_capacity(satellites);
         let blocks = satellites.div_ceil(BLOCK).max(1);
@@ -143,7 +163,7 @@ pub(super) struct SampleOutcome {
     pub(super) visible: Vec<Lanes<u32>>,
     /// Points whose PDOP was recomputed in f64.
     pub(super) doubled: u64,
-    /// Points to recompute.
+    /// Points to recompute, or recomputed.
     pub(super) doubts: Vec<Undecided>,
 }
 
@@ -199,27 +219,14 @@ fn evaluate(
 ) {
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
-    let slack_km = Horizon::cap_slack_km(&work.positions);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
     let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     for group in &scene.tiles.groups {
-        work.near.select(&work.all, &group.cap, slack_km);
-        let blocks = work.near.blocks();
-        let tiles = &scene.tiles.tiles[group.tiles.clone()];
-        for (tile, words) in tiles.iter().zip(work.words.chunks_exact_mut(work.blocks)) {
-            for (block, word) in blocks.iter().zip(words) {
-                *word = block.inside(&tile.cap, slack_km);
-            }
-        }
+        work.select(scene, group);
         for number in group.tiles.clone() {
-            let place = number - group.tiles.start;
-            let words = &work.words[place * work.blocks..(place + 1) * work.blocks];
-            let candidates = TileCandidates {
-                blocks: work.near.blocks(),
-                words,
-            };
+            let candidates = work.candidates(number, group);
             let fixed = fixed.tile(number);
             let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
             let verdict = LaneVerdict::new(&sums, &fixed, &limits);
@@ -269,6 +276,16 @@ impl<'a> TileCandidates<'a> {
             all.merge(&sums);
         }
         all
+    }
+
+    #[inline(always)]
+    fn double_sums(self, scene: &SampleContext, number: usize, positions: &Positions) -> Sums<f64> {
+        let mut sums = Sums::zero();
+        let sites = &scene.tiles.tiles[number].double;
+        for n in self.satellites() {
+            sums.add(sites, positions.at(n), &scene.double);
+        }
+        sums
     }
 
     /// Their indices among all satellites.
@@ -344,13 +361,7 @@ fn compute_again(
     candidates: TileCandidates<'_>,
     out: &mut SampleOutcome,
 ) {
-    let mut sums = Sums::<f64>::zero();
-    let sites = &scene.tiles.tiles[number].double;
-    for (block, &word) in candidates.blocks.iter().zip(candidates.words) {
-        for n in bits(word) {
-            sums.add(sites, positions.at(block.index(n)), &scene.double);
-        }
-    }
+    let sums = candidates.double_sums(scene, number, positions);
     let limits = &scene.limits;
     let system = NormalLanes::new(&sums, fixed);
     let double = system.pdop(limits.clocks);
@@ -361,7 +372,7 @@ fn compute_again(
         if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
             let solved = pdop <= limits.cap;
             out.pdop[number].0[lane] = if solved {
-                limits.stored(pdop)
+                limits.available.stored(pdop)
             } else {
                 UNSOLVED
             };

@@ -8,7 +8,7 @@ use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::order_statistics::Merge;
-use super::sample::{SampleOutcome, UNSOLVED};
+use super::sample::SampleOutcome;
 use super::tiles::Tile;
 
 /// Neighbouring lanes count apart, because most see the same number of satellites and would wait for
@@ -85,40 +85,41 @@ impl OutageLanes {
             total: self.total.0[lane],
             first: self.first_good.0[lane].min(instants),
             last: self.now.0[lane],
+            samples: instants,
         }
     }
 
-    fn set(&mut self, lane: usize, outages: Outages, instants: u32) {
+    fn set(&mut self, lane: usize, outages: Outages) {
         self.number.0[lane] = outages.number;
         self.longest.0[lane] = outages.longest;
         self.total.0[lane] = outages.total;
         self.first_good.0[lane] = match outages.first {
-            all if all == instants => u32::MAX,
+            all if all == outages.samples => u32::MAX,
             first => first,
         };
         self.now.0[lane] = outages.last;
     }
 }
 
-/// The outages of two spans, one after the other, of so many samples.
-fn joined(before: Outages, after: Outages, [samples_before, samples_after]: [u32; 2]) -> Outages {
+/// The outages of two spans, one after the other.
+fn joined(before: Outages, after: Outages) -> Outages {
     let across = before.last + after.first;
     let is_across = before.last > 0 && after.first > 0;
-    let whole = |outage: u32, samples: u32| outage == samples;
     Outages {
         number: before.number + after.number - u32::from(is_across),
         longest: before.longest.max(after.longest).max(across),
         total: before.total + after.total,
-        first: if whole(before.first, samples_before) {
-            samples_before + after.first
+        first: if before.first == before.samples {
+            before.samples + after.first
         } else {
             before.first
         },
-        last: if whole(after.last, samples_after) {
-            before.last + samples_after
+        last: if after.last == after.samples {
+            before.last + after.samples
         } else {
             after.last
         },
+        samples: before.samples + after.samples,
     }
 }
 
@@ -129,7 +130,6 @@ pub(super) struct Tally {
     all: ViewLanes,
     /// Weight of the available samples.
     available: Lanes<u64>,
-    solved: Lanes<u64>,
     instants: u32,
     outages: Vec<OutageLanes>,
     pub(super) rechecks: Rechecks,
@@ -142,7 +142,6 @@ impl Tally {
             leo: ViewLanes::new(leo),
             all: ViewLanes::new(leo + gnss),
             available: Lanes([0; LANES]),
-            solved: Lanes([0; LANES]),
             instants: 0,
             outages: vec![OutageLanes::NONE; tiles],
             rechecks: Rechecks::default(),
@@ -160,11 +159,6 @@ impl Tally {
     /// Weight of the available samples.
     pub(super) fn available(&self) -> u64 {
         self.available.0.iter().sum()
-    }
-
-    /// Number of solved samples, whatever their weight.
-    pub(super) fn solved(&self) -> u64 {
-        self.solved.0.iter().sum()
     }
 
     /// The outages of each point, with its number.
@@ -191,13 +185,12 @@ impl Merge for Tally {
         self.instants += other.instants;
         for l in 0..LANES {
             self.available.0[l] += other.available.0[l];
-            self.solved.0[l] += other.solved.0[l];
         }
         for (mine, theirs) in self.outages.iter_mut().zip(&other.outages) {
             for lane in 0..LANES {
                 let point = |lanes: &OutageLanes, n: usize| lanes.point(lane, samples[n]);
-                let both = joined(point(mine, 0), point(theirs, 1), samples);
-                mine.set(lane, both, self.instants);
+                let both = joined(point(mine, 0), point(theirs, 1));
+                mine.set(lane, both);
             }
         }
         self.rechecks = self.rechecks.merged(other.rechecks);
@@ -223,7 +216,7 @@ impl Work for TallySample<'_> {
         let to = self.to;
         let instant = to.instants;
         to.instants += 1;
-        let (mut available, mut solved) = (to.available, to.solved);
+        let mut available = to.available;
         for (number, tile) in self.tiles.iter().enumerate() {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
             let gnss = self.fixed.tile(number).visible;
@@ -231,7 +224,6 @@ impl Work for TallySample<'_> {
             let mut is_out = Lanes([0; LANES]);
             for l in 0..LANES {
                 let good = pdop.0[l] <= self.available;
-                solved.0[l] += u64::from(pdop.0[l] < UNSOLVED);
                 available.0[l] += if good { weights.whole.0[l] } else { 0 };
                 is_out.0[l] = if good { 0 } else { weights.member.0[l] };
             }
@@ -242,7 +234,7 @@ impl Work for TallySample<'_> {
                 to.all.add(leo + gnss, weights.whole.0[l], l);
             }
         }
-        (to.available, to.solved) = (available, solved);
+        to.available = available;
     }
 }
 
@@ -268,11 +260,10 @@ mod tests {
             let expected = Outages::of(is_out.iter().copied());
             prop_assert_eq!(outages(&is_out), expected);
             let (before, after) = is_out.split_at(cut.min(is_out.len()));
-            let samples = [before.len() as u32, after.len() as u32];
-            let both = joined(outages(before), outages(after), samples);
+            let both = joined(outages(before), outages(after));
             prop_assert_eq!(both, expected);
             let mut lanes = OutageLanes::NONE;
-            lanes.set(2, both, is_out.len() as u32);
+            lanes.set(2, both);
             prop_assert_eq!(lanes.point(2, is_out.len() as u32), expected);
         }
     }

@@ -9,7 +9,9 @@ use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
-use crate::evaluate::{Evaluator, MetricOptions, Metrics};
+use crate::evaluate::{
+    DopStatistics, EpochMetrics, Evaluator, MetricOptions, Metrics, PointMetrics, Series,
+};
 use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
 use crate::orbit::{Model, PropagationError, Propagator};
@@ -214,6 +216,76 @@ proptest! {
     }
 }
 
+/// Series: counts are exact, and PDOP is the same to the rounding of f32 and of its sums.
+fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
+    for (fast, plain) in fast.epochs.iter().zip(&plain.epochs) {
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let counts = EpochMetrics {
+            mean_pdop: plain.mean_pdop,
+            max_pdop: plain.max_pdop,
+            ..*fast
+        };
+        prop_assert_eq!(&counts, plain);
+    }
+    for (fast, plain) in fast.points.iter().zip(&plain.points) {
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
+        prop_assert!(relative(fast.p95_pdop, plain.p95_pdop) < 1e-6);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let counts = PointMetrics {
+            mean_pdop: plain.mean_pdop,
+            p95_pdop: plain.p95_pdop,
+            max_pdop: plain.max_pdop,
+            ..fast.clone()
+        };
+        prop_assert_eq!(&counts, plain);
+    }
+    Ok(())
+}
+
+/// All statistics of all dilutions, of which PDOP is that of the metrics.
+fn compare_dops(fast: &DopStatistics, plain: &DopStatistics) -> Result<(), TestCaseError> {
+    prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
+    for ((name, fast), (_, plain)) in fast.named().into_iter().zip(plain.named()) {
+        prop_assert_eq!(fast.is_some(), plain.is_some(), "{}", name);
+        let (Some(fast), Some(plain)) = (fast, plain) else {
+            continue;
+        };
+        for (ours, theirs) in [
+            (fast.mean, plain.mean),
+            (fast.p50, plain.p50),
+            (fast.p95, plain.p95),
+            (fast.p99, plain.p99),
+            (fast.max, plain.max),
+            (fast.cvar, plain.cvar),
+        ] {
+            let apart = (ours / theirs - 1.0).abs();
+            prop_assert!(apart < 1e-6, "{name}: {ours} {theirs}");
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// So do series and dilutions, to the bit on all instruction sets.
+    #[test]
+    fn series_and_dops_equal_the_plain_path(design in designs(), setup in setups()) {
+        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+        let [first, second, third] = InstructionSet::ALL
+            .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
+        let series = first.series(&ephemeris).unwrap();
+        compare_series(&series, &first.series_plain(&ephemeris).unwrap())?;
+        let dops = first.dops(&ephemeris).unwrap();
+        compare_dops(&dops, &first.dops_plain(&ephemeris).unwrap())?;
+        for other in [second, third] {
+            prop_assert_eq!(&other.series(&ephemeris).unwrap(), &series);
+            prop_assert_eq!(&other.dops(&ephemeris).unwrap(), &dops);
+        }
+    }
+}
+
 /// The paper's scenario, a dense and a sparse constellation, and designs that are hard for f32.
 #[test]
 fn whole_days_equal_the_plain_path() {
@@ -325,6 +397,13 @@ fn nothing_in_view_is_no_failure() {
     assert_eq!((metrics.solved_fraction, metrics.max_pdop), (0.0, None));
 }
 
+fn weighted(mut sites: Vec<Site>) -> Vec<Site> {
+    for (n, site) in sites.iter_mut().enumerate() {
+        site.weight = 1.0 + (n as f64 * 0.618).fract();
+    }
+    sites
+}
+
 /// Values that are not stored are computed twice with the same result, identical to the bit on any
 /// number of threads.
 #[test]
@@ -334,8 +413,11 @@ fn streaming_equals_keeping() {
         let setup = Setup {
             grid: TimeGrid::new(base.grid.epoch(), 86_400.0, 71.0).unwrap(),
             clocks,
+            sites: weighted(base.sites),
             ..base
         };
+        let mut setup = setup;
+        setup.metrics.availability_pdop = 1.6;
         let design: Design = "delta:55:60/6/1@925".parse().unwrap();
         let kept = Evaluator::new(setup.clone()).unwrap();
         let mut streamed = Evaluator::new(setup.clone()).unwrap();
@@ -370,6 +452,15 @@ fn streaming_equals_keeping() {
         // The sums are computed in pieces of other sizes: a few ulp.
         assert!(relative(one.mean_pdop, expected.mean_pdop) < 1e-14);
         assert!(relative(one.cvar_pdop, expected.cvar_pdop) < 1e-13);
+        // Counts are whole numbers, and outages go on from one chunk to the next.
+        assert_eq!(one.coverage, expected.coverage);
+        assert_eq!(one.availability, expected.availability);
+        assert!(one.longest_outage_s > 71.0);
+        assert_eq!(one.longest_outage_s, expected.longest_outage_s);
+        assert_eq!(one.longest_outage_cut, expected.longest_outage_cut);
+        let ephemeris = Ephemeris::of_design(&design, Model::J2, streamed.setup.grid).unwrap();
+        let kept_dops = kept.dops(&ephemeris).unwrap();
+        compare_dops(&streamed.dops(&ephemeris).unwrap(), &kept_dops).unwrap();
     }
 }
 
@@ -481,8 +572,9 @@ fn single_values_hold_six_digits() {
             };
             let propagation = &Propagation::new(&ephemeris);
             let mut all = Vec::new();
-            let take = |instant: Evaluating<'_>| {
+            let take = |instant: &mut Evaluating<'_>| {
                 all.extend(instant.outcome.pdop.iter().flat_map(|tile| tile.0));
+                Ok(())
             };
             kernel.run(propagation, 0..200, limits, take).unwrap();
             all

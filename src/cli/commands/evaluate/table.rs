@@ -130,6 +130,14 @@ impl TextTable {
         cells.extend([metrics.mean_pdop, metrics.cvar_pdop, metrics.max_pdop].map(shown::pdop));
         cells
             .extend([metrics.solved_fraction, metrics.availability].map(|x| shown::share(Some(x))));
+        cells.push(shown::quantity(
+            Quantity::LeastVisible,
+            Some(metrics.least_visible.into()),
+        ));
+        cells.push(shown::quantity(
+            Quantity::LongestOutageS,
+            Some(metrics.longest_outage_s),
+        ));
         cells.extend([metrics.j_pos, metrics.j_cost].map(shown::pdop));
         for further in &self.further {
             cells.push(shown::quantity(*further, evaluated.value(*further)));
@@ -168,6 +176,8 @@ fn columns(
         "maximum\nPDOP",
         "solved\nfraction",
         &format!("availability\n(PDOP <= {})", options.availability_pdop),
+        "least\nvisible",
+        "longest\noutage (s)",
         "J_pos",
         "J_cost",
     ]
