@@ -5,6 +5,7 @@
 //! threads; the result of a design does not depend on the thread.
 
 mod accuracy;
+mod counts;
 mod dops;
 mod fixed;
 mod kernel;
@@ -14,9 +15,11 @@ mod on_demand;
 mod phases;
 mod plain;
 mod series;
+mod weights;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, Spread};
+pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
@@ -39,6 +42,7 @@ use kernel::Kernel;
 use metrics::Evaluated;
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
+use weights::WholeWeights;
 
 /// Everything that an evaluation depends on, except the design.
 ///
@@ -231,11 +235,9 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only equal weights and a mask that does not depend on azimuth.
+    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth.
     fn suits_kernel(&self) -> bool {
-        self.has_equal_weights()
-            && self.skyline.is_none()
-            && self.observation_weights == ObservationWeights::Unit
+        self.skyline.is_none() && self.observation_weights == ObservationWeights::Unit
     }
 
     /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.
@@ -264,6 +266,7 @@ impl Setup {
 pub struct Evaluator {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
+    weights: WholeWeights,
     /// For the setups that it supports.
     kernel: Option<Kernel>,
     /// For the plain path, created on first use.
@@ -295,14 +298,21 @@ impl Evaluator {
             .iter()
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
-        let kernel = setup
-            .suits_kernel()
-            .then(|| Kernel::new(Arc::clone(&setup), Arc::clone(&rotations), instructions))
-            .transpose()?;
+        let weights = WholeWeights::new(&setup);
+        let new = || {
+            Kernel::new(
+                Arc::clone(&setup),
+                &weights,
+                Arc::clone(&rotations),
+                instructions,
+            )
+        };
+        let kernel = setup.suits_kernel().then(new).transpose()?;
         let fixed = OnceLock::new();
         Ok(Self {
             setup,
             rotations,
+            weights,
             kernel,
             fixed,
         })
@@ -340,13 +350,24 @@ impl Evaluator {
     }
 
     fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
-        // The lanes have one LEO clock.
-        let is_suited = |_: &&Kernel| !self.setup.has_several_leo_clocks(ephemeris);
-        let Some(kernel) = self.kernel.as_ref().filter(is_suited) else {
-            return Ok((self.evaluate_plain(ephemeris)?, Rechecks::default()));
+        let (metrics, rechecks) = match self.kernel_for(ephemeris) {
+            Some(kernel) => {
+                let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
+                (self.metrics(&evaluated, ephemeris)?, rechecks)
+            }
+            None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
         };
-        let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
-        Ok((self.metrics(&evaluated, ephemeris)?, rechecks))
+        if !self.setup.metrics.asks_for_hdop {
+            return Ok((metrics, rechecks));
+        }
+        let dops = self.dops_beside(&metrics, ephemeris)?;
+        Ok((metrics.with_dops(&dops), rechecks))
+    }
+
+    /// The fast path, where it suits the satellites: its lanes have one LEO clock.
+    fn kernel_for(&self, ephemeris: &Ephemeris) -> Option<&Kernel> {
+        let is_suited = !self.setup.has_several_leo_clocks(ephemeris);
+        self.kernel.as_ref().filter(|_| is_suited)
     }
 
     /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in
@@ -374,9 +395,16 @@ impl Evaluator {
         ephemeris: &Ephemeris,
     ) -> Result<Metrics, EphemerisError> {
         let satellites = ephemeris.satellites().len();
-        let metrics = Metrics::new(evaluated, self.setup.metrics, satellites);
+        let step_s = self.setup.grid.step_s();
+        let metrics = Metrics::new(evaluated, self.setup.metrics, satellites, step_s);
         let information = self.information_pdop(ephemeris)?;
         Ok(metrics.with_on_demand(information, self.accuracy(ephemeris)?))
+    }
+
+    /// Satellites of all GNSS.
+    fn gnss_count(&self) -> usize {
+        let systems = fixed::systems(&self.setup);
+        systems.iter().map(|system| system.satellites().len()).sum()
     }
 }
 

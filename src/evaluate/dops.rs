@@ -1,12 +1,15 @@
-//! All dilutions of precision of a constellation with its GNSS, by the plain path.
+//! All dilutions of precision of a constellation with its GNSS.
 
 use super::fixed::PlainPositions;
-use super::{Evaluator, Setup, fixed, leo, plain};
+use super::{Evaluator, Metrics, Setup, fixed, leo, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::LocalFrame;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
 use serde::Serialize;
+
+/// The place of the first clock among the dilutions: GDOP, PDOP, HDOP and VDOP come before.
+pub(super) const CLOCKS_FROM: usize = 4;
 
 /// Statistics of the dilutions of precision over the solved samples, weighted by point; `None` if
 /// there are no samples.
@@ -63,8 +66,8 @@ struct Collected {
     hdop: Vec<Weighted>,
     vdop: Vec<Weighted>,
     tdop: Vec<Vec<Weighted>>,
-    solved_weight: f64,
-    weight: f64,
+    solved_weight: u64,
+    weight: u64,
 }
 
 impl Evaluator {
@@ -75,6 +78,44 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
+        let (metrics, _) = self.counted(ephemeris)?;
+        self.dops_beside(&metrics, ephemeris)
+    }
+
+    /// The same of satellites that have these metrics.
+    pub(super) fn dops_beside(
+        &self,
+        metrics: &Metrics,
+        ephemeris: &Ephemeris,
+    ) -> Result<DopStatistics, EphemerisError> {
+        let Some(kernel) = self.kernel_for(ephemeris) else {
+            return self.dops_plain(ephemeris);
+        };
+        let summaries = kernel.dops(ephemeris)?;
+        let clocks = self.clock_names().into_iter();
+        let tdop = clocks.zip(&summaries[CLOCKS_FROM..]);
+        let mut tdop: Vec<_> = tdop
+            .map(|(system, &tdop)| ClockDop { system, tdop })
+            .collect();
+        tdop.rotate_right(1);
+        Ok(DopStatistics {
+            gdop: summaries[0],
+            pdop: metrics.pdop_summary(),
+            hdop: summaries[2],
+            vdop: summaries[3],
+            tdop,
+            solved_fraction: metrics.solved_fraction,
+        })
+    }
+
+    /// The same by the plain path, the reference for the kernel.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub(super) fn dops_plain(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<DopStatistics, EphemerisError> {
         let setup = self.setup();
         let systems = fixed::systems(setup);
         let clocks = self.clock_names();
@@ -83,10 +124,10 @@ impl Evaluator {
         for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
             leo::positions(setup, ephemeris, elapsed_s, rotation, &mut leo)?;
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
-            for site in &setup.sites {
+            for (number, site) in setup.sites.iter().enumerate() {
                 let groups = groups(setup, &site.local, &leo, &gnss);
                 let dops = DopFamily::of(&groups, &site.local, setup.pdop_cap);
-                collected.add(dops.as_ref(), site.weight);
+                collected.add(dops.as_ref(), self.weights.of(number));
             }
         }
         Ok(collected.statistics(clocks, setup.metrics.cvar_level))
@@ -114,7 +155,7 @@ impl Evaluator {
 
 /// The observations of each clock: the systems one by one and the LEO clocks last, or all in
 /// one. The sums are those of [`plain::geometry`], so that the decisions are the same.
-fn groups(
+pub(super) fn groups(
     setup: &Setup,
     site: &LocalFrame,
     leo: &[PlainPositions],
@@ -122,10 +163,10 @@ fn groups(
 ) -> Vec<ClockGroup> {
     let leo = leo
         .iter()
-        .map(|positions| plain::observe(setup, setup.mask, site, positions));
+        .map(|positions| plain::observe(setup, setup.mask, site, positions).1);
     let systems = gnss
         .iter()
-        .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions));
+        .map(|positions| plain::observe(setup, setup.gnss_mask, site, positions).1);
     match setup.clocks {
         Clocks::PerSystem => systems.chain(leo).collect(),
         Clocks::Shared => {
@@ -148,15 +189,16 @@ impl Collected {
             hdop: Vec::new(),
             vdop: Vec::new(),
             tdop: vec![Vec::new(); clocks],
-            solved_weight: 0.0,
-            weight: 0.0,
+            solved_weight: 0,
+            weight: 0,
         }
     }
 
-    fn add(&mut self, dops: Option<&DopFamily>, weight: f64) {
+    fn add(&mut self, dops: Option<&DopFamily>, weight: u64) {
         self.weight += weight;
         let Some(dops) = dops else { return };
         self.solved_weight += weight;
+        let weight = weight as f64;
         let weighted = |value: f64| Weighted { value, weight };
         self.gdop.push(weighted(dops.gdop));
         self.pdop.push(weighted(dops.pdop));
@@ -183,7 +225,7 @@ impl Collected {
             hdop: summarize_weighted(&mut self.hdop, level),
             vdop: summarize_weighted(&mut self.vdop, level),
             tdop,
-            solved_fraction: self.solved_weight / self.weight,
+            solved_fraction: self.solved_weight as f64 / self.weight as f64,
         }
     }
 }

@@ -14,6 +14,8 @@ pub(super) struct PlainGnssSample {
     pub(super) own_clocks: Geometry,
     /// Satellites that share their clock with the LEO design.
     pub(super) shared_clock: ClockGroup,
+    /// Visible satellites of all systems.
+    pub(super) visible: u32,
 }
 
 impl PlainGnssSample {
@@ -21,7 +23,8 @@ impl PlainGnssSample {
     pub(super) fn new(setup: &Setup, site: &LocalFrame, systems: &[PlainPositions]) -> Self {
         let mut sample = Self::default();
         for positions in systems {
-            let group = plain::observe(setup, setup.gnss_mask, site, positions);
+            let (visible, group) = plain::observe(setup, setup.gnss_mask, site, positions);
+            sample.visible += visible;
             match setup.clocks {
                 Clocks::PerSystem => sample.own_clocks.add(&group),
                 Clocks::Shared => sample.shared_clock += group,

@@ -38,6 +38,7 @@
 //! Values are never sorted, and beyond a certain number not even stored ([`order_statistics`]).
 
 mod candidates;
+mod dilutions;
 mod fixed;
 mod instructions;
 mod lanes;
@@ -46,26 +47,32 @@ mod propagation;
 mod refine;
 mod sample;
 mod settle;
+mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
 
 use super::Setup;
+use super::counts::Threshold;
 use super::metrics::Evaluated;
+use super::series::Instant;
+use super::weights::WholeWeights;
 use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use fixed::{Fixed, FixedTiles, SampleInstant};
+use dilutions::{Dilution, DilutionRows};
+use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
 use refine::{Ranked, Surround};
-use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, Workspace};
+use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
+use tally::{Tally, TallySample};
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -102,7 +109,8 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES)
+    let tallies = setup.sites.len().div_ceil(LANES) * Tally::TILE_BYTES;
+    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
 }
 
 /// Samples recomputed in f64.
@@ -117,6 +125,16 @@ pub struct Rechecks {
     pub near_limit: u64,
 }
 
+impl Rechecks {
+    fn merged(self, other: Self) -> Self {
+        Self {
+            near_mask: self.near_mask + other.near_mask,
+            large_pdop: self.large_pdop + other.large_pdop,
+            near_limit: self.near_limit + other.near_limit,
+        }
+    }
+}
+
 /// The part of the kernel that is the same for all designs.
 pub(super) struct Kernel {
     setup: Arc<Setup>,
@@ -126,46 +144,49 @@ pub(super) struct Kernel {
     instructions: InstructionSet,
     places: Places,
     kept_values: usize,
+    /// Weight of all samples.
+    total: u64,
 }
 
-/// Counts of one piece of work.
-#[derive(Debug, Clone, Copy, Default)]
-struct Tallies {
-    visible: u64,
-    available: u64,
-    rechecks: Rechecks,
+/// The sums of each chunk, in order.
+type Parts = Vec<(Rechecks, Vec<f64>)>;
+
+/// A sum over all chunks. They stay in order, so it does not depend on the number of threads.
+fn summed(parts: &Parts, number: usize) -> f64 {
+    parts.iter().map(|(_, sums)| sums[number]).sum()
 }
 
-impl Tallies {
-    fn merged(self, other: Self) -> Self {
-        Self {
-            visible: self.visible + other.visible,
-            available: self.available + other.available,
-            rechecks: Rechecks {
-                near_mask: self.rechecks.near_mask + other.rechecks.near_mask,
-                large_pdop: self.rechecks.large_pdop + other.rechecks.large_pdop,
-                near_limit: self.rechecks.near_limit + other.rechecks.near_limit,
-            },
-        }
-    }
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
+fn largest_dilution(pdop_cap: f64, clocks: usize) -> f64 {
+    (pdop_cap * pdop_cap + clocks as f64 * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
+}
+
+/// One instant that is evaluated.
+struct Evaluating<'a> {
+    instant: SampleInstant,
+    work: &'a mut Workspace,
+    outcome: &'a SampleOutcome,
+    fixed: FixedSample<'a>,
 }
 
 impl Kernel {
     pub(super) fn new(
         setup: Arc<Setup>,
+        weights: &WholeWeights,
         rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
-        Self::keeping_at_most(Keep::default(), setup, rotations, instructions)
+        Self::keeping_at_most(Keep::default(), setup, weights, rotations, instructions)
     }
 
     fn keeping_at_most(
         keep: Keep,
         setup: Arc<Setup>,
+        weights: &WholeWeights,
         rotations: Arc<[EarthRotation]>,
         instructions: InstructionSet,
     ) -> Result<Self, EphemerisError> {
-        let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
+        let tiles = Tiles::new(&setup.sites, weights, setup.mask, setup.gnss_mask);
         let fixed = Fixed::new(&setup, &tiles, &rotations, instructions, keep.fixed_bytes)?;
         let scene = SampleContext {
             tiles,
@@ -174,7 +195,7 @@ impl Kernel {
             limits: Limits {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,
-                available: setup.metrics.availability_pdop,
+                available: Threshold(setup.metrics.availability_pdop),
                 clocks: match setup.clocks {
                     Clocks::PerSystem => 1 + setup.gnss.len() as u32,
                     Clocks::Shared => 1,
@@ -189,6 +210,7 @@ impl Kernel {
             setup,
             rotations,
             kept_values: keep.values,
+            total: weights.total(),
         })
     }
 
@@ -205,6 +227,36 @@ impl Kernel {
         }
     }
 
+    /// Passes all instants to `see`, one after the other.
+    pub(super) fn visit(
+        &self,
+        ephemeris: &Ephemeris,
+        mut see: impl FnMut(&Instant),
+    ) -> Result<(), EphemerisError> {
+        let propagation = &Propagation::new(ephemeris);
+        let mut instant = Instant::new(self.setup.sites.len());
+        let samples = 0..self.setup.grid.len();
+        self.run(propagation, samples, self.scene.limits, |evaluating| {
+            instant.number = evaluating.instant.number;
+            for (number, tile) in self.scene.tiles.tiles.iter().enumerate() {
+                let gnss = evaluating.fixed.tile(number).visible;
+                let (leo, pdop) = (
+                    &evaluating.outcome.visible[number].0,
+                    &evaluating.outcome.pdop[number].0,
+                );
+                for (lane, &site) in tile.members.iter().enumerate() {
+                    let point = &mut instant.points[site as usize];
+                    point.visible = leo[lane];
+                    point.gnss_visible = u32::from(gnss[lane]);
+                    point.pdop = (pdop[lane] < UNSOLVED).then_some(pdop[lane]);
+                }
+            }
+            see(&instant);
+            Ok(())
+        })?;
+        Ok(())
+    }
+
     /// One pass over the samples and two over the stored values.
     fn keeping(
         &self,
@@ -214,16 +266,19 @@ impl Kernel {
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
-        let mut tallies = Tallies::default();
+        let mut tally = self.tally(propagation);
         for chunk in self.chunks(samples) {
             let first = values.len();
-            let part = self.run(propagation, chunk, self.scene.limits, |tiles| {
-                values.extend_from_slice(tiles);
+            let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
+                values.extend_from_slice(&instant.outcome.pdop);
+                self.tally_instant(instant, &mut tally);
+                Ok(())
             })?;
-            tallies = tallies.merged(part);
+            tally.rechecks = tally.rechecks.merged(rechecks);
             sum += self.count(&values[first..], &mut counts);
         }
-        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
+        let level = self.setup.metrics.cvar_level;
+        let summary = match RankSearch::new(&counts, level) {
             Some(search) => {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
@@ -233,8 +288,7 @@ impl Kernel {
             }
             None => None,
         };
-        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
-        Ok((evaluated, tallies.rechecks))
+        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
     }
 
     /// Recomputes the order statistics in f64.
@@ -256,7 +310,8 @@ impl Kernel {
             value: *statistics[number],
         });
         let windows: [_; 4] = self.instructions.run(Surround {
-            tiles: values,
+            tiles: &self.scene.tiles.tiles,
+            values,
             ranked,
         });
         let exact = Limits {
@@ -264,12 +319,17 @@ impl Kernel {
             ..self.scene.limits
         };
         let tiles = self.scene.tiles.tiles.len();
+        let weight = |n: usize, lane: usize| self.scene.tiles.tiles[n].weights.whole.0[lane];
         for (statistic, window) in statistics.into_iter().zip(&windows) {
             let mut again = Vec::with_capacity(window.places.len());
             for together in window.places.chunk_by(|a, b| a.0 / tiles == b.0 / tiles) {
                 let k = together[0].0 / tiles;
-                self.run(propagation, k..k + 1, exact, |sample| {
-                    again.extend(together.iter().map(|&(n, lane)| sample[n % tiles].0[lane]));
+                self.run(propagation, k..k + 1, exact, |instant| {
+                    again.extend(together.iter().map(|&(n, lane)| {
+                        let n = n % tiles;
+                        (instant.outcome.pdop[n].0[lane], weight(n, lane))
+                    }));
+                    Ok(())
                 })?;
             }
             if let Some(value) = window.pick(again) {
@@ -285,52 +345,57 @@ impl Kernel {
         propagation: &Propagation<'_>,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
-        let (counts, parts) = self.pass(
+        let ((counts, mut tally), parts) = self.pass(
             propagation,
             &chunks,
-            || Counts::new(self.places),
-            |tiles, counts| self.count(tiles, counts),
+            || (Counts::new(self.places), self.tally(propagation)),
+            |instant, (counts, tally), sums| {
+                self.tally_instant(instant, tally);
+                sums[0] += self.count(&instant.outcome.pdop, counts);
+                Ok(())
+            },
+            1,
         )?;
-        // The chunks stay in order, so the sum does not depend on the number of threads.
-        let tallies = parts
-            .iter()
-            .fold(Tallies::default(), |all, part| all.merged(part.0));
-        let sum = parts.iter().map(|part| part.1).sum();
-        let summary = match RankSearch::new(&counts, self.setup.metrics.cvar_level) {
+        for (rechecks, _) in &parts {
+            tally.rechecks = tally.rechecks.merged(*rechecks);
+        }
+        let sum = summed(&parts, 0);
+        let level = self.setup.metrics.cvar_level;
+        let summary = match RankSearch::new(&counts, level) {
             Some(search) => {
-                let (found, parts) =
-                    self.pass(propagation, &chunks, Found::new, |tiles, found| {
-                        self.find(tiles, &search, found)
-                    })?;
-                let tail = parts.iter().map(|part| part.1).sum();
-                Some(search.summary(&found, sum, tail))
+                let note = |instant: &mut Evaluating<'_>, found: &mut _, tails: &mut [f64]| {
+                    tails[0] += self.find(&instant.outcome.pdop, &search, found);
+                    Ok(())
+                };
+                let (found, parts) = self.pass(propagation, &chunks, Found::new, note, 1)?;
+                Some(search.summary(&found, sum, summed(&parts, 0)))
             }
             None => None,
         };
-        let evaluated = evaluated(&self.setup, tallies, &counts, summary);
-        Ok((evaluated, tallies.rechecks))
+        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
     }
 
-    /// One pass over the samples on all threads. `note` adds the values of a sample to an accumulator of
-    /// integers, in any order, and returns a sum, which is stored for each chunk.
+    /// One pass over the samples on all threads. `note` adds an instant to an accumulator of integers, which
+    /// are merged in the order of time, and to so many sums, which are stored for each chunk.
     fn pass<A: Merge + Send>(
         &self,
         propagation: &Propagation<'_>,
         chunks: &[Range<usize>],
         new: impl Fn() -> A + Sync,
-        note: impl Fn(&[Lanes<f32>], &mut A) -> f64 + Sync,
-    ) -> Result<(A, Vec<(Tallies, f64)>), EphemerisError> {
+        note: impl Fn(&mut Evaluating<'_>, &mut A, &mut [f64]) -> Result<(), EphemerisError> + Sync,
+        sums: usize,
+    ) -> Result<(A, Parts), EphemerisError> {
         chunks
             .par_iter()
             .try_fold(
                 || (new(), Vec::new()),
                 |(mut all, mut parts), chunk| {
-                    let mut sum = 0.0;
-                    let tallies =
-                        self.run(propagation, chunk.clone(), self.scene.limits, |tiles| {
-                            sum += note(tiles, &mut all);
-                        })?;
-                    parts.push((tallies, sum));
+                    let mut part = vec![0.0; sums];
+                    let limits = self.scene.limits;
+                    let rechecks = self.run(propagation, chunk.clone(), limits, |instant| {
+                        note(instant, &mut all, &mut part)
+                    })?;
+                    parts.push((rechecks, part));
                     Ok((all, parts))
                 },
             )
@@ -343,13 +408,116 @@ impl Kernel {
             )
     }
 
-    fn count(&self, tiles: &[Lanes<f32>], counts: &mut Counts) -> f64 {
-        self.instructions.run(Count { tiles, counts })
+    /// Statistics of all dilutions: GDOP, PDOP, HDOP, VDOP and the TDOP of each clock.
+    pub(super) fn dops(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
+        let propagation = &Propagation::new(ephemeris);
+        let dilution = Dilution {
+            setup: &self.setup,
+            scene: &self.scene,
+            fixed: &self.fixed,
+            leo: ephemeris,
+        };
+        let tiles = self.scene.tiles.tiles.len();
+        let clocks = self.scene.limits.clocks as usize;
+        let rows = || DilutionRows::new(clocks, tiles);
+        let chunks = self.chunks(self.setup.grid.len());
+        let places = Places::new(largest_dilution(self.setup.pdop_cap, clocks));
+        let level = self.setup.metrics.cvar_level;
+        let channels = rows().0.len();
+        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+            let mut kept = vec![Vec::new(); channels];
+            for chunk in chunks {
+                let mut rows = rows();
+                self.run(propagation, chunk, self.scene.limits, |instant| {
+                    dilution.compute(instant, &mut rows)?;
+                    let pairs = kept.iter_mut().zip(&rows.0);
+                    pairs.for_each(|(kept, row)| kept.extend_from_slice(row));
+                    Ok(())
+                })?;
+            }
+            let summary = |values: &Vec<Lanes<f32>>| {
+                let (mut counts, mut found) = (Counts::new(places), Found::new());
+                let sum = self.count(values, &mut counts);
+                let search = RankSearch::new(&counts, level)?;
+                let tail = self.find(values, &search, &mut found);
+                Some(search.summary(&found, sum, tail))
+            };
+            return Ok(kept.iter().map(summary).collect());
+        }
+        let (counts, sums) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Counts::new(places); channels],
+            |instant, counts, sums| {
+                let mut rows = rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, row) in rows.0.iter().enumerate() {
+                    sums[n] += self.count(row, &mut counts[n]);
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let searches: Vec<_> = counts
+            .iter()
+            .map(|counts| RankSearch::new(counts, level))
+            .collect();
+        let (found, tails) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Found::new(); channels],
+            |instant, found, tails| {
+                let mut rows = rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, (row, search)) in rows.0.iter().zip(&searches).enumerate() {
+                    if let Some(search) = search {
+                        tails[n] += self.find(row, search, &mut found[n]);
+                    }
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let summary = |(n, search): (usize, &Option<RankSearch>)| {
+            let search = search.as_ref()?;
+            Some(search.summary(&found[n], summed(&sums, n), summed(&tails, n)))
+        };
+        Ok(searches.iter().enumerate().map(summary).collect())
     }
 
-    fn find(&self, tiles: &[Lanes<f32>], search: &RankSearch, found: &mut Found) -> f64 {
+    /// An empty tally of some satellites.
+    fn tally(&self, propagation: &Propagation<'_>) -> Tally {
+        let leo = propagation.ephemeris.satellites().len();
+        let systems = self.fixed.systems.iter();
+        let gnss = systems.map(|system| system.satellites().len()).sum();
+        Tally::new(self.scene.tiles.tiles.len(), leo, gnss)
+    }
+
+    fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut Tally) {
+        self.instructions.run(TallySample {
+            tiles: &self.scene.tiles.tiles,
+            outcome: instant.outcome,
+            fixed: instant.fixed,
+            available: self.scene.limits.available.single(),
+            to,
+        });
+    }
+
+    fn count(&self, values: &[Lanes<f32>], counts: &mut Counts) -> f64 {
+        self.instructions.run(Count {
+            tiles: &self.scene.tiles.tiles,
+            values,
+            counts,
+        })
+    }
+
+    fn find(&self, values: &[Lanes<f32>], search: &RankSearch, found: &mut Found) -> f64 {
         self.instructions.run(Find {
-            tiles,
+            tiles: &self.scene.tiles.tiles,
+            values,
             search,
             found,
         })
@@ -364,18 +532,18 @@ impl Kernel {
             .collect()
     }
 
-    /// Evaluates some samples and passes the values of each to `take`.
+    /// Evaluates some instants and passes each to `take`.
     fn run(
         &self,
         propagation: &Propagation<'_>,
         chunk: Range<usize>,
         limits: Limits,
-        mut take: impl FnMut(&[Lanes<f32>]),
-    ) -> Result<Tallies, EphemerisError> {
+        mut take: impl FnMut(&mut Evaluating<'_>) -> Result<(), EphemerisError>,
+    ) -> Result<Rechecks, EphemerisError> {
         let mut work = Workspace::new(propagation.ephemeris.satellites().len());
         let mut outcome = SampleOutcome::new(self.scene.tiles.tiles.len());
         let mut scratch = FixedTiles::default();
-        let mut tallies = Tallies::default();
+        let mut rechecks = Rechecks::default();
         for k in chunk {
             let elapsed_s = self.setup.grid.elapsed_s(k);
             let rotation = self.rotations[k];
@@ -399,33 +567,34 @@ impl Kernel {
             });
             for undecided in &outcome.doubts {
                 match undecided.doubt {
-                    Doubt::Mask => tallies.rechecks.near_mask += 1,
-                    Doubt::Geometry => tallies.rechecks.near_limit += 1,
+                    Doubt::Mask => rechecks.near_mask += 1,
+                    Doubt::Geometry => rechecks.near_limit += 1,
                 }
             }
-            tallies.rechecks.large_pdop += outcome.doubled;
+            rechecks.large_pdop += outcome.doubled;
             let settling = Settling::new(&self.setup, &self.scene, instant, fixed);
             settling.settle(propagation.ephemeris, &self.fixed.systems, &mut outcome)?;
-            tallies.visible += outcome.visible;
-            tallies.available += outcome.available;
-            take(&outcome.pdop);
+            take(&mut Evaluating {
+                instant,
+                work: &mut work,
+                outcome: &outcome,
+                fixed,
+            })?;
         }
-        Ok(tallies)
+        Ok(rechecks)
     }
-}
 
-fn evaluated(
-    setup: &Setup,
-    tallies: Tallies,
-    counts: &Counts,
-    summary: Option<Summary>,
-) -> Evaluated {
-    let samples = setup.sample_count() as f64;
-    Evaluated {
-        mean_visible: tallies.visible as f64 / samples,
-        solved: counts.solved() as f64 / samples,
-        available: tallies.available as f64 / samples,
-        summary,
+    fn evaluated(&self, tally: &Tally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+        let share = |weight: u64| weight as f64 / self.total as f64;
+        let [leo, all] = tally.views();
+        Evaluated {
+            leo,
+            all,
+            solved: share(counts.solved()),
+            available: share(tally.available()),
+            longest_outage: tally.longest_outage(&self.scene.tiles.tiles),
+            summary,
+        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The figures of merit of a constellation over points and times.
 
+use super::DopStatistics;
 use super::accuracy::{AccuracyMetrics, Spread};
+use super::counts::{Coverage, LongestOutage, Views};
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
@@ -15,6 +17,8 @@ pub struct MetricOptions {
     pub cvar_level: Level,
     /// PDOP up to which a sample counts as available.
     pub availability_pdop: f64,
+    /// Whether the quantiles of HDOP and VDOP are computed too, which takes several times as long.
+    pub asks_for_hdop: bool,
 }
 
 impl Default for MetricOptions {
@@ -24,6 +28,7 @@ impl Default for MetricOptions {
             cvar_weight: 0.5,
             cvar_level: Level::default(),
             availability_pdop: 6.0,
+            asks_for_hdop: false,
         }
     }
 }
@@ -59,6 +64,25 @@ pub struct Metrics {
     pub j_pos: Option<f64>,
     /// Satellites / mean visible (equation 9); `None` if none is ever visible.
     pub j_cost: Option<f64>,
+    /// Least number of visible LEO satellites in any sample, whatever the weight of its point.
+    pub least_visible: u32,
+    /// Fraction of samples with at least n visible LEO satellites.
+    pub coverage: Coverage,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
+    /// Fraction of samples with at least n visible satellites, LEO and GNSS.
+    pub coverage_total: Coverage,
+    /// Longest outage of any point, seconds: samples in a row that are unsolved or above the availability
+    /// threshold, times the step. What is shorter than a step may be missed.
+    pub longest_outage_s: f64,
+    /// Whether the start or the end of the span cuts an outage of that length, which may be longer.
+    pub longest_outage_cut: bool,
+    /// 95 % quantile of HDOP, where it is asked for.
+    pub p95_hdop: Option<f64>,
+    /// 95 % quantile of VDOP, where it is asked for.
+    pub p95_vdop: Option<f64>,
     /// PDOP of all observations in a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub information_pdop: Option<InformationPdop>,
@@ -108,19 +132,50 @@ pub struct Metrics {
 
 /// Summary of the samples of an evaluation, weighted by point.
 pub(super) struct Evaluated {
-    /// Mean visible LEO satellites.
-    pub(super) mean_visible: f64,
+    /// LEO satellites in view.
+    pub(super) leo: Views,
+    /// LEO and GNSS satellites in view.
+    pub(super) all: Views,
     /// Fraction of samples that are solved.
     pub(super) solved: f64,
     /// Fraction of samples that are solved with PDOP at most the availability threshold.
     pub(super) available: f64,
+    pub(super) longest_outage: LongestOutage,
     /// Statistics of the PDOP of the solved samples.
     pub(super) summary: Option<Summary>,
 }
 
 impl Metrics {
-    pub(super) fn new(evaluated: &Evaluated, options: MetricOptions, satellites: usize) -> Self {
-        let mean_visible = evaluated.mean_visible;
+    /// The same with the quantiles of HDOP and VDOP.
+    #[must_use]
+    pub fn with_dops(self, dops: &DopStatistics) -> Self {
+        Self {
+            p95_hdop: dops.hdop.map(|hdop| hdop.p95),
+            p95_vdop: dops.vdop.map(|vdop| vdop.p95),
+            ..self
+        }
+    }
+
+    /// The statistics of PDOP; `None` without solved samples.
+    pub(super) fn pdop_summary(&self) -> Option<Summary> {
+        Some(Summary {
+            mean: self.mean_pdop?,
+            p50: self.p50_pdop?,
+            p95: self.p95_pdop?,
+            p99: self.p99_pdop?,
+            max: self.max_pdop?,
+            cvar: self.cvar_pdop?,
+        })
+    }
+
+    pub(super) fn new(
+        evaluated: &Evaluated,
+        options: MetricOptions,
+        satellites: usize,
+        step_s: f64,
+    ) -> Self {
+        let (mean_visible, mean_total_visible) = (evaluated.leo.mean(), evaluated.all.mean());
+        let longest_outage = evaluated.longest_outage;
         let summary = evaluated.summary;
         Self {
             mean_visible,
@@ -135,6 +190,15 @@ impl Metrics {
             availability: evaluated.available,
             j_pos: summary.map(|s| s.mean + options.cvar_weight * s.cvar),
             j_cost: (mean_visible > 0.0).then(|| satellites as f64 / mean_visible),
+            least_visible: evaluated.leo.least(),
+            coverage: evaluated.leo.coverage(),
+            mean_gnss_visible: evaluated.all.mean_beyond(&evaluated.leo),
+            mean_total_visible,
+            coverage_total: evaluated.all.coverage(),
+            longest_outage_s: f64::from(longest_outage.samples) * step_s,
+            longest_outage_cut: longest_outage.is_cut,
+            p95_hdop: None,
+            p95_vdop: None,
             information_pdop: None,
             sigma_3d_m: None,
             sigma_h_m: None,

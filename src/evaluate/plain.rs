@@ -1,6 +1,7 @@
 //! The plain path: sample by sample in f64, by definition. It is the reference for tests of the kernel
 //! and evaluates setups that the kernel does not support.
 
+use super::counts::{LongestOutage, Outages, Views};
 use super::fixed::PlainGnssSample;
 use super::metrics::Evaluated;
 use super::{Evaluator, Setup, leo};
@@ -18,6 +19,8 @@ pub(super) struct PlainSample {
     pub(super) site: usize,
     /// Visible LEO satellites.
     pub(super) visible: u32,
+    /// Visible GNSS satellites.
+    pub(super) gnss_visible: u32,
     /// PDOP, if solved.
     pub(super) pdop: Option<f64>,
 }
@@ -27,23 +30,35 @@ pub(super) fn evaluate(
     ephemeris: &Ephemeris,
 ) -> Result<Evaluated, EphemerisError> {
     let setup = evaluator.setup();
-    let mut visible = 0.0;
-    let mut total = 0.0;
+    let weights = &evaluator.weights;
+    let satellites = ephemeris.satellites().len();
+    let gnss = evaluator.gnss_count();
+    let (mut leo, mut all) = (Views::new(satellites), Views::new(satellites + gnss));
     let mut pdop = Vec::with_capacity(setup.sample_count());
+    let mut is_out = vec![Vec::with_capacity(setup.grid.len()); setup.sites.len()];
+    let (mut solved, mut available) = (0, 0);
     visit(evaluator, ephemeris, |sample| {
-        let weight = setup.sites[sample.site].weight;
-        visible += weight * f64::from(sample.visible);
-        total += weight;
+        let weight = weights.of(sample.site);
+        leo.add(sample.visible, weight);
+        all.add(sample.visible + sample.gnss_visible, weight);
+        let within = |bound: f64| sample.pdop.is_some_and(|pdop| pdop <= bound);
+        let is_available = within(setup.metrics.availability_pdop);
+        solved += if within(f64::INFINITY) { weight } else { 0 };
+        available += if is_available { weight } else { 0 };
+        is_out[sample.site].push(!is_available);
+        let weight = weight as f64;
         pdop.extend(sample.pdop.map(|value| Weighted { value, weight }));
     })?;
-    let share_up_to = |bound: f64| {
-        let within = pdop.iter().filter(|sample| sample.value <= bound);
-        within.fold(0.0, |sum, sample| sum + sample.weight) / total
-    };
+    let share = |weight: u64| weight as f64 / weights.total() as f64;
+    let outages = is_out
+        .into_iter()
+        .map(|point| Outages::of(point.into_iter()));
     Ok(Evaluated {
-        mean_visible: visible / total,
-        solved: share_up_to(f64::INFINITY),
-        available: share_up_to(setup.metrics.availability_pdop),
+        leo,
+        all,
+        solved: share(solved),
+        available: share(available),
+        longest_outage: LongestOutage::of(outages),
         summary: summary(setup, pdop),
     })
 }
@@ -66,21 +81,22 @@ pub(super) fn visit(
     mut see: impl FnMut(PlainSample),
 ) -> Result<(), EphemerisError> {
     let cap = evaluator.setup().pdop_cap;
-    visit_geometries(evaluator, ephemeris, |time, site, (visible, geometry)| {
+    visit_geometries(evaluator, ephemeris, |time, site, (visible, gnss_visible), geometry| {
         see(PlainSample {
             time,
             site,
             visible,
+            gnss_visible,
             pdop: geometry.pdop(cap),
         });
     })
 }
 
-/// Calls `see` with the instant, the point, and the visible LEO satellites and geometry of every sample.
+/// Calls `see` with the instant, the point, the visible LEO and GNSS satellites, and the geometry of every sample.
 pub(super) fn visit_geometries(
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-    mut see: impl FnMut(usize, usize, (u32, Geometry)),
+    mut see: impl FnMut(usize, usize, (u32, u32), Geometry),
 ) -> Result<(), EphemerisError> {
     let setup = evaluator.setup();
     let fixed = evaluator.fixed()?;
@@ -91,7 +107,8 @@ pub(super) fn visit_geometries(
         leo::positions(setup, ephemeris, elapsed_s, rotation, &mut positions)?;
         for (site, gnss) in fixed.at(time).iter().enumerate() {
             let local = &setup.sites[site].local;
-            see(time, site, geometry(setup, local, &positions, gnss));
+            let (visible, geometry) = geometry(setup, local, &positions, gnss);
+            see(time, site, (visible, gnss.visible), geometry);
         }
     }
     Ok(())
@@ -109,7 +126,7 @@ pub(super) fn geometry(
     let mut shared_clock = gnss.shared_clock;
     let mut geometry = gnss.own_clocks;
     for positions in clocks {
-        let (seen, mut leo) = observe_counted(setup, setup.mask, site, positions.as_ref());
+        let (seen, mut leo) = observe(setup, setup.mask, site, positions.as_ref());
         // Where the GNSS shares a clock, there is only this one.
         leo += std::mem::take(&mut shared_clock);
         geometry.add(&leo);
@@ -118,18 +135,8 @@ pub(super) fn geometry(
     (visible, geometry)
 }
 
-/// The observations of the satellites that are visible over a mask.
+/// The number of satellites that are visible over a mask, and the observations of those with weight.
 pub(super) fn observe(
-    setup: &Setup,
-    mask: Mask,
-    site: &LocalFrame,
-    positions: &[Position<EarthFixed>],
-) -> ClockGroup {
-    observe_counted(setup, mask, site, positions).1
-}
-
-/// The same with the number of visible satellites, those without weight included.
-fn observe_counted(
     setup: &Setup,
     mask: Mask,
     site: &LocalFrame,

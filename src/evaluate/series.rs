@@ -1,6 +1,7 @@
 //! Metrics per instant and per point, for figures and maps.
 
 use super::Evaluator;
+use super::counts::{Outages, Threshold};
 use super::plain::{self, PlainSample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::ground::Site;
@@ -21,6 +22,14 @@ pub struct EpochMetrics {
     pub max_pdop: Option<f64>,
     /// Fraction of the points that are solved.
     pub solved_fraction: f64,
+    /// Fraction of the points that are solved with PDOP at most the availability threshold.
+    pub availability: f64,
+    /// Least number of visible LEO satellites at any point.
+    pub least_visible: u32,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
 }
 
 /// One point, over all instants.
@@ -42,6 +51,20 @@ pub struct PointMetrics {
     pub solved_fraction: f64,
     /// Fraction of the instants that are solved with PDOP at most the availability threshold.
     pub availability: f64,
+    /// Least number of visible LEO satellites at any instant.
+    pub least_visible: u32,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
+    /// Number of outages: runs of instants that are unsolved or above the availability threshold.
+    pub outages: u32,
+    /// Length of the longest outage, seconds: instants times the step.
+    pub longest_outage_s: f64,
+    /// Length of all outages together, seconds.
+    pub total_outage_s: f64,
+    /// Whether the start or the end of the span cuts an outage, which may be longer.
+    pub outage_cut: bool,
     /// What the point is called, if anything.
     #[serde(serialize_with = "name")]
     pub name: Option<Arc<str>>,
@@ -69,8 +92,53 @@ pub struct Series {
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, in the order of the setup.
     pub points: Vec<PointMetrics>,
+    /// PDOP of the solved instants of each point, and the weight of the point.
+    solved: Vec<(Vec<f32>, f64)>,
+}
+
+impl Series {
     /// PDOP of every solved sample with the weight of its point, in ascending order.
-    pub pdop: Vec<Weighted>,
+    #[must_use]
+    pub fn rising_pdop(&self) -> Vec<Weighted> {
+        let of_point = |(pdop, weight): &(Vec<f32>, f64)| {
+            let weight = *weight;
+            let weighted = move |&value: &f32| Weighted {
+                value: value.into(),
+                weight,
+            };
+            pdop.iter().map(weighted).collect::<Vec<_>>()
+        };
+        let mut rising: Vec<_> = self.solved.iter().flat_map(of_point).collect();
+        rising.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
+        rising
+    }
+}
+
+/// One point at one instant.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct PointSample {
+    /// Visible LEO satellites.
+    pub(super) visible: u32,
+    pub(super) gnss_visible: u32,
+    /// PDOP, if solved, as [`Threshold::stored`].
+    pub(super) pdop: Option<f32>,
+}
+
+/// All points at one instant.
+#[derive(Debug, Clone)]
+pub(super) struct Instant {
+    /// Index into the grid.
+    pub(super) number: usize,
+    pub(super) points: Vec<PointSample>,
+}
+
+impl Instant {
+    pub(super) fn new(points: usize) -> Self {
+        Self {
+            number: 0,
+            points: vec![PointSample::default(); points],
+        }
+    }
 }
 
 /// Weighted sums over the points of one instant.
@@ -78,7 +146,10 @@ pub struct Series {
 struct EpochSums {
     weight: f64,
     visible: f64,
+    gnss_visible: f64,
+    least_visible: Option<u32>,
     solved: f64,
+    available: f64,
     pdop: f64,
     max: Option<f64>,
 }
@@ -87,54 +158,127 @@ struct EpochSums {
 #[derive(Clone, Default)]
 struct PointSums {
     visible: u64,
-    pdop: Vec<f64>,
+    gnss_visible: u64,
+    least_visible: Option<u32>,
+    /// Of the solved instants.
+    pdop: Vec<f32>,
+    outages: Outages,
 }
 
 impl Evaluator {
-    /// The metrics of some satellites per instant and per point, by the plain path.
+    /// The metrics of some satellites per instant and per point.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
-        let setup = self.setup();
-        let mut epochs = vec![EpochSums::default(); setup.grid.len()];
-        let mut points = vec![PointSums::default(); setup.sites.len()];
+        let mut cuts = Cuts::new(self);
+        match self.kernel_for(ephemeris) {
+            Some(kernel) => kernel.visit(ephemeris, |instant| cuts.add(instant))?,
+            None => self.visit_plain(ephemeris, |instant| cuts.add(instant))?,
+        }
+        Ok(cuts.series())
+    }
+
+    /// The same by the plain path, the reference for the kernel.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    #[cfg(test)]
+    pub(super) fn series_plain(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
+        let mut cuts = Cuts::new(self);
+        self.visit_plain(ephemeris, |instant| cuts.add(instant))?;
+        Ok(cuts.series())
+    }
+
+    fn visit_plain(
+        &self,
+        ephemeris: &Ephemeris,
+        mut see: impl FnMut(&Instant),
+    ) -> Result<(), EphemerisError> {
+        let available = Threshold(self.setup().metrics.availability_pdop);
+        let mut instant = Instant::new(self.setup().sites.len());
         plain::visit(self, ephemeris, |sample| {
-            epochs[sample.time].add(&sample, setup.sites[sample.site].weight);
-            let point = &mut points[sample.site];
-            point.visible += u64::from(sample.visible);
-            point.pdop.extend(sample.pdop);
-        })?;
-        let elapsed = setup.grid.iter();
-        let epochs = epochs.iter().zip(elapsed).map(|(sums, t)| sums.metrics(t));
-        let mut pdop: Vec<Weighted> = points
-            .iter()
-            .zip(&setup.sites)
-            .flat_map(|(sums, site)| {
-                let weight = site.weight;
-                sums.pdop
-                    .iter()
-                    .map(move |&value| Weighted { value, weight })
-            })
-            .collect();
-        pdop.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
-        let sites = setup.sites.iter();
-        let points = points.into_iter().zip(sites).map(|(sums, site)| {
-            sums.metrics(site, setup.grid.len(), setup.metrics.availability_pdop)
-        });
-        Ok(Series {
-            epochs: epochs.collect(),
-            points: points.collect(),
-            pdop,
+            let PlainSample {
+                time,
+                site,
+                visible,
+                gnss_visible,
+                pdop,
+            } = sample;
+            instant.number = time;
+            instant.points[site] = PointSample {
+                visible,
+                gnss_visible,
+                pdop: pdop.map(|pdop| available.stored(pdop)),
+            };
+            if site + 1 == instant.points.len() {
+                see(&instant);
+            }
         })
     }
 }
 
+/// The cuts through the samples while they are made.
+struct Cuts<'a> {
+    evaluator: &'a Evaluator,
+    available: f32,
+    epochs: Vec<EpochMetrics>,
+    points: Vec<PointSums>,
+}
+
+impl<'a> Cuts<'a> {
+    fn new(evaluator: &'a Evaluator) -> Self {
+        let setup = evaluator.setup();
+        Self {
+            evaluator,
+            available: Threshold(setup.metrics.availability_pdop).single(),
+            epochs: Vec::with_capacity(setup.grid.len()),
+            points: vec![PointSums::default(); setup.sites.len()],
+        }
+    }
+
+    fn add(&mut self, instant: &Instant) {
+        let setup = self.evaluator.setup();
+        let mut epoch = EpochSums::default();
+        let sums = self.points.iter_mut().zip(&setup.sites);
+        for (sample, (sums, site)) in instant.points.iter().zip(sums) {
+            let is_available = sample.pdop.is_some_and(|pdop| pdop <= self.available);
+            epoch.add(sample, is_available, site.weight);
+            sums.add(sample, is_available);
+        }
+        let elapsed_s = setup.grid.elapsed_s(instant.number);
+        self.epochs.push(epoch.metrics(elapsed_s));
+    }
+
+    fn series(self) -> Series {
+        let setup = self.evaluator.setup();
+        let (instants, step_s) = (setup.grid.len(), setup.grid.step_s());
+        let mut scratch = Vec::with_capacity(instants);
+        let sums = self.points.iter().zip(&setup.sites);
+        let points = sums.map(|(sums, site)| sums.metrics(site, instants, step_s, &mut scratch));
+        let points = points.collect();
+        let sums = self.points.into_iter().zip(&setup.sites);
+        Series {
+            epochs: self.epochs,
+            points,
+            solved: sums.map(|(sums, site)| (sums.pdop, site.weight)).collect(),
+        }
+    }
+}
+
+/// The smaller of a number and what there may be already.
+fn least(known: Option<u32>, number: u32) -> Option<u32> {
+    Some(known.map_or(number, |known| known.min(number)))
+}
+
 impl EpochSums {
-    fn add(&mut self, sample: &PlainSample, weight: f64) {
+    fn add(&mut self, sample: &PointSample, is_available: bool, weight: f64) {
         self.weight += weight;
         self.visible += weight * f64::from(sample.visible);
-        if let Some(pdop) = sample.pdop {
+        self.gnss_visible += weight * f64::from(sample.gnss_visible);
+        self.least_visible = least(self.least_visible, sample.visible);
+        self.available += if is_available { weight } else { 0.0 };
+        if let Some(pdop) = sample.pdop.map(f64::from) {
             self.solved += weight;
             self.pdop += weight * pdop;
             self.max = Some(self.max.map_or(pdop, |max| max.max(pdop)));
@@ -148,27 +292,54 @@ impl EpochSums {
             mean_pdop: self.max.map(|_| self.pdop / self.solved),
             max_pdop: self.max,
             solved_fraction: self.solved / self.weight,
+            availability: self.available / self.weight,
+            least_visible: self.least_visible.unwrap_or(0),
+            mean_gnss_visible: self.gnss_visible / self.weight,
+            mean_total_visible: (self.visible + self.gnss_visible) / self.weight,
         }
     }
 }
 
 impl PointSums {
-    fn metrics(mut self, site: &Site, instants: usize, availability_pdop: f64) -> PointMetrics {
+    fn add(&mut self, sample: &PointSample, is_available: bool) {
+        self.visible += u64::from(sample.visible);
+        self.gnss_visible += u64::from(sample.gnss_visible);
+        self.least_visible = least(self.least_visible, sample.visible);
+        self.pdop.extend(sample.pdop);
+        self.outages.add(!is_available);
+    }
+
+    /// `scratch` is memory for the values.
+    fn metrics(
+        &self,
+        site: &Site,
+        instants: usize,
+        step_s: f64,
+        scratch: &mut Vec<f64>,
+    ) -> PointMetrics {
         let count = instants as f64;
-        let solved = self.pdop.len();
-        let sum: f64 = self.pdop.iter().sum();
-        let available = self.pdop.iter().filter(|&&x| x <= availability_pdop);
-        let available = available.count();
+        scratch.clear();
+        scratch.extend(self.pdop.iter().map(|&pdop| f64::from(pdop)));
+        let solved = scratch.len();
+        let sum: f64 = scratch.iter().sum();
+        let outages = self.outages;
         let p95 = Level::new(0.95).ok();
         PointMetrics {
             latitude_deg: site.latitude_deg,
             longitude_deg: site.longitude_deg,
             mean_visible: self.visible as f64 / count,
             mean_pdop: (solved > 0).then(|| sum / solved as f64),
-            p95_pdop: p95.and_then(|level| quantile(&mut self.pdop, level)),
-            max_pdop: self.pdop.iter().copied().max_by(f64::total_cmp),
+            max_pdop: scratch.iter().copied().max_by(f64::total_cmp),
+            p95_pdop: p95.and_then(|level| quantile(scratch, level)),
             solved_fraction: solved as f64 / count,
-            availability: available as f64 / count,
+            availability: (count - f64::from(outages.total)) / count,
+            least_visible: self.least_visible.unwrap_or(0),
+            mean_gnss_visible: self.gnss_visible as f64 / count,
+            mean_total_visible: (self.visible + self.gnss_visible) as f64 / count,
+            outages: outages.number,
+            longest_outage_s: f64::from(outages.longest) * step_s,
+            total_outage_s: f64::from(outages.total) * step_s,
+            outage_cut: outages.first + outages.last > 0,
             name: site.name.clone(),
         }
     }

@@ -1,4 +1,5 @@
 mod clocks;
+mod counted;
 mod limits;
 mod metres;
 mod products;

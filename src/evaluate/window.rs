@@ -85,7 +85,7 @@ impl Evaluator {
         let count = instants(window_s, setup.grid.step_s());
         let mut sums = vec![SlidingSum::default(); setup.sites.len()];
         let (mut pdop, mut total, mut solved) = (Vec::new(), 0.0, 0.0);
-        plain::visit_geometries(self, ephemeris, |_, site, (_, geometry)| {
+        plain::visit_geometries(self, ephemeris, |_, site, _, geometry| {
             let Some(sum) = sums[site].push(geometry, count) else {
                 return;
             };

@@ -16,7 +16,7 @@ pub enum ComparisonColumn {
 }
 
 /// The columns that every table has.
-const ALWAYS: [ComparisonColumn; 9] = [
+const ALWAYS: [ComparisonColumn; 11] = [
     ComparisonColumn::Quantity(Quantity::Satellites),
     ComparisonColumn::Quantity(Quantity::MeanVisible),
     ComparisonColumn::Quantity(Quantity::MeanPdop),
@@ -24,6 +24,8 @@ const ALWAYS: [ComparisonColumn; 9] = [
     ComparisonColumn::Quantity(Quantity::MaxPdop),
     ComparisonColumn::SolvedFraction,
     ComparisonColumn::Quantity(Quantity::Availability),
+    ComparisonColumn::Quantity(Quantity::LeastVisible),
+    ComparisonColumn::Quantity(Quantity::LongestOutageS),
     ComparisonColumn::Quantity(Quantity::JPos),
     ComparisonColumn::Quantity(Quantity::JCost),
 ];
@@ -62,6 +64,8 @@ impl ComparisonColumn {
             Quantity::Availability => {
                 format!("availability\n(PDOP <= {})", objectives.availability_pdop)
             }
+            Quantity::LeastVisible => "least\nvisible".to_owned(),
+            Quantity::LongestOutageS => "longest\noutage (s)".to_owned(),
             Quantity::JPos => "J_pos".to_owned(),
             Quantity::JCost => "J_cost".to_owned(),
             other => other.to_string(),

@@ -103,8 +103,22 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::Error95HM => "95 % horizontal error (m)",
         Quantity::Error95VM => "95 % height error (m)",
         Quantity::LaunchCost => "launch cost (satellites)",
+        Quantity::LeastVisible => "least number of visible LEO satellites",
+        Quantity::MeanTotalVisible => "mean visible satellites, LEO and GNSS",
+        Quantity::LongestOutageS => "longest outage (s)",
+        Quantity::P95Hdop => "95 % quantile of HDOP",
+        Quantity::P95Vdop => "95 % quantile of VDOP",
+        coverage => return coverage_label(coverage),
     };
     label.to_owned()
+}
+
+fn coverage_label(quantity: Quantity) -> String {
+    match quantity.coverage_levels() {
+        Some((least, true)) => format!("fraction with at least {least} satellites, LEO and GNSS"),
+        Some((least, false)) => format!("fraction with at least {least} LEO satellites"),
+        None => quantity.to_string(),
+    }
 }
 
 /// Why a figure cannot be made.

@@ -60,11 +60,12 @@ impl Profile {
     /// If one of them cannot be propagated.
     pub fn new(evaluator: &Evaluator, ephemeris: &Ephemeris) -> Result<Self, EphemerisError> {
         let setup = evaluator.setup();
-        let mut series = evaluator.series(ephemeris)?;
-        let pdop = quantiles(&series.pdop);
+        let series = evaluator.series(ephemeris)?;
+        let mut rising = series.rising_pdop();
+        let pdop = quantiles(&rising);
         let level = setup.metrics.cvar_level;
-        let value_at_risk = weighted_quantile(&mut series.pdop, level);
-        let summary = summarize_weighted(&mut series.pdop, level);
+        let value_at_risk = weighted_quantile(&mut rising, level);
+        let summary = summarize_weighted(&mut rising, level);
         let tail = summary.zip(value_at_risk).map(|(summary, at_risk)| Tail {
             level: level.get(),
             value_at_risk: at_risk,

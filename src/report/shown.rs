@@ -18,9 +18,13 @@ const SIGNIFICANT: i32 = 5;
 #[must_use]
 pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
     match quantity {
-        Quantity::Satellites | Quantity::Planes | Quantity::NewSatellites | Quantity::NewPlanes => {
-            decimals(value, 0)
-        }
+        Quantity::Satellites
+        | Quantity::Planes
+        | Quantity::NewSatellites
+        | Quantity::NewPlanes
+        | Quantity::LeastVisible
+        | Quantity::LongestOutageS => decimals(value, 0),
+        coverage if coverage.coverage_levels().is_some() => share(value),
         Quantity::Availability => share(value),
         Quantity::LaunchCost => value.map_or_else(|| NONE.to_owned(), significant),
         _ => decimals(value, 4),

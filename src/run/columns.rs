@@ -1,6 +1,6 @@
 //! The columns of a table, taken from the fields of the types that its rows serialise.
 
-use crate::evaluate::Metrics;
+use crate::evaluate::{COVERAGE_LEVELS, Metrics};
 use serde::de::value::Error;
 use serde::de::{Deserialize, Deserializer, Error as _, Visitor};
 use serde::ser::Serialize;
@@ -12,12 +12,6 @@ pub(crate) fn fields<'de, T: Deserialize<'de>>() -> &'static [&'static str] {
     // A deserialiser that only collects the names never yields a value.
     let _ = T::deserialize(Listener { names: &mut names });
     names
-}
-
-/// The columns of the metrics that every scenario has.
-pub(crate) fn metric_columns() -> Vec<&'static str> {
-    let always = fields::<Metrics>().iter().copied();
-    always.filter(|name| !Metrics::is_on_demand(name)).collect()
 }
 
 /// Collects the fields that a struct requests.
@@ -48,13 +42,65 @@ impl<'de> Deserializer<'de> for Listener<'_> {
     }
 }
 
+/// The columns of the metrics that every scenario has: their fields, and of a coverage the share of each number of
+/// satellites.
+pub(crate) fn metric_columns() -> Vec<&'static str> {
+    let columns = |name: &&'static str| match *name {
+        "coverage" => COVERAGE.to_vec(),
+        "coverage_total" => COVERAGE_TOTAL.to_vec(),
+        name => vec![name],
+    };
+    let always = fields::<Metrics>().iter();
+    let always = always.filter(|name| !Metrics::is_on_demand(name));
+    always.flat_map(columns).collect()
+}
+
+const COVERAGE: [&str; COVERAGE_LEVELS] = [
+    "coverage_1",
+    "coverage_2",
+    "coverage_3",
+    "coverage_4",
+    "coverage_5",
+    "coverage_6",
+    "coverage_7",
+    "coverage_8",
+    "coverage_9",
+    "coverage_10",
+    "coverage_11",
+    "coverage_12",
+];
+
+const COVERAGE_TOTAL: [&str; COVERAGE_LEVELS] = [
+    "coverage_total_1",
+    "coverage_total_2",
+    "coverage_total_3",
+    "coverage_total_4",
+    "coverage_total_5",
+    "coverage_total_6",
+    "coverage_total_7",
+    "coverage_total_8",
+    "coverage_total_9",
+    "coverage_total_10",
+    "coverage_total_11",
+    "coverage_total_12",
+];
+
+/// The value of a field, or of an element of a field: `coverage_4` is element 4 of `coverage`.
+fn field<'a>(row: &'a Value, name: &str) -> &'a Value {
+    let element = || {
+        let (field, element) = name.rsplit_once('_')?;
+        row.get(field)?.get(element)
+    };
+    row.get(name).or_else(element).unwrap_or(&Value::Null)
+}
+
 /// The values of the fields `names` of a struct, in that order, as the cells of a row.
 ///
 /// # Errors
 /// If the struct cannot be serialised.
 pub(crate) fn cells(row: &impl Serialize, names: &[&str]) -> serde_json::Result<Vec<String>> {
     let value = serde_json::to_value(row)?;
-    Ok(names.iter().map(|name| cell(&value[*name])).collect())
+    Ok(names.iter().map(|name| cell(field(&value, name))).collect())
 }
 
 /// The shortest digits that round-trip; empty for a missing value.
@@ -114,6 +160,19 @@ mod tests {
                 .all(|key| DesignSummary::columns().contains(&key.as_str()))
         );
         assert_eq!(keys.count(), DesignSummary::columns().len());
-        assert_eq!(metric_columns().len(), 12);
+        let metrics = crate::run::testing::member(1, "delta:55:182/13/1@925").metrics;
+        let value = serde_json::to_value(metrics).unwrap();
+        let numbers = value.as_object().unwrap().values();
+        let numbers = numbers.map(|value| value.as_object().map_or(1, serde_json::Map::len));
+        let columns = metric_columns();
+        assert_eq!(numbers.sum::<usize>(), columns.len());
+        let cells = cells(&metrics, &columns).unwrap();
+        for (name, cell) in columns.iter().zip(&cells) {
+            assert_eq!(
+                cell,
+                if name.starts_with("cov") { "0" } else { cell },
+                "{name}"
+            );
+        }
     }
 }

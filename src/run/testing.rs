@@ -2,7 +2,7 @@
 
 use super::{DesignSummary, Diagnostic, FrontMember, Hypervolume, ScenarioStamp, SearchSummary};
 use crate::constellation::Design;
-use crate::evaluate::Metrics;
+use crate::evaluate::{Coverage, Metrics};
 
 /// A member with this index and design and few visible satellites.
 pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
@@ -26,6 +26,15 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
             availability: 0.0,
             j_pos: None,
             j_cost: None,
+            least_visible: 0,
+            coverage: Coverage::default(),
+            mean_gnss_visible: 0.0,
+            mean_total_visible: 0.0,
+            coverage_total: Coverage::default(),
+            longest_outage_s: 0.0,
+            longest_outage_cut: false,
+            p95_hdop: None,
+            p95_vdop: None,
             information_pdop: None,
             sigma_3d_m: None,
             sigma_h_m: None,

@@ -11,7 +11,7 @@ use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
 use crate::ground::{Grid, GroundError, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
-use crate::search::{DesignSpace, Goals};
+use crate::search::{DesignSpace, Goals, Quantity};
 use crate::stats::{Level, LevelError};
 use crate::time::{Epoch, TimeError, TimeGrid};
 use crate::units::SECONDS_PER_HOUR;
@@ -213,8 +213,17 @@ impl Scenario {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
+                asks_for_hdop: self.asks_for_hdop(),
             });
         Ok((setup, notes))
+    }
+
+    /// Whether an objective or a constraint is a quantile of HDOP or VDOP.
+    fn asks_for_hdop(&self) -> bool {
+        let constraints = self.objectives.constraints.iter();
+        let bounded = constraints.map(|constraint| constraint.quantity);
+        let mut goals = self.objectives.minimize.iter().copied().chain(bounded);
+        goals.any(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop))
     }
 
     /// The error of a file, among [`Scenario::files`], that cannot be read.

@@ -2,7 +2,7 @@
 
 use crate::constellation::{Design, Shell};
 use crate::evaluate::Metrics;
-use crate::keyword::keywords;
+use crate::keyword::{Keyword, keywords};
 
 keywords! {
     /// A quantity of a design.
@@ -33,6 +33,64 @@ keywords! {
         MeanVisible = "mean-visible",
         /// Fraction of samples whose PDOP is at most the availability threshold; maximised.
         Availability = "availability",
+        /// Least number of visible LEO satellites in any sample; maximised.
+        LeastVisible = "least-visible",
+        /// Mean visible satellites, LEO and GNSS; maximised.
+        MeanTotalVisible = "mean-total-visible",
+        /// Longest outage of any point, seconds; minimised.
+        LongestOutageS = "longest-outage-s",
+        /// 95 % quantile of HDOP; dimensionless, minimised.
+        P95Hdop = "p95-hdop",
+        /// 95 % quantile of VDOP; dimensionless, minimised.
+        P95Vdop = "p95-vdop",
+        /// Fraction of samples with at least 1 visible LEO satellite; maximised.
+        Coverage1 = "coverage-1",
+        /// Fraction of samples with at least 2 visible LEO satellites; maximised.
+        Coverage2 = "coverage-2",
+        /// Fraction of samples with at least 3 visible LEO satellites; maximised.
+        Coverage3 = "coverage-3",
+        /// Fraction of samples with at least 4 visible LEO satellites; maximised.
+        Coverage4 = "coverage-4",
+        /// Fraction of samples with at least 5 visible LEO satellites; maximised.
+        Coverage5 = "coverage-5",
+        /// Fraction of samples with at least 6 visible LEO satellites; maximised.
+        Coverage6 = "coverage-6",
+        /// Fraction of samples with at least 7 visible LEO satellites; maximised.
+        Coverage7 = "coverage-7",
+        /// Fraction of samples with at least 8 visible LEO satellites; maximised.
+        Coverage8 = "coverage-8",
+        /// Fraction of samples with at least 9 visible LEO satellites; maximised.
+        Coverage9 = "coverage-9",
+        /// Fraction of samples with at least 10 visible LEO satellites; maximised.
+        Coverage10 = "coverage-10",
+        /// Fraction of samples with at least 11 visible LEO satellites; maximised.
+        Coverage11 = "coverage-11",
+        /// Fraction of samples with at least 12 visible LEO satellites; maximised.
+        Coverage12 = "coverage-12",
+        /// Fraction of samples with at least 1 visible satellite, LEO and GNSS; maximised.
+        CoverageTotal1 = "coverage-total-1",
+        /// Fraction of samples with at least 2 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal2 = "coverage-total-2",
+        /// Fraction of samples with at least 3 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal3 = "coverage-total-3",
+        /// Fraction of samples with at least 4 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal4 = "coverage-total-4",
+        /// Fraction of samples with at least 5 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal5 = "coverage-total-5",
+        /// Fraction of samples with at least 6 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal6 = "coverage-total-6",
+        /// Fraction of samples with at least 7 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal7 = "coverage-total-7",
+        /// Fraction of samples with at least 8 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal8 = "coverage-total-8",
+        /// Fraction of samples with at least 9 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal9 = "coverage-total-9",
+        /// Fraction of samples with at least 10 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal10 = "coverage-total-10",
+        /// Fraction of samples with at least 11 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal11 = "coverage-total-11",
+        /// Fraction of samples with at least 12 visible satellites, LEO and GNSS; maximised.
+        CoverageTotal12 = "coverage-total-12",
         /// Mean PDOP of all observations in a window of `metrics.window-min`; dimensionless, minimised.
         InformationPdop = "information-pdop",
         /// Mean standard deviation of the position, metres; minimised.
@@ -77,7 +135,25 @@ impl Quantity {
     /// Whether larger is better.
     #[must_use]
     pub fn is_maximised(self) -> bool {
-        matches!(self, Self::MeanVisible | Self::Availability)
+        self.coverage_levels().is_some()
+            || matches!(
+                self,
+                Self::MeanVisible
+                    | Self::Availability
+                    | Self::LeastVisible
+                    | Self::MeanTotalVisible
+            )
+    }
+
+    /// For a coverage: the number of satellites, and whether they are of LEO and GNSS.
+    #[must_use]
+    pub fn coverage_levels(self) -> Option<(usize, bool)> {
+        let level = self.keyword().strip_prefix("coverage-")?;
+        let (level, is_total) = match level.strip_prefix("total-") {
+            Some(level) => (level, true),
+            None => (level, false),
+        };
+        Some((level.parse().ok()?, is_total))
     }
 
     /// Whether it is an accuracy in metres, which needs range errors.
@@ -138,16 +214,10 @@ impl Quantity {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
             Self::InformationPdop | Self::Sigma3dM | Self::SigmaHM | Self::SigmaVM => Some(1.0),
-            Self::P95Pdop | Self::Error953dM | Self::Error95HM | Self::Error95VM => Some(0.95),
+            Self::P95Pdop | Self::P95Hdop | Self::P95Vdop => Some(0.95),
+            Self::Error953dM | Self::Error95HM | Self::Error95VM => Some(0.95),
             Self::P99Pdop => Some(0.99),
-            Self::JCost
-            | Self::Satellites
-            | Self::Planes
-            | Self::NewSatellites
-            | Self::NewPlanes
-            | Self::MeanVisible
-            | Self::Availability
-            | Self::LaunchCost => None,
+            _ => None,
         }
     }
 
@@ -192,6 +262,11 @@ impl Quantity {
             Self::NewPlanes => new_sum(Shell::planes),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
+            Self::LeastVisible => Some(metrics.least_visible.into()),
+            Self::MeanTotalVisible => Some(metrics.mean_total_visible),
+            Self::LongestOutageS => Some(metrics.longest_outage_s),
+            Self::P95Hdop => metrics.p95_hdop,
+            Self::P95Vdop => metrics.p95_vdop,
             Self::InformationPdop => metrics.information_pdop?.mean,
             Self::Sigma3dM => metrics.sigma_3d_m?.map(|of| of.mean),
             Self::SigmaHM => metrics.sigma_h_m?.map(|of| of.mean),
@@ -204,6 +279,15 @@ impl Quantity {
                 new?.iter()
                     .fold(0.0, |sum, shell| sum + cost.of_shell(shell)),
             ),
+            _ => {
+                let (satellites, is_total) = self.coverage_levels()?;
+                let coverage = if is_total {
+                    metrics.coverage_total
+                } else {
+                    metrics.coverage
+                };
+                coverage.of(satellites)
+            }
         }
     }
 }

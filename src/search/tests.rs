@@ -1,5 +1,6 @@
 use super::testing::shell;
 use super::*;
+use crate::evaluate::Coverage;
 
 /// Metrics of which no quantity of these tests depends.
 fn no_metrics() -> Metrics {
@@ -16,6 +17,15 @@ fn no_metrics() -> Metrics {
         availability: 0.0,
         j_pos: None,
         j_cost: None,
+        least_visible: 0,
+        coverage: Coverage::default(),
+        mean_gnss_visible: 0.0,
+        mean_total_visible: 0.0,
+        coverage_total: Coverage::default(),
+        longest_outage_s: 0.0,
+        longest_outage_cut: false,
+        p95_hdop: None,
+        p95_vdop: None,
         information_pdop: None,
         sigma_3d_m: None,
         sigma_h_m: None,
@@ -133,14 +143,22 @@ fn unsolved_samples_violate_what_they_would_make_infinite() {
         // The excess of the solved samples is added.
         assert_eq!(violation(&text, 30.0, 0.75), 0.5 + 0.25);
     }
-    for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99)] {
+    for (quantity, level) in [("p95-pdop", 0.95), ("p99-pdop", 0.99), ("p95-hdop", 0.95)] {
         let text = format!("{quantity} <= 20");
         assert_eq!(violation(&text, 2.0, level), 0.0);
         assert_eq!(violation(&text, 30.0, level), 0.5);
         let fewer = level - 1e-6;
         assert_eq!(violation(&text, 2.0, fewer), 1.0 - fewer);
     }
-    for quantity in ["satellites", "mean-visible", "availability", "j-cost"] {
+    for quantity in [
+        "satellites",
+        "mean-visible",
+        "availability",
+        "j-cost",
+        "least-visible",
+        "coverage-4",
+        "longest-outage-s",
+    ] {
         assert_eq!(violation(&format!("{quantity} <= 20"), 2.0, 0.1), 0.0);
     }
 }

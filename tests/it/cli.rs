@@ -113,8 +113,19 @@ fn evaluate_keeps_the_contract() {
         "availability",
         "j_pos",
         "j_cost",
+        "least_visible",
+        "mean_gnss_visible",
+        "mean_total_visible",
+        "longest_outage_s",
+        "longest_outage_cut",
+        "p95_hdop",
     ] {
         assert!(value["metrics"].get(key).is_some(), "metrics.{key}");
+    }
+    for key in ["coverage", "coverage_total"] {
+        for least in ["1", "4", "12"] {
+            assert!(value["metrics"][key][least].is_number(), "{key} {least}");
+        }
     }
     assert_eq!(value["scenario"]["name"], "paper");
     assert_eq!(value["version"], env!("CARGO_PKG_VERSION"));

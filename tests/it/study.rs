@@ -255,6 +255,12 @@ fn every_objective_constraint_and_pattern_can_be_searched() {
         "launch-cost",
         "p95-pdop",
         "p99-pdop",
+        "least-visible",
+        "mean-total-visible",
+        "coverage-4",
+        "coverage-total-8",
+        "longest-outage-s",
+        "p95-hdop",
     ];
     for (n, objective) in objectives.into_iter().enumerate() {
         let minimize = format!("objectives.minimize=[\"{objective}\"]");

@@ -13,7 +13,7 @@ use crate::cli::constellations::GivenConstellation;
 use crate::cli::study::Study;
 use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
-use crate::evaluate::Evaluator;
+use crate::evaluate::{DopStatistics, Evaluator, Metrics};
 use crate::exchange::constellation::Constellation;
 use crate::report::{Assessment, ConstellationEntry};
 use crate::run::ScenarioStamp;
@@ -122,15 +122,23 @@ struct EvaluationContext<'a> {
 impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
-        let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;
-        let dops = self.args.dops.then(|| self.evaluator.dops(ephemeris));
-        Ok(ConstellationEntry::new(
-            one,
-            metrics,
-            dops.transpose()?,
-            &self.goals,
-        ))
+        let (metrics, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
+        Ok(ConstellationEntry::new(one, metrics, dops, &self.goals))
     }
+}
+
+/// The metrics, and with `--dops` all dilutions of precision.
+fn evaluated(
+    args: &EvaluateArgs,
+    evaluator: &Evaluator,
+    ephemeris: &Ephemeris,
+) -> Result<(Metrics, Option<DopStatistics>)> {
+    let metrics = evaluator.evaluate_ephemeris(ephemeris)?;
+    if !args.dops {
+        return Ok((metrics, None));
+    }
+    let dops = evaluator.dops(ephemeris)?;
+    Ok((metrics.with_dops(&dops), Some(dops)))
 }
 
 /// The GNSS of the scenario without LEO satellites.
@@ -144,7 +152,6 @@ fn gnss_only(
         return Ok(None);
     }
     let none = Ephemeris::new(setup.grid, Vec::new());
-    let metrics = evaluator.evaluate_ephemeris(&none)?;
-    let dops = args.dops.then(|| evaluator.dops(&none)).transpose()?;
+    let (metrics, dops) = evaluated(args, evaluator, &none)?;
     Ok(Some(Assessment::new((0, None), metrics, dops, goals)))
 }

@@ -17,8 +17,8 @@ use crate::frames::EarthRotation;
 pub(super) struct Fixed {
     pub(super) systems: Vec<Ephemeris>,
     clocks: Clocks,
-    mask: MaskTerms<f64>,
-    instructions: InstructionSet,
+    pub(super) mask: MaskTerms<f64>,
+    pub(super) instructions: InstructionSet,
     /// Empty if there is no GNSS, or too much to store.
     kept: FixedTiles,
 }
@@ -29,6 +29,7 @@ pub(super) struct FixedTiles {
     normals: Vec<Normal>,
     remainders: Vec<Normal>,
     surpluses: Vec<[u16; LANES]>,
+    visible: Vec<[u16; LANES]>,
     /// Empty if all systems have their own clocks.
     shared: Vec<SharedClock>,
 }
@@ -40,13 +41,14 @@ impl FixedTiles {
             Clocks::PerSystem => 0,
             Clocks::Shared => size_of::<SharedClock>(),
         };
-        2 * size_of::<Normal>() + size_of::<[u16; LANES]>() + shared
+        2 * size_of::<Normal>() + 2 * size_of::<[u16; LANES]>() + shared
     }
 
     fn clear(&mut self) {
         self.normals.clear();
         self.remainders.clear();
         self.surpluses.clear();
+        self.visible.clear();
         self.shared.clear();
     }
 
@@ -54,6 +56,7 @@ impl FixedTiles {
         self.normals.reserve_exact(count);
         self.remainders.reserve_exact(count);
         self.surpluses.reserve_exact(count);
+        self.visible.reserve_exact(count);
     }
 
     #[inline(always)]
@@ -64,6 +67,7 @@ impl FixedTiles {
                 normal,
                 remainder: &self.remainders[n],
                 surplus: &self.surpluses[n],
+                visible: &self.visible[n],
                 shared: self.shared.get(n),
             })
     }
@@ -112,8 +116,13 @@ impl Fixed {
         if !fixed.systems.is_empty() && count * FixedTiles::bytes(setup.clocks) <= kept_bytes {
             let mut kept = FixedTiles::default();
             kept.reserve(count);
-            for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
-                fixed.make(tiles, elapsed_s, *rotation, &mut kept)?;
+            for (number, (elapsed_s, &rotation)) in setup.grid.iter().zip(rotations).enumerate() {
+                let instant = SampleInstant {
+                    number,
+                    elapsed_s,
+                    rotation,
+                };
+                fixed.make(tiles, instant, &mut kept)?;
             }
             fixed.kept = kept;
         }
@@ -132,7 +141,7 @@ impl Fixed {
             return Ok(FixedSample { tiles, first });
         }
         scratch.clear();
-        self.make(tiles, instant.elapsed_s, instant.rotation, scratch)?;
+        self.make(tiles, instant, scratch)?;
         let (tiles, first) = (scratch, 0);
         Ok(FixedSample { tiles, first })
     }
@@ -140,16 +149,10 @@ impl Fixed {
     fn make(
         &self,
         tiles: &Tiles,
-        elapsed_s: f64,
-        rotation: EarthRotation,
+        instant: SampleInstant,
         to: &mut FixedTiles,
     ) -> Result<(), EphemerisError> {
-        let mut systems = Vec::with_capacity(self.systems.len());
-        for system in &self.systems {
-            let mut positions = Positions::new(system.satellites().len());
-            positions.propagate(system, elapsed_s, rotation)?;
-            systems.push(FixedSystem::new(positions, &tiles.fixed_horizon));
-        }
+        let systems = self.systems_at(tiles, instant)?;
         self.instructions.run(Make {
             fixed: self,
             tiles: &tiles.tiles,
@@ -159,10 +162,24 @@ impl Fixed {
         Ok(())
     }
 
+    /// The satellites of each system at an instant.
+    pub(super) fn systems_at(
+        &self,
+        tiles: &Tiles,
+        instant: SampleInstant,
+    ) -> Result<Vec<FixedSystem>, EphemerisError> {
+        let at_instant = |system: &Ephemeris| {
+            let mut positions = Positions::new(system.satellites().len());
+            positions.propagate(system, instant.elapsed_s, instant.rotation)?;
+            Ok(FixedSystem::new(positions, &tiles.fixed_horizon))
+        };
+        self.systems.iter().map(at_instant).collect()
+    }
+
     #[inline(always)]
     fn push_tile(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
-        let mut surplus = [0_u16; LANES];
+        let (mut surplus, mut visible) = ([0_u16; LANES], [0_u16; LANES]);
         let together = match self.clocks {
             Clocks::PerSystem => 1,
             Clocks::Shared => systems.len(),
@@ -173,11 +190,13 @@ impl Fixed {
                 system.add_to(&mut sums, tile, &self.mask);
             }
             add_group(&sums, &mut normal);
+            for (visible, &seen) in visible.iter_mut().zip(&sums.count.0) {
+                *visible = visible.saturating_add(at_most_u16(seen));
+            }
             match self.clocks {
                 Clocks::PerSystem => {
                     for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
-                        let spare = u16::try_from(seen.saturating_sub(1)).unwrap_or(u16::MAX);
-                        *surplus = surplus.saturating_add(spare);
+                        *surplus = surplus.saturating_add(at_most_u16(seen.saturating_sub(1)));
                     }
                 }
                 Clocks::Shared => to.shared.push(shared_clock(&sums)),
@@ -188,11 +207,17 @@ impl Fixed {
         to.remainders
             .push(std::array::from_fn(|n| remainder(&normal[n])));
         to.surpluses.push(surplus);
+        to.visible.push(visible);
     }
 }
 
+#[inline(always)]
+fn at_most_u16(count: u32) -> u16 {
+    u16::try_from(count).unwrap_or(u16::MAX)
+}
+
 /// One system at one sample.
-struct FixedSystem {
+pub(super) struct FixedSystem {
     positions: Positions,
     candidates: Candidates,
     slack_km: f32,
@@ -211,7 +236,7 @@ impl FixedSystem {
 
     /// Adds the satellites visible from the points of a tile.
     #[inline(always)]
-    fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
+    pub(super) fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
         for block in self.candidates.blocks() {
             for n in bits(block.inside(&tile.fixed_cap, self.slack_km)) {
                 sums.add(&tile.double, self.positions.at(block.index(n)), mask);
@@ -241,7 +266,7 @@ impl Work for Make<'_> {
 
 /// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
 #[inline(always)]
-fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
+pub(super) fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     for l in 0..LANES {
         let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
         let scale = 1.0 / f64::from(count.max(1));

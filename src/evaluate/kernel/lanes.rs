@@ -277,6 +277,8 @@ pub(super) struct FixedTile<'a> {
     pub(super) remainder: &'a Normal,
     /// Satellites minus clocks of the systems with their own clocks.
     pub(super) surplus: &'a [u16; LANES],
+    /// Visible satellites of all systems.
+    pub(super) visible: &'a [u16; LANES],
     /// The GNSS satellites that share their clock with the design, if any do.
     pub(super) shared: Option<&'a SharedClock>,
 }
@@ -306,6 +308,7 @@ impl FixedTile<'_> {
         normal: &[ZERO; 6],
         remainder: &[ZERO; 6],
         surplus: &[0; LANES],
+        visible: &[0; LANES],
         shared: None,
     };
 

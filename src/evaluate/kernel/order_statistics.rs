@@ -5,13 +5,14 @@
 //! with them, and sums the values beyond the value-at-risk. This gives every order statistic and the
 //! tail exactly, in memory that does not depend on the number of values.
 //!
-//! Counts are integers and do not depend on the order of the values; sums are computed in pieces that
-//! do not depend on the thread.
+//! Each value counts with the weight of its point, a whole number ([`super::super::weights`]), so counts do not
+//! depend on the order of the values; sums are computed in pieces that do not depend on the thread.
 
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::sample::UNSOLVED;
-use crate::stats::{Level, Summary, quantile_rank};
+use super::tiles::Tile;
+use crate::stats::{Level, Summary};
 
 /// Bits of an f32 that the first pass ignores: it uses 11 of the 23 bits of the fraction.
 const TRAILING_BITS: u32 = 12;
@@ -60,16 +61,31 @@ fn value(place: u32, trailing: usize) -> f64 {
     ))
 }
 
-/// Merges the results of passes over different pieces.
+/// Merges the results of passes over pieces that follow each other.
 pub(super) trait Merge {
     fn merged(self, other: &Self) -> Self;
 }
 
-/// First pass: number of values in each place.
+impl<A: Merge> Merge for Vec<A> {
+    fn merged(self, other: &Self) -> Self {
+        let pairs = self.into_iter().zip(other);
+        pairs.map(|(mine, theirs)| mine.merged(theirs)).collect()
+    }
+}
+
+impl<A: Merge, B: Merge> Merge for (A, B) {
+    fn merged(self, other: &Self) -> Self {
+        (self.0.merged(&other.0), self.1.merged(&other.1))
+    }
+}
+
+/// First pass: weight of the values in each place.
+#[derive(Debug, Clone)]
 pub(super) struct Counts {
     places: Places,
     counts: Vec<u64>,
-    values: u64,
+    /// Number of solved values, whatever their weight.
+    number: u64,
 }
 
 impl Counts {
@@ -77,13 +93,13 @@ impl Counts {
         Self {
             places,
             counts: vec![0; places.count()],
-            values: 0,
+            number: 0,
         }
     }
 
-    /// Solved values.
+    /// Weight of the solved values.
     pub(super) fn solved(&self) -> u64 {
-        self.values - self.counts[self.places.unsolved as usize]
+        self.counts[..self.places.unsolved as usize].iter().sum()
     }
 
     /// The place of the order statistic of a rank (from 1).
@@ -106,7 +122,7 @@ impl Counts {
 impl Merge for Counts {
     fn merged(mut self, other: &Self) -> Self {
         add(&mut self.counts, &other.counts);
-        self.values += other.values;
+        self.number += other.number;
         self
     }
 }
@@ -117,9 +133,10 @@ fn add(mine: &mut [u64], theirs: &[u64]) {
     }
 }
 
-/// The first pass over some tiles; its output is the sum of the solved values.
+/// The first pass over the values of some instants; its output is the weighted sum of the solved ones.
 pub(super) struct Count<'a> {
-    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) tiles: &'a [Tile],
+    pub(super) values: &'a [Lanes<f32>],
     pub(super) counts: &'a mut Counts,
 }
 
@@ -128,25 +145,30 @@ impl Work for Count<'_> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let mut sums = [0.0; LANES];
+        let (mut sums, mut numbers) = ([0.0; LANES], [0_u64; LANES]);
         let numbering = self.counts.places;
-        for tile in self.tiles {
-            let mut places = [0; LANES];
-            for l in 0..LANES {
-                let value = tile.0[l];
-                places[l] = numbering.of(value);
-                sums[l] += f64::from(if value < UNSOLVED { value } else { 0.0 });
-            }
-            for place in places {
-                self.counts.counts[place as usize] += 1;
+        for values in self.values.chunks_exact(self.tiles.len()) {
+            for (tile, values) in self.tiles.iter().zip(values) {
+                let weights = &tile.weights;
+                let mut places = [0; LANES];
+                for l in 0..LANES {
+                    let value = values.0[l];
+                    places[l] = numbering.of(value);
+                    numbers[l] += u64::from(value < UNSOLVED);
+                    let solved = f64::from(if value < UNSOLVED { value } else { 0.0 });
+                    sums[l] += weights.real.0[l] * solved;
+                }
+                for (place, weight) in places.into_iter().zip(weights.whole.0) {
+                    self.counts.counts[place as usize] += weight;
+                }
             }
         }
-        self.counts.values += (self.tiles.len() * LANES) as u64;
+        self.counts.number += numbers.iter().sum::<u64>();
         sums.iter().sum()
     }
 }
 
-/// An order statistic: its place, its rank among all values, and its rank within the place.
+/// An order statistic: its place, its rank among all values, and its rank within the place; ranks count weight.
 #[derive(Debug, Clone, Copy)]
 struct Wanted {
     place: u32,
@@ -167,7 +189,8 @@ pub(super) struct RankSearch {
     wanted: [Wanted; WANTED],
 }
 
-/// Second pass: trailing bits of the values in the wanted places.
+/// Second pass: weight of the values in the wanted places by their trailing bits.
+#[derive(Debug, Clone)]
 pub(super) struct Found([Vec<u64>; WANTED]);
 
 impl Found {
@@ -188,10 +211,11 @@ impl Merge for Found {
     }
 }
 
-/// The second pass over some tiles; its output is the sum of the solved values in places beyond
-/// that of the value-at-risk.
+/// The second pass over the values of some instants; its output is the weighted sum of the solved ones in
+/// places beyond that of the value-at-risk.
 pub(super) struct Find<'a> {
-    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) tiles: &'a [Tile],
+    pub(super) values: &'a [Lanes<f32>],
     pub(super) search: &'a RankSearch,
     pub(super) found: &'a mut Found,
 }
@@ -204,39 +228,59 @@ impl Work for Find<'_> {
         let wanted = self.search.wanted.map(|wanted| wanted.place);
         let places = self.search.places;
         let mut tail = [0.0; LANES];
-        for tile in self.tiles {
-            let mut hits = 0;
-            for (tail, &value) in tail.iter_mut().zip(&tile.0) {
-                let place = places.of(value);
-                let beyond = (place > wanted[VALUE_AT_RISK]) & (place < places.unsolved);
-                *tail += f64::from(if beyond { value } else { 0.0 });
-                for wanted in wanted {
-                    hits |= u32::from(place == wanted);
+        for values in self.values.chunks_exact(self.tiles.len()) {
+            for (tile, values) in self.tiles.iter().zip(values) {
+                let mut hits = 0;
+                for l in 0..LANES {
+                    let value = values.0[l];
+                    let place = places.of(value);
+                    let beyond = (place > wanted[VALUE_AT_RISK]) & (place < places.unsolved);
+                    let value = f64::from(if beyond { value } else { 0.0 });
+                    tail[l] += tile.weights.real.0[l] * value;
+                    for wanted in wanted {
+                        hits |= u32::from(place == wanted);
+                    }
                 }
-            }
-            if hits != 0 {
-                note(tile, places, &wanted, self.found);
+                if hits != 0 {
+                    note(tile, values, places, &wanted, self.found);
+                }
             }
         }
         tail.iter().sum()
     }
 }
 
-/// Counts the trailing bits of the values in wanted places.
-fn note(tile: &Lanes<f32>, places: Places, wanted: &[u32; WANTED], found: &mut Found) {
+/// Counts the values in wanted places by their trailing bits.
+fn note(
+    tile: &Tile,
+    values: &Lanes<f32>,
+    places: Places,
+    wanted: &[u32; WANTED],
+    found: &mut Found,
+) {
     for (counts, &wanted) in found.0.iter_mut().zip(wanted) {
-        for value in tile.0.iter().filter(|&&value| places.of(value) == wanted) {
-            counts[(value.to_bits() % (1 << TRAILING_BITS)) as usize] += 1;
+        for (value, weight) in values.0.iter().zip(tile.weights.whole.0) {
+            if places.of(*value) == wanted {
+                counts[(value.to_bits() % (1 << TRAILING_BITS)) as usize] += weight;
+            }
         }
     }
+}
+
+/// The rank of the quantile of level `q` among values of this weight and number: the least cumulative weight
+/// that reaches q of all, minus 1e-9 of the mean weight ([M-28](crate::models#m-28)).
+fn quantile_rank(q: f64, weight: u64, number: u64) -> u64 {
+    let slack = 1e-9 * (weight as f64 / number as f64);
+    let rank = (q * weight as f64 - slack).ceil();
+    (rank.max(1.0) as u64).min(weight)
 }
 
 impl RankSearch {
     /// `None` if no value is solved.
     pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
         let solved = counts.solved();
-        let ranked = |q: f64| counts.locate(quantile_rank(q, solved as usize) as u64);
-        (solved > 0).then(|| Self {
+        let ranked = |q: f64| counts.locate(quantile_rank(q, solved, counts.number));
+        (counts.number > 0).then(|| Self {
             places: counts.places,
             level,
             solved,

@@ -6,6 +6,7 @@
 
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
+use super::tiles::Tile;
 
 /// Relative distance within which the order of two f32 values is meaningless: more than twice the error
 /// of one.
@@ -14,7 +15,7 @@ const WINDOW: f64 = 2e-6;
 /// With more values than this in a window, they are so dense that their order does not matter.
 const CROWD: usize = 256;
 
-/// An order statistic by its rank (from 1) and its value in f32.
+/// An order statistic by its rank (from 1, in units of weight) and its value in f32.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ranked {
     pub(super) rank: u64,
@@ -52,17 +53,23 @@ impl Window {
         }
     }
 
-    /// The order statistic among the recomputed values.
-    pub(super) fn pick(&self, mut values: Vec<f32>) -> Option<f64> {
-        values.sort_unstable_by(f32::total_cmp);
-        let place = usize::try_from(self.rank - 1 - self.below).ok()?;
-        values.get(place).copied().map(f64::from)
+    /// The order statistic among the recomputed values, each with its weight.
+    pub(super) fn pick(&self, mut values: Vec<(f32, u64)>) -> Option<f64> {
+        values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let mut reached = self.below;
+        let found = values.into_iter().find(|(_, weight)| {
+            reached += weight;
+            reached >= self.rank
+        });
+        found.map(|(value, _)| f64::from(value))
     }
 }
 
 /// Finds the values around some order statistics; none for those where they are too dense.
 pub(super) struct Surround<'a, const N: usize> {
-    pub(super) tiles: &'a [Lanes<f32>],
+    pub(super) tiles: &'a [Tile],
+    /// Instant by instant and tile by tile.
+    pub(super) values: &'a [Lanes<f32>],
     pub(super) ranked: [Ranked; N],
 }
 
@@ -74,23 +81,25 @@ impl<const N: usize> Work for Surround<'_, N> {
         let mut windows = self.ranked.map(Window::new);
         let starts = windows.each_ref().map(|window| window.start);
         let ends = windows.each_ref().map(|window| window.end);
-        let mut below = [[0_u32; LANES]; N];
-        for (number, tile) in self.tiles.iter().enumerate() {
+        let mut below = [[0_u64; LANES]; N];
+        let tiles = self.tiles.iter().cycle();
+        for ((number, values), tile) in self.values.iter().enumerate().zip(tiles) {
+            let weights = &tile.weights.whole.0;
             let mut inside = 0;
-            for (l, &value) in tile.0.iter().enumerate() {
+            for (l, &value) in values.0.iter().enumerate() {
                 for w in 0..N {
-                    below[w][l] += u32::from(value < starts[w]);
+                    below[w][l] += if value < starts[w] { weights[l] } else { 0 };
                     inside |= u32::from((value >= starts[w]) & (value <= ends[w]));
                 }
             }
             if inside != 0 {
                 windows
                     .iter_mut()
-                    .for_each(|window| window.note(number, tile));
+                    .for_each(|window| window.note(number, values));
             }
         }
         for (window, below) in windows.iter_mut().zip(below) {
-            window.below = below.into_iter().map(u64::from).sum();
+            window.below = below.into_iter().sum();
             if window.places.len() > CROWD {
                 window.places.clear();
             }

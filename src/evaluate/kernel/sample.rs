@@ -1,11 +1,12 @@
 //! One instant at all points with all satellites: the code that is compiled for each instruction set.
 
+use super::super::counts::Threshold;
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, NormalLanes, SiteLanes, Sums};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::tiles::{Horizon, TILES_IN_GROUP, Tiles};
+use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
 use crate::dop::pivot_floor;
 
 /// Marks an unsolved sample among the values of PDOP.
@@ -22,7 +23,7 @@ pub(super) struct Limits {
     /// PDOP above which a sample is unsolved.
     pub(super) cap: f64,
     /// PDOP up to which a sample is available.
-    pub(super) available: f64,
+    pub(super) available: Threshold,
     /// Maximum number of clock states.
     pub(super) clocks: u32,
 }
@@ -45,7 +46,7 @@ impl Limits {
 
     #[inline(always)]
     fn holds_in_single(&self, pdop: f32) -> bool {
-        let available = self.available as f32;
+        let available = self.available.single();
         (pdop <= self.single_below) & ((pdop - available).abs() > available * Self::BAND)
     }
 
@@ -58,7 +59,7 @@ impl Limits {
             let band = Self::DOUBLE_BAND + floor * threshold * threshold;
             (pdop - threshold).abs() > threshold * band
         };
-        is_apart(self.cap) && is_apart(self.available)
+        is_apart(self.cap) && is_apart(self.available.0)
     }
 }
 
@@ -84,6 +85,42 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
+    /// Selects the satellites that the tiles of a group may see.
+    #[inline(always)]
+    pub(super) fn select(&mut self, scene: &SampleContext, group: &Group) {
+        let slack_km = Horizon::cap_slack_km(&self.positions);
+        self.near.select(&self.all, &group.cap, slack_km);
+        let blocks = self.near.blocks();
+        let tiles = &scene.tiles.tiles[group.tiles.clone()];
+        for (tile, words) in tiles.iter().zip(self.words.chunks_exact_mut(self.blocks)) {
+            for (block, word) in blocks.iter().zip(words) {
+                *word = block.inside(&tile.cap, slack_km);
+            }
+        }
+    }
+
+    /// The satellites that a tile of the selected group may see.
+    #[inline(always)]
+    fn candidates(&self, number: usize, group: &Group) -> TileCandidates<'_> {
+        let place = number - group.tiles.start;
+        TileCandidates {
+            blocks: self.near.blocks(),
+            words: &self.words[place * self.blocks..(place + 1) * self.blocks],
+        }
+    }
+
+    /// The sums of a tile of the selected group in f64.
+    #[inline(always)]
+    pub(super) fn double_sums(
+        &self,
+        scene: &SampleContext,
+        number: usize,
+        group: &Group,
+    ) -> Sums<f64> {
+        let candidates = self.candidates(number, group);
+        candidates.double_sums(scene, number, &self.positions)
+    }
+
     pub(super) fn new(satellites: usize) -> Self {
         let all = Candidates::with_capacity(satellites);
         let blocks = satellites.div_ceil(BLOCK).max(1);
@@ -122,13 +159,11 @@ pub(super) struct Undecided {
 pub(super) struct SampleOutcome {
     /// PDOP of each slot, tile by tile; [`UNSOLVED`] if there is none.
     pub(super) pdop: Vec<Lanes<f32>>,
-    /// Visible satellites, summed over the points without doubt.
-    pub(super) visible: u64,
-    /// Points without doubt that are available.
-    pub(super) available: u64,
+    /// Visible satellites of each slot.
+    pub(super) visible: Vec<Lanes<u32>>,
     /// Points whose PDOP was recomputed in f64.
     pub(super) doubled: u64,
-    /// Points to recompute.
+    /// Points to recompute, or recomputed.
     pub(super) doubts: Vec<Undecided>,
 }
 
@@ -136,8 +171,7 @@ impl SampleOutcome {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
             pdop: vec![Lanes([UNSOLVED; LANES]); tiles],
-            visible: 0,
-            available: 0,
+            visible: vec![Lanes([0; LANES]); tiles],
             doubled: 0,
             doubts: Vec::new(),
         }
@@ -185,41 +219,24 @@ fn evaluate(
 ) {
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
-    let slack_km = Horizon::cap_slack_km(&work.positions);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
     let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
-    let (mut visible, mut available) = ([0; LANES], [0; LANES]);
     for group in &scene.tiles.groups {
-        work.near.select(&work.all, &group.cap, slack_km);
-        let blocks = work.near.blocks();
-        let tiles = &scene.tiles.tiles[group.tiles.clone()];
-        for (tile, words) in tiles.iter().zip(work.words.chunks_exact_mut(work.blocks)) {
-            for (block, word) in blocks.iter().zip(words) {
-                *word = block.inside(&tile.cap, slack_km);
-            }
-        }
+        work.select(scene, group);
         for number in group.tiles.clone() {
-            let place = number - group.tiles.start;
-            let words = &work.words[place * work.blocks..(place + 1) * work.blocks];
-            let candidates = TileCandidates {
-                blocks: work.near.blocks(),
-                words,
-            };
+            let candidates = work.candidates(number, group);
             let fixed = fixed.tile(number);
             let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
             let verdict = LaneVerdict::new(&sums, &fixed, &limits);
-            for l in 0..LANES {
-                visible[l] += verdict.visible.0[l];
-                available[l] += verdict.available.0[l];
-            }
             out.pdop[number] = verdict.pdop;
+            out.visible[number] = sums.count;
             if any(&verdict.doubtful) {
                 doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
             }
             if any(&verdict.coarse) {
-                available[0] += compute_again(
+                compute_again(
                     scene,
                     number,
                     &fixed,
@@ -231,8 +248,6 @@ fn evaluate(
             }
         }
     }
-    out.visible = visible.into_iter().map(u64::from).sum();
-    out.available = available.into_iter().map(u64::from).sum();
 }
 
 #[inline(always)]
@@ -263,6 +278,16 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
+    #[inline(always)]
+    fn double_sums(self, scene: &SampleContext, number: usize, positions: &Positions) -> Sums<f64> {
+        let mut sums = Sums::zero();
+        let sites = &scene.tiles.tiles[number].double;
+        for n in self.satellites() {
+            sums.add(sites, positions.at(n), &scene.double);
+        }
+        sums
+    }
+
     /// Their indices among all satellites.
     #[inline(always)]
     fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
@@ -278,10 +303,6 @@ struct LaneVerdict {
     doubtful: Lanes<u32>,
     /// PDOP too large for f32, or too close to a threshold.
     coarse: Lanes<u32>,
-    /// Visible satellites of points without doubt.
-    visible: Lanes<u32>,
-    /// Available, and neither doubtful nor coarse.
-    available: Lanes<u32>,
 }
 
 impl LaneVerdict {
@@ -294,20 +315,15 @@ impl LaneVerdict {
             pdop: Lanes([UNSOLVED; LANES]),
             doubtful: zero,
             coarse: zero,
-            visible: zero,
-            available: zero,
         };
         for l in 0..LANES {
             let pdop = single.0[l];
             let sure = u32::from(sums.possible.0[l] == sums.count.0[l]);
             let counted = u32::from(system.surplus.0[l] >= POSITION_STATES);
             let fine = u32::from(limits.holds_in_single(pdop));
-            let reached = u32::from(pdop <= limits.available as f32);
             verdict.pdop.0[l] = if counted != 0 { pdop } else { UNSOLVED };
             verdict.doubtful.0[l] = 1 - sure;
             verdict.coarse.0[l] = counted & (1 - fine) & sure;
-            verdict.visible.0[l] = sums.count.0[l] * sure;
-            verdict.available.0[l] = counted & fine & sure & reached;
         }
         verdict
     }
@@ -334,8 +350,7 @@ fn doubt(
     }
 }
 
-/// Recomputes a tile in f64 for the points for which f32 is too coarse. Returns how many of
-/// them are available.
+/// Recomputes a tile in f64 for the points for which f32 is too coarse.
 #[inline(always)]
 fn compute_again(
     scene: &SampleContext,
@@ -345,26 +360,22 @@ fn compute_again(
     positions: &Positions,
     candidates: TileCandidates<'_>,
     out: &mut SampleOutcome,
-) -> u32 {
-    let mut sums = Sums::<f64>::zero();
-    let sites = &scene.tiles.tiles[number].double;
-    for (block, &word) in candidates.blocks.iter().zip(candidates.words) {
-        for n in bits(word) {
-            sums.add(sites, positions.at(block.index(n)), &scene.double);
-        }
-    }
+) {
+    let sums = candidates.double_sums(scene, number, positions);
     let limits = &scene.limits;
     let system = NormalLanes::new(&sums, fixed);
     let double = system.pdop(limits.clocks);
-    let mut available = 0;
     let mut undecided = Lanes([0; LANES]);
     for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
         let pdop = double.0[lane];
         let satellites = system.surplus.0[lane] + limits.clocks;
         if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
             let solved = pdop <= limits.cap;
-            out.pdop[number].0[lane] = if solved { pdop as f32 } else { UNSOLVED };
-            available += u32::from(solved && pdop <= limits.available);
+            out.pdop[number].0[lane] = if solved {
+                limits.available.stored(pdop)
+            } else {
+                UNSOLVED
+            };
         } else {
             undecided.0[lane] = 1;
         }
@@ -373,5 +384,4 @@ fn compute_again(
     if any(&undecided) {
         doubt(number, Doubt::Geometry, &undecided, candidates, out);
     }
-    available
 }

@@ -44,36 +44,32 @@ impl<'a> Settling<'a> {
         }
     }
 
-    /// Settles all doubtful samples of an outcome.
+    /// Settles all doubtful samples of an outcome, which stay listed.
     pub(super) fn settle(
         &self,
         leo: &Ephemeris,
         systems: &[Ephemeris],
         outcome: &mut SampleOutcome,
     ) -> Result<(), EphemerisError> {
-        for undecided in std::mem::take(&mut outcome.doubts) {
-            let Undecided { tile, lane, .. } = undecided;
+        let doubts = std::mem::take(&mut outcome.doubts);
+        for undecided in &doubts {
+            let Undecided { tile, lane, .. } = *undecided;
             let site = self.scene.tiles.tiles[tile].members[lane];
             let local = &self.setup.sites[site as usize].local;
-            let positions = self.candidates(leo, &undecided)?;
+            let positions = self.candidates(leo, undecided)?;
             let by_lanes = match undecided.doubt {
-                Doubt::Mask => self.with_gnss_of_lanes(local, &positions, &undecided),
+                Doubt::Mask => self.with_gnss_of_lanes(local, &positions, undecided),
                 Doubt::Geometry => None,
             };
             let settled = match by_lanes {
                 Some(settled) => settled,
                 None => self.by_plain_sums(local, &positions, systems)?,
             };
-            let available = settled
-                .pdop
-                .is_some_and(|pdop| pdop <= self.setup.metrics.availability_pdop);
-            // The lanes have not counted the satellites close to the mask yet.
-            if undecided.doubt == Doubt::Mask {
-                outcome.visible += u64::from(settled.visible);
-            }
-            outcome.available += u64::from(available);
-            outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, |pdop| pdop as f32);
+            let stored = |pdop: f64| self.scene.limits.available.stored(pdop);
+            outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, stored);
+            outcome.visible[tile].0[lane] = settled.visible;
         }
+        outcome.doubts = doubts;
         Ok(())
     }
 

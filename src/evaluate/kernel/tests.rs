@@ -9,7 +9,9 @@ use crate::dop::Clocks;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
-use crate::evaluate::{Evaluator, MetricOptions, Metrics};
+use crate::evaluate::{
+    DopStatistics, EpochMetrics, Evaluator, MetricOptions, Metrics, PointMetrics, Series,
+};
 use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
 use crate::orbit::{Model, PropagationError, Propagator};
@@ -35,6 +37,12 @@ fn compare(fast: &Metrics, plain: &Metrics) -> Result<(), TestCaseError> {
     prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
     prop_assert_eq!(fast.availability, plain.availability);
     prop_assert_eq!(fast.j_cost, plain.j_cost);
+    prop_assert_eq!(fast.least_visible, plain.least_visible);
+    prop_assert_eq!(fast.coverage, plain.coverage);
+    prop_assert_eq!(fast.mean_gnss_visible, plain.mean_gnss_visible);
+    prop_assert_eq!(fast.coverage_total, plain.coverage_total);
+    prop_assert_eq!(fast.longest_outage_s, plain.longest_outage_s);
+    prop_assert_eq!(fast.longest_outage_cut, plain.longest_outage_cut);
     for (name, ours, theirs) in [
         ("mean", fast.mean_pdop, plain.mean_pdop),
         ("cvar", fast.cvar_pdop, plain.cvar_pdop),
@@ -127,6 +135,30 @@ fn sites() -> impl Strategy<Value = Vec<Site>> {
     ]
 }
 
+/// Weights, and heights up to 9 km: of none of the points, or of all.
+fn weighted_sites() -> impl Strategy<Value = Vec<Site>> {
+    let weights = prop_oneof![
+        Just(None),
+        Just(Some(0.3..0.3000001_f64)),
+        Just(Some(1e-3..1.0)),
+        Just(Some(1.0..1e6)),
+    ];
+    let drawn = |weights: Option<std::ops::Range<f64>>| match weights {
+        None => prop::collection::vec(Just(1.0), 16).boxed(),
+        Some(weights) => prop::collection::vec(weights, 16).boxed(),
+    };
+    let heights = prop_oneof![Just(0.0), Just(9.0)];
+    (sites(), weights.prop_flat_map(drawn), heights).prop_map(|(mut sites, weights, height_km)| {
+        for (n, site) in sites.iter_mut().enumerate() {
+            site.weight = weights[n % weights.len()];
+            let origin_km = site.local.origin_km.km();
+            let height_km = height_km * (n as f64 * 0.618).fract();
+            site.local.origin_km = Position::new(origin_km + site.local.up * height_km);
+        }
+        sites
+    })
+}
+
 fn setups() -> impl Strategy<Value = Setup> {
     let mask = prop_oneof![Just(0.0), Just(7.0), 0.0..60.0_f64];
     let clocks = prop::sample::select(vec![Clocks::PerSystem, Clocks::Shared]);
@@ -137,7 +169,7 @@ fn setups() -> impl Strategy<Value = Setup> {
     ]);
     let caps = prop::sample::select(vec![(100.0, 6.0), (1.9, 1.2), (8.0, 2.0)]);
     (
-        sites(),
+        weighted_sites(),
         mask,
         0.0..30.0_f64,
         clocks,
@@ -181,6 +213,76 @@ proptest! {
         prop_assert_eq!(fast[0], fast[2]);
         // Without their pattern, satellites are propagated one by one.
         compare(&evaluators[0].evaluate_ephemeris(&ephemeris).unwrap(), &plain)?;
+    }
+}
+
+/// Series: counts are exact, and PDOP is the same to the rounding of f32 and of its sums.
+fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
+    for (fast, plain) in fast.epochs.iter().zip(&plain.epochs) {
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let counts = EpochMetrics {
+            mean_pdop: plain.mean_pdop,
+            max_pdop: plain.max_pdop,
+            ..*fast
+        };
+        prop_assert_eq!(&counts, plain);
+    }
+    for (fast, plain) in fast.points.iter().zip(&plain.points) {
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
+        prop_assert!(relative(fast.p95_pdop, plain.p95_pdop) < 1e-6);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let counts = PointMetrics {
+            mean_pdop: plain.mean_pdop,
+            p95_pdop: plain.p95_pdop,
+            max_pdop: plain.max_pdop,
+            ..fast.clone()
+        };
+        prop_assert_eq!(&counts, plain);
+    }
+    Ok(())
+}
+
+/// All statistics of all dilutions, of which PDOP is that of the metrics.
+fn compare_dops(fast: &DopStatistics, plain: &DopStatistics) -> Result<(), TestCaseError> {
+    prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
+    for ((name, fast), (_, plain)) in fast.named().into_iter().zip(plain.named()) {
+        prop_assert_eq!(fast.is_some(), plain.is_some(), "{}", name);
+        let (Some(fast), Some(plain)) = (fast, plain) else {
+            continue;
+        };
+        for (ours, theirs) in [
+            (fast.mean, plain.mean),
+            (fast.p50, plain.p50),
+            (fast.p95, plain.p95),
+            (fast.p99, plain.p99),
+            (fast.max, plain.max),
+            (fast.cvar, plain.cvar),
+        ] {
+            let apart = (ours / theirs - 1.0).abs();
+            prop_assert!(apart < 1e-6, "{name}: {ours} {theirs}");
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// So do series and dilutions, to the bit on all instruction sets.
+    #[test]
+    fn series_and_dops_equal_the_plain_path(design in designs(), setup in setups()) {
+        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+        let [first, second, third] = InstructionSet::ALL
+            .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
+        let series = first.series(&ephemeris).unwrap();
+        compare_series(&series, &first.series_plain(&ephemeris).unwrap())?;
+        let dops = first.dops(&ephemeris).unwrap();
+        compare_dops(&dops, &first.dops_plain(&ephemeris).unwrap())?;
+        for other in [second, third] {
+            prop_assert_eq!(&other.series(&ephemeris).unwrap(), &series);
+            prop_assert_eq!(&other.dops(&ephemeris).unwrap(), &dops);
+        }
     }
 }
 
@@ -295,6 +397,13 @@ fn nothing_in_view_is_no_failure() {
     assert_eq!((metrics.solved_fraction, metrics.max_pdop), (0.0, None));
 }
 
+fn weighted(mut sites: Vec<Site>) -> Vec<Site> {
+    for (n, site) in sites.iter_mut().enumerate() {
+        site.weight = 1.0 + (n as f64 * 0.618).fract();
+    }
+    sites
+}
+
 /// Values that are not stored are computed twice with the same result, identical to the bit on any
 /// number of threads.
 #[test]
@@ -304,8 +413,11 @@ fn streaming_equals_keeping() {
         let setup = Setup {
             grid: TimeGrid::new(base.grid.epoch(), 86_400.0, 71.0).unwrap(),
             clocks,
+            sites: weighted(base.sites),
             ..base
         };
+        let mut setup = setup;
+        setup.metrics.availability_pdop = 1.6;
         let design: Design = "delta:55:60/6/1@925".parse().unwrap();
         let kept = Evaluator::new(setup.clone()).unwrap();
         let mut streamed = Evaluator::new(setup.clone()).unwrap();
@@ -314,8 +426,14 @@ fn streaming_equals_keeping() {
             fixed_bytes: 0,
         };
         let (setup, rotations) = (Arc::clone(&kept.setup), Arc::clone(&kept.rotations));
-        streamed.kernel =
-            Kernel::keeping_at_most(nothing, setup, rotations, InstructionSet::detect()).ok();
+        streamed.kernel = Kernel::keeping_at_most(
+            nothing,
+            setup,
+            &kept.weights,
+            rotations,
+            InstructionSet::detect(),
+        )
+        .ok();
         let expected = kept.evaluate(&design).unwrap();
         let on_threads = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new()
@@ -334,6 +452,15 @@ fn streaming_equals_keeping() {
         // The sums are computed in pieces of other sizes: a few ulp.
         assert!(relative(one.mean_pdop, expected.mean_pdop) < 1e-14);
         assert!(relative(one.cvar_pdop, expected.cvar_pdop) < 1e-13);
+        // Counts are whole numbers, and outages go on from one chunk to the next.
+        assert_eq!(one.coverage, expected.coverage);
+        assert_eq!(one.availability, expected.availability);
+        assert!(one.longest_outage_s > 71.0);
+        assert_eq!(one.longest_outage_s, expected.longest_outage_s);
+        assert_eq!(one.longest_outage_cut, expected.longest_outage_cut);
+        let ephemeris = Ephemeris::of_design(&design, Model::J2, streamed.setup.grid).unwrap();
+        let kept_dops = kept.dops(&ephemeris).unwrap();
+        compare_dops(&streamed.dops(&ephemeris).unwrap(), &kept_dops).unwrap();
     }
 }
 
@@ -344,7 +471,8 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let design: Design = "delta:55:182/13/1@925".parse().unwrap();
     let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
     let propagation = PatternPropagator::new(&ephemeris.shells()[0]).unwrap();
-    let tiles = Tiles::new(&setup.sites, setup.mask, setup.gnss_mask);
+    let weights = WholeWeights::new(&setup);
+    let tiles = Tiles::new(&setup.sites, &weights, setup.mask, setup.gnss_mask);
     assert_eq!((tiles.tiles.len(), tiles.groups.len()), (9, 1));
     let count = design.satellite_count();
     let mut positions = Positions::new(count);
@@ -444,7 +572,10 @@ fn single_values_hold_six_digits() {
             };
             let propagation = &Propagation::new(&ephemeris);
             let mut all = Vec::new();
-            let take = |tiles: &[Lanes<f32>]| all.extend(tiles.iter().flat_map(|tile| tile.0));
+            let take = |instant: &mut Evaluating<'_>| {
+                all.extend(instant.outcome.pdop.iter().flat_map(|tile| tile.0));
+                Ok(())
+            };
             kernel.run(propagation, 0..200, limits, take).unwrap();
             all
         };

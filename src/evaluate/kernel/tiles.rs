@@ -17,6 +17,7 @@
 //! With the smallest g of all points, and the mask minus the largest angle between a vertical and the
 //! radius, this is valid for points on an ellipsoid too; it never misses a visible satellite.
 
+use super::super::weights::WholeWeights;
 use super::lanes::{LANES, Lanes, SiteLanes};
 use super::propagation::Positions;
 use crate::ground::Site;
@@ -45,6 +46,28 @@ pub(super) struct Tile {
     pub(super) cap: Cap,
     /// The same for the GNSS, which may have its own mask.
     pub(super) fixed_cap: Cap,
+    pub(super) weights: TileWeights,
+}
+
+/// The weights of the points of a tile; a lane without a point weighs nothing.
+#[derive(Debug, Clone)]
+pub(super) struct TileWeights {
+    pub(super) whole: Lanes<u64>,
+    /// The same numbers.
+    pub(super) real: Lanes<f64>,
+    /// 1 where there is a point, otherwise 0.
+    pub(super) member: Lanes<u32>,
+}
+
+impl TileWeights {
+    fn new(weights: &WholeWeights, members: &[u32]) -> Self {
+        let weight = |l: usize| members.get(l).map_or(0, |&site| weights.of(site as usize));
+        Self {
+            whole: Lanes(std::array::from_fn(weight)),
+            real: Lanes(std::array::from_fn(|l| weight(l) as f64)),
+            member: Lanes(std::array::from_fn(|l| u32::from(l < members.len()))),
+        }
+    }
 }
 
 /// Tiles next to each other.
@@ -201,7 +224,12 @@ impl Cap {
 }
 
 impl Tiles {
-    pub(super) fn new(sites: &[Site], mask: Mask, fixed_mask: Mask) -> Self {
+    pub(super) fn new(
+        sites: &[Site],
+        weights: &WholeWeights,
+        mask: Mask,
+        fixed_mask: Mask,
+    ) -> Self {
         let mut members: Vec<u32> = (0..sites.len() as u32).collect();
         let mut tiles = Self {
             tiles: Vec::with_capacity(sites.len().div_ceil(LANES)),
@@ -209,7 +237,7 @@ impl Tiles {
             horizon: Horizon::new(sites, mask),
             fixed_horizon: Horizon::new(sites, fixed_mask),
         };
-        tiles.split(sites, &mut members);
+        tiles.split(sites, weights, &mut members);
         tiles
     }
 
@@ -218,28 +246,28 @@ impl Tiles {
         self.tiles.len() * LANES
     }
 
-    fn split(&mut self, sites: &[Site], members: &mut [u32]) {
+    fn split(&mut self, sites: &[Site], weights: &WholeWeights, members: &mut [u32]) {
         if members.len() > TILES_IN_GROUP * LANES {
             sort_along(&keys(sites, members)[longest_side(sites, members)], members);
             let (left, right) = members.split_at_mut(middle(members.len()));
-            self.split(sites, left);
-            self.split(sites, right);
+            self.split(sites, weights, left);
+            self.split(sites, weights, right);
             return;
         }
         let first = self.tiles.len();
-        self.split_group(sites, members);
+        self.split_group(sites, weights, members);
         self.groups.push(Group {
             tiles: first..self.tiles.len(),
             cap: self.horizon.cap(EnclosingCircle::around(sites, members)),
         });
     }
 
-    fn split_group(&mut self, sites: &[Site], members: &mut [u32]) {
+    fn split_group(&mut self, sites: &[Site], weights: &WholeWeights, members: &mut [u32]) {
         if members.len() > LANES {
             cut_well(sites, members);
             let (left, right) = members.split_at_mut(middle(members.len()));
-            self.split_group(sites, left);
-            self.split_group(sites, right);
+            self.split_group(sites, weights, left);
+            self.split_group(sites, weights, right);
             return;
         }
         let circle = EnclosingCircle::around(sites, members);
@@ -248,6 +276,7 @@ impl Tiles {
             double: site_lanes(sites, members, |x| x, f64::NAN),
             cap: self.horizon.cap(circle),
             fixed_cap: self.fixed_horizon.cap(circle),
+            weights: TileWeights::new(weights, members),
             members: members.to_vec(),
         });
     }

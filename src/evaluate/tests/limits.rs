@@ -40,13 +40,11 @@ fn shares(setup: &Setup, design: &Design) -> [(f64, f64); 4] {
 /// Every solved PDOP, rising.
 fn rising(setup: &Setup, design: &Design) -> Vec<f64> {
     let ephemeris = Ephemeris::of_design(design, setup.model, setup.grid).unwrap();
-    let series = Evaluator::new(setup.clone()).unwrap().series(&ephemeris);
-    series
-        .unwrap()
-        .pdop
-        .iter()
-        .map(|sample| sample.value)
-        .collect()
+    let evaluator = Evaluator::new(setup.clone()).unwrap();
+    let mut rising = Vec::new();
+    plain::visit(&evaluator, &ephemeris, |sample| rising.extend(sample.pdop)).unwrap();
+    rising.sort_unstable_by(f64::total_cmp);
+    rising
 }
 
 #[test]

@@ -221,7 +221,7 @@ struct Verdict {
     pdop: Option<f64>,
 }
 
-fn verdicts(setup: &Setup, ephemeris: &Ephemeris) -> [(&'static str, Verdict); 4] {
+fn verdicts(setup: &Setup, ephemeris: &Ephemeris) -> [(&'static str, Verdict); 5] {
     let evaluator = Evaluator::new(setup.clone()).unwrap();
     let of_metrics = |metrics: Metrics| Verdict {
         solved: metrics.solved_fraction,
@@ -229,6 +229,7 @@ fn verdicts(setup: &Setup, ephemeris: &Ephemeris) -> [(&'static str, Verdict); 4
     };
     let series = evaluator.series(ephemeris).unwrap();
     let dops = evaluator.dops(ephemeris).unwrap();
+    let dops_plain = evaluator.dops_plain(ephemeris).unwrap();
     let named = dops.named();
     let numbers = named.iter().filter_map(|(_, summary)| *summary);
     assert!(numbers.map(|x| x.mean).all(f64::is_finite), "{named:?}");
@@ -255,6 +256,13 @@ fn verdicts(setup: &Setup, ephemeris: &Ephemeris) -> [(&'static str, Verdict); 4
                 pdop: dops.pdop.map(|summary| summary.max),
             },
         ),
+        (
+            "plain dops",
+            Verdict {
+                solved: dops_plain.solved_fraction,
+                pdop: dops_plain.pdop.map(|summary| summary.max),
+            },
+        ),
     ]
 }
 
@@ -276,9 +284,13 @@ fn check_paths(sky: &Sky, setup: &Setup, ephemeris: &Ephemeris) {
             assert!(apart <= tolerance, "{path} {apart:e} {}", sky.text);
         }
     }
-    // All but the kernel make the same sums.
-    for n in [2, 3] {
-        assert_eq!(paths[0].1, paths[n].1, "{} {}", paths[n].0, sky.text);
+    // The dilutions of the plain path are from the same sums, and those of the kernel say its PDOP.
+    for (one, other) in [(0, 4), (1, 3)] {
+        assert_eq!(
+            paths[one].1, paths[other].1,
+            "{} {}",
+            paths[other].0, sky.text
+        );
     }
 }
 

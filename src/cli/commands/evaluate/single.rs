@@ -61,6 +61,29 @@ fn text(
         4,
         seen.to_owned(),
     );
+    row(
+        "least visible",
+        Some(metrics.least_visible.into()),
+        0,
+        "LEO satellites in view, over all points and instants".to_owned(),
+    );
+    let coverage = metrics.coverage;
+    row(
+        "coverage",
+        coverage.of(4),
+        5,
+        format!(
+            "fraction with at least 4 LEO satellites in view; 1: {:.5}, 8: {:.5}",
+            coverage.of(1).unwrap_or(0.0),
+            coverage.of(8).unwrap_or(0.0)
+        ),
+    );
+    row(
+        "mean visible, GNSS",
+        Some(metrics.mean_gnss_visible),
+        4,
+        format!("with LEO {:.4}", metrics.mean_total_visible),
+    );
     row("mean PDOP", metrics.mean_pdop, 4, String::new());
     row(
         "CVaR of PDOP",
@@ -86,6 +109,16 @@ fn text(
         Some(metrics.availability),
         5,
         format!("fraction with PDOP <= {threshold}"),
+    );
+    let cut = match metrics.longest_outage_cut {
+        true => ", cut by an end of the span",
+        false => "",
+    };
+    row(
+        "longest outage",
+        Some(metrics.longest_outage_s),
+        0,
+        format!("s at any point, unsolved or PDOP > {threshold}{cut}"),
     );
     row(
         "J_pos",

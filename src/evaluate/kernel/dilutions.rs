@@ -1,0 +1,240 @@
+//! All dilutions of precision, in f64 lanes.
+//!
+//! They need the sums of each clock, which the metrics do not, and are computed where they are asked for. The
+//! verdict of a sample and its PDOP are those of the metrics; the inverse of the normal matrix is that by minors,
+//! which is accurate for PDOP up to [`LANES_BELOW`]. Beyond it, and where the lanes are in doubt, [`DopFamily`] is
+//! computed from the sums of the plain path.
+
+use super::super::dops::{CLOCKS_FROM, groups};
+use super::super::{Setup, fixed, plain};
+use super::Evaluating;
+use super::fixed::{Fixed, FixedSystem};
+use super::instructions::Work;
+use super::lanes::{LANES, Lanes, MaskTerms, Sums};
+use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
+use super::tiles::Tile;
+use crate::dop::{Clocks, DopFamily};
+use crate::ephemeris::{Ephemeris, EphemerisError};
+
+/// PDOP up to which the inverse by minors has ten digits.
+const LANES_BELOW: f32 = 50.0;
+
+/// Places of the dilutions: the clocks follow.
+const GDOP: usize = 0;
+const PDOP: usize = 1;
+const HDOP: usize = 2;
+const VDOP: usize = 3;
+
+/// The dilutions of one instant, tile by tile; [`UNSOLVED`] if there is none.
+#[derive(Debug, Clone)]
+pub(super) struct DilutionRows(pub(super) Vec<Vec<Lanes<f32>>>);
+
+impl DilutionRows {
+    pub(super) fn new(clocks: usize, tiles: usize) -> Self {
+        Self(vec![
+            vec![Lanes([UNSOLVED; LANES]); tiles];
+            CLOCKS_FROM + clocks
+        ])
+    }
+
+    fn set(&mut self, tile: usize, lane: usize, family: Option<&DopFamily>) {
+        for row in &mut self.0 {
+            row[tile].0[lane] = UNSOLVED;
+        }
+        let Some(family) = family else { return };
+        let position = [family.gdop, family.pdop, family.hdop, family.vdop];
+        let clocks = family.tdop.iter().map(|tdop| tdop.unwrap_or(f64::INFINITY));
+        for (row, value) in self.0.iter_mut().zip(position.into_iter().chain(clocks)) {
+            row[tile].0[lane] = value as f32;
+        }
+    }
+}
+
+/// Computes the dilutions of an instant.
+pub(super) struct Dilution<'a> {
+    pub(super) setup: &'a Setup,
+    pub(super) scene: &'a SampleContext,
+    pub(super) fixed: &'a Fixed,
+    pub(super) leo: &'a Ephemeris,
+}
+
+impl Dilution<'_> {
+    pub(super) fn compute(
+        &self,
+        evaluating: &mut Evaluating<'_>,
+        rows: &mut DilutionRows,
+    ) -> Result<(), EphemerisError> {
+        let systems = self
+            .fixed
+            .systems_at(&self.scene.tiles, evaluating.instant)?;
+        self.fixed.instructions.run(Dilute {
+            scene: self.scene,
+            clocks: self.setup.clocks,
+            fixed_mask: &self.fixed.mask,
+            systems: &systems,
+            work: evaluating.work,
+            outcome: evaluating.outcome,
+            rows,
+        });
+        let rest = self.left_by_lanes(evaluating.outcome);
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let (elapsed_s, rotation) = (evaluating.instant.elapsed_s, evaluating.instant.rotation);
+        let mut leo = Vec::with_capacity(self.leo.satellites().len());
+        plain::earth_fixed(self.leo, elapsed_s, rotation, &mut leo)?;
+        let gnss = fixed::positions(&self.fixed.systems, elapsed_s, rotation)?;
+        for (tile, lane) in rest {
+            let site = self.scene.tiles.tiles[tile].members[lane] as usize;
+            let local = &self.setup.sites[site].local;
+            let groups = groups(self.setup, local, std::slice::from_ref(&leo), &gnss);
+            let family = DopFamily::of(&groups, local, self.setup.pdop_cap);
+            rows.set(tile, lane, family.as_ref());
+        }
+        Ok(())
+    }
+
+    /// The slots with a large PDOP or in doubt.
+    fn left_by_lanes(&self, outcome: &SampleOutcome) -> Vec<(usize, usize)> {
+        let mut rest: Vec<_> = outcome.doubts.iter().map(|x| (x.tile, x.lane)).collect();
+        for (number, pdop) in outcome.pdop.iter().enumerate() {
+            let is_large = |lane: &usize| (LANES_BELOW..UNSOLVED).contains(&pdop.0[*lane]);
+            rest.extend((0..LANES).filter(is_large).map(|lane| (number, lane)));
+        }
+        rest
+    }
+}
+
+/// The dilutions at all points of one instant, after its evaluation.
+struct Dilute<'a> {
+    scene: &'a SampleContext,
+    clocks: Clocks,
+    fixed_mask: &'a MaskTerms<f64>,
+    systems: &'a [FixedSystem],
+    work: &'a mut Workspace,
+    outcome: &'a SampleOutcome,
+    rows: &'a mut DilutionRows,
+}
+
+impl Work for Dilute<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let tiles = &self.scene.tiles.tiles;
+        let mut sums = Vec::with_capacity(self.systems.len() + 1);
+        for group in &self.scene.tiles.groups {
+            self.work.select(self.scene, group);
+            for number in group.tiles.clone() {
+                let tile = &tiles[number];
+                sums.clear();
+                for system in self.systems {
+                    let mut seen = Sums::<f64>::zero();
+                    system.add_to(&mut seen, tile, self.fixed_mask);
+                    sums.push(seen);
+                }
+                sums.push(self.work.double_sums(self.scene, number, group));
+                if self.clocks == Clocks::Shared {
+                    let mut all = Sums::<f64>::zero();
+                    sums.drain(..).for_each(|of_system| all.merge(&of_system));
+                    sums.push(all);
+                }
+                dilute(tile, &sums, &self.outcome.pdop[number], number, self.rows);
+            }
+        }
+    }
+}
+
+/// The dilutions at the points of a tile from the sums of each clock.
+#[inline(always)]
+fn dilute(
+    tile: &Tile,
+    clocks: &[Sums<f64>],
+    pdop: &Lanes<f32>,
+    number: usize,
+    rows: &mut DilutionRows,
+) {
+    let covariance = Covariance::new(clocks);
+    let up = &tile.double.up;
+    let (mut horizontal2, mut vertical2, mut all2) = (ZERO, ZERO, ZERO);
+    for l in 0..LANES {
+        let vertical = covariance.form([up[0].0[l], up[1].0[l], up[2].0[l]], l);
+        let position = covariance.trace(l);
+        vertical2.0[l] = vertical;
+        horizontal2.0[l] = position - vertical;
+        all2.0[l] = position;
+    }
+    for (clock, sums) in clocks.iter().enumerate() {
+        let mut clock2 = ZERO;
+        for l in 0..LANES {
+            let count = f64::from(sums.count.0[l].max(1));
+            let mean = [
+                sums.x.0[l] / count,
+                sums.y.0[l] / count,
+                sums.z.0[l] / count,
+            ];
+            let variance = 1.0 / count + covariance.form(mean, l);
+            let is_seen = sums.count.0[l] > 0;
+            all2.0[l] += if is_seen { variance } else { 0.0 };
+            clock2.0[l] = if is_seen { variance } else { f64::INFINITY };
+        }
+        rows.0[CLOCKS_FROM + clock][number] = roots(&clock2, pdop);
+    }
+    rows.0[GDOP][number] = roots(&all2, pdop);
+    rows.0[PDOP][number] = *pdop;
+    rows.0[HDOP][number] = roots(&horizontal2, pdop);
+    rows.0[VDOP][number] = roots(&vertical2, pdop);
+}
+
+const ZERO: Lanes<f64> = Lanes([0.0; LANES]);
+
+/// The roots, where the sample is solved.
+#[inline(always)]
+fn roots(squares: &Lanes<f64>, pdop: &Lanes<f32>) -> Lanes<f32> {
+    let mut roots = Lanes([UNSOLVED; LANES]);
+    for l in 0..LANES {
+        let root = squares.0[l].sqrt() as f32;
+        roots.0[l] = if pdop.0[l] < UNSOLVED { root } else { UNSOLVED };
+    }
+    roots
+}
+
+/// The inverse of the normal matrix: (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
+struct Covariance([Lanes<f64>; 6]);
+
+impl Covariance {
+    #[inline(always)]
+    fn new(clocks: &[Sums<f64>]) -> Self {
+        let mut normal = [ZERO; 6];
+        for sums in clocks {
+            super::fixed::add_group(sums, &mut normal);
+        }
+        let mut covariance = [ZERO; 6];
+        for l in 0..LANES {
+            let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| normal[element].0[l]);
+            let minor_xx = yy * zz - yz * yz;
+            let minor_xy = yz * xz - xy * zz;
+            let minor_xz = xy * yz - yy * xz;
+            let scale = 1.0 / (xx * minor_xx + xy * minor_xy + xz * minor_xz);
+            covariance[0].0[l] = minor_xx * scale;
+            covariance[1].0[l] = (xx * zz - xz * xz) * scale;
+            covariance[2].0[l] = (xx * yy - xy * xy) * scale;
+            covariance[3].0[l] = minor_xy * scale;
+            covariance[4].0[l] = minor_xz * scale;
+            covariance[5].0[l] = (xy * xz - xx * yz) * scale;
+        }
+        Self(covariance)
+    }
+
+    #[inline(always)]
+    fn trace(&self, l: usize) -> f64 {
+        self.0[0].0[l] + self.0[1].0[l] + self.0[2].0[l]
+    }
+
+    /// vᵀ Q v.
+    #[inline(always)]
+    fn form(&self, [x, y, z]: [f64; 3], l: usize) -> f64 {
+        let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| self.0[element].0[l]);
+        xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
+    }
+}
