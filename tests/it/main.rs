@@ -12,6 +12,7 @@ mod fire;
 mod flags;
 mod gallery;
 mod hostile;
+mod hybrids;
 mod interchange;
 mod keys;
 mod limits;
