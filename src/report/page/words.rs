@@ -196,11 +196,7 @@ fn found(run: &Run) -> String {
         search.seed,
         search.evaluations
     );
-    if let Some(fixed) = &search.fixed {
-        let satellites = crate::units::counted(fixed.in_design + fixed.from_files, "satellite");
-        let name = shown::name(&fixed.name);
-        text += &format!(" Beside each design are the {satellites} of {name}.");
-    }
+    text.extend(search.fixed.as_ref().map(shown::beside));
     let [done, of] = search.generations;
     if done < of {
         text += &format!(" It was stopped after generation {done} of {of}.");
