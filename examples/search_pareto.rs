@@ -42,6 +42,10 @@ impl Problem for MassProblem<'_> {
         self.designs.repair(genome);
     }
 
+    fn unify(&self, genome: &mut [f64]) {
+        self.designs.unify(genome);
+    }
+
     fn evaluate(&self, batch: &[Vec<f64>]) -> Vec<Evaluation> {
         let evaluate = |genome: &Vec<f64>| match self.objectives(genome) {
             Some(objectives) => Evaluation {

@@ -11,7 +11,7 @@ pub(crate) mod tables;
 mod validation;
 
 pub use results::{
-    Certificate, DesignSummary, Diagnostic, FrontMember, Hypervolume, MemberFiles, Missed,
+    Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles, Missed,
     OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
 pub use tables::{front_csv, history_csv};

@@ -137,6 +137,12 @@ impl<'a> DesignProblem<'a> {
         &self.designs
     }
 
+    /// Number of satellites that every design has beside its own, without those of its fixed shells.
+    #[must_use]
+    pub fn satellites_beside(&self) -> usize {
+        self.fixed.len()
+    }
+
     /// A design and its metrics, for a vector of the space; `None` if it cannot be propagated.
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
@@ -243,6 +249,10 @@ impl Problem for DesignProblem<'_> {
 
     fn repair(&self, genome: &mut [f64]) {
         self.designs.repair(genome);
+    }
+
+    fn unify(&self, genome: &mut [f64]) {
+        self.designs.unify(genome);
     }
 
     /// Parallel over the designs; results are in the order of the batch.

@@ -81,15 +81,19 @@ pub(super) fn visit(
     mut see: impl FnMut(PlainSample),
 ) -> Result<(), EphemerisError> {
     let cap = evaluator.setup().pdop_cap;
-    visit_geometries(evaluator, ephemeris, |time, site, (visible, gnss_visible), geometry| {
-        see(PlainSample {
-            time,
-            site,
-            visible,
-            gnss_visible,
-            pdop: geometry.pdop(cap),
-        });
-    })
+    visit_geometries(
+        evaluator,
+        ephemeris,
+        |time, site, (visible, gnss_visible), geometry| {
+            see(PlainSample {
+                time,
+                site,
+                visible,
+                gnss_visible,
+                pdop: geometry.pdop(cap),
+            });
+        },
+    )
 }
 
 /// Calls `see` with the instant, the point, the visible LEO and GNSS satellites, and the geometry of every sample.

@@ -8,9 +8,13 @@
 //!
 //! - A last front with too many members is pruned one member at a time
 //!   ([`prune_one_by_one`]), since removing several at once leaves holes.
-//! - No two individuals have the same genome: a child that repeats one is drawn
+//! - No two individuals are the same design: a child that repeats one is drawn
 //!   again, because in a space with few values copies would fill the population.
 //!   In a space with fewer points than the population all of them end up in it.
+//! - Values without effect, such as those of an absent part, are kept and passed on
+//!   (O. Abdelkhalik, "Hidden genes genetic optimization for variable-size design
+//!   space problems", Journal of Optimization Theory and Applications 156, 2013): a
+//!   part that comes back has the variety of its ancestors.
 //! - Tournaments pick both contestants independently, which lets any number of
 //!   children be drawn again, and compare crowding among the survivors.
 //! - Children outside a bound are moved onto it, and integers are crossed as reals
@@ -23,7 +27,7 @@ use serde::{Deserialize, Serialize};
 use super::error::OptimizeError;
 use super::generator::Generator;
 use super::history::History;
-use super::problem::{Individual, Problem, admit, evaluate};
+use super::problem::{Individual, Problem, admit, evaluate, repaired};
 use super::sorting::{crowding_distance, feasible_front, non_dominated_sort, prune_one_by_one};
 use super::strategy::{
     Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
@@ -166,18 +170,19 @@ impl Nsga2 {
         self.population.iter().try_for_each(|a| a.check(problem))
     }
 
-    /// New genomes, none of which is in the population or twice in the batch.
+    /// New genomes, of designs none of which is in the population or twice in the batch.
     fn offspring(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
         let mut generator = Generator::new(self.seed, self.generation);
         let ranking = Ranking::new(&self.population);
         let size = self.config.population;
-        let mut known: HashSet<Vec<u64>> =
-            self.population.iter().map(|a| bits(&a.genome)).collect();
+        let design = |genome: &Vec<f64>| Ok(bits(&admit(problem, genome.clone())?));
+        let own = self.population.iter().map(|a| design(&a.genome));
+        let mut known: HashSet<Vec<u64>> = own.collect::<Result<_, OptimizeError>>()?;
         let mut batch = Vec::new();
         for _ in 0..size.saturating_mul(DRAWS_PER_INDIVIDUAL) {
             for genome in self.draw(problem, &ranking, &mut generator) {
-                let genome = admit(problem, genome)?;
-                if batch.len() < size && known.insert(bits(&genome)) {
+                let genome = repaired(problem, genome)?;
+                if batch.len() < size && known.insert(design(&genome)?) {
                     batch.push(genome);
                 }
             }

@@ -212,6 +212,10 @@ pub trait Problem {
     /// remain so; a second call must change nothing.
     fn repair(&self, _genome: &mut [f64]) {}
 
+    /// Gives all genomes of one design the same values, such as those of a part that is absent. Called with a
+    /// repaired genome, which must remain one; a second call must change nothing.
+    fn unify(&self, _genome: &mut [f64]) {}
+
     /// Evaluates genomes, one answer each in their order. All are inside the
     /// space and repaired. The same genome must always get the same answer.
     fn evaluate(&self, batch: &[Vec<f64>]) -> Vec<Evaluation>;
@@ -246,12 +250,20 @@ impl Individual {
 }
 
 /// The genome inside the space with its dependent variables made consistent.
-pub(super) fn admit(
+pub(super) fn repaired(
     problem: &dyn Problem,
     mut genome: Vec<f64>,
 ) -> Result<Vec<f64>, OptimizeError> {
     problem.space().clamp(&mut genome);
     problem.repair(&mut genome);
+    problem.space().check(&genome)?;
+    Ok(genome)
+}
+
+/// The one genome of the design that a genome stands for, inside the space.
+pub(super) fn admit(problem: &dyn Problem, genome: Vec<f64>) -> Result<Vec<f64>, OptimizeError> {
+    let mut genome = repaired(problem, genome)?;
+    problem.unify(&mut genome);
     problem.space().check(&genome)?;
     Ok(genome)
 }

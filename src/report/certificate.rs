@@ -115,8 +115,7 @@ impl Certificate {
 
 impl Missed {
     fn of(members: &[&FrontMember]) -> Option<Self> {
-        let designs = members.iter().filter_map(|m| m.only_design());
-        let shells: Vec<Shell> = designs.flat_map(|d| d.shells().to_vec()).collect();
+        let shells: Vec<Shell> = members.iter().flat_map(|m| searched_shells(m)).collect();
         let whole = |value: fn(&Shell) -> usize| {
             let values = || shells.iter().map(value);
             Some([values().min()?, values().max()?])
@@ -133,6 +132,18 @@ impl Missed {
             altitude_km: real(Shell::altitude_km)?,
         })
     }
+}
+
+/// The shells of a member that the search varies.
+fn searched_shells(member: &FrontMember) -> Vec<Shell> {
+    if member.shells.is_empty() {
+        let design = member.design.design();
+        return design.map_or_else(Vec::new, |design| design.shells().to_vec());
+    }
+    let notations = member.shells.iter().flatten().map(|shell| &shell.notation);
+    notations
+        .filter_map(|notation| notation.parse().ok())
+        .collect()
 }
 
 fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {

@@ -5,7 +5,7 @@ use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Certificate, DesignSummary, FrontMember, Hypervolume, MemberFiles, OptimizeResult,
+    Certificate, DesignSummary, FixedSummary, FrontMember, Hypervolume, MemberFiles, OptimizeResult,
     ScenarioStamp, SearchSummary, VERSION, VolumeAt,
 };
 use crate::scenario::Scenario;
@@ -51,6 +51,7 @@ impl OptimizeResult {
             seed: scenario.optimizer.seed,
             algorithm: scenario.optimizer.algorithm.to_string(),
             generations: [progress.step, progress.steps],
+            fixed: fixed(problem, scenario),
             diagnostics,
             certificate: None,
             scenario: stamp,
@@ -127,6 +128,7 @@ impl OptimizeResult {
                 seed: scenario.optimizer.seed,
                 algorithm: SearchSummary::GIVEN.to_owned(),
                 generations: [0, 0],
+                fixed: None,
                 diagnostics: Vec::new(),
                 certificate: None,
                 scenario: stamp,
@@ -276,6 +278,17 @@ fn shells(space: &DesignSpace, genome: &[f64]) -> Vec<Option<DesignSummary>> {
     shells
         .map(|shell| shell.as_ref().map(DesignSummary::from))
         .collect()
+}
+
+/// What is fixed in a search.
+fn fixed(problem: &DesignProblem<'_>, scenario: &Scenario) -> Option<FixedSummary> {
+    let name = scenario.search.fixed.clone()?;
+    let shells = problem.designs().fixed.as_ref();
+    Some(FixedSummary {
+        name,
+        in_design: shells.map_or(0, Design::satellite_count),
+        from_files: problem.satellites_beside(),
+    })
 }
 
 /// The constrained quantities that are not objectives, by name.

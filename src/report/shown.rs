@@ -1,8 +1,9 @@
 //! Numbers as people read them: one function for each kind, so that a number has the same digits
 //! in a table, in prose and on the page, rounded once and from its full value.
 
-use crate::run::{Diagnostic, FrontMember, Hypervolume};
+use crate::run::{Diagnostic, FixedSummary, FrontMember, Hypervolume};
 use crate::search::Quantity;
+use crate::units::counted;
 
 /// Text for a missing value.
 pub(crate) const NONE: &str = "none";
@@ -55,6 +56,16 @@ pub(crate) fn name(text: &str) -> String {
         }
     }
     shown
+}
+
+/// What is fixed in a search, as a sentence after another.
+#[must_use]
+pub(crate) fn beside(fixed: &FixedSummary) -> String {
+    let satellites = counted(fixed.in_design + fixed.from_files, "satellite");
+    format!(
+        " Beside each design: {satellites} of {}.",
+        name(&fixed.name)
+    )
 }
 
 /// A dilution of precision.

@@ -279,6 +279,9 @@ pub struct SearchSummary {
     pub algorithm: String,
     /// Generations done, and in total.
     pub generations: [u64; 2],
+    /// What every design has beside its own shells, if anything.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<FixedSummary>,
     /// Diagnostics.
     #[serde(default)]
     pub diagnostics: Vec<Diagnostic>,
@@ -289,6 +292,17 @@ pub struct SearchSummary {
     pub scenario: ScenarioStamp,
     /// Version of the program.
     pub version: String,
+}
+
+/// What is fixed in a search.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct FixedSummary {
+    /// Its notation, or its name in the scenario.
+    pub name: String,
+    /// Satellites of its shells, which are in the notation of each design.
+    pub in_design: usize,
+    /// Satellites from files, which are in no notation and, as each design has them, in every metric.
+    pub from_files: usize,
 }
 
 impl SearchSummary {

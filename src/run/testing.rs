@@ -64,6 +64,7 @@ pub(crate) fn summary() -> SearchSummary {
         seed: 7,
         algorithm: "nsga2".to_owned(),
         generations: [30, 30],
+        fixed: None,
         diagnostics: vec![Diagnostic::new("c", "m".to_owned())],
         certificate: None,
         scenario: ScenarioStamp {

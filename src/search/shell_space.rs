@@ -178,15 +178,8 @@ impl ShellSpace {
     }
 
     /// Clamps the phasing to its limits, both capped at P - 1, and rounds the continuous variables to
-    /// their resolution, so that designs have few digits and equal designs are equal vectors. All variables of an
-    /// empty shell go to their lower limits.
+    /// their resolution, so that designs have few digits and equal designs are equal vectors.
     pub(super) fn repair(&self, genome: &mut [f64]) {
-        if is_empty(genome) {
-            for (value, (_, kind)) in genome.iter_mut().zip(self.variables()) {
-                *value = kind.bounds().0;
-            }
-            return;
-        }
         let lowest = f64::from(self.phasing[0]);
         genome[PHASING] = genome[PHASING].max(lowest).min(genome[PLANES] - 1.0);
         let [south, north] = self.inclination_deg;
@@ -197,6 +190,15 @@ impl ShellSpace {
         for (value, one) in genome[PHASING + 1..].iter_mut().zip(self.varied()) {
             let [low, high] = one.limits;
             *value = round_decimal(*value, one.decimals).clamp(low, high);
+        }
+    }
+
+    /// Moves all variables of an empty shell to their lower limits.
+    pub(super) fn unify(&self, genome: &mut [f64]) {
+        if is_empty(genome) {
+            for (value, (_, kind)) in genome.iter_mut().zip(self.variables()) {
+                *value = kind.bounds().0;
+            }
         }
     }
 

@@ -62,12 +62,20 @@ impl DesignSpace {
         self.shells.len() == 1 && self.fixed.is_none()
     }
 
-    /// Makes the variables of each shell consistent, and those of an empty one equal, so that equal designs are
-    /// equal vectors.
-    pub(super) fn repair(&self, mut genome: &mut [f64]) {
+    /// Makes the variables of each shell consistent.
+    pub(super) fn repair(&self, genome: &mut [f64]) {
+        self.change(genome, ShellSpace::repair);
+    }
+
+    /// Moves the variables of empty shells to their lower limits, so that equal designs are equal vectors.
+    pub(super) fn unify(&self, genome: &mut [f64]) {
+        self.change(genome, ShellSpace::unify);
+    }
+
+    fn change(&self, mut genome: &mut [f64], change: fn(&ShellSpace, &mut [f64])) {
         for shell in &self.shells {
             let (own, others) = genome.split_at_mut(shell.variables().count());
-            shell.repair(own);
+            change(shell, own);
             genome = others;
         }
     }

@@ -1,3 +1,5 @@
+mod hybrids;
+
 use super::testing::shell;
 use super::*;
 use crate::evaluate::Coverage;

@@ -33,6 +33,13 @@ const SWEEP: &str = "optimize --quiet --format json --out run --set region.step-
      --set search.inclination-deg=[50,60] --set search.altitude-km=[900,1000] --set search.eccentricity=[0,0.01] \
      --set search.arg-perigee-deg=[0,60] --set search.inclination-step-deg=10 --set search.altitude-step-km=100 \
      --set search.eccentricity-step=0.01 --set search.arg-perigee-step-deg=60";
+/// Without intervals of one shell, which a list of shells excludes.
+const OPTIMIZE_LISTED: &str = "optimize --quiet --format json --out run --set region.step-deg=20 --set time.step-s=1200 \
+     --set optimizer.population=8 --set optimizer.generations=2";
+const SWEEP_TURNED: &str = "optimize --quiet --format json --out run --set region.step-deg=20 --set time.step-s=7200 \
+     --set optimizer.algorithm=exhaustive --set search.planes=[3,3] --set search.satellites-per-plane=[5,5] \
+     --set search.inclination-deg=50 --set search.altitude-km=900 --set search.raan-deg=[0,30] \
+     --set search.arg-latitude-deg=[0,30] --set search.node-step-deg=[30,31]";
 const EXPORT: &str =
     "export --quiet --as oem --out files --design delta:55:2/2/1@925 --set time.duration-h=1";
 
@@ -327,6 +334,44 @@ const ROWS: [Row; 74] = [
         "90",
         OPTIMIZE,
         "/front/0/design/arg_perigee_deg",
+    ),
+    row(
+        "search.raan-deg",
+        "30",
+        OPTIMIZE,
+        "/front/0/design/raan_deg",
+    ),
+    row(
+        "search.arg-latitude-deg",
+        "45",
+        OPTIMIZE,
+        "/front/0/design/arg_latitude_deg",
+    ),
+    row(
+        "search.node-step-deg",
+        "31.6",
+        OPTIMIZE,
+        "/front/0/design/node_step_deg",
+    ),
+    row(
+        "search.shells",
+        "[{planes=[3,4]},{planes=2,satellites-per-plane=[2,3]}]",
+        OPTIMIZE_LISTED,
+        "/front/0/shells",
+    ),
+    row("search.fixed", "star:86.4:12/3/1@780", OPTIMIZE, "/fixed"),
+    row("search.raan-step-deg", "10", SWEEP_TURNED, "/evaluations"),
+    row(
+        "search.arg-latitude-step-deg",
+        "10",
+        SWEEP_TURNED,
+        "/evaluations",
+    ),
+    row(
+        "search.node-step-step-deg",
+        "0.5",
+        SWEEP_TURNED,
+        "/evaluations",
     ),
     row("search.inclination-step-deg", "5", SWEEP, "/evaluations"),
     row("search.altitude-step-km", "50", SWEEP, "/evaluations"),

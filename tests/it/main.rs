@@ -14,6 +14,7 @@ mod flags;
 mod gallery;
 mod given_runs;
 mod hostile;
+mod hybrids;
 mod interchange;
 mod keys;
 mod limits;

@@ -13,7 +13,7 @@ use crate::optimize::{Pick, Search, Strategy};
 use crate::report::front_table::front_table;
 use crate::report::shown;
 use crate::run::inputs::InputError;
-use crate::run::{FrontMember, OptimizeResult, front_csv};
+use crate::run::{FixedSummary, FrontMember, OptimizeResult, front_csv};
 use crate::scenario::{Algorithm, Scenario};
 use crate::search::DesignProblem;
 use crate::units::counted;
@@ -294,6 +294,9 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         result.search.seed,
         table.to_text()
     );
+    if let Some(fixed) = &result.search.fixed {
+        text += &fixed_text(fixed);
+    }
     if let Some(chart) = chart::front(result) {
         text += &format!("\n{chart}");
     }
@@ -316,6 +319,29 @@ pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
         text += &format!("note: {} [{}]\n", diagnostic.message, diagnostic.code);
     }
     text
+}
+
+/// What every design has beside its own shells.
+fn fixed_text(fixed: &FixedSummary) -> String {
+    let FixedSummary {
+        name,
+        in_design,
+        from_files,
+    } = fixed;
+    let name = shown::name(name);
+    let mut parts = Vec::new();
+    if *in_design > 0 {
+        parts.push(format!("{in_design} in the last shells of each notation"));
+    }
+    if *from_files > 0 {
+        parts.push(format!(
+            "{from_files} from files, in no notation and not in T, but in every metric"
+        ));
+    }
+    format!(
+        "fixed beside each design: {name}, satellites: {}\n",
+        parts.join("; ")
+    )
 }
 
 /// The picks of the other methods, and why.

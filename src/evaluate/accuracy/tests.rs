@@ -175,7 +175,7 @@ fn what_is_not_solved_has_no_accuracy() {
         .unwrap()
         .series(&ephemeris)
         .unwrap()
-        .pdop[0]
+        .rising_pdop()[0]
         .value;
     let capped = accuracy(&setup.with_pdop_cap(least.next_down()), &ephemeris);
     assert_eq!(capped, AccuracyMetrics::default());

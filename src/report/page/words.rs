@@ -200,6 +200,7 @@ fn found(run: &Run) -> String {
         search.seed,
         search.evaluations
     );
+    text.extend(search.fixed.as_ref().map(shown::beside));
     let [done, of] = search.generations;
     if done < of {
         text += &format!(" It was stopped after generation {done} of {of}.");

@@ -127,8 +127,10 @@ fn an_empty_shell_is_one_vector() {
     let mut other = vec![
         4.0, 12.0, 50.0, 800.0, 1.0, 3.0, 0.0, 83.0, 500.0, 1.0, 0.0, 25.0, 0.0,
     ];
-    space.repair(&mut one);
-    space.repair(&mut other);
+    for genome in [&mut one, &mut other] {
+        space.repair(genome);
+        space.unify(genome);
+    }
     assert_eq!(one, other);
     assert_eq!(space.vectors().unwrap().check(&one), Ok(()));
     assert_eq!(

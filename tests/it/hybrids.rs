@@ -1,0 +1,199 @@
+//! Searches among several shells, and beside what is fixed, on the command line.
+
+use crate::cli::ran;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+const TWO: &str = "name = \"two\"
+[time]
+duration-h = 3
+step-s = 1800
+[region]
+step-deg = 25
+[objectives]
+minimize = [\"satellites\", \"mean-pdop\"]
+[optimizer]
+population = 8
+generations = 4
+[[search.shells]]
+pattern = [\"delta\", \"star\"]
+planes = [2, 3]
+satellites-per-plane = [2, 3]
+inclination-deg = [40, 50]
+inclination-step-deg = 10
+altitude-km = 1000
+[[search.shells]]
+planes = 2
+satellites-per-plane = [0, 2]
+inclination-deg = 88
+altitude-km = 900
+";
+
+fn place(scenario: &str) -> TempDir {
+    let directory = TempDir::new().unwrap();
+    fs::write(directory.path().join("two.toml"), scenario).unwrap();
+    directory
+}
+
+/// What a search prints as JSON.
+fn searched(place: &Path, further: &[&str]) -> Value {
+    let arguments = [
+        "optimize", "two.toml", "--quiet", "--format", "json", "--out", "run",
+    ];
+    let ran = ran(place, &[&arguments, further].concat());
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+fn front(result: &Value) -> &[Value] {
+    result["front"].as_array().unwrap()
+}
+
+#[test]
+fn every_algorithm_searches_among_hybrids() {
+    let directory = place(TWO);
+    for algorithm in ["nsga2", "mopso", "random", "exhaustive"] {
+        let set = format!("optimizer.algorithm={algorithm}");
+        let found = searched(directory.path(), &["--force", "--set", &set]);
+        for member in front(&found) {
+            let shells = member["shells"].as_array().unwrap();
+            assert_eq!(shells.len(), 2, "{algorithm}");
+            let counts = shells
+                .iter()
+                .map(|shell| shell["satellites"].as_u64().unwrap_or(0));
+            assert_eq!(Some(counts.sum()), member["design"]["satellites"].as_u64());
+        }
+        if algorithm == "exhaustive" {
+            // Two patterns, two inclinations, 2 by 2 counts, and three sizes of the second shell.
+            assert_eq!(found["evaluations"], 2 * 2 * 4 * 3);
+        }
+    }
+    let table = fs::read_to_string(directory.path().join("run/front.csv")).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(
+        header.contains(",a_pattern,a_planes,") && header.contains(",b_altitude_km,"),
+        "{header}"
+    );
+}
+
+#[test]
+fn a_search_among_hybrids_resumes_and_is_certified() {
+    let directory = place(TWO);
+    let at_once = searched(directory.path(), &[]);
+    fs::remove_dir_all(directory.path().join("run")).unwrap();
+    searched(directory.path(), &["--set", "optimizer.generations=2"]);
+    assert_eq!(searched(directory.path(), &["--resume"]), at_once);
+    let seeds = searched(
+        directory.path(),
+        &["--certify", "--seeds", "2", "--out", "seeds"],
+    );
+    assert_eq!(seeds["seeds"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn equal_shells_are_warned_of() {
+    let directory = place(TWO);
+    let equal = "search.shells=[{planes=[2,3]},{planes=4},{planes=[2,3]}]";
+    let arguments = [
+        "optimize",
+        "two.toml",
+        "--out",
+        "run",
+        "--set",
+        equal,
+        "--set",
+        "optimizer.generations=1",
+    ];
+    let ran = ran(directory.path(), &arguments);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let told = "shells A and C of the search have the same intervals";
+    assert!(ran.stderr.contains(told), "{}", ran.stderr);
+}
+
+/// Satellites of a file that are fixed: copied into the run, in every metric, and exported with a pick.
+#[test]
+fn a_search_adds_to_satellites_of_a_file() {
+    let directory = place(TWO);
+    let place = directory.path();
+    let export: Vec<&str> = "export --quiet --as tle --out fixed --set export.name-prefix=OLD --design star:86.4:12/3/1@780"
+        .split(' ')
+        .collect();
+    assert_eq!(ran(place, &export).status, 0);
+    let given = [
+        "--set",
+        "constellations.old.files=['fixed/constellation.tle']",
+        "--set",
+        "search.fixed=old",
+        "--set",
+        "objectives.minimize=['new-satellites','mean-pdop']",
+        "--set",
+        "objectives.constraints=['satellites >= 12']",
+    ];
+    let found = searched(place, &given);
+    assert_eq!(found["fixed"]["from_files"], 12);
+    for member in front(&found) {
+        let own = member["design"]["satellites"].as_f64().unwrap();
+        assert_eq!(member["objectives"]["new-satellites"].as_f64(), Some(own));
+        assert_eq!(
+            member["constraints"]["satellites"].as_f64(),
+            Some(own + 12.0)
+        );
+    }
+    let alone = searched(place, &["--out", "alone"]);
+    assert!(alone.get("fixed").is_none());
+    // The run needs the original no more.
+    fs::remove_dir_all(place.join("fixed")).unwrap();
+    let export: Vec<&str> = "export --quiet --run run --pick 1 --as tle --out files"
+        .split(' ')
+        .collect();
+    let exported = ran(place, &export);
+    assert_eq!(exported.status, 0, "{}", exported.stderr);
+    let written = fs::read_to_string(place.join("files/constellation.tle")).unwrap();
+    let names = |prefix: &str| {
+        written
+            .lines()
+            .filter(|line| line.starts_with(prefix))
+            .count()
+    };
+    assert_eq!(names("OLD-"), 12, "{written}");
+    assert_eq!(
+        names("NW-") as u64,
+        front(&found)[0]["design"]["satellites"].as_u64().unwrap()
+    );
+    let report = ran(place, &["report", "run"]);
+    assert_eq!(report.status, 0, "{}", report.stderr);
+    // The maps are those of all satellites.
+    let page = fs::read_to_string(place.join("run/report.html")).unwrap();
+    assert!(
+        page.contains("\"fixed_tracks\":{"),
+        "the globe lacks what is fixed"
+    );
+}
+
+/// A design that is fixed is in each notation, and a search may add nothing to it.
+#[test]
+fn a_search_adds_to_a_design() {
+    let directory = place(TWO);
+    let fixed = "star:86.4:12/3/1@780";
+    let given = [
+        "--set",
+        &format!("search.fixed={fixed}"),
+        "--set",
+        "search.shells=[{planes=2,satellites-per-plane=[0,1],inclination-deg=50,altitude-km=1000}]",
+        "--set",
+        "objectives.minimize=['new-planes','mean-pdop']",
+        "--set",
+        "optimizer.algorithm=exhaustive",
+    ];
+    let found = searched(directory.path(), &given);
+    let notations: Vec<&str> = front(&found)
+        .iter()
+        .map(|member| member["design"]["notation"].as_str().unwrap())
+        .collect();
+    assert_eq!(notations, [fixed, &format!("delta:50:2/2/1@1000+{fixed}")]);
+    assert_eq!(front(&found)[0]["objectives"]["new-planes"], 0.0);
+    assert_eq!(front(&found)[1]["objectives"]["new-planes"], 2.0);
+    assert_eq!(found["fixed"]["in_design"], 12);
+}
