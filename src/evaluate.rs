@@ -16,7 +16,7 @@ mod plain;
 mod series;
 mod window;
 
-pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, Spread};
+pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};

@@ -32,7 +32,7 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult, GNSS_ONLY,
 };
-pub use phases::{PhaseSpread, Range};
+pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
     reproduction_markdown, reproduction_text,
