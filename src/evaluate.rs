@@ -18,7 +18,7 @@ mod series;
 mod weights;
 mod window;
 
-pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, Spread};
+pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
 pub use kernel::{InstructionSet, Rechecks};

@@ -34,7 +34,7 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
-pub use phases::{PhaseSpread, Range};
+pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
     reproduction_markdown, reproduction_text,

@@ -62,7 +62,7 @@ pub struct Accuracy {
 
 /// Statistics of a standard deviation over the solved samples, weighted by point, metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
+pub struct SigmaSpread {
     /// Mean.
     pub mean: f64,
     /// 95 % quantile.
@@ -71,7 +71,7 @@ pub struct Spread {
     pub cvar: f64,
 }
 
-impl Spread {
+impl SigmaSpread {
     /// The statistics of a sample; `None` if it is empty. Reorders `sample`.
     pub(super) fn of(sample: &mut [Weighted], level: Level) -> Option<Self> {
         Some(Self {
@@ -86,11 +86,11 @@ impl Spread {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AccuracyMetrics {
     /// Standard deviation of the position.
-    pub sigma_3d_m: Option<Spread>,
+    pub sigma_3d_m: Option<SigmaSpread>,
     /// Standard deviation of the horizontal position (DRMS).
-    pub sigma_h_m: Option<Spread>,
+    pub sigma_h_m: Option<SigmaSpread>,
     /// Standard deviation of the height.
-    pub sigma_v_m: Option<Spread>,
+    pub sigma_v_m: Option<SigmaSpread>,
     /// Length that 5 % of the position errors exceed, over all solved samples.
     pub error95_3d_m: Option<f64>,
     /// Length that 5 % of the horizontal errors exceed.
@@ -147,7 +147,7 @@ struct Sky {
 }
 
 /// A clock group with the weights of the DOPs, and one with those of the range errors.
-type Pair = [ClockGroup; 2];
+type DualGroup = [ClockGroup; 2];
 
 impl Sky {
     fn new(
@@ -157,8 +157,8 @@ impl Sky {
         leo: &[PlainPositions],
         gnss: &[PlainPositions],
     ) -> Self {
-        let observe = |mask, error: Option<&RangeError>, positions: &PlainPositions| -> Pair {
-            let mut pair = Pair::default();
+        let observe = |mask, error: Option<&RangeError>, positions: &PlainPositions| -> DualGroup {
+            let mut pair = DualGroup::default();
             for &position in positions {
                 if let Some(unit) = setup.line_of_sight(mask, site, position) {
                     let metres = error.map_or(0.0, |error| error.weight(unit.dot(&site.up)));
@@ -169,7 +169,7 @@ impl Sky {
             pair
         };
         let mut geometries = [Geometry::default(); 2];
-        let mut shared = Pair::default();
+        let mut shared = DualGroup::default();
         // The order of the sums is that of the plain path, so that the same samples are solved.
         for (n, positions) in gnss.iter().enumerate() {
             let pair = observe(setup.gnss_mask, accuracy.gnss.get(n), positions);
@@ -228,13 +228,13 @@ impl Errors {
     }
 }
 
-fn sigma<const D: usize>(errors: &[(f64, [f64; D])], level: Level) -> Option<Spread> {
+fn sigma<const D: usize>(errors: &[(f64, [f64; D])], level: Level) -> Option<SigmaSpread> {
     let one = |&(weight, variances): &(f64, [f64; D])| Weighted {
         value: variances.iter().sum::<f64>().sqrt(),
         weight,
     };
     let mut sample: Vec<Weighted> = errors.iter().map(one).collect();
-    Spread::of(&mut sample, level)
+    SigmaSpread::of(&mut sample, level)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The figures of merit of a constellation over points and times.
 
 use super::DopStatistics;
-use super::accuracy::{AccuracyMetrics, Spread};
+use super::accuracy::{AccuracyMetrics, SigmaSpread};
 use super::counts::{Coverage, LongestOutage, Views};
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
@@ -92,21 +92,21 @@ pub struct Metrics {
         skip_serializing_if = "Option::is_none",
         deserialize_with = "on_demand::given"
     )]
-    pub sigma_3d_m: OnDemand<Spread>,
+    pub sigma_3d_m: OnDemand<SigmaSpread>,
     /// Standard deviation of the horizontal position (DRMS), metres.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "on_demand::given"
     )]
-    pub sigma_h_m: OnDemand<Spread>,
+    pub sigma_h_m: OnDemand<SigmaSpread>,
     /// Standard deviation of the height, metres.
     #[serde(
         default,
         skip_serializing_if = "Option::is_none",
         deserialize_with = "on_demand::given"
     )]
-    pub sigma_v_m: OnDemand<Spread>,
+    pub sigma_v_m: OnDemand<SigmaSpread>,
     /// Length that 5 % of the position errors exceed, metres.
     #[serde(
         default,

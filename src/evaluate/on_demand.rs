@@ -1,7 +1,7 @@
 //! Metrics that are computed where a setup asks for them, and how they are named in tables.
 
 use super::Metrics;
-use super::accuracy::Spread;
+use super::accuracy::SigmaSpread;
 use serde::{Deserialize, Deserializer};
 
 /// A metric that is computed on demand: `None` if it was not asked for, `Some(None)` if it has no value.
@@ -47,7 +47,7 @@ impl Metrics {
         let sigmas = [self.sigma_3d_m, self.sigma_h_m, self.sigma_v_m];
         for (field, sigma) in FIELDS[1..4].iter().zip(sigmas) {
             let Some(spread) = sigma else { continue };
-            let part = |of: fn(Spread) -> f64| spread.map(of);
+            let part = |of: fn(SigmaSpread) -> f64| spread.map(of);
             add(field, "_mean", part(|of| of.mean));
             add(field, "_p95", part(|of| of.p95));
             add(field, "_cvar", part(|of| of.cvar));

@@ -3,7 +3,7 @@
 //! One position and, at each instant, clocks of their own: the contributions to the normal matrix of the position add up
 //! over the instants. How far the lines of sight turn within the window is thereby part of the geometry.
 
-use super::accuracy::Spread;
+use super::accuracy::SigmaSpread;
 use super::{Evaluator, plain};
 use crate::dop::Geometry;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -96,7 +96,7 @@ impl Evaluator {
                 pdop.push(Weighted { value, weight });
             }
         })?;
-        let spread = Spread::of(&mut pdop, setup.metrics.cvar_level);
+        let spread = SigmaSpread::of(&mut pdop, setup.metrics.cvar_level);
         Ok(Some(InformationPdop {
             mean: spread.map(|one| one.mean),
             p95: spread.map(|one| one.p95),

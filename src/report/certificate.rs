@@ -137,7 +137,7 @@ impl Missed {
 /// The shells of a member that the search varies.
 fn searched_shells(member: &FrontMember) -> Vec<Shell> {
     if member.shells.is_empty() {
-        let design = member.design.design();
+        let design = member.only_design();
         return design.map_or_else(Vec::new, |design| design.shells().to_vec());
     }
     let notations = member.shells.iter().flatten().map(|shell| &shell.notation);

@@ -1,7 +1,7 @@
 //! Results as CSV, with the unit of each column in its header.
 
 use super::evaluated::ConstellationEntry;
-use super::phases::{PhaseSpread, Range};
+use super::phases::{PhaseRange, PhaseSpread};
 use crate::evaluate::DopStatistics;
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
@@ -119,7 +119,7 @@ impl ConstellationColumns {
 }
 
 /// The range of each metric over the phases of the GNSS.
-fn ranges(entry: &ConstellationEntry) -> Vec<(String, Option<Range>)> {
+fn ranges(entry: &ConstellationEntry) -> Vec<(String, Option<PhaseRange>)> {
     let phases = entry.evaluated.gnss_phases.iter();
     let rows = phases.flat_map(PhaseSpread::rows);
     rows.map(|(name, range)| (name.to_owned(), range)).collect()

@@ -11,12 +11,12 @@ pub struct PhaseSpread {
     /// Number of phases, the one of the scenario included.
     pub phases: usize,
     /// The range of each metric by its name; `None` if it has no value in some phase.
-    pub metrics: BTreeMap<String, Option<Range>>,
+    pub metrics: BTreeMap<String, Option<PhaseRange>>,
 }
 
 /// The range of a metric.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Range {
+pub struct PhaseRange {
     /// Minimum over the phases.
     pub min: f64,
     /// Mean over the phases.
@@ -25,7 +25,7 @@ pub struct Range {
     pub max: f64,
 }
 
-impl Range {
+impl PhaseRange {
     /// The range of some values; `None` if one is missing, or there are none.
     fn of(values: &[Option<f64>]) -> Option<Self> {
         let values: Vec<f64> = values.iter().copied().collect::<Option<_>>()?;
@@ -46,7 +46,7 @@ impl PhaseSpread {
         let names = named.first().into_iter().flatten().map(|(name, _)| name);
         let range = |(n, name): (usize, &String)| {
             let values: Vec<_> = named.iter().map(|phase| phase[n].1).collect();
-            (name.clone(), Range::of(&values))
+            (name.clone(), PhaseRange::of(&values))
         };
         Self {
             phases: phases.len(),
@@ -56,7 +56,7 @@ impl PhaseSpread {
 
     /// Name, minimum, mean and maximum of each metric, in the order of the metrics.
     #[must_use]
-    pub fn rows(&self) -> Vec<(&str, Option<Range>)> {
+    pub fn rows(&self) -> Vec<(&str, Option<PhaseRange>)> {
         let mut rows: Vec<_> = self
             .metrics
             .iter()
@@ -94,7 +94,7 @@ mod tests {
         };
         let spread =
             PhaseSpread::of(&[with(8.0, Some(2.0)), with(6.0, None), with(10.0, Some(1.0))]);
-        let expected = Range {
+        let expected = PhaseRange {
             min: 6.0,
             mean: 8.0,
             max: 10.0,

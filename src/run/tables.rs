@@ -3,7 +3,9 @@
 use super::columns::{cells, fields, metric_columns, optional};
 use super::{DesignSummary, FrontMember};
 use crate::constellation::shell_letters;
+use crate::keyword::Keyword;
 use crate::optimize::Record;
+use crate::search::Quantity;
 use csv::Writer;
 use std::io;
 
@@ -133,6 +135,7 @@ fn further_quantities(front: &[FrontMember]) -> Vec<String> {
     });
     names
         .filter(|name| !columns.contains(&column(name).as_str()))
+        .filter(|name| !Quantity::from_keyword(name).is_ok_and(Quantity::is_on_demand))
         .cloned()
         .collect()
 }

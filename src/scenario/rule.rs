@@ -8,7 +8,7 @@ mod text;
 
 pub(super) use constellations::{Constellations, Notation, parts_without_paths};
 pub(super) use list::{Constraints, ListOf, Numbers, OneOf, OneOrMore, Skyline, SomeOf, Texts};
-pub(super) use number::{Eastward, Integer, Interval, Number, Pair, Steps};
+pub(super) use number::{Eastward, Integer, Interval, Number, Steps, TwoNumbers};
 pub(super) use table::SectionTable;
 pub(super) use text::{Text, UtcInstant};
 

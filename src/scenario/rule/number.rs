@@ -272,9 +272,9 @@ impl Rule for Eastward {
 }
 
 /// Two numbers.
-pub(in crate::scenario) struct Pair(pub(in crate::scenario) Number);
+pub(in crate::scenario) struct TwoNumbers(pub(in crate::scenario) Number);
 
-impl Rule for Pair {
+impl Rule for TwoNumbers {
     type Value = [f64; 2];
 
     fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<[f64; 2]> {

@@ -5,7 +5,7 @@ use crate::evaluate::{Accuracy, RangeError};
 use crate::scenario::keys::{KeyPath, key, section};
 use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Number, Optional, Pair};
+use crate::scenario::rule::{Number, Optional, TwoNumbers};
 use crate::scenario::{GnssSetup, Keyword, Preset, Quantity};
 
 /// Limits of a range error, metres. Its ratio between two systems enters the normal matrix squared: beyond 1e6 the
@@ -22,35 +22,35 @@ section! {
         /// Range error of the LEO satellites, 1 sigma.
         pub leo_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of the LEO satellites, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub leo_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub leo_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of BeiDou-3, 1 sigma.
         pub beidou_3_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of BeiDou-3, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub beidou_3_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub beidou_3_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of GPS, 1 sigma.
         pub gps_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of GPS, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub gps_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub gps_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of Galileo, 1 sigma.
         pub galileo_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of Galileo, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub galileo_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub galileo_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of GLONASS, 1 sigma.
         pub glonass_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of GLONASS, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub glonass_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub glonass_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of QZSS, 1 sigma.
         pub qzss_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of QZSS, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub qzss_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub qzss_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of NavIC, 1 sigma.
         pub navic_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of NavIC, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub navic_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub navic_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
         /// Range error of GNSS satellites from `gnss.files`, 1 sigma.
         pub files_m: Option<f64> = Optional(SIGMA), unit "m", follows "none: no accuracy in metres", example Some(0.5);
         /// [a, b] of the range error of GNSS satellites from `gnss.files`, sigma sqrt(a^2 + b^2/sin^2 E) at elevation E.
-        pub files_elevation: Option<[f64; 2]> = Optional(Pair(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
+        pub files_elevation: Option<[f64; 2]> = Optional(TwoNumbers(PART)), follows "[1, 0]", example Some([1.0, 0.0]);
     }
 }
 
@@ -69,57 +69,65 @@ fn clear_window(metrics: &mut FurtherMetrics, reader: &mut Reader<'_>) {
     }
 }
 
+/// The keys of a system and their values.
+struct SystemKeys<'a> {
+    sigma: KeyPath,
+    sigma_m: &'a mut Option<f64>,
+    elevation: KeyPath,
+    parts: &'a mut Option<[f64; 2]>,
+}
+
 impl RangeErrors {
-    fn systems(&mut self) -> [(KeyPath, &mut Option<f64>, KeyPath, &mut Option<[f64; 2]>); 8] {
+    fn systems(&mut self) -> [SystemKeys<'_>; 8] {
         [
-            (
-                key!(RangeErrors.leo_m),
-                &mut self.leo_m,
-                key!(RangeErrors.leo_elevation),
-                &mut self.leo_elevation,
-            ),
-            (
-                key!(RangeErrors.beidou_3_m),
-                &mut self.beidou_3_m,
-                key!(RangeErrors.beidou_3_elevation),
-                &mut self.beidou_3_elevation,
-            ),
-            (
-                key!(RangeErrors.gps_m),
-                &mut self.gps_m,
-                key!(RangeErrors.gps_elevation),
-                &mut self.gps_elevation,
-            ),
-            (
-                key!(RangeErrors.galileo_m),
-                &mut self.galileo_m,
-                key!(RangeErrors.galileo_elevation),
-                &mut self.galileo_elevation,
-            ),
-            (
-                key!(RangeErrors.glonass_m),
-                &mut self.glonass_m,
-                key!(RangeErrors.glonass_elevation),
-                &mut self.glonass_elevation,
-            ),
-            (
-                key!(RangeErrors.qzss_m),
-                &mut self.qzss_m,
-                key!(RangeErrors.qzss_elevation),
-                &mut self.qzss_elevation,
-            ),
-            (
-                key!(RangeErrors.navic_m),
-                &mut self.navic_m,
-                key!(RangeErrors.navic_elevation),
-                &mut self.navic_elevation,
-            ),
-            (
-                key!(RangeErrors.files_m),
-                &mut self.files_m,
-                key!(RangeErrors.files_elevation),
-                &mut self.files_elevation,
-            ),
+            SystemKeys {
+                sigma: key!(RangeErrors.leo_m),
+                sigma_m: &mut self.leo_m,
+                elevation: key!(RangeErrors.leo_elevation),
+                parts: &mut self.leo_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.beidou_3_m),
+                sigma_m: &mut self.beidou_3_m,
+                elevation: key!(RangeErrors.beidou_3_elevation),
+                parts: &mut self.beidou_3_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.gps_m),
+                sigma_m: &mut self.gps_m,
+                elevation: key!(RangeErrors.gps_elevation),
+                parts: &mut self.gps_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.galileo_m),
+                sigma_m: &mut self.galileo_m,
+                elevation: key!(RangeErrors.galileo_elevation),
+                parts: &mut self.galileo_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.glonass_m),
+                sigma_m: &mut self.glonass_m,
+                elevation: key!(RangeErrors.glonass_elevation),
+                parts: &mut self.glonass_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.qzss_m),
+                sigma_m: &mut self.qzss_m,
+                elevation: key!(RangeErrors.qzss_elevation),
+                parts: &mut self.qzss_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.navic_m),
+                sigma_m: &mut self.navic_m,
+                elevation: key!(RangeErrors.navic_elevation),
+                parts: &mut self.navic_elevation,
+            },
+            SystemKeys {
+                sigma: key!(RangeErrors.files_m),
+                sigma_m: &mut self.files_m,
+                elevation: key!(RangeErrors.files_elevation),
+                parts: &mut self.files_elevation,
+            },
         ]
     }
 
@@ -175,19 +183,20 @@ fn error(sigma_m: Option<f64>, elevation: Option<[f64; 2]>) -> Option<RangeError
 
 /// Clears what is not given, and refuses an elevation part without an error, or that leaves none.
 fn check_systems(errors: &mut RangeErrors, reader: &mut Reader<'_>) {
-    for (sigma, value, elevation, parts) in errors.systems() {
-        if !reader.is_given(sigma) {
-            *value = None;
+    for system in errors.systems() {
+        if !reader.is_given(system.sigma) {
+            *system.sigma_m = None;
         }
-        if !reader.is_given(elevation) {
-            *parts = None;
+        if !reader.is_given(system.elevation) {
+            *system.parts = None;
         }
-        if parts.is_some() && value.is_none() {
-            let other = sigma.to_string();
-            reader.refuse(&[elevation, sigma], Fault::NoRangeError { other });
+        if system.parts.is_some() && system.sigma_m.is_none() {
+            let other = system.sigma.to_string();
+            let keys = [system.elevation, system.sigma];
+            reader.refuse(&keys, Fault::NoRangeError { other });
         }
-        if *parts == Some([0.0, 0.0]) {
-            reader.refuse(&[elevation], Fault::NoError);
+        if *system.parts == Some([0.0, 0.0]) {
+            reader.refuse(&[system.elevation], Fault::NoError);
         }
     }
 }
@@ -195,13 +204,9 @@ fn check_systems(errors: &mut RangeErrors, reader: &mut Reader<'_>) {
 /// Refuses a study with range errors of some systems in use but not of all, a window that is longer than the span, and
 /// quantities that need what is not given.
 pub(super) fn check(scenario: &mut Scenario, reader: &mut Reader<'_>) {
-    let given: Vec<KeyPath> = scenario
-        .accuracy
-        .systems()
-        .into_iter()
-        .filter(|(_, value, ..)| value.is_some())
-        .map(|(sigma, ..)| sigma)
-        .collect();
+    let systems = scenario.accuracy.systems().into_iter();
+    let given = systems.filter(|system| system.sigma_m.is_some());
+    let given: Vec<KeyPath> = given.map(|system| system.sigma).collect();
     if !given.is_empty() {
         for missing in missing(scenario) {
             let fault = Fault::MissingRangeError {

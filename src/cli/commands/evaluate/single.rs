@@ -195,8 +195,7 @@ fn phases_table(spread: &PhaseSpread) -> String {
             "solved_fraction" | "availability" => shown::share(value),
             _ => shown::pdop(value),
         };
-        let name = name.replace('_', " ").replace("pdop", "PDOP");
-        table.row([name].into_iter().chain(parts.map(digits)));
+        table.row([name.to_owned()].into_iter().chain(parts.map(digits)));
     }
     format!(
         "\nover {} phases of the GNSS, the first of which is that above\n{}",
