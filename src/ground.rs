@@ -1,14 +1,23 @@
-//! Ground points, from the grid of a region or from a list, with their verticals and weights.
+//! Ground points, of a grid, an area or a list, with their verticals and weights.
 
+mod area;
+mod authalic;
+mod cells;
+mod countries;
+mod map;
 mod points;
 pub(crate) mod shapes;
 
+pub use area::{Area, AreaError, AreaPoints};
+pub use cells::{CellRow, EqualAreaCells};
+pub use countries::{Country, UnknownCountry};
+pub use map::{RegionMap, Tiling};
 pub use points::{ignored_columns, sites_from_csv};
 
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
 use crate::keyword::keywords;
-use crate::units::wrap_360;
+use crate::units::{counted, wrap_360};
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -24,6 +33,22 @@ pub enum GroundError {
     /// A step that is not a positive number of degrees.
     #[error("grid step {0} is not a positive number of degrees")]
     Step(f64),
+    /// A spacing that is not a positive number of kilometres.
+    #[error("spacing {0} is not a positive number of km")]
+    Spacing(f64),
+    /// Polygons that are not an area.
+    #[error(transparent)]
+    Area(#[from] AreaError),
+    /// An area between the points.
+    #[error("no point lies inside the area of {} km²: {}", shown_km2(*.area_km2), finer_spacing(.points, *.suggested))]
+    NoPoint {
+        /// Which points were looked for.
+        points: AreaPoints,
+        /// The area, km².
+        area_km2: f64,
+        /// The largest round spacing that gives points, and how many; `None` if none was found.
+        suggested: Option<(f64, usize)>,
+    },
     /// More points than [`MAX_POINTS`].
     #[error("{points} grid points exceed the limit of {MAX_POINTS}")]
     TooMany {
@@ -55,6 +80,27 @@ pub enum GroundError {
     /// An empty list.
     #[error("the list is empty")]
     Empty,
+}
+
+/// An area with three digits or more.
+fn shown_km2(area_km2: f64) -> String {
+    if area_km2 < 100.0 {
+        format!("{area_km2:.3}")
+    } else {
+        format!("{area_km2:.0}")
+    }
+}
+
+/// What to do about an area without points.
+fn finer_spacing(points: &AreaPoints, suggested: Option<(f64, usize)>) -> String {
+    let (key, value, unit) = points.spacing();
+    match suggested {
+        Some((finer, points)) => format!(
+            "{key} is {value} {unit}; {finer} gives {}",
+            counted(points, "point")
+        ),
+        None => format!("{key} is {value} {unit}; give a smaller one, or a list of points"),
+    }
 }
 
 /// Accepted longitudes of grids and points, degrees: a turn beyond the usual ranges on either side, so
@@ -169,22 +215,7 @@ impl Grid {
     /// # Errors
     /// If the edges or the step are out of range.
     pub fn longitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
-        let [west, east] = self.longitude_deg;
-        let error = GroundError::Longitudes(west, east);
-        if !(is_longitude(west) && is_longitude(east)) || east - west > 360.0 {
-            return Err(error);
-        }
-        let span = if east >= west {
-            east - west
-        } else {
-            wrap_360(east - west)
-        };
-        // An interval whose east edge is written below its west edge may end beyond the range.
-        let west = if west + span > LONGITUDES_DEG[1] {
-            west - 360.0
-        } else {
-            west
-        };
+        let (west, span) = longitude_span(self.longitude_deg)?;
         let mut values = steps(west, span, self.step_deg[1])?;
         // A full turn would count its first meridian twice.
         if values.len() > 1
@@ -209,20 +240,44 @@ impl Grid {
         }
         let mut sites = Vec::with_capacity(points as usize);
         for &latitude in &latitudes {
-            let weight = match self.weights {
-                PointWeights::Equal => 1.0,
-                // The cosine vanishes at a pole, whose points get the weight of the cap within half a step.
-                PointWeights::CosLatitude => latitude
-                    .to_radians()
-                    .cos()
-                    .max((self.step_deg[0] / 4.0).to_radians().sin()),
-            };
+            let weight = row_weight(self.weights, latitude, self.step_deg[0]);
             for &longitude in &longitudes {
                 sites.push(Site::new(surface, latitude, longitude, weight)?);
             }
         }
         Ok(sites)
     }
+}
+
+/// The weight of the points of a row, by its latitude and the step between rows, degrees.
+fn row_weight(weights: PointWeights, latitude_deg: f64, step_deg: f64) -> f64 {
+    match weights {
+        PointWeights::Equal => 1.0,
+        // The cosine vanishes at a pole, whose points get the weight of the cap within half a step.
+        PointWeights::CosLatitude => latitude_deg
+            .to_radians()
+            .cos()
+            .max((step_deg / 4.0).to_radians().sin()),
+    }
+}
+
+/// Western end and width of an interval of longitude that runs eastwards, degrees.
+fn longitude_span([west, east]: [f64; 2]) -> Result<(f64, f64), GroundError> {
+    if !(is_longitude(west) && is_longitude(east)) || east - west > 360.0 {
+        return Err(GroundError::Longitudes(west, east));
+    }
+    let span = if east >= west {
+        east - west
+    } else {
+        wrap_360(east - west)
+    };
+    // An interval whose east edge is written below its west edge may end beyond the range.
+    let west = if west + span > LONGITUDES_DEG[1] {
+        west - 360.0
+    } else {
+        west
+    };
+    Ok((west, span))
 }
 
 /// floor(span/step + 1e-9) + 1 values from `start` (the 1e-9 keeps a last value that rounding

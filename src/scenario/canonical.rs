@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::Rule;
 use super::values::{
-    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
+    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys, Scenario,
 };
 
 impl Scenario {
@@ -38,16 +38,13 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: the points, the GNSS files in their
+    /// The paths of the files that the scenario refers to, as written: that of the region, the GNSS files in their
     /// order, then those of each constellation.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
-        let points = match &self.region {
-            Region::Grid(_) => None,
-            Region::Points { file } => Some(file),
-        };
         let compared = self.constellations.iter();
-        points
+        self.region
+            .file()
             .into_iter()
             .chain(&self.gnss.files)
             .chain(compared.flat_map(|one| &one.parts.files))
@@ -69,12 +66,10 @@ impl Scenario {
     pub fn with_files(&self, paths: &[String]) -> Self {
         let mut scenario = self.clone();
         let mut paths = paths.iter().cloned();
-        let points = match &mut scenario.region {
-            Region::Grid(_) => None,
-            Region::Points { file } => Some(file),
-        };
         let compared = scenario.constellations.iter_mut();
-        let named = points
+        let named = scenario
+            .region
+            .file_mut()
             .into_iter()
             .chain(&mut scenario.gnss.files)
             .chain(compared.flat_map(|one| &mut one.parts.files));
@@ -125,6 +120,31 @@ impl Scenario {
     }
 }
 
+impl Region {
+    /// The file that it is read from.
+    pub(super) fn file(&self) -> Option<&String> {
+        match self {
+            Self::Points { file }
+            | Self::Area {
+                source: AreaSource::Polygon { file },
+                ..
+            } => Some(file),
+            _ => None,
+        }
+    }
+
+    fn file_mut(&mut self) -> Option<&mut String> {
+        match self {
+            Self::Points { file }
+            | Self::Area {
+                source: AreaSource::Polygon { file },
+                ..
+            } => Some(file),
+            _ => None,
+        }
+    }
+}
+
 /// A key whose values differ between two scenarios.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyDifference {
@@ -141,7 +161,8 @@ fn is_computed(path: KeyPath) -> bool {
     let left_out = [
         key!(Scenario.name),
         key!(Scenario.constellations),
-        key!(PointsFile.points),
+        key!(RegionKeys.points),
+        key!(RegionKeys.polygon),
         key!(GnssSetup.files),
         key!(Optimizer.generations),
     ];

@@ -1,12 +1,14 @@
 //! Rules: which values a key accepts, and how they are read, written and described.
 
 mod constellations;
+mod country;
 mod list;
 mod number;
 mod table;
 mod text;
 
 pub(super) use constellations::{Constellations, Notation};
+pub(super) use country::Countries;
 pub(super) use list::{Constraints, Numbers, OneOf, Skyline, SomeOf, Texts};
 pub(super) use number::{Eastward, Integer, Interval, Number, Steps};
 pub(super) use table::SectionTable;

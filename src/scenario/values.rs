@@ -10,10 +10,10 @@ mod setting;
 pub use crate::ground::Grid;
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
-pub(super) use region::PointsFile;
-pub use region::Region;
 #[cfg(test)]
 pub(super) use region::points;
+pub use region::{AreaSource, Region};
+pub(super) use region::{RegionKeys, rivals};
 pub use search::{Optimizer, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
 
@@ -109,14 +109,15 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
 }
 
 fn check_point_samples(scenario: &Scenario, reader: &mut Reader<'_>) {
-    let Region::Grid(grid) = &scenario.region else {
+    let Some(points) = scenario.region.count() else {
         return;
     };
-    let count = region::points(grid) * scenario.time.steps();
+    let count = points * scenario.time.steps();
     let keys = [
         key!(TimeSpan.step_s),
         key!(TimeSpan.duration_h),
-        key!(Grid.step_deg),
+        key!(RegionKeys.step_deg),
+        key!(RegionKeys.spacing_km),
     ];
     reader.at_most(MAX_POINT_SAMPLES, count, "points times samples", &keys);
 }

@@ -19,6 +19,7 @@ mod look;
 mod names;
 mod readers;
 mod reference;
+mod regions;
 mod runs;
 mod scenes;
 mod shells;

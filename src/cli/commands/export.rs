@@ -86,7 +86,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     let shown = evaluator.as_ref().map(|evaluator| ShownScenario {
         evaluator,
         surface: scenario.earth.surface,
-        grid: scenario.ground_grid(),
     });
     let request = Request {
         subject: &subject,

@@ -39,6 +39,16 @@ const Globe = (() => {
     return points;
   };
   const coasts = world.coast.map(polyline);
+  /** A line straight in longitude and latitude, in steps of at most two degrees. */
+  const dense = (flat) => {
+    const steps = [];
+    for (let n = 0; n + 3 < flat.length; n += 2) {
+      const [x0, y0, x1, y1] = flat.slice(n, n + 4);
+      const count = Math.max(1, Math.ceil(Math.hypot(x1 - x0, y1 - y0) / 200));
+      for (let k = n === 0 ? 0 : 1; k <= count; k++) steps.push(x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count);
+    }
+    return steps;
+  };
   const region = (() => {
     const r = data.region;
     if (!r) return [];
@@ -48,7 +58,7 @@ const Globe = (() => {
     const walk = (a, b, c, d) => {
       for (let n = 0; n <= STEPS; n++) edge.push(100 * (a + (b - a) * n / STEPS), 100 * (c + (d - c) * n / STEPS));
     };
-    if (r.step_deg && east - west < 359) {
+    if (r.is_rectangle && east - west < 359) {
       walk(west, east, south, south); walk(east, east, south, north);
       walk(east, west, north, north); walk(west, west, north, south);
     }
@@ -56,7 +66,7 @@ const Globe = (() => {
     place.longitude = (west + east) / 2 * RAD;
     view.longitude = place.longitude;
     view.latitude = Math.max(-1.2, Math.min(1.2, place.latitude));
-    return edge.length > 0 ? [polyline(edge)] : [];
+    return edge.length > 0 ? [polyline(edge)] : r.border.map((line) => polyline(dense(line)));
   })();
 
   /** Rows of the rotation from Earth-fixed to the screen: right, up, towards the reader. */

@@ -3,6 +3,7 @@
 use super::Page;
 use crate::constellation::gnss::Preset;
 use crate::earth;
+use crate::ground::AreaPoints;
 use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
@@ -115,7 +116,23 @@ fn setting(scenario: &Scenario) -> String {
                 longitude_label(east)
             )
         }
-        Region::Points { file } => format!("the points in {file}"),
+        Region::Cells(cells) => {
+            let [south, north] = cells.latitude_deg;
+            let [west, east] = cells.longitude_deg;
+            format!(
+                "{} to {} and {} to {} on cells of equal area of about {} km by {} km",
+                latitude_label(south),
+                latitude_label(north),
+                longitude_label(west),
+                longitude_label(east),
+                cells.spacing_km,
+                cells.spacing_km
+            )
+        }
+        Region::Area { points, .. } => {
+            format!("{} {}", scenario.region.told(), area_points(points))
+        }
+        Region::Points { .. } => scenario.region.told(),
     };
     let gnss: Vec<&str> = scenario
         .gnss
@@ -140,6 +157,21 @@ fn setting(scenario: &Scenario) -> String {
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
         mask_clause(&scenario.visibility)
     )
+}
+
+/// Which points of an area there are.
+fn area_points(points: &AreaPoints) -> String {
+    match points {
+        AreaPoints::Lattice {
+            step_deg: [dlat, dlon],
+            ..
+        } => {
+            format!("on a {dlat}\u{b0} by {dlon}\u{b0} grid")
+        }
+        AreaPoints::Cells { spacing_km } => {
+            format!("on cells of equal area of about {spacing_km} km by {spacing_km} km")
+        }
+    }
 }
 
 /// The name of a GNSS as its operator writes it.

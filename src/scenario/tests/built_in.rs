@@ -109,7 +109,7 @@ fn regional_is_the_defaults_at_ten_degrees() {
 
 #[test]
 fn every_builtin_has_its_own_name() {
-    assert_eq!(builtin_names(), ["paper", "regional"]);
+    assert_eq!(builtin_names(), ["paper", "regional", "global", "europe"]);
     for name in builtin_names() {
         assert_eq!(built_in(name).name, name);
     }
@@ -120,7 +120,7 @@ fn an_unknown_builtin_suggests_the_nearest() {
     let message = builtin("regoinal").unwrap_err().to_string();
     assert_eq!(
         message,
-        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional)"
+        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional, global, europe)"
     );
 }
 
@@ -131,14 +131,19 @@ fn the_template_parses_to_the_defaults() {
 
 #[test]
 fn the_template_uncommented_is_still_a_scenario() {
-    // The lines of keys that follow others are examples, and must be valid ones; points
+    // The lines of keys that follow others are examples, and must be valid ones; other regions
     // exclude the grid, and no constellations are the default, so these lines stay out.
+    let alone = [
+        "points = ",
+        "polygon = ",
+        "country = ",
+        "spacing-km = ",
+        "constellations = ",
+    ];
     let uncommented: String = template()
         .lines()
         .map(|line| match line.strip_prefix("# ") {
-            Some(key) if key.starts_with("points = ") || key.starts_with("constellations = ") => {
-                String::new()
-            }
+            Some(key) if alone.iter().any(|alone| key.starts_with(alone)) => String::new(),
             Some(key) if key.contains(" = ") => format!("{key}\n"),
             _ if line.starts_with('#') => String::new(),
             _ => format!("{line}\n"),
