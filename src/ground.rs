@@ -8,7 +8,7 @@ mod map;
 mod points;
 pub(crate) mod shapes;
 
-pub use area::{Area, AreaError, AreaPoints};
+pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
 pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
@@ -18,6 +18,8 @@ use crate::earth::Surface;
 use crate::frames::LocalFrame;
 use crate::keyword::keywords;
 use crate::units::{counted, wrap_360};
+use area::FINEST_STEP_DEG;
+use cells::FINEST_SPACING_KM;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -33,8 +35,11 @@ pub enum GroundError {
     /// A step that is not a positive number of degrees.
     #[error("grid step {0} is not a positive number of degrees")]
     Step(f64),
-    /// A spacing that is not a positive number of kilometres.
-    #[error("spacing {0} is not a positive number of km")]
+    /// A step too fine for an area.
+    #[error("grid step {0} is finer than {FINEST_STEP_DEG} degrees, the finest in an area")]
+    FineStep(f64),
+    /// A spacing that is not a number of kilometres, or too fine.
+    #[error("spacing {0} is not a number of km of at least {FINEST_SPACING_KM}")]
     Spacing(f64),
     /// Polygons that are not an area.
     #[error(transparent)]
@@ -66,6 +71,9 @@ pub enum GroundError {
         /// Longitude, degrees.
         longitude_deg: f64,
     },
+    /// A height outside [`HEIGHTS_M`].
+    #[error("height {0} m is outside {least} to {most} m", least = HEIGHTS_M[0], most = HEIGHTS_M[1])]
+    Height(f64),
     /// A weight that is not a positive number.
     #[error("weight {0} is not a positive number")]
     Weight(f64),
@@ -116,6 +124,9 @@ fn is_longitude(degrees: f64) -> bool {
     (LONGITUDES_DEG[0]..=LONGITUDES_DEG[1]).contains(&degrees)
 }
 
+/// Accepted heights of sites over the surface, m: from the Dead Sea to airliners.
+pub const HEIGHTS_M: [f64; 2] = [-500.0, 20_000.0];
+
 /// Maximum number of points of a region: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
 
@@ -138,6 +149,8 @@ pub struct Site {
     pub latitude_deg: f64,
     /// East longitude, degrees, as given (not wrapped).
     pub longitude_deg: f64,
+    /// Height over the surface (over the ellipsoid on WGS 84), m.
+    pub height_m: f64,
     /// Weight in means and tails.
     pub weight: f64,
     /// Position and local axes, Earth-fixed.
@@ -178,9 +191,25 @@ impl Site {
             name: None,
             latitude_deg,
             longitude_deg,
+            height_m: 0.0,
             weight,
             local,
         })
+    }
+
+    /// The same site at a height over the surface, m, along its vertical ([M-21](crate::models#m-21)).
+    ///
+    /// # Errors
+    /// If the height is outside [`HEIGHTS_M`].
+    pub fn at_height_m(mut self, height_m: f64) -> Result<Self, GroundError> {
+        if !(HEIGHTS_M[0]..=HEIGHTS_M[1]).contains(&height_m) {
+            return Err(GroundError::Height(height_m));
+        }
+        if height_m != 0.0 {
+            self.height_m = height_m;
+            self.local.origin_km = self.local.origin_km + self.local.up * (height_m / 1000.0);
+        }
+        Ok(self)
     }
 }
 

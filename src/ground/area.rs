@@ -8,6 +8,7 @@ mod geojson;
 mod points;
 
 pub use points::AreaPoints;
+pub(super) use points::FINEST_STEP_DEG;
 
 use super::authalic::Authalic;
 use super::shapes::LonLat;
@@ -118,7 +119,7 @@ const BANDS: usize = 180;
 
 /// The union of polygons with holes.
 #[derive(Debug, Clone)]
-pub struct Area {
+pub struct ServiceArea {
     /// For each polygon, the outer ring and the holes.
     polygons: Vec<Vec<Ring>>,
     /// The edges that pass through each degree of latitude, from the south.
@@ -142,7 +143,7 @@ impl Edge {
     }
 }
 
-impl Area {
+impl ServiceArea {
     /// The polygons of a GeoJSON object (RFC 7946): a Polygon, a MultiPolygon, or features and collections of them.
     ///
     /// # Errors

@@ -4,6 +4,9 @@ use super::authalic::Authalic;
 use super::{GroundError, MAX_POINTS, Site, longitude_span};
 use crate::earth::Surface;
 
+/// Finest spacing, km, with 200 000 rows from pole to pole.
+pub(super) const FINEST_SPACING_KM: f64 = 0.1;
+
 /// Cells of equal area in rows along parallels, over a rectangle of latitude and longitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EqualAreaCells {
@@ -31,9 +34,15 @@ pub struct CellRow {
 }
 
 impl CellRow {
-    /// The longitudes of the points, in the middle of their cells, from the west, degrees.
+    /// The longitude of the k-th point from the west, in the middle of its cell, degrees.
+    #[must_use]
+    pub fn longitude_deg(&self, k: usize) -> f64 {
+        self.west_deg + (k as f64 + 0.5) * self.width_deg
+    }
+
+    /// The longitudes of the points from the west, degrees.
     pub fn longitudes_deg(self) -> impl Iterator<Item = f64> {
-        (0..self.cells).map(move |k| self.west_deg + (k as f64 + 0.5) * self.width_deg)
+        (0..self.cells).map(move |k| self.longitude_deg(k))
     }
 }
 
@@ -51,7 +60,7 @@ impl EqualAreaCells {
     /// The rows from the south ([M-51](crate::models#m-51)).
     ///
     /// # Errors
-    /// If the edges or the spacing are out of range, the rectangle has no area, or there are too many cells.
+    /// If the edges or the spacing are out of range, or the rectangle has no area.
     pub fn rows(&self, surface: Surface) -> Result<Vec<CellRow>, GroundError> {
         let [south, north] = self.latitude_deg;
         if !(-90.0 <= south && south < north && north <= 90.0) {
@@ -62,12 +71,12 @@ impl EqualAreaCells {
             let [west, east] = self.longitude_deg;
             return Err(GroundError::Longitudes(west, east));
         }
-        if !(self.spacing_km > 0.0 && self.spacing_km.is_finite()) {
+        if !(self.spacing_km >= FINEST_SPACING_KM && self.spacing_km.is_finite()) {
             return Err(GroundError::Spacing(self.spacing_km));
         }
         let authalic = Authalic::new(surface);
         let [low, high] = [south, north].map(|edge| authalic.sine(edge.to_radians()));
-        let per_row = self.cells_per_row(authalic, [low.asin(), high.asin()], span_deg)?;
+        let per_row = self.cells_per_row(authalic, [low.asin(), high.asin()], span_deg);
         let all: usize = per_row.iter().sum();
         let mut before = 0;
         let row = |cells: usize| {
@@ -92,27 +101,26 @@ impl EqualAreaCells {
         authalic: Authalic,
         [low, high]: [f64; 2],
         span_deg: f64,
-    ) -> Result<Vec<usize>, GroundError> {
+    ) -> Vec<usize> {
         let spacing = self.spacing_km / authalic.radius2_km2().sqrt();
         let span = span_deg.to_radians();
-        let estimate = span * (high.sin() - low.sin()) / (spacing * spacing);
-        // Rows narrower than a cell have one each.
-        let points = estimate.max((high - low) / spacing);
-        if points > MAX_POINTS as f64 {
-            return Err(GroundError::TooMany { points });
-        }
         let rows = ((high - low) / spacing).round().max(1.0);
         let middle = |k: usize| low + (high - low) * (k as f64 + 0.5) / rows;
         let cells = |k: usize| (span * middle(k).cos() / spacing).round().max(1.0) as usize;
-        Ok((0..rows as usize).map(cells).collect())
+        (0..rows as usize).map(cells).collect()
     }
 
     /// The points in the middle of the cells, row by row from the south, each row from the west; all have weight 1.
     ///
     /// # Errors
-    /// As for [`EqualAreaCells::rows`].
+    /// As for [`EqualAreaCells::rows`], or if there are too many.
     pub fn sites(&self, surface: Surface) -> Result<Vec<Site>, GroundError> {
         let rows = self.rows(surface)?;
+        let points: usize = rows.iter().map(|row| row.cells).sum();
+        if points > MAX_POINTS {
+            let points = points as f64;
+            return Err(GroundError::TooMany { points });
+        }
         let row = |row: CellRow| {
             row.longitudes_deg()
                 .map(move |longitude| Site::new(surface, row.latitude_deg, longitude, 1.0))
@@ -200,7 +208,7 @@ mod tests {
                 longitude_deg,
                 spacing_km,
             }
-            .rows(Surface::Wgs84)
+            .sites(Surface::Wgs84)
             .unwrap_err()
         };
         let (a, b) = ([0.0, 10.0], [0.0, 10.0]);
@@ -213,14 +221,9 @@ mod tests {
             GroundError::Longitudes(5.0, 5.0)
         );
         assert_eq!(cells(a, b, 0.0), GroundError::Spacing(0.0));
+        assert_eq!(cells(a, b, 0.09), GroundError::Spacing(0.09));
         assert!(cells(a, b, f64::NAN).to_string().contains("NaN"));
-        assert!(matches!(
-            cells([-90.0, 90.0], [0.0, 360.0], 1.0),
-            GroundError::TooMany { .. }
-        ));
-        assert!(matches!(
-            cells([-90.0, 90.0], [0.0, 1e-9], 1e-3),
-            GroundError::TooMany { .. }
-        ));
+        let many = cells([-90.0, 90.0], [0.0, 360.0], 1.0);
+        assert!(matches!(many, GroundError::TooMany { .. }), "{many}");
     }
 }

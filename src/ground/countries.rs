@@ -1,6 +1,6 @@
 //! Countries of the world by name, from Natural Earth, which is in the public domain; see `data/MANIFEST.toml`.
 
-use super::Area;
+use super::ServiceArea;
 use super::area::Ring;
 use std::fmt;
 use std::sync::LazyLock;
@@ -109,19 +109,19 @@ fn did_you_mean(nearest: &[&str]) -> String {
 pub struct Country(usize);
 
 /// Name, key of the name, and polygons, in the order of the file.
-struct Entry {
+struct CountryEntry {
     name: &'static str,
     key: String,
     polygons: Vec<Vec<Ring>>,
 }
 
-static ALL: LazyLock<Vec<Entry>> = LazyLock::new(|| read(WORLD));
+static ALL: LazyLock<Vec<CountryEntry>> = LazyLock::new(|| read(WORLD));
 
-fn read(text: &'static str) -> Vec<Entry> {
-    let mut all: Vec<Entry> = Vec::new();
+fn read(text: &'static str) -> Vec<CountryEntry> {
+    let mut all: Vec<CountryEntry> = Vec::new();
     for line in text.lines() {
         if let Some(name) = line.strip_prefix("= ") {
-            all.push(Entry {
+            all.push(CountryEntry {
                 name,
                 key: key(name),
                 polygons: Vec::new(),
@@ -206,11 +206,11 @@ impl Country {
 
     /// The area of several countries together.
     #[must_use]
-    pub fn area(countries: &[Self]) -> Area {
+    pub fn area(countries: &[Self]) -> ServiceArea {
         let polygons = countries
             .iter()
             .flat_map(|country| ALL[country.0].polygons.iter());
-        Area::of_polygons(polygons.cloned().collect())
+        ServiceArea::of_polygons(polygons.cloned().collect())
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a region looks like on a map.
 
 use super::shapes::{LonLat, cell};
-use super::{Area, AreaPoints, CellRow, EqualAreaCells, Grid, GroundError, PointWeights};
+use super::{AreaPoints, CellRow, EqualAreaCells, Grid, GroundError, PointWeights, ServiceArea};
 use crate::earth::Surface;
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl Tiling {
         }
     }
 
-    /// The largest side of a cell, degrees of latitude.
+    /// The largest step between rows or columns, degrees; of rows of equal area, their greatest height.
     #[must_use]
     pub fn step_deg(&self) -> f64 {
         match self {
@@ -113,7 +113,7 @@ impl RegionMap {
     /// As for [`EqualAreaCells::rows`].
     pub fn of_area(
         name: &str,
-        area: &Area,
+        area: &ServiceArea,
         points: &AreaPoints,
         surface: Surface,
     ) -> Result<Self, GroundError> {
@@ -160,13 +160,13 @@ impl RegionMap {
         }
     }
 
-    /// Degrees around the points that a map shows: half a cell.
+    /// Degrees around the points that a map shows: half a cell, or a whole one where there are borders.
     #[must_use]
     pub fn margin_deg(&self) -> f64 {
         let of_list = 3.0;
-        self.tiling
-            .as_ref()
-            .map_or(of_list, |tiling| tiling.step_deg() / 2.0)
+        let cells = if self.outlines.is_empty() { 0.5 } else { 1.0 };
+        let of_tiling = |tiling: &Tiling| cells * tiling.step_deg();
+        self.tiling.as_ref().map_or(of_list, of_tiling)
     }
 }
 

@@ -9,7 +9,7 @@ use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
-use crate::ground::{Area, Country, GroundError, RegionMap, Site, sites_from_csv};
+use crate::ground::{Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{Goals, SweepSteps};
 use crate::stats::{Level, LevelError};
@@ -327,8 +327,9 @@ impl Scenario {
             } => {
                 let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
                 let within = || -> Result<_, GroundError> {
-                    let area = Area::from_geojson(&bytes)?;
-                    let map = RegionMap::of_area(&self.region.told(), &area, points, surface)?;
+                    let area = ServiceArea::from_geojson(&bytes)?;
+                    // No result contains a path.
+                    let map = RegionMap::of_area("polygons", &area, points, surface)?;
                     Ok((points.sites(&area, surface)?, map))
                 };
                 within().map_err(|source| SetupError::Polygon {

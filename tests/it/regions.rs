@@ -130,7 +130,7 @@ fn an_unknown_country_is_refused_with_the_nearest() {
     let message = refused_region("region.country=Luxembourg");
     assert!(
         message.contains("region.country: no point lies inside the area of ")
-            && message.contains("step-deg is 5 degrees; 0.5 gives 1 point"),
+            && message.contains("step-deg is 5 degrees; 2 gives 1 point"),
         "{message}"
     );
 }
@@ -297,4 +297,39 @@ fn exports_show_cells_and_borders() {
         scene.contains("region-border:1")
             && scene.contains("inside Lesotho, in the middle of cells of equal area")
     );
+}
+
+/// Sites with heights and names: the report has their names, a name that comes twice is refused with both lines.
+#[test]
+fn sites_have_names_and_heights() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let write = |rows: &str| {
+        fs::write(
+            place.join("sites.csv"),
+            format!("name,latitude_deg,longitude_deg,height_m\n{rows}"),
+        )
+        .unwrap()
+    };
+    let set = ["--set", "region.points=sites.csv"];
+    write("Zurich,47.38,8.54,\nDavos,46.8,9.84,\n");
+    let low = evaluated(place, &set);
+    write("Zurich,47.38,8.54,9000\nDavos,46.8,9.84,9000\n");
+    let high = evaluated(place, &set);
+    // The horizon of a mask does not move with height, but the directions do: PDOP moves by about 9 km of 1000.
+    let pdop = |json: &Value| json["metrics"]["mean_pdop"].as_f64().unwrap();
+    assert!((pdop(&high) / pdop(&low) - 1.0).abs() < 0.02 && pdop(&high) != pdop(&low));
+    let report = "report --design delta:55:60/6/1@925 --set time.step-s=3600 --set region.points=sites.csv --out page.html";
+    let made = ran(place, &report.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(made.status, 0, "{}", made.stderr);
+    let page = fs::read_to_string(place.join("page.html")).unwrap();
+    assert!(
+        page.contains("id=\"sites\"") && page.contains("\"Davos\""),
+        "the page has a table of sites"
+    );
+    write("Zurich,47.38,8.54,\nZurich,46.8,9.84,\n");
+    let twice = ran(place, &[&EVALUATE[..], &set].concat());
+    assert_eq!((twice.status, twice.stdout.as_str()), (2, ""));
+    let message = "region.points: sites.csv: line 3: the site Zurich is in line 2 already";
+    assert!(twice.stderr.contains(message), "{}", twice.stderr);
 }

@@ -150,11 +150,24 @@ impl<'a> Scene<'a> {
         told
     }
 
+    /// The heights of the points, if they have any.
+    fn heights(&self) -> String {
+        let heights = || self.setup().sites.iter().map(|site| site.height_m);
+        let (low, high) = (
+            heights().fold(f64::INFINITY, f64::min),
+            heights().fold(f64::NEG_INFINITY, f64::max),
+        );
+        if low == 0.0 && high == 0.0 {
+            return String::new();
+        }
+        format!(", {low} to {high} m over the surface (maps and points.pnt show them at height 0)")
+    }
+
     fn region_assumptions(&self) -> Vec<String> {
         let points = self.setup().sites.len();
         let mut told = Vec::new();
         told.push(match self.setup().map.told.as_str() {
-            "" => format!("region: {points} points from a list"),
+            "" => format!("region: {points} points from a list{}", self.heights()),
             what => format!("region: {points} points, {what}"),
         });
         told.push(match self.surface {

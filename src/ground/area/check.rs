@@ -89,7 +89,7 @@ fn holes(place: &str, rings: &[Ring]) -> Result<(), AreaError> {
 
 /// An edge and the box around it.
 #[derive(Clone, Copy)]
-struct Segment {
+struct BorderEdge {
     from: LonLat,
     to: LonLat,
     south: f64,
@@ -98,7 +98,7 @@ struct Segment {
     east: f64,
 }
 
-impl Segment {
+impl BorderEdge {
     fn new(from: LonLat, to: LonLat) -> Self {
         Self {
             from,
@@ -141,9 +141,11 @@ impl Segment {
 fn crossing(rings: &[Ring]) -> Option<LonLat> {
     let edges = rings.iter().flat_map(|ring| ring.windows(2));
     let edges = edges.filter(|pair| pair[0] != pair[1]);
-    let mut segments: Vec<Segment> = edges.map(|pair| Segment::new(pair[0], pair[1])).collect();
+    let mut segments: Vec<BorderEdge> = edges
+        .map(|pair| BorderEdge::new(pair[0], pair[1]))
+        .collect();
     segments.sort_by(|a, b| a.south.total_cmp(&b.south));
-    let mut active: Vec<Segment> = Vec::new();
+    let mut active: Vec<BorderEdge> = Vec::new();
     for segment in segments {
         active.retain(|other| other.north >= segment.south);
         if let Some(at) = active.iter().find_map(|other| segment.crosses(other)) {

@@ -9,20 +9,20 @@ use serde_json::{Map, Value};
 const LONGEST_NAME: usize = 60;
 
 /// A polygon and where it is in its file.
-pub(super) struct Found {
+pub(super) struct PolygonFound {
     pub(super) place: String,
     pub(super) rings: Vec<Ring>,
 }
 
 /// The polygons of a file.
-pub(super) fn polygons(bytes: &[u8]) -> Result<Vec<Found>, AreaError> {
+pub(super) fn polygons(bytes: &[u8]) -> Result<Vec<PolygonFound>, AreaError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let root: Value =
         serde_json::from_slice(bytes).map_err(|error| AreaError::Json(error.to_string()))?;
     if let Some(name) = foreign_system(&root) {
         return Err(AreaError::ReferenceSystem(shortened(&name)));
     }
-    let mut reading = Reading::default();
+    let mut reading = GeoJsonReading::default();
     reading.object("", &root)?;
     if reading.found.is_empty() {
         return Err(AreaError::Empty);
@@ -60,12 +60,12 @@ fn member(place: &str, name: &str) -> String {
 }
 
 #[derive(Default)]
-struct Reading {
-    found: Vec<Found>,
+struct GeoJsonReading {
+    found: Vec<PolygonFound>,
     positions: usize,
 }
 
-impl Reading {
+impl GeoJsonReading {
     fn object(&mut self, place: &str, value: &Value) -> Result<(), AreaError> {
         let expected = |expected| AreaError::Member {
             place: if place.is_empty() {
@@ -138,7 +138,7 @@ impl Reading {
             .map(read)
             .collect::<Result<_, _>>()?;
         if !rings.is_empty() {
-            self.found.push(Found {
+            self.found.push(PolygonFound {
                 place: place.to_owned(),
                 rings,
             });

@@ -1,6 +1,6 @@
 //! The ground points inside an area.
 
-use super::{Area, wrapped};
+use super::ServiceArea;
 use crate::earth::Surface;
 use crate::ground::cells::EqualAreaCells;
 use crate::ground::{GroundError, MAX_POINTS, PointWeights, Site, row_weight};
@@ -8,6 +8,9 @@ use crate::units::round_decimal;
 
 /// Decimals of a degree to which lattice points are multiples of their step: a tenth of a millimetre.
 const DECIMALS: usize = 9;
+
+/// Finest step in an area, degrees: 55 m.
+pub(in crate::ground) const FINEST_STEP_DEG: f64 = 0.0005;
 
 /// Finest spacing that an error suggests: degrees, and km.
 const FINEST: [f64; 2] = [0.001, 0.1];
@@ -33,7 +36,7 @@ pub enum AreaPoints {
 }
 
 /// Latitude, longitude and weight of a point.
-type Place = (f64, f64, f64);
+type WeightedPlace = (f64, f64, f64);
 
 impl AreaPoints {
     /// The points inside an area, row by row from the south, each row from the west. The rows of an area across the
@@ -41,7 +44,7 @@ impl AreaPoints {
     ///
     /// # Errors
     /// If there is none, with the largest spacing that gives some, or too many.
-    pub fn sites(&self, area: &Area, surface: Surface) -> Result<Vec<Site>, GroundError> {
+    pub fn sites(&self, area: &ServiceArea, surface: Surface) -> Result<Vec<Site>, GroundError> {
         let mut places = self.places(area, surface)?;
         if places.is_empty() {
             return Err(self.no_point(area, surface));
@@ -53,7 +56,11 @@ impl AreaPoints {
         places.into_iter().map(site).collect()
     }
 
-    fn places(&self, area: &Area, surface: Surface) -> Result<Vec<Place>, GroundError> {
+    fn places(
+        &self,
+        area: &ServiceArea,
+        surface: Surface,
+    ) -> Result<Vec<WeightedPlace>, GroundError> {
         match *self {
             Self::Lattice { step_deg, weights } => lattice(area, step_deg, weights),
             Self::Cells { spacing_km } => cells(area, spacing_km, surface),
@@ -61,7 +68,7 @@ impl AreaPoints {
     }
 
     /// The error for an area between the points.
-    fn no_point(&self, area: &Area, surface: Surface) -> GroundError {
+    fn no_point(&self, area: &ServiceArea, surface: Surface) -> GroundError {
         let (spacing, finest) = match *self {
             Self::Lattice { step_deg, .. } => (step_deg[0].min(step_deg[1]), FINEST[0]),
             Self::Cells { spacing_km } => (spacing_km, FINEST[1]),
@@ -124,10 +131,14 @@ fn multiples(low: f64, step: f64) -> impl Iterator<Item = f64> {
 }
 
 fn lattice(
-    area: &Area,
+    area: &ServiceArea,
     [rows_deg, columns_deg]: [f64; 2],
     weights: PointWeights,
-) -> Result<Vec<Place>, GroundError> {
+) -> Result<Vec<WeightedPlace>, GroundError> {
+    let finest = rows_deg.min(columns_deg);
+    if finest < FINEST_STEP_DEG {
+        return Err(GroundError::FineStep(finest));
+    }
     let [south, north] = area.latitudes_deg();
     let mut places = Vec::new();
     let rows = multiples(south, rows_deg).take_while(|latitude| *latitude <= north);
@@ -142,21 +153,29 @@ fn lattice(
     Ok(places)
 }
 
-fn cells(area: &Area, spacing_km: f64, surface: Surface) -> Result<Vec<Place>, GroundError> {
+fn cells(
+    area: &ServiceArea,
+    spacing_km: f64,
+    surface: Surface,
+) -> Result<Vec<WeightedPlace>, GroundError> {
     let globe = EqualAreaCells::globe(spacing_km);
     let [south, north] = area.latitudes_deg();
     let mut places = Vec::new();
     for row in globe.rows(surface)? {
-        if !(south..=north).contains(&row.latitude_deg) {
+        let latitude = row.latitude_deg;
+        if !(south..=north).contains(&latitude) {
             continue;
         }
-        let spans = area.row(row.latitude_deg);
-        let inside = |x: &f64| {
-            let x = wrapped(*x);
-            spans.iter().any(|[west, east]| (*west..*east).contains(&x))
-        };
-        let longitudes = row.longitudes_deg().filter(inside);
-        places.extend(longitudes.map(|longitude| (row.latitude_deg, longitude, 1.0)));
+        for [west, east] in area.row(latitude) {
+            let first =
+                (((west - row.west_deg) / row.width_deg).floor() as usize).saturating_sub(1);
+            let longitudes = (first..row.cells).map(|k| row.longitude_deg(k));
+            let inside = longitudes
+                .skip_while(|longitude| *longitude < west)
+                .take_while(|longitude| *longitude < east);
+            places.extend(inside.map(|longitude| (latitude, longitude, 1.0)));
+            require_few(places.len())?;
+        }
     }
     Ok(places)
 }
@@ -171,7 +190,7 @@ fn require_few(points: usize) -> Result<(), GroundError> {
 
 /// Moves the points west of the widest gap in longitude beyond the antimeridian, so that the gap is outside; each row keeps
 /// its order from the west.
-fn join(places: &mut [Place]) {
+fn join(places: &mut [WeightedPlace]) {
     let mut longitudes: Vec<f64> = places.iter().map(|place| place.1).collect();
     longitudes.sort_by(f64::total_cmp);
     longitudes.dedup();

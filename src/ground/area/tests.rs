@@ -1,17 +1,19 @@
 use super::*;
 use crate::ground::{GroundError, PointWeights};
 
-fn area(text: &str) -> Area {
-    Area::from_geojson(text.as_bytes()).unwrap()
+fn area(text: &str) -> ServiceArea {
+    ServiceArea::from_geojson(text.as_bytes()).unwrap()
 }
 
-fn polygon(rings: &str) -> Area {
+fn polygon(rings: &str) -> ServiceArea {
     area(&format!(r#"{{"type": "Polygon", "coordinates": {rings}}}"#))
 }
 
 #[track_caller]
 fn refused(text: &str, message: &str) {
-    let error = Area::from_geojson(text.as_bytes()).unwrap_err().to_string();
+    let error = ServiceArea::from_geojson(text.as_bytes())
+        .unwrap_err()
+        .to_string();
     assert!(error.contains(message), "{error}");
 }
 
@@ -30,7 +32,7 @@ fn lattice(step_deg: f64) -> AreaPoints {
     }
 }
 
-fn places(points: AreaPoints, area: &Area) -> Vec<(f64, f64)> {
+fn places(points: AreaPoints, area: &ServiceArea) -> Vec<(f64, f64)> {
     let sites = points.sites(area, Surface::Wgs84).unwrap();
     sites
         .iter()
@@ -216,6 +218,22 @@ fn an_area_between_the_points_is_told_which_spacing_has_some() {
     ));
 }
 
+/// Small cells are counted inside the area, not over the globe, of which there would be 500 million.
+#[test]
+fn small_cells_in_a_small_area() {
+    let square = polygon("[[[6,49],[6.5,49],[6.5,49.5],[6,49.5],[6,49]]]");
+    let cells = AreaPoints::Cells { spacing_km: 1.0 };
+    let points = cells.sites(&square, Surface::Wgs84).unwrap().len() as f64;
+    let area_km2 = square.area_km2(Surface::Wgs84);
+    // The border of 180 km cuts a cell each km, half of which count.
+    assert!(
+        (points - area_km2).abs() < 0.25 * 180.0,
+        "{points} {area_km2}"
+    );
+    let fine = lattice(1e-300).sites(&square, Surface::Wgs84).unwrap_err();
+    assert_eq!(fine, GroundError::FineStep(1e-300));
+}
+
 #[test]
 fn what_is_not_an_area_is_refused_with_its_place() {
     refused(
@@ -275,7 +293,7 @@ fn what_is_not_an_area_is_refused_with_its_place() {
     assert!(named.contains(5.0, 5.0));
 }
 
-fn polygon_with_known_system() -> Area {
+fn polygon_with_known_system() -> ServiceArea {
     area(&format!(
         r#"{{"type": "Polygon", "crs": {{"properties": {{"name": "urn:ogc:def:crs:OGC:1.3:CRS84"}}}}, "coordinates": {SQUARE}}}"#
     ))
@@ -369,7 +387,7 @@ fn validate_areas_against_geographiclib() {
             }
         }
         let (_, expected_m2, _) = judge.compute(true);
-        let found = Area::of_polygons(vec![vec![ring.clone()]]).area_km2(Surface::Wgs84);
+        let found = ServiceArea::of_polygons(vec![vec![ring.clone()]]).area_km2(Surface::Wgs84);
         let off = found / (expected_m2 / 1e6) - 1.0;
         assert!(off.abs() < 1e-6, "{ring:?}: {off:e}");
     }
@@ -391,4 +409,27 @@ fn validate_areas_on_the_sphere() {
     let whole = polygon(SQUARE).area_km2(Surface::Sphere);
     let hole = polygon("[[[4,4],[4,6],[6,6],[6,4],[4,4]]]").area_km2(Surface::Sphere);
     assert!((holed.area_km2(Surface::Sphere) - (whole - hole)).abs() < 1e-6);
+}
+
+proptest::proptest! {
+    /// Whatever the bytes, there is an area, whose points can be asked for, or an error, and no panic.
+    #[test]
+    fn damaged_files_give_an_area_or_an_error(
+        at in proptest::prelude::any::<proptest::sample::Index>(),
+        length in 0..12_usize,
+        patch in "[-0-9.,\\[\\]{}\":eE a-z]{0,12}",
+    ) {
+        let text = r#"{"type": "MultiPolygon", "coordinates": [[[[170,-10],[190,-10],[190,10],[170,-10]],
+            [[175,-9],[180,-9],[180,-8],[175,-9]]],[[[-60,80],[60,80],[60,90],[-60,90],[-60,80]]]]}"#;
+        let from = at.index(text.len());
+        let to = (from + length).min(text.len());
+        let mut damaged = text.to_owned();
+        damaged.replace_range(from..to, &patch);
+        if let Ok(area) = ServiceArea::from_geojson(damaged.as_bytes()) {
+            for points in [lattice(7.0), AreaPoints::Cells { spacing_km: 900.0 }] {
+                let _ = points.sites(&area, Surface::Wgs84).map_err(|error| error.to_string());
+            }
+            assert!(area.area_km2(Surface::Sphere).is_finite());
+        }
+    }
 }

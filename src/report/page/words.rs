@@ -1,17 +1,17 @@
 //! The texts and tables of the page.
 
+mod region;
+
 use super::Page;
 use crate::constellation::gnss::Preset;
 use crate::earth;
-use crate::ground::AreaPoints;
 use crate::keyword::Keyword;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
 use crate::run::{FrontMember, Run, VERSION};
-use crate::scenario::{ObservationWeights, Quantity, Region, Scenario, Visibility};
+use crate::scenario::{ObservationWeights, Quantity, Scenario, Visibility};
 use crate::time::leap_seconds_note;
-use crate::units::round_decimal;
 use crate::validate::Tally;
 
 /// The summary at the top of the page.
@@ -103,37 +103,7 @@ impl PageSummary {
 
 /// Region, time span and GNSS.
 fn setting(scenario: &Scenario) -> String {
-    let region = match &scenario.region {
-        Region::Grid(grid) => {
-            let [south, north] = grid.latitude_deg;
-            let [west, east] = grid.longitude_deg;
-            let [dlat, dlon] = grid.step_deg;
-            format!(
-                "{} to {} and {} to {} on a {dlat}\u{b0} by {dlon}\u{b0} grid",
-                latitude_label(south),
-                latitude_label(north),
-                longitude_label(west),
-                longitude_label(east)
-            )
-        }
-        Region::Cells(cells) => {
-            let [south, north] = cells.latitude_deg;
-            let [west, east] = cells.longitude_deg;
-            format!(
-                "{} to {} and {} to {} on cells of equal area of about {} km by {} km",
-                latitude_label(south),
-                latitude_label(north),
-                longitude_label(west),
-                longitude_label(east),
-                cells.spacing_km,
-                cells.spacing_km
-            )
-        }
-        Region::Area { points, .. } => {
-            format!("{} {}", scenario.region.told(), area_points(points))
-        }
-        Region::Points { .. } => scenario.region.told(),
-    };
+    let region = region::region(scenario);
     let gnss: Vec<&str> = scenario
         .gnss
         .constellations
@@ -159,21 +129,6 @@ fn setting(scenario: &Scenario) -> String {
     )
 }
 
-/// Which points of an area there are.
-fn area_points(points: &AreaPoints) -> String {
-    match points {
-        AreaPoints::Lattice {
-            step_deg: [dlat, dlon],
-            ..
-        } => {
-            format!("on a {dlat}\u{b0} by {dlon}\u{b0} grid")
-        }
-        AreaPoints::Cells { spacing_km } => {
-            format!("on cells of equal area of about {spacing_km} km by {spacing_km} km")
-        }
-    }
-}
-
 /// The name of a GNSS as its operator writes it.
 fn preset_title(preset: Preset) -> &'static str {
     match preset {
@@ -182,30 +137,6 @@ fn preset_title(preset: Preset) -> &'static str {
         Preset::Galileo => "Galileo",
         Preset::Glonass => "GLONASS",
     }
-}
-
-fn latitude_label(degrees: f64) -> String {
-    hemisphere(degrees, 'N', 'S')
-}
-
-fn longitude_label(degrees: f64) -> String {
-    let wrapped = crate::units::wrap_360(degrees);
-    let east = if wrapped > 180.0 {
-        wrapped - 360.0
-    } else {
-        wrapped
-    };
-    hemisphere(east, 'E', 'W')
-}
-
-/// `53° N`, `10° W`, and `0°` without a hemisphere.
-fn hemisphere(degrees: f64, positive: char, negative: char) -> String {
-    let size = round_decimal(degrees.abs(), 6);
-    if size == 0.0 {
-        return "0\u{b0}".to_owned();
-    }
-    let letter = if degrees > 0.0 { positive } else { negative };
-    format!("{size}\u{b0} {letter}")
 }
 
 /// What the search did.

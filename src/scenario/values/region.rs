@@ -60,14 +60,14 @@ section! {
         /// Weights of the points of the grid in means and quantiles.
         pub weights: Option<PointWeights> = Optional(OneOf::new()), default Some(PointWeights::Equal);
         /// Side of cells of equal area, whose middles are the points, instead of a step and weights.
-        pub spacing_km: Option<f64> = Optional(Number::above_to(0.0, 20_000.0)), unit "km",
+        pub spacing_km: Option<f64> = Optional(Number::from_to(0.1, 20_000.0)), unit "km",
             follows "step-deg", example Some(200.0);
         /// GeoJSON file with Polygons or MultiPolygons, instead of the limits; path relative to this file.
         pub polygon: Option<String> = Optional(Text::Any), follows "the limits", example Some("area.geojson".to_owned());
         /// One or more countries of Natural Earth 1:110m by their English names, instead of the limits.
         pub country: Option<Vec<Country>> = Optional(Countries), follows "the limits", example Some(Countries::example());
-        /// CSV file with the columns latitude_deg, longitude_deg and, optionally, weight and name,
-        /// instead of all the others; path relative to this file.
+        /// CSV file of sites with the columns latitude_deg, longitude_deg and, optionally, name, weight and height_m over the
+        /// surface, instead of all the others; path relative to this file.
         pub points: Option<String> = Optional(Text::Any), follows "the grid", example Some("points.csv".to_owned());
     }
 }
