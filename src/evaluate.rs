@@ -33,7 +33,7 @@ use crate::constellation::gnss::System;
 use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
-use crate::ground::Site;
+use crate::ground::{RegionMap, Site};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
@@ -54,6 +54,8 @@ pub struct Setup {
     pub grid: TimeGrid,
     /// Ground points.
     pub sites: Vec<Site>,
+    /// What the points look like on a map; no result depends on it.
+    pub map: RegionMap,
     /// Elevation mask of the LEO satellites.
     pub mask: Mask,
     /// Elevation mask of the GNSS satellites.
@@ -88,6 +90,7 @@ impl Setup {
         Self {
             grid,
             sites,
+            map: RegionMap::default(),
             mask: Mask::default(),
             gnss_mask: Mask::default(),
             skyline: None,
@@ -101,6 +104,12 @@ impl Setup {
             accuracy: None,
             window_s: None,
         }
+    }
+
+    /// What the points look like on a map.
+    #[must_use]
+    pub fn with_map(self, map: RegionMap) -> Self {
+        Self { map, ..self }
     }
 
     /// One elevation mask for all satellites.

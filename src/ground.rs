@@ -1,14 +1,25 @@
-//! Ground points, from the grid of a region or from a list, with their verticals and weights.
+//! Ground points, of a grid, an area or a list, with their verticals and weights.
 
+mod area;
+mod authalic;
+mod cells;
+mod countries;
+mod map;
 mod points;
 pub(crate) mod shapes;
 
+pub use area::{AreaError, AreaPoints, ServiceArea};
+pub use cells::{CellRow, EqualAreaCells};
+pub use countries::{Country, UnknownCountry};
+pub use map::{RegionMap, Tiling};
 pub use points::{ignored_columns, sites_from_csv};
 
 use crate::earth::Surface;
 use crate::frames::LocalFrame;
 use crate::keyword::keywords;
-use crate::units::wrap_360;
+use crate::units::{counted, wrap_360};
+use area::FINEST_STEP_DEG;
+use cells::FINEST_SPACING_KM;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -24,6 +35,25 @@ pub enum GroundError {
     /// A step that is not a positive number of degrees.
     #[error("grid step {0} is not a positive number of degrees")]
     Step(f64),
+    /// A step too fine for an area.
+    #[error("grid step {0} is finer than {FINEST_STEP_DEG} degrees, the finest in an area")]
+    FineStep(f64),
+    /// A spacing that is not a number of kilometres, or too fine.
+    #[error("spacing {0} is not a number of km of at least {FINEST_SPACING_KM}")]
+    Spacing(f64),
+    /// Polygons that are not an area.
+    #[error(transparent)]
+    Area(#[from] AreaError),
+    /// An area between the points.
+    #[error("no point lies inside the area of {} km²: {}", shown_km2(*.area_km2), finer_spacing(.points, *.suggested))]
+    NoPoint {
+        /// Which points were looked for.
+        points: AreaPoints,
+        /// The area, km².
+        area_km2: f64,
+        /// The largest round spacing that gives points, and how many; `None` if none was found.
+        suggested: Option<(f64, usize)>,
+    },
     /// More points than [`MAX_POINTS`].
     #[error("{points} grid points exceed the limit of {MAX_POINTS}")]
     TooMany {
@@ -41,6 +71,9 @@ pub enum GroundError {
         /// Longitude, degrees.
         longitude_deg: f64,
     },
+    /// A height outside [`HEIGHTS_M`].
+    #[error("height {0} m is outside {least} to {most} m", least = HEIGHTS_M[0], most = HEIGHTS_M[1])]
+    Height(f64),
     /// A weight that is not a positive number.
     #[error("weight {0} is not a positive number")]
     Weight(f64),
@@ -57,6 +90,27 @@ pub enum GroundError {
     Empty,
 }
 
+/// An area with three digits or more.
+fn shown_km2(area_km2: f64) -> String {
+    if area_km2 < 100.0 {
+        format!("{area_km2:.3}")
+    } else {
+        format!("{area_km2:.0}")
+    }
+}
+
+/// What to do about an area without points.
+fn finer_spacing(points: &AreaPoints, suggested: Option<(f64, usize)>) -> String {
+    let (key, value, unit) = points.spacing();
+    match suggested {
+        Some((finer, points)) => format!(
+            "{key} is {value} {unit}; {finer} gives {}",
+            counted(points, "point")
+        ),
+        None => format!("{key} is {value} {unit}; give a smaller one, or a list of points"),
+    }
+}
+
 /// Accepted longitudes of grids and points, degrees: a turn beyond the usual ranges on either side, so
 /// that an interval across the antimeridian can be written in ascending order.
 pub const LONGITUDES_DEG: [f64; 2] = [-360.0, 720.0];
@@ -69,6 +123,9 @@ fn longitude_range() -> String {
 fn is_longitude(degrees: f64) -> bool {
     (LONGITUDES_DEG[0]..=LONGITUDES_DEG[1]).contains(&degrees)
 }
+
+/// Accepted heights of sites over the surface, m: from the Dead Sea to airliners.
+pub const HEIGHTS_M: [f64; 2] = [-500.0, 20_000.0];
 
 /// Maximum number of points of a region: a global grid at 0.1°.
 pub const MAX_POINTS: usize = 6_500_000;
@@ -92,6 +149,8 @@ pub struct Site {
     pub latitude_deg: f64,
     /// East longitude, degrees, as given (not wrapped).
     pub longitude_deg: f64,
+    /// Height over the surface (over the ellipsoid on WGS 84), m.
+    pub height_m: f64,
     /// Weight in means and tails.
     pub weight: f64,
     /// Position and local axes, Earth-fixed.
@@ -132,9 +191,25 @@ impl Site {
             name: None,
             latitude_deg,
             longitude_deg,
+            height_m: 0.0,
             weight,
             local,
         })
+    }
+
+    /// The same site at a height over the surface, m, along its vertical ([M-21](crate::models#m-21)).
+    ///
+    /// # Errors
+    /// If the height is outside [`HEIGHTS_M`].
+    pub fn at_height_m(mut self, height_m: f64) -> Result<Self, GroundError> {
+        if !(HEIGHTS_M[0]..=HEIGHTS_M[1]).contains(&height_m) {
+            return Err(GroundError::Height(height_m));
+        }
+        if height_m != 0.0 {
+            self.height_m = height_m;
+            self.local.origin_km = self.local.origin_km + self.local.up * (height_m / 1000.0);
+        }
+        Ok(self)
     }
 }
 
@@ -169,22 +244,7 @@ impl Grid {
     /// # Errors
     /// If the edges or the step are out of range.
     pub fn longitudes_deg(&self) -> Result<Vec<f64>, GroundError> {
-        let [west, east] = self.longitude_deg;
-        let error = GroundError::Longitudes(west, east);
-        if !(is_longitude(west) && is_longitude(east)) || east - west > 360.0 {
-            return Err(error);
-        }
-        let span = if east >= west {
-            east - west
-        } else {
-            wrap_360(east - west)
-        };
-        // An interval whose east edge is written below its west edge may end beyond the range.
-        let west = if west + span > LONGITUDES_DEG[1] {
-            west - 360.0
-        } else {
-            west
-        };
+        let (west, span) = longitude_span(self.longitude_deg)?;
         let mut values = steps(west, span, self.step_deg[1])?;
         // A full turn would count its first meridian twice.
         if values.len() > 1
@@ -209,20 +269,44 @@ impl Grid {
         }
         let mut sites = Vec::with_capacity(points as usize);
         for &latitude in &latitudes {
-            let weight = match self.weights {
-                PointWeights::Equal => 1.0,
-                // The cosine vanishes at a pole, whose points get the weight of the cap within half a step.
-                PointWeights::CosLatitude => latitude
-                    .to_radians()
-                    .cos()
-                    .max((self.step_deg[0] / 4.0).to_radians().sin()),
-            };
+            let weight = row_weight(self.weights, latitude, self.step_deg[0]);
             for &longitude in &longitudes {
                 sites.push(Site::new(surface, latitude, longitude, weight)?);
             }
         }
         Ok(sites)
     }
+}
+
+/// The weight of the points of a row, by its latitude and the step between rows, degrees.
+fn row_weight(weights: PointWeights, latitude_deg: f64, step_deg: f64) -> f64 {
+    match weights {
+        PointWeights::Equal => 1.0,
+        // The cosine vanishes at a pole, whose points get the weight of the cap within half a step.
+        PointWeights::CosLatitude => latitude_deg
+            .to_radians()
+            .cos()
+            .max((step_deg / 4.0).to_radians().sin()),
+    }
+}
+
+/// Western end and width of an interval of longitude that runs eastwards, degrees.
+fn longitude_span([west, east]: [f64; 2]) -> Result<(f64, f64), GroundError> {
+    if !(is_longitude(west) && is_longitude(east)) || east - west > 360.0 {
+        return Err(GroundError::Longitudes(west, east));
+    }
+    let span = if east >= west {
+        east - west
+    } else {
+        wrap_360(east - west)
+    };
+    // An interval whose east edge is written below its west edge may end beyond the range.
+    let west = if west + span > LONGITUDES_DEG[1] {
+        west - 360.0
+    } else {
+        west
+    };
+    Ok((west, span))
 }
 
 /// floor(span/step + 1e-9) + 1 values from `start` (the 1e-9 keeps a last value that rounding

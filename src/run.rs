@@ -11,8 +11,8 @@ pub(crate) mod tables;
 mod validation;
 
 pub use results::{
-    Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles, Missed,
-    OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
+    Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
+    Missed, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]

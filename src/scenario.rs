@@ -52,7 +52,7 @@ pub use setup::SetupError;
 pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
-    ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
+    AreaSource, ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
     NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, Scenario,
     SearchShells, SearchSpace, TimeSpan, Visibility,
 };
@@ -65,8 +65,8 @@ impl Scenario {
     /// Parses and validates the bytes of a scenario file, with `--set` arguments
     /// (`key.path=value`) merged over it in their order. `label` names the file in problems.
     ///
-    /// The value of an argument is TOML, or else a bare text. An argument that gives points, or a list
-    /// of objectives, replaces the grid, or the reference point, of the file.
+    /// The value of an argument is TOML, or else a bare text. An argument that gives a region of another kind, or a list
+    /// of objectives, replaces that region, or the reference point, of the file.
     ///
     /// # Errors
     /// Everything that is wrong (the first thousand), each with its place, key, what was found and what is accepted. Text

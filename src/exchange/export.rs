@@ -24,7 +24,6 @@ use crate::formats::metadata::{ElementChoice, Metadata};
 use crate::formats::sp3;
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::Frame;
-use crate::ground::Grid;
 use crate::keyword::Keyword;
 use crate::orbit::Model;
 use crate::time::{Epoch, TimeGrid};
@@ -129,8 +128,6 @@ pub struct ShownScenario<'a> {
     pub evaluator: &'a Evaluator,
     /// The surface that ground points lie on.
     pub surface: Surface,
-    /// The region, unless its points are a list.
-    pub grid: Option<Grid>,
 }
 
 /// Why there is no export.

@@ -4,12 +4,14 @@ use super::{GroundError, MAX_POINTS, Site};
 use crate::earth::Surface;
 use crate::printable::printable;
 use csv::{Reader, ReaderBuilder, StringRecord, Trim};
+use std::collections::HashMap;
 use std::io::Read;
+use std::sync::Arc;
 
 /// Required columns of a table of points.
 const NEEDED: [&str; 2] = ["latitude_deg", "longitude_deg"];
 /// Optional columns.
-const OPTIONAL: [&str; 2] = ["weight", "name"];
+const OPTIONAL: [&str; 3] = ["weight", "name", "height_m"];
 
 /// The mark that spreadsheets write in front of UTF-8 text.
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -20,13 +22,15 @@ struct Columns {
     longitude: usize,
     weight: Option<usize>,
     name: Option<usize>,
+    height: Option<usize>,
 }
 
 /// Points from CSV with the columns `latitude_deg` and `longitude_deg` and optionally `weight` (1
-/// if empty) and `name`, in any order; others are ignored.
+/// if empty), `name` and `height_m` (over the surface, 0 if empty), in any order; others are ignored.
 ///
 /// # Errors
-/// If a column is missing, a line cannot be read (the error has its number), or there are no points.
+/// If a column is missing, a line cannot be read (the error has its number), two lines are the same site, or there are no
+/// points.
 pub fn sites_from_csv(mut source: impl Read, surface: Surface) -> Result<Vec<Site>, GroundError> {
     let mut text = Vec::new();
     source.read_to_end(&mut text).map_err(|error| {
@@ -38,6 +42,7 @@ pub fn sites_from_csv(mut source: impl Read, surface: Surface) -> Result<Vec<Sit
     let header = reader.headers().map_err(unreadable)?.clone();
     let columns = Columns::of(&header)?;
     let mut sites = Vec::new();
+    let mut known = Known::default();
     for row in reader.records() {
         let row = row.map_err(unreadable)?;
         let line = row.position().map_or(1, |position| line_of(position, text));
@@ -52,7 +57,9 @@ pub fn sites_from_csv(mut source: impl Read, surface: Surface) -> Result<Vec<Sit
             let points = MAX_POINTS as f64 + 1.0;
             return Err(GroundError::TooMany { points });
         }
-        sites.push(columns.site(&row, surface).map_err(at_line)?);
+        let site = columns.site(&row, surface).map_err(at_line)?;
+        known.add(&site, line).map_err(at_line)?;
+        sites.push(site);
     }
     if sites.is_empty() {
         Err(GroundError::Empty)
@@ -122,6 +129,7 @@ impl Columns {
             longitude: needed(NEEDED[1])?,
             weight: optional(OPTIONAL[0])?,
             name: optional(OPTIONAL[1])?,
+            height: optional(OPTIONAL[2])?,
         })
     }
 
@@ -142,6 +150,11 @@ impl Columns {
         let latitude_deg = number(self.latitude, NEEDED[0])?;
         let longitude_deg = number(self.longitude, NEEDED[1])?;
         let site = Site::new(surface, latitude_deg, longitude_deg, weight);
+        let height_m = match self.height.filter(|at| !field(*at).is_empty()) {
+            Some(at) => number(at, OPTIONAL[2])?,
+            None => 0.0,
+        };
+        let site = site.and_then(|site| site.at_height_m(height_m));
         let mut site = site.map_err(|error| error.to_string())?;
         let name = self.name.map(field).filter(|name| !name.is_empty());
         if name.is_some_and(|name| name.contains(char::is_control)) {
@@ -149,6 +162,38 @@ impl Columns {
         }
         site.name = name.map(|name| printable(name).into());
         Ok(site)
+    }
+}
+
+/// The names and places of the lines before.
+#[derive(Default)]
+struct Known {
+    names: HashMap<Arc<str>, u64>,
+    places: HashMap<[i64; 3], u64>,
+}
+
+impl Known {
+    /// Adds a site, or says which line has the same name or place.
+    fn add(&mut self, site: &Site, line: u64) -> Result<(), String> {
+        if let Some(name) = &site.name
+            && let Some(before) = self.names.insert(Arc::clone(name), line)
+        {
+            return Err(format!("the site {name} is in line {before} already"));
+        }
+        // To a tenth of a millimetre; longitudes a turn apart are one place, and at a pole all are.
+        let whole = |x: f64| (1e9 * x).round() as i64;
+        let longitude = match site.latitude_deg.abs() == 90.0 {
+            true => 0,
+            false => whole(site.longitude_deg).rem_euclid(whole(360.0)),
+        };
+        let place = [whole(site.latitude_deg), longitude, whole(site.height_m)];
+        match self.places.insert(place, line) {
+            None => Ok(()),
+            Some(before) => Err(format!(
+                "latitude {}, longitude {} is the place of line {before}; give one site with the sum of the weights",
+                site.latitude_deg, site.longitude_deg
+            )),
+        }
     }
 }
 
@@ -186,6 +231,56 @@ mod tests {
         assert_eq!(sites.len(), 2);
         assert_eq!((sites[0].weight, sites[1].weight), (2.0, 1.0));
         assert_eq!(sites[0].name, None);
+    }
+
+    /// A height moves the point along its vertical: 1 km over the pole of the ellipsoid, and over the equator of the sphere.
+    #[test]
+    fn heights_are_over_the_surface() {
+        let text = "latitude_deg,longitude_deg,height_m\n90,0,1000\n0,0,\n";
+        let sites = sites(text).unwrap();
+        let polar_km = sites[0].local.origin_km.km().z;
+        assert!(
+            (polar_km - (6356.752_314_245 + 1.0)).abs() < 1e-8,
+            "{polar_km}"
+        );
+        assert_eq!((sites[0].height_m, sites[1].height_m), (1000.0, 0.0));
+        let text = "latitude_deg,longitude_deg,height_m\n0,0,-250\n";
+        let sphere = sites_from_csv(text.as_bytes(), Surface::Sphere).unwrap();
+        assert!((sphere[0].local.origin_km.km().x - 6377.887).abs() < 1e-9);
+        let header = "latitude_deg,longitude_deg,height_m\n";
+        refused(
+            &format!("{header}0,0,20001\n"),
+            "line 2: height 20001 m is outside -500 to 20000 m",
+        );
+        refused(&format!("{header}0,0,NaN\n"), "line 2: height NaN m");
+        refused(
+            &format!("{header}0,0,high\n"),
+            "line 2: height_m: found \"high\", expected a number",
+        );
+    }
+
+    #[test]
+    fn a_site_given_twice_is_refused() {
+        let header = "name,latitude_deg,longitude_deg,height_m\n";
+        refused(
+            &format!("{header}Bern,46.9,7.4,0\nThun,46.7,7.6,0\nBern,46.8,7.5,0\n"),
+            "line 4: the site Bern is in line 2 already",
+        );
+        refused(
+            &format!("{header},46.9,7.4,0\n,46.9,367.4,0\n"),
+            "line 3: latitude 46.9, longitude 367.4 is the place of line 2; give one site with the sum of the weights",
+        );
+        refused(
+            &format!("{header},90,7,0\n,90,8,0\n"),
+            "line 3: latitude 90, longitude 8 is the place of line 2",
+        );
+        // One above the other are two sites.
+        assert_eq!(
+            sites(&format!("{header}a,46.9,7.4,0\nb,46.9,7.4,300\n"))
+                .unwrap()
+                .len(),
+            2
+        );
     }
 
     /// As spreadsheets write them: a byte order mark, columns in any order, extra columns,

@@ -7,7 +7,6 @@
 
 use crate::earth::Surface;
 use crate::frames::{EarthFixed, LocalFrame, Position};
-use crate::ground::Grid;
 use crate::units::round_decimal;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -106,10 +105,10 @@ fn degrees((latitude_rad, longitude_rad): (f64, f64)) -> LonLat {
     [longitude_rad.to_degrees(), latitude_rad.to_degrees()]
 }
 
-/// South-west and north-east corner of the cell around a grid point: half a step to each side, not past
-/// the poles, and at most a full turn.
-pub(crate) fn cell(grid: &Grid, [longitude, latitude]: LonLat) -> [LonLat; 2] {
-    let half = grid.step_deg.map(|step| 0.5 * step);
+/// South-west and north-east corner of the cell around a point of a lattice with these steps in latitude and
+/// longitude, degrees: half a step to each side, not past the poles, and at most a full turn.
+pub(crate) fn cell(step_deg: [f64; 2], [longitude, latitude]: LonLat) -> [LonLat; 2] {
+    let half = step_deg.map(|step| 0.5 * step);
     let half_width = half[1].min(180.0);
     [
         [longitude - half_width, (latitude - half[0]).max(-90.0)],

@@ -62,8 +62,15 @@ pub fn world() -> Vec<Vec<[f64; 2]>> {
 /// outside.
 #[must_use]
 pub fn within(bounds: &Bounds) -> Vec<Vec<[f64; 2]>> {
+    let coasts: Vec<Vec<[f64; 2]>> = lines(DETAILED).collect();
+    lines_within(&coasts, bounds)
+}
+
+/// The parts of lines within some bounds, at the longitudes of the bounds; they end at the first point outside.
+#[must_use]
+pub fn lines_within(lines: &[Vec<[f64; 2]>], bounds: &Bounds) -> Vec<Vec<[f64; 2]>> {
     let mut found = Vec::new();
-    for line in lines(DETAILED) {
+    for line in lines {
         // A line that crosses the antimeridian continues beyond it.
         for turn in [-720.0, -360.0, 0.0, 360.0, 720.0] {
             let turned = line.iter().map(|[x, y]| [x + turn, *y]);

@@ -20,6 +20,7 @@ pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
 pub(in crate::report) use map::at_point;
 
+use crate::ground::RegionMap;
 use crate::keyword::keywords;
 use crate::scenario::{Keyword, Quantity};
 use thiserror::Error;
@@ -226,8 +227,10 @@ pub struct MapChart {
     pub label: String,
     /// Longitude, latitude and value of each point, degrees; `None` where there is no value.
     pub cells: Vec<(f64, f64, Option<f64>)>,
-    /// Width and height of a cell, degrees; `None` for points that do not form a grid.
-    pub cell_deg: Option<[f64; 2]>,
+    /// Names of the points of a list; empty for those without one.
+    pub names: Vec<String>,
+    /// Cells and borders of the region.
+    pub map: RegionMap,
     /// What is shown.
     pub bounds: super::coastline::Bounds,
 }

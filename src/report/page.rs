@@ -176,6 +176,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
             include_str!("page/core.js"),
             include_str!("page/figures.js"),
             include_str!("page/globe.js"),
+            include_str!("page/sites.js"),
             include_str!("page/main.js"),
         ]
         .concat(),

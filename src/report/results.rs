@@ -5,8 +5,8 @@ use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::optimize::{Individual, Search, Strategy, best, fuzzy, hypervolume};
 use crate::run::{
-    Certificate, DesignSummary, FixedSummary, FrontMember, Hypervolume, MemberFiles, OptimizeResult,
-    ScenarioStamp, SearchSummary, VERSION, VolumeAt,
+    Certificate, DesignSummary, FixedSummary, FrontMember, Hypervolume, MemberFiles,
+    OptimizeResult, ScenarioStamp, SearchSummary, VERSION, VolumeAt,
 };
 use crate::scenario::Scenario;
 use crate::search::{DesignProblem, DesignSpace, Quantity};

@@ -3,12 +3,14 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in scenario.
-const BUILTINS: [(&str, &str); 2] = [
+const BUILTINS: [(&str, &str); 4] = [
     ("paper", include_str!("../../data/scenarios/paper.toml")),
     (
         "regional",
         include_str!("../../data/scenarios/regional.toml"),
     ),
+    ("global", include_str!("../../data/scenarios/global.toml")),
+    ("europe", include_str!("../../data/scenarios/europe.toml")),
 ];
 
 /// The names of the built-in scenarios.

@@ -8,7 +8,7 @@ use sha2::{Digest, Sha256};
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::{Rule, parts_without_paths};
 use super::values::{
-    Export, GnssSetup, NamedConstellation, Optimizer, PointsFile, Region, Scenario,
+    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys, Scenario,
 };
 use crate::constellation::Design;
 
@@ -39,20 +39,17 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: the points, the GNSS files in their
+    /// The paths of the files that the scenario refers to, as written: that of the region, the GNSS files in their
     /// order, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
-        let points = match &self.region {
-            Region::Grid(_) => None,
-            Region::Points { file } => Some(file),
-        };
         let (fixed, compared) = self
             .constellations
             .iter()
             .partition(|one| self.is_fixed(one));
         let named: [Vec<&NamedConstellation>; 2] = [fixed, compared];
-        points
+        self.region
+            .file()
             .into_iter()
             .chain(&self.gnss.files)
             .chain(named.into_iter().flatten().flat_map(|one| &one.parts.files))
@@ -80,17 +77,15 @@ impl Scenario {
     pub fn with_files(&self, paths: &[String]) -> Self {
         let mut scenario = self.clone();
         let mut paths = paths.iter().cloned();
-        let points = match &mut scenario.region {
-            Region::Grid(_) => None,
-            Region::Points { file } => Some(file),
-        };
         let (fixed, compared) = scenario
             .constellations
             .iter_mut()
             .partition(|one| self.is_fixed(one));
         let named: [Vec<&mut NamedConstellation>; 2] = [fixed, compared];
         let constellations = named.into_iter().flatten();
-        let named = points
+        let named = scenario
+            .region
+            .file_mut()
             .into_iter()
             .chain(&mut scenario.gnss.files)
             .chain(constellations.flat_map(|one| &mut one.parts.files));
@@ -148,6 +143,31 @@ impl Scenario {
     }
 }
 
+impl Region {
+    /// The file that it is read from.
+    pub(super) fn file(&self) -> Option<&String> {
+        match self {
+            Self::Points { file }
+            | Self::Area {
+                source: AreaSource::Polygon { file },
+                ..
+            } => Some(file),
+            _ => None,
+        }
+    }
+
+    fn file_mut(&mut self) -> Option<&mut String> {
+        match self {
+            Self::Points { file }
+            | Self::Area {
+                source: AreaSource::Polygon { file },
+                ..
+            } => Some(file),
+            _ => None,
+        }
+    }
+}
+
 /// A key whose values differ between two scenarios.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyDifference {
@@ -164,7 +184,8 @@ fn is_computed(path: KeyPath) -> bool {
     let left_out = [
         key!(Scenario.name),
         key!(Scenario.constellations),
-        key!(PointsFile.points),
+        key!(RegionKeys.points),
+        key!(RegionKeys.polygon),
         key!(GnssSetup.files),
         key!(Optimizer.generations),
     ];

@@ -9,12 +9,12 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Scenario;
-use super::keys::{KeyPath, all, key, names, path, paths, sections};
+use super::keys::{KeyPath, all, key, names, path, sections};
 use super::problem::{Fault, ProblemList};
 use super::reader::{Given, Reader};
 use super::rule::Node;
 use super::source::{Source, TableSources};
-use super::values::{ConstellationParts, Grid, INTERVALS, Objectives, PointsFile, SHELLS};
+use super::values::{ConstellationParts, INTERVALS, Objectives, SHELLS, rivals};
 use crate::keyword::nearest;
 
 /// The known keys that were given; the last of several.
@@ -264,20 +264,15 @@ impl KeySite<'_, '_> {
     }
 }
 
-/// The keys of a file that a `--set` of another key replaces: grid and points file exclude each other,
-/// a reference point belongs to its list of objectives, and a list of shells replaces the intervals of one.
+/// The keys of a file that a `--set` of another key replaces: those of a region that exclude each other,
+/// a reference point, which belongs to its list of objectives, and the intervals of one shell by a list of shells.
 fn superseded_by(path: KeyPath) -> Vec<KeyPath> {
-    let (grid, points) = (paths::<Grid>(), key!(PointsFile.points));
-    if path == points {
-        grid
-    } else if grid.contains(&path) {
-        vec![points]
-    } else if path == key!(Objectives.minimize) {
+    if path == key!(Objectives.minimize) {
         vec![key!(Objectives.hypervolume_reference)]
     } else if path == SHELLS {
         INTERVALS.to_vec()
     } else {
-        Vec::new()
+        rivals(path)
     }
 }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::source::{Place, Source, blanked};
 use crate::constellation::NotationError;
+use crate::ground::UnknownCountry;
 use crate::keyword::UnknownKeyword;
 use crate::search::ConstraintError;
 
@@ -69,6 +70,9 @@ pub enum Fault {
     /// The word is not one of the choices.
     #[error(transparent)]
     UnknownKeyword(#[from] UnknownKeyword),
+    /// The name is not that of a country.
+    #[error(transparent)]
+    UnknownCountry(#[from] UnknownCountry),
     /// The text is not a constraint.
     #[error(transparent)]
     Constraint(#[from] ConstraintError),

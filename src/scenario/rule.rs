@@ -1,12 +1,14 @@
 //! Rules: which values a key accepts, and how they are read, written and described.
 
 mod constellations;
+mod country;
 mod list;
 mod number;
 mod table;
 mod text;
 
 pub(super) use constellations::{Constellations, Notation, parts_without_paths};
+pub(super) use country::Countries;
 pub(super) use list::{Constraints, ListOf, Numbers, OneOf, OneOrMore, Skyline, SomeOf, Texts};
 pub(super) use number::{Eastward, Integer, Interval, Number, Steps, TwoNumbers};
 pub(super) use table::SectionTable;

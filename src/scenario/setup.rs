@@ -3,13 +3,13 @@
 use super::constellations::{ConstellationFileError, NoDesign};
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
-use super::values::PointsFile;
-use super::{Algorithm, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
+use super::values::RegionKeys;
+use super::{Algorithm, AreaSource, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
-use crate::ground::{Grid, GroundError, Site, sites_from_csv};
+use crate::ground::{Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, Quantity};
 use crate::stats::{Level, LevelError};
@@ -34,13 +34,23 @@ pub enum SetupError {
         /// What is wrong with it; boxed, since it is much larger than the others.
         source: Box<GnssFileError>,
     },
-    /// The points file cannot be read.
-    #[error("region.points: cannot read {file}: {source}")]
-    PointsFile {
+    /// The points file or the polygons cannot be read.
+    #[error("region.{key}: cannot read {file}: {source}")]
+    RegionFile {
+        /// The key: `points` or `polygon`.
+        key: &'static str,
         /// The path as written.
         file: String,
         /// The message of the operating system.
         source: io::Error,
+    },
+    /// The polygons are not an area, or no point lies inside.
+    #[error("region.polygon: {file}: {source}")]
+    Polygon {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: GroundError,
     },
     /// The points file is not a list of points.
     #[error("region.points: {file}: {source}")]
@@ -50,9 +60,9 @@ pub enum SetupError {
         /// What is wrong with it.
         source: GroundError,
     },
-    /// The grid has no points.
+    /// The grid or the countries have no points.
     #[error("region: {0}")]
-    Grid(#[from] GroundError),
+    Region(#[from] GroundError),
     /// The span has no samples.
     #[error("time: {0}")]
     Time(#[from] TimeError),
@@ -85,13 +95,23 @@ impl SetupError {
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
-            Self::PointsFile { .. } | Self::Points { .. } => vec![key!(PointsFile.points)],
-            Self::Grid(GroundError::Latitudes(..)) => vec![key!(Grid.latitude_deg)],
-            Self::Grid(GroundError::Longitudes(..)) => vec![key!(Grid.longitude_deg)],
-            Self::Grid(_) => vec![
-                key!(Grid.step_deg),
-                key!(Grid.latitude_deg),
-                key!(Grid.longitude_deg),
+            Self::RegionFile { key: "points", .. } | Self::Points { .. } => {
+                vec![key!(RegionKeys.points)]
+            }
+            Self::Polygon {
+                source: GroundError::Area(_),
+                ..
+            }
+            | Self::RegionFile { .. } => vec![key!(RegionKeys.polygon)],
+            Self::Region(GroundError::Latitudes(..)) => vec![key!(RegionKeys.latitude_deg)],
+            Self::Region(GroundError::Longitudes(..)) => vec![key!(RegionKeys.longitude_deg)],
+            Self::Region(_) | Self::Polygon { .. } => vec![
+                key!(RegionKeys.spacing_km),
+                key!(RegionKeys.step_deg),
+                key!(RegionKeys.polygon),
+                key!(RegionKeys.country),
+                key!(RegionKeys.latitude_deg),
+                key!(RegionKeys.longitude_deg),
             ],
             Self::Time(_) => vec![
                 key!(TimeSpan.step_s),
@@ -110,9 +130,11 @@ impl SetupError {
     pub(super) fn reason(&self) -> String {
         match self {
             Self::GnssFile { file, source } => format!("{file}: {source}"),
-            Self::PointsFile { file, source } => format!("cannot read {file}: {source}"),
-            Self::Points { file, source } => format!("{file}: {source}"),
-            Self::Grid(source) => source.to_string(),
+            Self::RegionFile { file, source, .. } => format!("cannot read {file}: {source}"),
+            Self::Points { file, source } | Self::Polygon { file, source } => {
+                format!("{file}: {source}")
+            }
+            Self::Region(source) => source.to_string(),
             Self::Time(source) => source.to_string(),
             Self::Mask(source) => source.to_string(),
             Self::MaskTable(source) => source.to_string(),
@@ -186,7 +208,9 @@ impl Scenario {
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<(Setup, Vec<String>), SetupError> {
         let visibility = &self.visibility;
-        let setup = Setup::new(self.time_grid()?, self.sites(read)?)
+        let (sites, map) = self.region(read)?;
+        let setup = Setup::new(self.time_grid()?, sites)
+            .with_map(map)
             .with_mask(Mask::from_degrees(visibility.mask_deg)?)
             .with_gnss_mask(Mask::from_degrees(visibility.gnss_mask_deg)?);
         let setup = match self.skyline()? {
@@ -229,13 +253,20 @@ impl Scenario {
     /// The error of a file, among [`Scenario::files`], that cannot be read.
     #[must_use]
     pub fn unreadable(&self, file: &str, source: io::Error) -> SetupError {
-        let is_points = matches!(&self.region, Region::Points { file: points } if points == file);
+        let is_region = self
+            .region
+            .file()
+            .is_some_and(|of_region| of_region == file);
         let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
         let named = self.constellations.iter();
         let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
-        if is_points {
-            SetupError::PointsFile { file, source }
+        if is_region {
+            let key = match self.region {
+                Region::Points { .. } => "points",
+                _ => "polygon",
+            };
+            SetupError::RegionFile { key, file, source }
         } else if let Some(named) = named.next().filter(|_| !is_gnss) {
             named.error(&file, source.into())
         } else {
@@ -289,25 +320,49 @@ impl Scenario {
         }
     }
 
-    /// The region, if it is a grid.
-    #[must_use]
-    pub fn ground_grid(&self) -> Option<Grid> {
-        match &self.region {
-            Region::Grid(grid) => Some(*grid),
-            Region::Points { .. } => None,
-        }
-    }
-
-    fn sites(&self, read: &dyn Fn(&str) -> io::Result<Vec<u8>>) -> Result<Vec<Site>, SetupError> {
+    /// The ground points, and what they look like on a map.
+    fn region(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<(Vec<Site>, RegionMap), SetupError> {
         let surface = self.earth.surface;
         match &self.region {
-            Region::Grid(grid) => Ok(grid.sites(surface)?),
-            Region::Points { file } => {
+            Region::Grid(grid) => Ok((grid.sites(surface)?, RegionMap::of_grid(grid))),
+            Region::Cells(cells) => {
+                Ok((cells.sites(surface)?, RegionMap::of_cells(cells, surface)?))
+            }
+            Region::Area {
+                source: AreaSource::Countries(countries),
+                points,
+            } => {
+                let area = Country::area(countries);
+                let map = RegionMap::of_area(&self.region.told(), &area, points, surface)?;
+                Ok((points.sites(&area, surface)?, map))
+            }
+            Region::Area {
+                source: AreaSource::Polygon { file },
+                points,
+            } => {
                 let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
-                sites_from_csv(bytes.as_slice(), surface).map_err(|source| SetupError::Points {
+                let within = || -> Result<_, GroundError> {
+                    let area = ServiceArea::from_geojson(&bytes)?;
+                    // No result contains a path.
+                    let map = RegionMap::of_area("polygons", &area, points, surface)?;
+                    Ok((points.sites(&area, surface)?, map))
+                };
+                within().map_err(|source| SetupError::Polygon {
                     file: file.clone(),
                     source,
                 })
+            }
+            Region::Points { file } => {
+                let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
+                let sites = sites_from_csv(bytes.as_slice(), surface);
+                let sites = sites.map_err(|source| SetupError::Points {
+                    file: file.clone(),
+                    source,
+                })?;
+                Ok((sites, RegionMap::default()))
             }
         }
     }

@@ -15,10 +15,10 @@ pub use accuracy::{FurtherMetrics, RangeErrors};
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
 pub use optimizer::Optimizer;
-pub(super) use region::PointsFile;
-pub use region::Region;
 #[cfg(test)]
 pub(super) use region::points;
+pub use region::{AreaSource, Region};
+pub(super) use region::{RegionKeys, rivals};
 pub(super) use search::SHELLS;
 pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
@@ -133,14 +133,15 @@ fn check_fixed(scenario: &Scenario, reader: &mut Reader<'_>) {
 }
 
 fn check_point_samples(scenario: &Scenario, reader: &mut Reader<'_>) {
-    let Region::Grid(grid) = &scenario.region else {
+    let Some(points) = scenario.region.count() else {
         return;
     };
-    let count = region::points(grid) * scenario.time.steps();
+    let count = points * scenario.time.steps();
     let keys = [
         key!(TimeSpan.step_s),
         key!(TimeSpan.duration_h),
-        key!(Grid.step_deg),
+        key!(RegionKeys.step_deg),
+        key!(RegionKeys.spacing_km),
     ];
     reader.at_most(MAX_POINT_SAMPLES, count, "points times samples", &keys);
 }

@@ -71,7 +71,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 74] = [
+const ROWS: [Row; 85] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
@@ -129,6 +129,24 @@ const ROWS: [Row; 74] = [
         "region.weights",
         "cos-latitude",
         EVALUATE,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.spacing-km",
+        "1000",
+        EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.polygon",
+        "area.geojson",
+        EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.country",
+        "[\"Brazil\",\"Japan\"]",
+        EVALUATE_POINTS,
         "/metrics/mean_visible",
     ),
     row(
@@ -459,6 +477,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("points.csv"),
         "latitude_deg,longitude_deg\n-50,10\n60,170\n",
+    )
+    .unwrap();
+    fs::write(
+        place.join("area.geojson"),
+        r#"{"type": "Polygon", "coordinates": [[[10,-20],[40,-20],[40,10],[10,10],[10,-20]]]}"#,
     )
     .unwrap();
     let almanac: Vec<&str> = "export --quiet --as yuma --out almanac --set gnss.constellations=[\"galileo\"] --design delta:55:2/2/1@925"

@@ -22,6 +22,7 @@ mod look;
 mod names;
 mod readers;
 mod reference;
+mod regions;
 mod runs;
 mod scenes;
 mod shells;

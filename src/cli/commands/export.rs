@@ -77,7 +77,6 @@ pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     let shown = shown.map(|evaluator| ShownScenario {
         evaluator,
         surface: scenario.earth.surface,
-        grid: scenario.ground_grid(),
     });
     let manifest = source.export(&products, shown, &sink);
     let manifest = manifest.with_context(not_exported)?;

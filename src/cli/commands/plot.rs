@@ -4,12 +4,14 @@ use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
 use crate::constellation::Design;
+use crate::evaluate::Evaluator;
+use crate::ground::RegionMap;
 use crate::optimize::Pick;
 use crate::report::Compared;
 use crate::report::figures::draw::{Form, png, svg};
 use crate::report::figures::{self, Figure, Measure, NamedProfile, Plate};
 use crate::report::profile::Profile;
-use crate::scenario::{Keyword, Region};
+use crate::scenario::Keyword;
 use anyhow::{Context, Result, bail};
 use std::fs;
 use std::io::{self, IsTerminal, Write};
@@ -134,7 +136,7 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
             require_one(args, view)?;
             let profiles = profiles(args, view, false)?;
             let first = &named(&profiles)[0];
-            figures::map(first, measure(Measure::MeanPdop), cell_deg(view))?
+            figures::map(first, measure(Measure::MeanPdop), &region_map(view))?
         }
         Figure::Cdf => {
             let profiles = profiles(args, view, true)?;
@@ -160,12 +162,10 @@ fn require_one(args: &PlotArgs, view: &View) -> Result<()> {
     )
 }
 
-/// The steps of the region's grid, if it is one.
-fn cell_deg(view: &View) -> Option<[f64; 2]> {
-    match view.run.scenario.as_ref()?.region {
-        Region::Grid(grid) => Some(grid.step_deg),
-        Region::Points { .. } => None,
-    }
+/// The cells and borders of the region.
+fn region_map(view: &View) -> RegionMap {
+    let setup = view.evaluator.as_ref().map(Evaluator::setup);
+    setup.map_or_else(RegionMap::default, |setup| setup.map.clone())
 }
 
 /// A constellation evaluated for a figure.

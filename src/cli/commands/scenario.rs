@@ -31,7 +31,13 @@ fn list(format: OutputFormat) -> Result<()> {
                 let [west, east] = grid.longitude_deg;
                 format!("{south} to {north} N, {west} to {east} E")
             }
-            Region::Points { file } => file.clone(),
+            Region::Cells(cells) => {
+                let [south, north] = cells.latitude_deg;
+                let [west, east] = cells.longitude_deg;
+                let limits = format!("{south} to {north} N, {west} to {east} E");
+                format!("{limits}, cells of {} km", cells.spacing_km)
+            }
+            Region::Area { .. } | Region::Points { .. } => scenario.region.told(),
         };
         let surface = scenario.earth.surface.to_string();
         rows.push([

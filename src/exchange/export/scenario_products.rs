@@ -54,7 +54,7 @@ impl ExportSource<'_> {
             grid: self.subject.grid,
             items: &items,
             sites: &setup.sites,
-            step_deg: scene.grid().map(|grid| grid.step_deg),
+            step_deg: setup.map.step_deg(),
             mask_deg: setup.mask.degrees(),
         };
         let metadata = self.propagated_metadata(Frame::Teme);

@@ -225,7 +225,7 @@ impl<'a> ExportSource<'a> {
             is_design: notation.is_some(),
             told,
         };
-        Scene::new(shown.evaluator, of, shown.surface, shown.grid)
+        Scene::new(shown.evaluator, of, shown.surface)
     }
 
     /// Where satellites come from that are no slots of a shell, and what was made of them.

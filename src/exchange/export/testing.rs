@@ -6,7 +6,7 @@ use crate::earth::Surface;
 use crate::evaluate::{Evaluator, Setup, testing};
 use crate::exchange::constellation::Constellation;
 use crate::exchange::manifest::{ExportedStudy, Manifest};
-use crate::ground::{Grid, PointWeights};
+use crate::ground::{Grid, PointWeights, RegionMap};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use std::collections::BTreeMap;
@@ -46,6 +46,7 @@ pub(crate) fn subject_of(constellation: Constellation, grid: TimeGrid) -> Export
 pub(crate) fn setup(subject: &ExportSubject) -> Setup {
     Setup {
         model: subject.model,
+        map: RegionMap::of_grid(&GRID),
         ..testing::setup(subject.grid, GRID.sites(Surface::Wgs84).unwrap(), 7.0)
     }
 }
@@ -80,7 +81,6 @@ pub(crate) fn in_memory(
     let scenario = ShownScenario {
         evaluator: &evaluator,
         surface: Surface::Wgs84,
-        grid: Some(GRID),
     };
     // The ephemerides of STK alone have none.
     let shown = products.iter().any(|one| one.row().needs_scenario());

@@ -5,8 +5,7 @@ use crate::constellation::gnss::{GnssSatellite, System};
 use crate::earth::Surface;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{Evaluator, PointMetrics, Series};
-use crate::ground::Grid;
-use crate::ground::shapes::{LonLat, cell};
+use crate::ground::shapes::LonLat;
 use crate::units::round_decimal;
 use std::sync::OnceLock;
 
@@ -30,25 +29,21 @@ pub struct Scene<'a> {
     evaluator: &'a Evaluator,
     constellation: ShownConstellation<'a>,
     surface: Surface,
-    grid: Option<Grid>,
     points: OnceLock<Vec<PointMetrics>>,
 }
 
 impl<'a> Scene<'a> {
-    /// The scenario of an evaluator around a constellation. `grid` is the region whose points the evaluator
-    /// has; none if they are a list.
+    /// The scenario of an evaluator around a constellation.
     #[must_use]
     pub fn new(
         evaluator: &'a Evaluator,
         constellation: ShownConstellation<'a>,
         surface: Surface,
-        grid: Option<Grid>,
     ) -> Self {
         Self {
             evaluator,
             constellation,
             surface,
-            grid,
             points: OnceLock::new(),
         }
     }
@@ -85,12 +80,6 @@ impl<'a> Scene<'a> {
         self.surface
     }
 
-    /// The region, if it is a grid.
-    #[must_use]
-    pub fn grid(&self) -> Option<&Grid> {
-        self.grid.as_ref()
-    }
-
     /// The metrics of each ground point, in the order of the setup.
     pub(crate) fn points(&self) -> Result<&[PointMetrics], EphemerisError> {
         if let Some(points) = self.points.get() {
@@ -114,10 +103,10 @@ impl<'a> Scene<'a> {
             .collect()
     }
 
-    /// The corners of the cell of a point; none without a grid.
+    /// The corners of the cell of a point; none if points are a list.
     pub(crate) fn cell(&self, point: &PointMetrics) -> Option<[LonLat; 2]> {
-        let grid = self.grid.as_ref()?;
-        Some(cell(grid, [point.longitude_deg, point.latitude_deg]))
+        let map = &self.evaluator.setup().map;
+        map.cell([point.longitude_deg, point.latitude_deg])
     }
 
     /// The settings another program needs to get the same numbers, one sentence each.
@@ -161,22 +150,25 @@ impl<'a> Scene<'a> {
         told
     }
 
+    /// The heights of the points, if they have any.
+    fn heights(&self) -> String {
+        let heights = || self.setup().sites.iter().map(|site| site.height_m);
+        let (low, high) = (
+            heights().fold(f64::INFINITY, f64::min),
+            heights().fold(f64::NEG_INFINITY, f64::max),
+        );
+        if low == 0.0 && high == 0.0 {
+            return String::new();
+        }
+        format!(", {low} to {high} m over the surface (maps and points.pnt show them at height 0)")
+    }
+
     fn region_assumptions(&self) -> Vec<String> {
         let points = self.setup().sites.len();
         let mut told = Vec::new();
-        told.push(match &self.grid {
-            Some(grid) => format!(
-                "region: {points} points, latitudes {} to {}° by {}°, longitudes {} to {}° by {}°, \
-                 from the south-west corner; point weights {}",
-                grid.latitude_deg[0],
-                grid.latitude_deg[1],
-                grid.step_deg[0],
-                grid.longitude_deg[0],
-                grid.longitude_deg[1],
-                grid.step_deg[1],
-                grid.weights
-            ),
-            None => format!("region: {points} points from a list"),
+        told.push(match self.setup().map.told.as_str() {
+            "" => format!("region: {points} points from a list{}", self.heights()),
+            what => format!("region: {points} points, {what}"),
         });
         told.push(match self.surface {
             Surface::Wgs84 => {

@@ -1,5 +1,6 @@
 use super::*;
 use crate::earth::RADIUS_KM;
+use crate::ground::Grid;
 use crate::ground::PointWeights;
 
 /// Position over a place of the sphere.
@@ -140,7 +141,7 @@ fn cells_stay_on_the_map() {
     let mut area = 0.0;
     for latitude in grid.latitudes_deg().unwrap() {
         for longitude in grid.longitudes_deg().unwrap() {
-            let cut = cell_rings(cell(&grid, [longitude, latitude]));
+            let cut = cell_rings(cell(grid.step_deg, [longitude, latitude]));
             well_formed(&cut);
             assert_eq!(cut.len(), if longitude == -180.0 { 2 } else { 1 });
             area += cut.iter().map(|ring| signed_area(&ring[1..])).sum::<f64>();

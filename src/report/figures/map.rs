@@ -3,6 +3,7 @@
 use super::table::{Csv, optional};
 use super::{Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate};
 use crate::evaluate::PointMetrics;
+use crate::ground::RegionMap;
 use crate::report::coastline::Bounds;
 
 /// Measures that a map can show.
@@ -26,14 +27,14 @@ pub(in crate::report) fn at_point(measure: Measure, point: &PointMetrics) -> Opt
     }
 }
 
-/// A constellation's measure over the points; `cell_deg` are the steps of a grid.
+/// A constellation's measure over the points of a region.
 ///
 /// # Errors
 /// If the measure has no value at a point.
 pub fn map(
     named: &NamedProfile<'_>,
     measure: Measure,
-    cell_deg: Option<[f64; 2]>,
+    map: &RegionMap,
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Map;
     if !MEASURES.contains(&measure) {
@@ -44,17 +45,21 @@ pub fn map(
         .points
         .iter()
         .map(|p| (p.latitude_deg, p.longitude_deg));
-    let margin = cell_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
-    let Some(bounds) = Bounds::around(places, margin) else {
+    let Some(bounds) = Bounds::around(places, map.margin_deg()) else {
         let reason = "the region has no point";
         return Err(FigureError::Nothing { figure, reason });
     };
+    let name = |p: &PointMetrics| p.name.as_deref().unwrap_or_default().to_owned();
     let cell = |p: &PointMetrics| (p.longitude_deg, p.latitude_deg, at_point(measure, p));
     let chart = MapChart {
         title: title(named),
         label: measure.label().to_owned(),
         cells: profile.points.iter().map(cell).collect(),
-        cell_deg,
+        names: match map.tiling {
+            Some(_) => Vec::new(),
+            None => profile.points.iter().map(name).collect(),
+        },
+        map: map.clone(),
         bounds,
     };
     Ok(Plate {

@@ -141,6 +141,50 @@
     return { x, y };
   })();
 
+  const border = (() => {
+    const x = [], y = [];
+    for (const line of data.region?.border ?? []) {
+      for (let n = 0; n < line.length; n += 2) { x.push(line[n] / 100); y.push(line[n + 1] / 100); }
+      x.push(null); y.push(null);
+    }
+    return { x, y };
+  })();
+
+  /** Most sites whose names are on a map. */
+  const MOST_NAMES = 40;
+
+  /** Columns of the raster that shows cells of equal area. */
+  const COLUMNS = 720;
+
+  /** Cells in rows of different widths, on a raster of their rows and of many columns. */
+  function raster(region, values) {
+    const [, , west, east] = region.bounds;
+    const first = region.row.reduce((a, b) => Math.min(a, b)), last = region.row.reduce((a, b) => Math.max(a, b));
+    const rows = region.rows_deg.slice(first, last + 1);
+    const column = (longitude) => Math.max(0, Math.min(COLUMNS, Math.round((longitude - west) / (east - west) * COLUMNS)));
+    const z = rows.map(() => new Array(COLUMNS).fill(null));
+    values.forEach((value, n) => {
+      const row = region.row[n] - first, half = rows[row][2] / 2;
+      z[row].fill(value, column(region.longitude_deg[n] - half), column(region.longitude_deg[n] + half));
+    });
+    const x = [...Array(COLUMNS + 1).keys()].map((n) => west + (east - west) * n / COLUMNS);
+    return { x, y: [...rows.map((row) => row[0]), rows[rows.length - 1][1]], z };
+  }
+
+  /** Cells of a lattice between their edges; columns and rows without points stay empty. */
+  function lattice(region, values) {
+    const axis = (all, step) => {
+      const low = all.reduce((a, b) => Math.min(a, b)), high = all.reduce((a, b) => Math.max(a, b));
+      const place = (value) => Math.round((value - low) / step);
+      const edges = [...Array(place(high) + 2).keys()].map((n) => low + (n - 0.5) * step);
+      return { place, edges };
+    };
+    const rows = axis(region.latitude_deg, region.step_deg[0]), columns = axis(region.longitude_deg, region.step_deg[1]);
+    const z = rows.edges.slice(1).map(() => new Array(columns.edges.length - 1).fill(null));
+    values.forEach((value, n) => { z[rows.place(region.latitude_deg[n])][columns.place(region.longitude_deg[n])] = value; });
+    return { x: columns.edges, y: rows.edges, z };
+  }
+
   function map(measure) {
     return (colours) => {
       const region = data.region;
@@ -152,24 +196,26 @@
       const bar = { title: { text: LABELS[measure], side: "right" }, thickness: 12, outlinewidth: 0, tickcolor: colours.line,
         ...(same && { tickvals: [range[1]] }) };
       const traces = [];
-      if (region.step_deg) {
-        const axis = (all) => [...new Set(all)].sort((a, b) => a - b);
-        const lats = axis(region.latitude_deg), lons = axis(region.longitude_deg);
-        const z = lats.map(() => new Array(lons.length).fill(null));
-        values.forEach((value, n) => {
-          z[lats.indexOf(region.latitude_deg[n])][lons.indexOf(region.longitude_deg[n])] = value;
-        });
-        traces.push({ type: "heatmap", x: lons, y: lats, z, colorscale: "Viridis", zsmooth: false, colorbar: bar,
+      const hasCells = region.step_deg || region.rows_deg.length > 0;
+      if (region.rows_deg.length > 0) {
+        traces.push({ type: "heatmap", ...raster(region, values), colorscale: "Viridis", zsmooth: false, colorbar: bar,
+          zmin: range?.[0], zmax: range?.[1], hovertemplate: "%{y:.2f}° N, %{x:.2f}° E<br>%{z:.5~g}<extra></extra>" });
+      } else if (region.step_deg) {
+        traces.push({ type: "heatmap", ...lattice(region, values), colorscale: "Viridis", zsmooth: false, colorbar: bar,
           zmin: range?.[0], zmax: range?.[1],
           hovertemplate: "%{y}° N, %{x}° E<br>%{z:.5~g}<extra></extra>" });
       } else {
-        traces.push({ type: "scatter", mode: "markers", x: region.longitude_deg, y: region.latitude_deg,
+        const isNamed = region.name.length <= MOST_NAMES && region.name.some((name) => name !== "");
+        traces.push({ type: "scatter", mode: isNamed ? "markers+text" : "markers", x: region.longitude_deg, y: region.latitude_deg,
+          ...(isNamed && { texttemplate: "%{customdata}", customdata: region.name.map(plain), textposition: "top center", textfont: { size: 10 } }),
           marker: { size: 12, color: values, colorscale: "Viridis", colorbar: bar, cmin: range?.[0], cmax: range?.[1],
             line: { width: 1, color: colours.ink } },
           text: values.map((v, n) => (region.name[n] ? plain(region.name[n]) + "<br>" : "") + digits(v)), hovertemplate: "%{y}° N, %{x}° E<br>%{text}<extra></extra>" });
       }
       traces.push({ type: "scatter", mode: "lines", x: coast.x, y: coast.y, hoverinfo: "skip",
-        line: { color: region.step_deg ? "rgba(0,0,0,0.75)" : colours.coast, width: 1 } });
+        line: { color: hasCells ? "rgba(0,0,0,0.75)" : colours.coast, width: 1 } });
+      traces.push({ type: "scatter", mode: "lines", x: border.x, y: border.y, hoverinfo: "skip",
+        line: { color: "rgba(0,0,0,0.9)", width: 2 } });
       const [south, north, west, east] = region.bounds;
       const square = 1 / Math.max(0.1, Math.cos((south + north) / 2 * Math.PI / 180));
       return { data: traces, layout: { ...layout(colours, {

@@ -5,7 +5,7 @@ const Globe = (() => {
   const globe = document.getElementById("globe");
   if (!globe || !world) {
     for (const id of ["constellation"]) { const e = document.getElementById(id); if (e) e.hidden = true; }
-    return { frames: () => [], sky: () => [] };
+    return { frames: () => [], sky: () => [], look: () => {} };
   }
   const sky = document.getElementById("sky");
   const RAD = Math.PI / 180;
@@ -19,7 +19,7 @@ const Globe = (() => {
 
   const view = { longitude: 0, latitude: 20 * RAD };
   const time = { elapsed: 0, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, speed: SPEEDS[2] };
-  const place = { latitude: 0, longitude: 0 };
+  const place = { latitude: 0, longitude: 0, name: "" };
   const frames = [];
   let colours = theme();
   let visibleNow = false;
@@ -39,6 +39,16 @@ const Globe = (() => {
     return points;
   };
   const coasts = world.coast.map(polyline);
+  /** A line straight in longitude and latitude, in steps of at most two degrees. */
+  const dense = (flat) => {
+    const steps = [];
+    for (let n = 0; n + 3 < flat.length; n += 2) {
+      const [x0, y0, x1, y1] = flat.slice(n, n + 4);
+      const count = Math.max(1, Math.ceil(Math.hypot(x1 - x0, y1 - y0) / 200));
+      for (let k = n === 0 ? 0 : 1; k <= count; k++) steps.push(x0 + (x1 - x0) * k / count, y0 + (y1 - y0) * k / count);
+    }
+    return steps;
+  };
   const region = (() => {
     const r = data.region;
     if (!r) return [];
@@ -48,15 +58,28 @@ const Globe = (() => {
     const walk = (a, b, c, d) => {
       for (let n = 0; n <= STEPS; n++) edge.push(100 * (a + (b - a) * n / STEPS), 100 * (c + (d - c) * n / STEPS));
     };
-    if (r.step_deg && east - west < 359) {
+    if (r.is_rectangle && east - west < 359) {
       walk(west, east, south, south); walk(east, east, south, north);
       walk(east, west, north, north); walk(west, west, north, south);
     }
     place.latitude = (south + north) / 2 * RAD;
     place.longitude = (west + east) / 2 * RAD;
+    // A list has no middle: its first site.
+    if (!r.step_deg && r.rows_deg.length === 0) {
+      place.latitude = r.latitude_deg[0] * RAD;
+      place.longitude = r.longitude_deg[0] * RAD;
+      place.name = r.name[0];
+    }
     view.longitude = place.longitude;
     view.latitude = Math.max(-1.2, Math.min(1.2, place.latitude));
-    return edge.length > 0 ? [polyline(edge)] : [];
+    return edge.length > 0 ? [polyline(edge)] : r.border.map((line) => polyline(dense(line)));
+  })();
+
+  const MOST_MARKS = 500;
+  const marks = (() => {
+    const r = data.region;
+    if (!r || r.step_deg || r.rows_deg.length > 0 || r.latitude_deg.length > MOST_MARKS) return [];
+    return r.latitude_deg.map((latitude, n) => unit(latitude * RAD, r.longitude_deg[n] * RAD));
   })();
 
   /** Rows of the rotation from Earth-fixed to the screen: right, up, towards the reader. */
@@ -220,6 +243,12 @@ const Globe = (() => {
     strokeFront(region, colours.second, 2);
     axes.forEach((shell, n) => drawOrbits(c, shell, axes.length > 1 ? groupColour(n) : colours.faint, project, radius));
     drawSatellites(c, found, groups, seen, project, radius);
+    // The sites of a list, as marks.
+    c.strokeStyle = colours.ink; c.lineWidth = 1.2;
+    for (const mark of marks) {
+      const [x, y, depth] = project(mark, 0);
+      if (depth > 0) { c.beginPath(); c.arc(x, y, 3, 0, 2 * Math.PI); c.stroke(); }
+    }
     const here = site().up;
     const [x, y, depth] = project(here, 0);
     if (depth > 0) {
@@ -321,7 +350,7 @@ const Globe = (() => {
   function tell(seen, elapsed) {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
     const side = (value, plus, minus) => digits(Math.abs(value), 4) + "° " + (value < 0 ? minus : plus);
-    const text = "Sky at " + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
+    const text = "Sky at " + (place.name ? place.name + ", " : "") + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
       + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond;
     if (caption.textContent !== text) caption.textContent = text;
     const now = new Date(epoch + 1000 * ofBrowser(elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
@@ -429,6 +458,7 @@ const Globe = (() => {
     const v = [0, 1, 2].map((k) => x * right[k] + y * upward[k] + Math.sqrt(depth2) * towards[k]);
     place.latitude = Math.asin(Math.max(-1, Math.min(1, v[2])));
     place.longitude = Math.atan2(v[1], v[0]);
+    place.name = "";
     draw();
   });
   globe.addEventListener("keydown", (event) => {
@@ -440,5 +470,16 @@ const Globe = (() => {
     draw();
   });
 
-  return { frames: () => [...frames], sky: () => drawn };
+  /** Shows the sky of a site of a list. */
+  function look(n) {
+    place.latitude = data.region.latitude_deg[n] * RAD;
+    place.longitude = data.region.longitude_deg[n] * RAD;
+    place.name = data.region.name[n];
+    view.longitude = place.longitude;
+    view.latitude = Math.max(-1.2, Math.min(1.2, place.latitude));
+    draw();
+    sky.scrollIntoView({ block: "nearest" });
+  }
+
+  return { frames: () => [...frames], sky: () => drawn, look };
 })();

@@ -196,9 +196,7 @@ impl Payload {
             reference: run.reference().map(|reference| shown::point(&reference)),
             levels: drawn_levels().into_iter().map(short).collect(),
             cuts: of_members.collect(),
-            region: setup
-                .zip(run.scenario.as_ref())
-                .and_then(|(setup, scenario)| RegionData::new(setup, scenario)),
+            region: setup.and_then(RegionData::new),
             world: setup
                 .zip(run.scenario.as_ref())
                 .map(|(setup, scenario)| World::new(setup, scenario)),

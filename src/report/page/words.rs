@@ -1,6 +1,7 @@
 //! The texts and tables of the page.
 
 mod conventions;
+mod region;
 
 pub(super) use conventions::conventions;
 
@@ -11,8 +12,7 @@ use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
 use crate::run::{FrontMember, Run};
-use crate::scenario::{Quantity, Region, Scenario, Visibility};
-use crate::units::round_decimal;
+use crate::scenario::{Quantity, Scenario, Visibility};
 use crate::validate::Tally;
 
 /// The summary at the top of the page.
@@ -104,21 +104,7 @@ impl PageSummary {
 
 /// Region, time span and GNSS.
 fn setting(scenario: &Scenario) -> String {
-    let region = match &scenario.region {
-        Region::Grid(grid) => {
-            let [south, north] = grid.latitude_deg;
-            let [west, east] = grid.longitude_deg;
-            let [dlat, dlon] = grid.step_deg;
-            format!(
-                "{} to {} and {} to {} on a {dlat}\u{b0} by {dlon}\u{b0} grid",
-                latitude_label(south),
-                latitude_label(north),
-                longitude_label(west),
-                longitude_label(east)
-            )
-        }
-        Region::Points { file } => format!("the points in {file}"),
-    };
+    let region = region::region(scenario);
     let gnss: Vec<&str> = scenario
         .gnss
         .constellations
@@ -154,30 +140,6 @@ fn preset_title(preset: Preset) -> &'static str {
         Preset::Qzss => "QZSS",
         Preset::Navic => "NavIC",
     }
-}
-
-fn latitude_label(degrees: f64) -> String {
-    hemisphere(degrees, 'N', 'S')
-}
-
-fn longitude_label(degrees: f64) -> String {
-    let wrapped = crate::units::wrap_360(degrees);
-    let east = if wrapped > 180.0 {
-        wrapped - 360.0
-    } else {
-        wrapped
-    };
-    hemisphere(east, 'E', 'W')
-}
-
-/// `53° N`, `10° W`, and `0°` without a hemisphere.
-fn hemisphere(degrees: f64, positive: char, negative: char) -> String {
-    let size = round_decimal(degrees.abs(), 6);
-    if size == 0.0 {
-        return "0\u{b0}".to_owned();
-    }
-    let letter = if degrees > 0.0 { positive } else { negative };
-    format!("{size}\u{b0} {letter}")
 }
 
 /// What the search did.

@@ -406,7 +406,7 @@ fn read_list<R: Rule>(
     read_each(rule, node, reading)?.into_iter().collect()
 }
 
-fn read_different<R: Rule<Value: Eq + Hash>>(
+pub(super) fn read_different<R: Rule<Value: Eq + Hash>>(
     rule: &R,
     node: &Node<'_>,
     reading: &mut Reading<'_>,
@@ -426,7 +426,7 @@ fn read_different<R: Rule<Value: Eq + Hash>>(
     values.filter(|_| different)
 }
 
-fn write_list<R: Rule>(rule: &R, values: &[R::Value]) -> String {
+pub(super) fn write_list<R: Rule>(rule: &R, values: &[R::Value]) -> String {
     let written: Vec<String> = values.iter().map(|value| rule.write(value)).collect();
     format!("[{}]", written.join(", "))
 }

@@ -1,7 +1,7 @@
 //! What must agree: the scenario, its canonical text and its hash.
 
 use super::{defaults, parse};
-use crate::scenario::{Scenario, builtin, describe_keys, reference_markdown};
+use crate::scenario::{KeyDescription, Scenario, builtin, describe_keys, reference_markdown};
 
 fn with(overrides: &[&str]) -> Scenario {
     parse("", overrides).unwrap_or_else(|problems| panic!("{problems}"))
@@ -13,6 +13,9 @@ fn the_canonical_text_has_every_key_and_parses_back() {
     // What has no value unless it is given.
     let absent = [
         "points",
+        "polygon",
+        "country",
+        "spacing-km",
         "raan-deg",
         "arg-latitude-deg",
         "node-step-deg",
@@ -58,6 +61,8 @@ fn the_hash_moves_with_everything_that_is_computed() {
         "region.longitude-deg=[73, 137]",
         "region.step-deg=4",
         "region.weights=cos-latitude",
+        "region.spacing-km=500",
+        "region.country=Japan",
         "visibility.mask-deg=8",
         "visibility.gnss-mask-deg=8",
         "visibility.mask-table=[[0, 10], [360, 10]]",
@@ -137,8 +142,9 @@ fn the_hash_moves_with_everything_that_is_computed() {
     hashes.push(with(&base).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, gnss.files; optimizer.generations
-    let (labels, files, budgets) = (6, 2, 1);
+    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files;
+    // optimizer.generations
+    let (labels, files, budgets) = (6, 3, 1);
     assert_eq!(
         changes.len() + errors.len() + labels + files + budgets,
         describe_keys().len()

@@ -1,7 +1,8 @@
 //! `--set` arguments over a file.
 
 use super::parse;
-use crate::scenario::{Clocks, Fault, Place, PointWeights, Quantity, Region, builtin};
+use crate::ground::{AreaPoints, Country};
+use crate::scenario::{AreaSource, Clocks, Fault, Place, PointWeights, Quantity, Region, builtin};
 
 fn one_problem(text: &str, overrides: &[&str]) -> String {
     let problems = parse(text, overrides).unwrap_err();
@@ -70,7 +71,7 @@ fn problems_name_the_argument() {
     assert_eq!(
         one_problem("", &["region.weigths=equal"]),
         "--set region.weigths=equal: region.weigths: unknown key, did you mean \
-         `region.weights`? (choices: latitude-deg, longitude-deg, step-deg, weights, points)"
+         `region.weights`? (choices: latitude-deg, longitude-deg, step-deg, weights, spacing-km, polygon, country, points)"
     );
     let nearest = one_problem("", &["optimiser.seed=4"]);
     assert!(
@@ -137,6 +138,83 @@ fn points_replace_the_grid_of_the_file_and_the_reverse() {
     assert!(
         both.contains("region.step-deg: excluded by `region.points`"),
         "{both}"
+    );
+}
+
+/// A region of one kind replaces what a file says of another; what both have stays.
+#[test]
+fn kinds_of_regions_replace_each_other() {
+    let paper = builtin("paper").unwrap();
+    let region = |text: &str, overrides: &[&str]| parse(text, overrides).unwrap().region;
+    let china = vec![Country::find("China").unwrap()];
+    let lattice = AreaPoints::Lattice {
+        step_deg: [2.0, 2.0],
+        weights: PointWeights::Equal,
+    };
+    assert_eq!(
+        region(paper, &["region.country=china", "region.step-deg=2"]),
+        Region::Area {
+            source: AreaSource::Countries(china.clone()),
+            points: lattice
+        }
+    );
+    assert_eq!(
+        region(
+            paper,
+            &["region.polygon=a.geojson", "region.spacing-km=100"]
+        ),
+        Region::Area {
+            source: AreaSource::Polygon {
+                file: "a.geojson".to_owned()
+            },
+            points: AreaPoints::Cells { spacing_km: 100.0 }
+        }
+    );
+    let Region::Cells(cells) = region(paper, &["region.spacing-km=100"]) else {
+        panic!("the limits of the file stay");
+    };
+    assert_eq!(cells.latitude_deg, [3.0, 54.0]);
+    let text = "[region]\ncountry = [\"Japan\"]\nspacing-km = 50";
+    assert!(matches!(
+        region(text, &["region.longitude-deg=[0,9]"]),
+        Region::Cells(_)
+    ));
+    assert!(matches!(
+        region(text, &["region.points=a.csv"]),
+        Region::Points { .. }
+    ));
+    assert!(matches!(
+        region(text, &["region.step-deg=1"]),
+        Region::Area {
+            points: AreaPoints::Lattice { .. },
+            ..
+        }
+    ));
+    for (text, message) in [
+        (
+            "country = \"China\"\npolygon = \"a\"",
+            "region.polygon: excluded by `region.country`",
+        ),
+        (
+            "country = \"China\"\nlatitude-deg = [0, 1]",
+            "region.latitude-deg: excluded by `region.country`",
+        ),
+        (
+            "weights = \"equal\"\nspacing-km = 500",
+            "region.weights: excluded by `region.spacing-km`",
+        ),
+        (
+            "points = \"a\"\nspacing-km = 500",
+            "region.spacing-km: excluded by `region.points`",
+        ),
+    ] {
+        let problem = one_problem(&format!("[region]\n{text}"), &[]);
+        assert!(problem.contains(message), "{problem}");
+    }
+    let empty = one_problem("[region]\ncountry = []", &[]);
+    assert!(
+        empty.contains("found [], expected the name of a country, or a list of one or more"),
+        "{empty}"
     );
 }
 

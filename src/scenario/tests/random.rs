@@ -7,11 +7,12 @@ use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
 use super::parse;
+use crate::ground::{AreaPoints, Country, EqualAreaCells};
 use crate::scenario::{
-    Algorithm, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics, GnssSetup,
-    Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives, Optimizer,
-    Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Scenario, SearchShells,
-    SearchSpace, TimeSpan, Visibility, template,
+    Algorithm, AreaSource, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics,
+    GnssSetup, Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives,
+    Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Scenario,
+    SearchShells, SearchSpace, TimeSpan, Visibility, template,
 };
 use crate::search::{ShellSpace, SweepSteps};
 
@@ -85,7 +86,33 @@ fn region() -> impl Strategy<Value = Region> {
             weights,
         })
     });
-    prop_oneof![grid, file().prop_map(|file| Region::Points { file })]
+    let grid = grid.boxed();
+    let limits = grid.clone();
+    let cells = (limits, 500.0..=20_000.0).prop_map(|(region, spacing_km)| match region {
+        Region::Grid(grid) => Region::Cells(EqualAreaCells {
+            latitude_deg: grid.latitude_deg,
+            longitude_deg: grid.longitude_deg,
+            spacing_km,
+        }),
+        other => other,
+    });
+    let countries: Vec<Country> = Country::all().collect();
+    let source = prop_oneof![
+        file().prop_map(|file| AreaSource::Polygon { file }),
+        subsequence(countries, 1..4).prop_map(AreaSource::Countries),
+    ];
+    let points = prop_oneof![
+        (0.1..=20_000.0).prop_map(|spacing_km| AreaPoints::Cells { spacing_km }),
+        ([0.5..=360.0, 0.5..=360.0], word())
+            .prop_map(|(step_deg, weights)| AreaPoints::Lattice { step_deg, weights }),
+    ];
+    let area = (source, points).prop_map(|(source, points)| Region::Area { source, points });
+    prop_oneof![
+        grid,
+        cells,
+        area,
+        file().prop_map(|file| Region::Points { file })
+    ]
 }
 
 fn visibility() -> impl Strategy<Value = Visibility> {

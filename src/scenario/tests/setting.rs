@@ -178,7 +178,7 @@ fn latitudes_run_northwards() {
 fn longitudes_run_eastwards() {
     let longitudes = |text: &str| match accepts("region", text).region {
         Region::Grid(grid) => grid.longitude_deg,
-        Region::Points { .. } => panic!("{text} is a grid"),
+        _ => panic!("{text} is a grid"),
     };
     assert_eq!(longitudes("longitude-deg = [160, -155]"), [160.0, 205.0]);
     assert_eq!(longitudes("longitude-deg = [160, 205]"), [160.0, 205.0]);

@@ -9,8 +9,8 @@ use crate::formats::WriteError;
 use crate::formats::maps::palette::{Palette, period_s, place_text};
 use crate::formats::maps::scene::{ColourScale, Scene, colour_of, point_place, shown, wrapped};
 use crate::frames::EarthFixed;
-use crate::ground::Grid;
 use crate::ground::shapes::LonLat;
+use crate::ground::{RegionMap, Tiling};
 use crate::units::round_decimal;
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -274,9 +274,13 @@ fn region(scene: &Scene<'_>) -> Result<Vec<Value>, WriteError> {
     for (n, point) in points.iter().enumerate() {
         packets.push(place(scene, scale.as_ref(), (n, point)));
     }
-    if let Some(grid) = scene.grid() {
-        packets.push(outline(scene, points));
-        packets.extend(legend(grid, scale.as_ref()));
+    let map = &scene.setup().map;
+    if let Some(tiling) = &map.tiling {
+        if map.outlines.is_empty() {
+            packets.push(outline(scene, points));
+        }
+        packets.extend(map.outlines.iter().enumerate().map(border));
+        packets.extend(legend(map, tiling, points, scale.as_ref()));
     }
     Ok(packets)
 }
@@ -374,15 +378,47 @@ fn outline(scene: &Scene<'_>, points: &[PointMetrics]) -> Value {
     })
 }
 
+/// A border of an area.
+fn border((n, line): (usize, &Vec<LonLat>)) -> Value {
+    let degrees = line.iter().flat_map(|[x, y]| [wrapped(*x), *y, 0.0]);
+    json!({
+        "id": format!("region-border:{}", n + 1),
+        "name": "Region",
+        "parent": "region",
+        "polyline": {
+            "positions": {"cartographicDegrees": degrees.collect::<Vec<f64>>()},
+            "arcType": "RHUMB",
+            "width": 2,
+            "material": {"solidColor": {"color": rgba([255, 255, 255], 255)}},
+        },
+    })
+}
+
+/// South-west and north-east corner around points.
+fn frame(points: &[PointMetrics]) -> [LonLat; 2] {
+    let nothing = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    points.iter().fold(nothing, |[low, high], point| {
+        let place = [point.longitude_deg, point.latitude_deg];
+        let each =
+            |pick: fn(f64, f64) -> f64, of: LonLat| [pick(of[0], place[0]), pick(of[1], place[1])];
+        [each(f64::min, low), each(f64::max, high)]
+    })
+}
+
 /// Labels in the colours of the scale along the southern edge of the region.
-fn legend(grid: &Grid, scale: Option<&ColourScale>) -> Vec<Value> {
+fn legend(
+    map: &RegionMap,
+    tiling: &Tiling,
+    points: &[PointMetrics],
+    scale: Option<&ColourScale>,
+) -> Vec<Value> {
     let Some(scale) = scale else {
         return Vec::new();
     };
     let entries = scale.legend();
-    let [south, _] = grid.latitude_deg;
-    let latitude = (south - 1.5 * grid.step_deg[0]).max(-85.0);
-    let [west, east] = grid.longitude_deg;
+    let [[west, south], [east, _]] = map.rectangle.unwrap_or_else(|| frame(points));
+    let step_deg = map.step_deg().map_or(tiling.step_deg(), |step| step[0]);
+    let latitude = (south - 1.5 * step_deg).max(-85.0);
     let span = if east >= west {
         east - west
     } else {

@@ -5,6 +5,7 @@ use crate::report::coastline;
 use crate::report::figures::MapChart;
 use plotters::prelude::*;
 use plotters::style::colors::colormaps::ViridisRGB;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Space for the colour scale.
 const SCALE_WIDTH: u32 = 96;
@@ -17,6 +18,9 @@ const Y_LABELS: u32 = 56;
 
 /// Colour of a missing value.
 const NOTHING: RGBColor = RGBColor(215, 215, 215);
+
+/// Most names on a map.
+const MOST_NAMES: usize = 60;
 
 /// Range of heights in which a map is readable.
 const HEIGHTS: std::ops::RangeInclusive<f64> = 260.0..=900.0;
@@ -64,12 +68,12 @@ fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Dr
         Some(value) => ViridisRGB::get_color_normalized(value, range.start, range.end),
         None => NOTHING,
     };
-    match chart.cell_deg {
-        Some([height, width]) => {
+    match &chart.map.tiling {
+        Some(tiling) => {
             let cell = |&(x, y, value): &(f64, f64, Option<f64>)| {
-                let (a, b) = (width / 2.0, height / 2.0);
-                let low = (x - a, (y - b).max(south));
-                let high = (x + a, (y + b).min(north));
+                let [low, high] = tiling.cell([x, y]);
+                let low = (low[0], low[1].max(south));
+                let high = (high[0], high[1].min(north));
                 Rectangle::new([low, high], paint(value).filled())
             };
             context.draw_series(chart.cells.iter().map(cell))?;
@@ -88,6 +92,25 @@ fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Dr
             (x.clamp(west, east), y.clamp(south, north))
         });
         context.draw_series(LineSeries::new(points, coast))?;
+    }
+    let border = line(INK, 2);
+    for line in coastline::lines_within(&chart.map.outlines, &chart.bounds) {
+        let points = line
+            .into_iter()
+            .map(|[x, y]| (x.clamp(west, east), y.clamp(south, north)));
+        context.draw_series(LineSeries::new(points, border))?;
+    }
+    if chart.names.len() <= MOST_NAMES {
+        let named = chart.cells.iter().zip(&chart.names);
+        let label = |(&(x, y, _), name): (&(f64, f64, Option<f64>), &String)| {
+            // To the left of a mark in the east of the map, so that the name stays inside.
+            let is_east = x > 0.5 * (west + east);
+            let at = if is_east { HPos::Right } else { HPos::Left };
+            let style = font(11).color(&BLACK).pos(Pos::new(at, VPos::Center));
+            let aside = if is_east { -signed(8) } else { signed(8) };
+            EmptyElement::at((x, y)) + Text::new(name.clone(), (aside, 0), style)
+        };
+        context.draw_series(named.map(label))?;
     }
     context
         .configure_mesh()

@@ -1,4 +1,5 @@
 use super::*;
+use crate::ground::{RegionMap, Tiling};
 use crate::report::coastline::Bounds;
 use crate::report::figures::{Layer, MapChart, Style};
 
@@ -24,7 +25,7 @@ fn plane() -> Chart {
     })
 }
 
-fn map(cell_deg: Option<[f64; 2]>) -> Chart {
+fn map(step_deg: Option<[f64; 2]>) -> Chart {
     Chart::Map(MapChart {
         title: "map".to_owned(),
         label: "PDOP".to_owned(),
@@ -33,7 +34,15 @@ fn map(cell_deg: Option<[f64; 2]>) -> Chart {
             (12.0, 50.0, None),
             (14.0, 50.0, Some(2.5)),
         ],
-        cell_deg,
+        names: match step_deg {
+            Some(_) => Vec::new(),
+            None => ["Westerland", "", "Ostend"].map(str::to_owned).to_vec(),
+        },
+        map: RegionMap {
+            tiling: step_deg.map(Tiling::Steps),
+            outlines: vec![vec![[9.0, 49.0], [15.0, 49.0], [12.0, 53.0], [9.0, 49.0]]].into(),
+            ..RegionMap::default()
+        },
         bounds: Bounds {
             latitude_deg: [48.0, 56.0],
             longitude_deg: [7.0, 17.0],

@@ -3,10 +3,10 @@
 use super::interval;
 use crate::earth::{GMST_RATE_RAD_S, RADIUS_KM};
 use crate::evaluate::Setup;
-use crate::ground::Site;
+use crate::ground::{CellRow, Site, Tiling};
 use crate::report::coastline::{self, Bounds};
 use crate::report::page::pack::{Packed, short};
-use crate::scenario::{Region, Scenario};
+use crate::scenario::Scenario;
 use chrono::{DateTime, Timelike, Utc};
 use serde::Serialize;
 
@@ -18,8 +18,16 @@ pub(super) struct RegionData {
     name: Vec<String>,
     /// Steps in latitude and longitude, of a grid.
     step_deg: Option<[f64; 2]>,
+    /// The rows of cells of equal area: south and north edge and width of a cell.
+    rows_deg: Vec<[f64; 3]>,
+    /// The row of each point, of cells of equal area.
+    row: Vec<usize>,
+    /// Whether the points fill a rectangle of latitude and longitude.
+    is_rectangle: bool,
     bounds: [f64; 4],
     coast: Vec<Vec<i32>>,
+    /// The borders of an area.
+    border: Vec<Vec<i32>>,
     elapsed_h: Packed,
     availability_pdop: f64,
 }
@@ -53,27 +61,34 @@ fn name_of(site: &Site) -> String {
 }
 
 impl RegionData {
-    pub(super) fn new(setup: &Setup, scenario: &Scenario) -> Option<Self> {
-        let step_deg = match &scenario.region {
-            Region::Grid(grid) => Some(grid.step_deg),
-            Region::Points { .. } => None,
+    pub(super) fn new(setup: &Setup) -> Option<Self> {
+        let map = &setup.map;
+        let rows: &[CellRow] = match &map.tiling {
+            Some(Tiling::Rows(rows)) => rows,
+            _ => &[],
         };
-        let margin = step_deg.map_or(3.0, |[a, b]| a.max(b) / 2.0);
+        let row_of = |site: &Site| map.tiling.as_ref()?.row(site.latitude_deg);
         let places = setup
             .sites
             .iter()
             .map(|s| (s.latitude_deg, s.longitude_deg));
-        let bounds = Bounds::around(places, margin)?;
+        let bounds = Bounds::around(places, map.margin_deg())?;
         let times: Vec<f64> = setup.grid.iter().collect();
         let starts = times.iter().step_by(interval(times.len()));
         Some(Self {
             latitude_deg: setup.sites.iter().map(|s| short(s.latitude_deg)).collect(),
             longitude_deg: setup.sites.iter().map(|s| short(s.longitude_deg)).collect(),
-            name: match step_deg {
+            name: match map.tiling {
                 Some(_) => Vec::new(),
                 None => setup.sites.iter().map(name_of).collect(),
             },
-            step_deg,
+            step_deg: map.step_deg(),
+            rows_deg: rows
+                .iter()
+                .map(|row| [row.edges_deg[0], row.edges_deg[1], row.width_deg])
+                .collect(),
+            row: setup.sites.iter().filter_map(row_of).collect(),
+            is_rectangle: map.rectangle.is_some(),
             bounds: [
                 bounds.latitude_deg[0],
                 bounds.latitude_deg[1],
@@ -81,6 +96,7 @@ impl RegionData {
                 bounds.longitude_deg[1],
             ],
             coast: hundredths(coastline::within(&bounds)),
+            border: hundredths(coastline::lines_within(&map.outlines, &bounds)),
             elapsed_h: Packed::of(starts.map(|t| t / crate::units::SECONDS_PER_HOUR)),
             availability_pdop: setup.metrics.availability_pdop,
         })
