@@ -1,7 +1,7 @@
 //! What must agree: the scenario, its canonical text and its hash.
 
 use super::{defaults, parse};
-use crate::scenario::{KeyDescription, Scenario, builtin, describe_keys, reference_markdown};
+use crate::scenario::{Scenario, builtin, describe_keys, reference_markdown};
 
 fn with(overrides: &[&str]) -> Scenario {
     parse("", overrides).unwrap_or_else(|problems| panic!("{problems}"))
