@@ -7,15 +7,16 @@
 use divan::{Bencher, black_box};
 use navwalker::constellation::Design;
 use navwalker::constellation::gnss::Preset;
-use navwalker::dop::{ClockGroup, Geometry};
+use navwalker::dop::{ClockGroup, Geometry, ObservationWeights};
 use navwalker::earth::Surface;
 use navwalker::ephemeris::Ephemeris;
 use navwalker::evaluate::{Evaluator, InstructionSet, Setup};
-use navwalker::frames::EarthRotation;
+use navwalker::frames::{EarthRotation, Position};
 use navwalker::ground::{Grid, PointWeights};
 use navwalker::orbit::Model;
 use navwalker::stats::{Level, summarize};
 use navwalker::time::{Epoch, TimeGrid};
+use navwalker::visibility::MaskTable;
 
 fn main() {
     divan::main();
@@ -135,6 +136,58 @@ fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
     let evaluator = Evaluator::with_instructions(paper(), instructions).expect(SOUND);
     let design = design();
     bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
+}
+
+/// The same with what users add to it: equal weights, weights by area, points 9 km high.
+#[divan::bench(sample_count = 100, args = ["equal", "cos-latitude", "heights"])]
+fn points(bencher: Bencher, what: &str) {
+    let mut setup = paper();
+    for site in &mut setup.sites {
+        match what {
+            "cos-latitude" => site.weight = site.latitude_deg.to_radians().cos(),
+            "heights" => {
+                let origin_km = site.local.origin_km.km() + site.local.up * 9.0;
+                site.local.origin_km = Position::new(origin_km);
+            }
+            _ => {}
+        }
+    }
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    let design = design();
+    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
+}
+
+/// Skylines and the weighting of observations by elevation, by the plain path.
+#[divan::bench(sample_count = 5, args = ["skyline", "sine-elevation"])]
+fn observations(bencher: Bencher, what: &str) {
+    let setup = match what {
+        "skyline" => {
+            let street = [
+                (0.0, 10.0),
+                (90.0, 50.0),
+                (180.0, 10.0),
+                (270.0, 50.0),
+                (360.0, 10.0),
+            ];
+            paper().with_skyline(MaskTable::new(street.to_vec()).expect(SOUND))
+        }
+        _ => paper().with_observation_weights(ObservationWeights::SineElevation),
+    };
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    let design = design();
+    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
+}
+
+/// The cuts of `--series`, and all dilutions of `--dops`.
+#[divan::bench(sample_count = 20, args = ["series", "dops"])]
+fn tables(bencher: Bencher, what: &str) {
+    let setup = paper();
+    let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    bencher.bench_local(|| match what {
+        "series" => drop(black_box(evaluator.series(&ephemeris).expect(SOUND))),
+        _ => drop(black_box(evaluator.dops(&ephemeris).expect(SOUND))),
+    });
 }
 
 /// A hybrid of 182 satellites, its two shells, and no satellites at all: what the hybrid costs beyond the last is

@@ -61,7 +61,6 @@ use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
-use dilutions::{Dilution, DilutionRows};
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
 use lanes::{LANES, Lanes, MaskTerms};
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
@@ -72,7 +71,7 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Work
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
-use tally::{Tally, TallySample};
+use tally::Tally;
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -154,11 +153,6 @@ type Parts = Vec<(Rechecks, Vec<f64>)>;
 /// A sum over all chunks. They stay in order, so it does not depend on the number of threads.
 fn summed(parts: &Parts, number: usize) -> f64 {
     parts.iter().map(|(_, sums)| sums[number]).sum()
-}
-
-/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
-fn largest_dilution(pdop_cap: f64, clocks: usize) -> f64 {
-    (pdop_cap * pdop_cap + clocks as f64 * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
 }
 
 /// One instant that is evaluated.
@@ -406,104 +400,6 @@ impl Kernel {
                     Ok((all.merged(&more), parts))
                 },
             )
-    }
-
-    /// Statistics of all dilutions: GDOP, PDOP, HDOP, VDOP and the TDOP of each clock.
-    pub(super) fn dops(
-        &self,
-        ephemeris: &Ephemeris,
-    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
-        let propagation = &Propagation::new(ephemeris);
-        let dilution = Dilution {
-            setup: &self.setup,
-            scene: &self.scene,
-            fixed: &self.fixed,
-            leo: ephemeris,
-        };
-        let tiles = self.scene.tiles.tiles.len();
-        let clocks = self.scene.limits.clocks as usize;
-        let rows = || DilutionRows::new(clocks, tiles);
-        let chunks = self.chunks(self.setup.grid.len());
-        let places = Places::new(largest_dilution(self.setup.pdop_cap, clocks));
-        let level = self.setup.metrics.cvar_level;
-        let channels = rows().0.len();
-        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
-            let mut kept = vec![Vec::new(); channels];
-            for chunk in chunks {
-                let mut rows = rows();
-                self.run(propagation, chunk, self.scene.limits, |instant| {
-                    dilution.compute(instant, &mut rows)?;
-                    let pairs = kept.iter_mut().zip(&rows.0);
-                    pairs.for_each(|(kept, row)| kept.extend_from_slice(row));
-                    Ok(())
-                })?;
-            }
-            let summary = |values: &Vec<Lanes<f32>>| {
-                let (mut counts, mut found) = (Counts::new(places), Found::new());
-                let sum = self.count(values, &mut counts);
-                let search = RankSearch::new(&counts, level)?;
-                let tail = self.find(values, &search, &mut found);
-                Some(search.summary(&found, sum, tail))
-            };
-            return Ok(kept.iter().map(summary).collect());
-        }
-        let (counts, sums) = self.pass(
-            propagation,
-            &chunks,
-            || vec![Counts::new(places); channels],
-            |instant, counts, sums| {
-                let mut rows = rows();
-                dilution.compute(instant, &mut rows)?;
-                for (n, row) in rows.0.iter().enumerate() {
-                    sums[n] += self.count(row, &mut counts[n]);
-                }
-                Ok(())
-            },
-            channels,
-        )?;
-        let searches: Vec<_> = counts
-            .iter()
-            .map(|counts| RankSearch::new(counts, level))
-            .collect();
-        let (found, tails) = self.pass(
-            propagation,
-            &chunks,
-            || vec![Found::new(); channels],
-            |instant, found, tails| {
-                let mut rows = rows();
-                dilution.compute(instant, &mut rows)?;
-                for (n, (row, search)) in rows.0.iter().zip(&searches).enumerate() {
-                    if let Some(search) = search {
-                        tails[n] += self.find(row, search, &mut found[n]);
-                    }
-                }
-                Ok(())
-            },
-            channels,
-        )?;
-        let summary = |(n, search): (usize, &Option<RankSearch>)| {
-            let search = search.as_ref()?;
-            Some(search.summary(&found[n], summed(&sums, n), summed(&tails, n)))
-        };
-        Ok(searches.iter().enumerate().map(summary).collect())
-    }
-
-    /// An empty tally of some satellites.
-    fn tally(&self, propagation: &Propagation<'_>) -> Tally {
-        let leo = propagation.ephemeris.satellites().len();
-        let systems = self.fixed.systems.iter();
-        let gnss = systems.map(|system| system.satellites().len()).sum();
-        Tally::new(self.scene.tiles.tiles.len(), leo, gnss)
-    }
-
-    fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut Tally) {
-        self.instructions.run(TallySample {
-            tiles: &self.scene.tiles.tiles,
-            outcome: instant.outcome,
-            fixed: instant.fixed,
-            available: self.scene.limits.available.single(),
-            to,
-        });
     }
 
     fn count(&self, values: &[Lanes<f32>], counts: &mut Counts) -> f64 {

@@ -7,14 +7,17 @@
 
 use super::super::dops::{CLOCKS_FROM, groups};
 use super::super::{Setup, fixed, plain};
-use super::Evaluating;
 use super::fixed::{Fixed, FixedSystem};
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, Sums};
+use super::order_statistics::{Counts, Found, Places, RankSearch};
+use super::propagation::Propagation;
 use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use super::tiles::Tile;
+use super::{Evaluating, Kernel, summed};
 use crate::dop::{Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::stats::Summary;
 
 /// PDOP up to which the inverse by minors has ten digits.
 const LANES_BELOW: f32 = 50.0;
@@ -27,10 +30,10 @@ const VDOP: usize = 3;
 
 /// The dilutions of one instant, tile by tile; [`UNSOLVED`] if there is none.
 #[derive(Debug, Clone)]
-pub(super) struct DilutionRows(pub(super) Vec<Vec<Lanes<f32>>>);
+struct DilutionRows(Vec<Vec<Lanes<f32>>>);
 
 impl DilutionRows {
-    pub(super) fn new(clocks: usize, tiles: usize) -> Self {
+    fn new(clocks: usize, tiles: usize) -> Self {
         Self(vec![
             vec![Lanes([UNSOLVED; LANES]); tiles];
             CLOCKS_FROM + clocks
@@ -51,15 +54,15 @@ impl DilutionRows {
 }
 
 /// Computes the dilutions of an instant.
-pub(super) struct Dilution<'a> {
-    pub(super) setup: &'a Setup,
-    pub(super) scene: &'a SampleContext,
-    pub(super) fixed: &'a Fixed,
-    pub(super) leo: &'a Ephemeris,
+struct Dilution<'a> {
+    setup: &'a Setup,
+    scene: &'a SampleContext,
+    fixed: &'a Fixed,
+    leo: &'a Ephemeris,
 }
 
 impl Dilution<'_> {
-    pub(super) fn compute(
+    fn compute(
         &self,
         evaluating: &mut Evaluating<'_>,
         rows: &mut DilutionRows,
@@ -103,6 +106,116 @@ impl Dilution<'_> {
         }
         rest
     }
+}
+
+impl Kernel {
+    /// Statistics of all dilutions: GDOP, PDOP, HDOP, VDOP and the TDOP of each clock.
+    pub(in super::super) fn dops(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
+        let propagation = &Propagation::new(ephemeris);
+        let dilution = Dilution {
+            setup: &self.setup,
+            scene: &self.scene,
+            fixed: &self.fixed,
+            leo: ephemeris,
+        };
+        if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
+            self.dops_keeping(propagation, &dilution)
+        } else {
+            self.dops_streaming(propagation, &dilution)
+        }
+    }
+
+    fn dilution_rows(&self) -> DilutionRows {
+        let clocks = self.scene.limits.clocks as usize;
+        DilutionRows::new(clocks, self.scene.tiles.tiles.len())
+    }
+
+    fn dilution_places(&self) -> Places {
+        let clocks = f64::from(self.scene.limits.clocks);
+        Places::new(largest_dilution(self.setup.pdop_cap, clocks))
+    }
+
+    /// One pass over the samples and two over the stored values.
+    fn dops_keeping(
+        &self,
+        propagation: &Propagation<'_>,
+        dilution: &Dilution<'_>,
+    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
+        let mut rows = self.dilution_rows();
+        let mut kept = vec![Vec::new(); rows.0.len()];
+        let samples = 0..self.setup.grid.len();
+        self.run(propagation, samples, self.scene.limits, |instant| {
+            dilution.compute(instant, &mut rows)?;
+            let pairs = kept.iter_mut().zip(&rows.0);
+            pairs.for_each(|(kept, row)| kept.extend_from_slice(row));
+            Ok(())
+        })?;
+        let places = self.dilution_places();
+        let summary = |values: &Vec<Lanes<f32>>| {
+            let (mut counts, mut found) = (Counts::new(places), Found::new());
+            let sum = self.count(values, &mut counts);
+            let search = RankSearch::new(&counts, self.setup.metrics.cvar_level)?;
+            let tail = self.find(values, &search, &mut found);
+            Some(search.summary(&found, sum, tail))
+        };
+        Ok(kept.iter().map(summary).collect())
+    }
+
+    /// Two passes over the samples, each on all threads; only counts are stored.
+    fn dops_streaming(
+        &self,
+        propagation: &Propagation<'_>,
+        dilution: &Dilution<'_>,
+    ) -> Result<Vec<Option<Summary>>, EphemerisError> {
+        let chunks = self.chunks(self.setup.grid.len());
+        let (places, level) = (self.dilution_places(), self.setup.metrics.cvar_level);
+        let channels = self.dilution_rows().0.len();
+        let (counts, sums) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Counts::new(places); channels],
+            |instant, counts, sums| {
+                let mut rows = self.dilution_rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, row) in rows.0.iter().enumerate() {
+                    sums[n] += self.count(row, &mut counts[n]);
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let search = |counts| RankSearch::new(counts, level);
+        let searches: Vec<_> = counts.iter().map(search).collect();
+        let (found, tails) = self.pass(
+            propagation,
+            &chunks,
+            || vec![Found::new(); channels],
+            |instant, found, tails| {
+                let mut rows = self.dilution_rows();
+                dilution.compute(instant, &mut rows)?;
+                for (n, (row, search)) in rows.0.iter().zip(&searches).enumerate() {
+                    if let Some(search) = search {
+                        tails[n] += self.find(row, search, &mut found[n]);
+                    }
+                }
+                Ok(())
+            },
+            channels,
+        )?;
+        let summary = |(n, search): (usize, &Option<RankSearch>)| {
+            let search = search.as_ref()?;
+            Some(search.summary(&found[n], summed(&sums, n), summed(&tails, n)))
+        };
+        Ok(searches.iter().enumerate().map(summary).collect())
+    }
+}
+
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
+fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
+    (pdop_cap * pdop_cap + clocks * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
 }
 
 /// The dilutions at all points of one instant, after its evaluation.

@@ -231,12 +231,12 @@ impl Work for Find<'_> {
         for values in self.values.chunks_exact(self.tiles.len()) {
             for (tile, values) in self.tiles.iter().zip(values) {
                 let mut hits = 0;
-                for l in 0..LANES {
-                    let value = values.0[l];
+                let lanes = tail.iter_mut().zip(&values.0).zip(&tile.weights.real.0);
+                for ((tail, &value), weight) in lanes {
                     let place = places.of(value);
                     let beyond = (place > wanted[VALUE_AT_RISK]) & (place < places.unsolved);
                     let value = f64::from(if beyond { value } else { 0.0 });
-                    tail[l] += tile.weights.real.0[l] * value;
+                    *tail += weight * value;
                     for wanted in wanted {
                         hits |= u32::from(place == wanted);
                     }

@@ -3,13 +3,14 @@
 //! All are whole numbers, so that they do not depend on how the samples are cut into pieces of time.
 
 use super::super::counts::{LongestOutage, Outages, Views};
-use super::Rechecks;
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::order_statistics::Merge;
+use super::propagation::Propagation;
 use super::sample::SampleOutcome;
 use super::tiles::Tile;
+use super::{Evaluating, Kernel, Rechecks};
 
 /// Neighbouring lanes count apart, because most see the same number of satellites and would wait for
 /// each other.
@@ -198,14 +199,34 @@ impl Merge for Tally {
     }
 }
 
+impl Kernel {
+    /// An empty tally of some satellites.
+    pub(super) fn tally(&self, propagation: &Propagation<'_>) -> Tally {
+        let leo = propagation.ephemeris.satellites().len();
+        let systems = self.fixed.systems.iter();
+        let gnss = systems.map(|system| system.satellites().len()).sum();
+        Tally::new(self.scene.tiles.tiles.len(), leo, gnss)
+    }
+
+    pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut Tally) {
+        self.instructions.run(TallySample {
+            tiles: &self.scene.tiles.tiles,
+            outcome: instant.outcome,
+            fixed: instant.fixed,
+            available: self.scene.limits.available.single(),
+            to,
+        });
+    }
+}
+
 /// Counts one instant.
-pub(super) struct TallySample<'a> {
-    pub(super) tiles: &'a [Tile],
-    pub(super) outcome: &'a SampleOutcome,
-    pub(super) fixed: FixedSample<'a>,
+struct TallySample<'a> {
+    tiles: &'a [Tile],
+    outcome: &'a SampleOutcome,
+    fixed: FixedSample<'a>,
     /// PDOP up to which a sample is available.
-    pub(super) available: f32,
-    pub(super) to: &'a mut Tally,
+    available: f32,
+    to: &'a mut Tally,
 }
 
 impl Work for TallySample<'_> {
