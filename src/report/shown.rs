@@ -232,12 +232,14 @@ mod tests {
             text.contains("(1, 10)") && text.contains("(2, 30)"),
             "{text}"
         );
+        #[cfg(any(feature = "cli", feature = "figures"))]
         assert!(
             super::hypervolume(&volume)
                 .unwrap()
                 .contains("0.50000 at (2, 30)")
         );
         volume.at_chosen = None;
+        #[cfg(any(feature = "cli", feature = "figures"))]
         assert_eq!(super::hypervolume(&volume), None);
         assert!(unused_reference(&volume).is_none());
     }
