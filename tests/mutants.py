@@ -15,9 +15,10 @@ import hashlib
 import json
 import os
 import re
+import resource
+import signal
 import subprocess
 import sys
-import threading
 import time
 from collections import Counter
 from pathlib import Path
@@ -28,24 +29,30 @@ ABOVE = ["search", "exchange", "scenario", "study", "validate", "run", "report",
 ROOT = Path(__file__).resolve().parent.parent
 PLACE = ROOT / "target" / "mutants"
 TREE = PLACE / "tree"
+COMMIT = PLACE / "commit"
+TESTS = PLACE / "tests.json"
 RESULTS = PLACE / "results.jsonl"
 # At level 0 a build takes as long, and whole days take minutes.
 BUILD = ["cargo", "test", "--locked", "--lib", "--no-run", "--no-default-features", "--message-format=json"]
 BUILD += [f"--config=profile.test.package.navwalker.{key}" for key in ("opt-level=1", "debug=0")]
-# Seconds for a run of tests; a mutant may never end.
-TIMEOUT_S = 300
+# Processor seconds for a test, ten times what the slowest takes; a mutant may never end.
+LIMIT_S = 100
 
 
-def copy_of_last_commit():
-    """Fills the tree, unless an earlier run has."""
-    if TREE.exists():
-        return
-    TREE.mkdir(parents=True)
-    archive = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, check=True, capture_output=True)
-    subprocess.run(["tar", "-x", "-C", TREE], input=archive.stdout, check=True)
+def copy_of_commit():
+    """Fills the tree: with the commit of an earlier run, of which it may hold a mutant, or the last one."""
+    TREE.mkdir(parents=True, exist_ok=True)
+    if not COMMIT.exists():
+        COMMIT.write_bytes(subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, check=True, capture_output=True).stdout)
+    command = ["git", "archive", COMMIT.read_text().strip()]
+    archive = subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    # With the present time (-m), or Cargo would not build anew what was a mutant.
+    subprocess.run(["tar", "-x", "-m", "-C", TREE], input=archive.stdout, check=True)
     root = TREE / "src" / "lib.rs"
-    cut = re.sub(rf"^pub mod ({'|'.join(ABOVE)});", "", root.read_text(), flags=re.MULTILINE)
+    cut = re.sub(rf"^pub mod ({'|'.join(ABOVE)});", r"pub mod \1 {}", root.read_text(), flags=re.MULTILINE)
     root.write_text(cut)
+    for file in (TREE / "src" / "formats").rglob("tests.rs"):
+        file.write_text("")
 
 
 def sample(count, seed):
@@ -76,41 +83,50 @@ def build():
     return programs[-1] if built.returncode == 0 else None
 
 
-def verdict(program, module):
-    """What the tests of a module say: caught with the first that failed, missed, or timeout."""
-    names = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout.splitlines()
-    names = [name.removesuffix(": test") for name in names if name.startswith(f"{module}::") and name.endswith(": test")]
-    running = subprocess.Popen([program, "--exact", *names], cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-    late = threading.Timer(TIMEOUT_S, running.kill)
-    late.start()
-    failed = next((line.split()[1] for line in running.stdout if line.startswith("test ") and line.endswith("FAILED\n")), None)
-    if failed:
-        running.kill()
-    running.stdout.read()
-    status, is_late = running.wait(), not late.is_alive()
-    late.cancel()
-    if failed:
-        return "caught", failed
-    if is_late:
-        return "timeout", None
-    # A test that ends the process (an overflow of the stack) is as good as one that fails.
-    return ("missed", None) if status == 0 else ("caught", f"status {status}")
+def outcome(program, test):
+    """What one test says of the tree as it is: caught, missed or timeout."""
+    limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (LIMIT_S, LIMIT_S))
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    status = subprocess.run([program, "--exact", test], cwd=TREE, preexec_fn=limit, **quiet).returncode
+    if status in (-signal.SIGXCPU, -signal.SIGKILL):
+        return "timeout"
+    # A test that ends the process, by an overflow of the stack, is as good as one that fails.
+    return "caught" if status else "missed"
 
 
-def run(mutant):
-    """Plants a mutant, runs the tests of its module, and takes it out again."""
+def tests_by_module():
+    """The tests of each module, those first that end soonest; all must pass without a mutant."""
+    if TESTS.exists():
+        return json.loads(TESTS.read_text())
+    program, seconds = build(), {}
+    listed = subprocess.run([program, "--list"], check=True, capture_output=True, text=True).stdout
+    for test in re.findall(rf"^((?:{'|'.join(MODULES)})::.*): test$", listed, flags=re.MULTILINE):
+        began = time.monotonic()
+        if outcome(program, test) != "missed":
+            sys.exit(f"{test} fails as it is")
+        seconds[test] = time.monotonic() - began
+    soonest = sorted(seconds, key=seconds.get)
+    tests = {module: [test for test in soonest if test.startswith(f"{module}::")] for module in MODULES}
+    TESTS.write_text(json.dumps(tests, indent=2))
+    return tests
+
+
+def run(mutant, tests):
+    """Plants a mutant, runs tests until one fails, and takes the mutant out again."""
     file = TREE / mutant["file"]
     source = file.read_text()
-    began = time.monotonic()
     file.write_text(planted(source, mutant))
     try:
         program = build()
-        built = time.monotonic()
-        outcome, by = verdict(program, Path(mutant["file"]).parts[1].removesuffix(".rs")) if program else ("unviable", None)
+        if program is None:
+            return {"name": mutant["name"], "outcome": "unviable"}
+        for test in tests:
+            said = outcome(program, test)
+            if said != "missed":
+                return {"name": mutant["name"], "outcome": said, "by": test}
+        return {"name": mutant["name"], "outcome": "missed"}
     finally:
         file.write_text(source)
-    seconds = {"build_s": round(built - began, 1), "test_s": round(time.monotonic() - built, 1)}
-    return {"name": mutant["name"], "outcome": outcome, "by": by} | seconds
 
 
 def main():
@@ -119,7 +135,7 @@ def main():
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--list", action="store_true", help="print the sample and end")
     chosen = arguments.parse_args()
-    copy_of_last_commit()
+    copy_of_commit()
     total, mutants = sample(chosen.count, chosen.seed)
     if chosen.list:
         print(*(mutant["name"] for mutant in mutants), sep="\n")
@@ -127,12 +143,11 @@ def main():
     print(f"{len(mutants)} of {total} mutants", file=sys.stderr)
     known = RESULTS.read_text().splitlines() if RESULTS.exists() else []
     known = {result["name"]: result for result in map(json.loads, known)}
-    program = build()
-    assert program and all(verdict(program, module) == ("missed", None) for module in MODULES), "the tests fail as they are"
+    tests = tests_by_module()
     for mutant in mutants:
         name = mutant["name"]
         if name not in known:
-            known[name] = run(mutant)
+            known[name] = run(mutant, tests[Path(mutant["file"]).parts[1].removesuffix(".rs")])
             with RESULTS.open("a") as file:
                 file.write(json.dumps(known[name]) + "\n")
     drawn = [known[mutant["name"]] for mutant in mutants]

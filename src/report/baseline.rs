@@ -6,6 +6,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Metrics;
 use crate::exchange::constellation::Constellation;
 use crate::optimize::{Evaluation, dominates};
+use crate::printable::printable;
 use crate::run::{Diagnostic, FrontMember};
 use crate::scenario::{NamedConstellation, Scenario};
 use crate::search::{DesignProblem, Quantity};
@@ -79,8 +80,8 @@ impl Baseline {
         let cost = &goals.launch_cost;
         let value = |quantity: &Quantity| quantity.value_of(satellites, design, &metrics, cost);
         Self {
-            name: shown::name(&one.name),
-            notation: shown::name(&one.made_of()),
+            name: printable(&one.name).into_owned(),
+            notation: printable(&one.made_of()).into_owned(),
             satellites,
             objectives: goals.objectives.iter().map(value).collect(),
             constraints: goals.constrained().iter().map(value).collect(),

@@ -35,22 +35,6 @@ pub(crate) fn named(name: &str, value: Option<f64>) -> String {
     }
 }
 
-/// A name from a user or a file, with escapes for the characters that would change the text around it: controls
-/// and marks of the direction of writing.
-#[must_use]
-pub(crate) fn name(text: &str) -> String {
-    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if c.is_control() || turns(c) {
-            shown.extend(c.escape_unicode());
-        } else {
-            shown.push(c);
-        }
-    }
-    shown
-}
-
 /// A dilution of precision.
 #[must_use]
 pub(crate) fn pdop(value: Option<f64>) -> String {
@@ -208,12 +192,6 @@ mod tests {
         assert_eq!(named("max-pdop", Some(2.201_449_9)), "2.2014");
         assert_eq!(named("max-pdop", None), "none");
         assert_eq!(point(&[2.0, 22.5, 220.0]), "(2, 22.5, 220)");
-    }
-
-    #[test]
-    fn a_name_cannot_turn_the_text_around_it() {
-        assert_eq!(name("a\u{202e}elt.b\n"), "a\\u{202e}elt.b\\u{a}");
-        assert_eq!(name("Δ-2 <b>"), "Δ-2 <b>");
     }
 
     #[test]

@@ -19,6 +19,7 @@ use crate::visibility::Mask;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
+mod limits;
 mod propagated;
 
 fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
