@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Kills navwalker at each system call that changes a file, and looks at what is left.
 
-usage: tests/kill_injection.py [--program PATH] [--jobs N] [CASE...]
+usage: tests/kill_injection.py [--program PATH] [--jobs N] [--most N] [--seed N] [CASE...]
 
 Each case runs one command under `strace --inject=CALL:signal=KILL:when=N`, for every system call that
 changes a file and N = 1, 2, ... until the command ends by itself. strace counts the calls of each thread
 by themselves, so this is done twice: over all threads, where the first that gets to N is killed, and in
-the main thread alone. After each kill:
+the main thread alone. Of a system call that is made more than `--most` times, that many are drawn, one
+from each of as many equal parts of the command, the same for a seed. After each kill:
 
 - every result is the old one or the new one, whole, by the SHA-256 of its files;
 - the next start ends with status 0 and leaves exactly what an uninterrupted command leaves: the same
@@ -18,6 +19,7 @@ Needs strace and Linux. Prints one line a case; exits with 1 if anything is wron
 import argparse
 import hashlib
 import os
+import random
 import re
 import shutil
 import subprocess
@@ -199,9 +201,11 @@ def part(of, result):
 class Fire:
     """Runs the cases with one program."""
 
-    def __init__(self, program, work):
+    def __init__(self, program, work, limit, seed):
         self.program = str(program)
         self.work = Path(work)
+        self.limit = limit
+        self.seed = seed
 
     def call(self, arguments):
         return [self.program, *arguments, "--threads", "1", "--quiet"]
@@ -240,7 +244,7 @@ class Fire:
                 used.setdefault(call, {}).setdefault(thread, []).append(rest)
         kills, wrong = 0, []
         for call, follow in [(call, follow) for call in sorted(used) for follow in (["-f"], [])]:
-            for number in self.numbers(call, used[call]):
+            for number in self.numbers(case, call, used[call]):
                 place = base / "place"
                 shutil.copytree(old, place)
                 injected = [*follow, "-e", f"trace={call}", "-e", f"inject={call}:signal=KILL:when={number}"]
@@ -257,10 +261,10 @@ class Fire:
         """The most calls of one thread."""
         return max(len(lines) for lines in threads.values())
 
-    @staticmethod
-    def numbers(call, threads):
-        """Which calls to kill at: all, but only those of `openat` that can create a file."""
-        most = Fire.most(threads)
+    def numbers(self, case, call, threads):
+        """Which calls to kill at: those of `openat` only that can create a file, and a sample of many."""
+        most = self.most(threads)
+        numbers = range(1, most + 1)
         if call == "openat":
             creating = {
                 number
@@ -268,13 +272,14 @@ class Fire:
                 for number, rest in enumerate(lines, 1)
                 if "O_CREAT" in rest or "O_WRONLY" in rest or "O_RDWR" in rest
             }
-            yield from sorted(creating)
-            yield most + 1
-            return
-        number = 0
-        while number < most + 50:
-            number += 1
-            yield number
+            numbers = sorted(creating)
+        if len(numbers) > self.limit:
+            drawn = random.Random(f"{self.seed} {case.name} {call}")
+            bounds = [part * len(numbers) // self.limit for part in range(self.limit + 1)]
+            numbers = [drawn.choice(numbers[start:end]) for start, end in zip(bounds, bounds[1:])]
+        yield from numbers
+        # Threads share the calls in another way each time.
+        yield from range(most + 1, most + (2 if call == "openat" else 50))
 
     def kill(self, place, injected, case, before, after, wrong):
         """One kill; whether the program was killed."""
@@ -313,6 +318,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=root / "target/debug/navwalker", type=Path)
     parser.add_argument("--jobs", default=os.cpu_count(), type=int)
+    parser.add_argument("--most", default=20, type=int, help="kills at one system call of a case, in each way")
+    parser.add_argument("--seed", default=1, type=int, help="of the sample of system calls")
     parser.add_argument("cases", nargs="*", metavar="CASE", help="beginning of the name of a case")
     arguments = parser.parse_args()
     chosen = [
@@ -324,7 +331,7 @@ def main():
         parser.error("no such case")
     failed = 0
     with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(arguments.jobs) as pool:
-        fire = Fire(arguments.program.resolve(), work)
+        fire = Fire(arguments.program.resolve(), work, arguments.most, arguments.seed)
         total = 0
         for case, (kills, wrong) in zip(chosen, pool.map(fire.case, chosen)):
             print(f"{case.name}: {kills} kills, {len(wrong)} wrong", flush=True)

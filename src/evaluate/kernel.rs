@@ -71,7 +71,7 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Work
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
-use tally::Tally;
+use tally::ViewTally;
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -108,7 +108,7 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    let tallies = setup.sites.len().div_ceil(LANES) * Tally::TILE_BYTES;
+    let tallies = setup.sites.len().div_ceil(LANES) * ViewTally::TILE_BYTES;
     fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
 }
 
@@ -148,10 +148,10 @@ pub(super) struct Kernel {
 }
 
 /// The sums of each chunk, in order.
-type Parts = Vec<(Rechecks, Vec<f64>)>;
+type TilePartials = Vec<(Rechecks, Vec<f64>)>;
 
 /// A sum over all chunks. They stay in order, so it does not depend on the number of threads.
-fn summed(parts: &Parts, number: usize) -> f64 {
+fn summed(parts: &TilePartials, number: usize) -> f64 {
     parts.iter().map(|(_, sums)| sums[number]).sum()
 }
 
@@ -378,7 +378,7 @@ impl Kernel {
         new: impl Fn() -> A + Sync,
         note: impl Fn(&mut Evaluating<'_>, &mut A, &mut [f64]) -> Result<(), EphemerisError> + Sync,
         sums: usize,
-    ) -> Result<(A, Parts), EphemerisError> {
+    ) -> Result<(A, TilePartials), EphemerisError> {
         chunks
             .par_iter()
             .try_fold(
@@ -480,7 +480,7 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &Tally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(&self, tally: &ViewTally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {

@@ -171,7 +171,7 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
-        let mut cuts = Cuts::new(self);
+        let mut cuts = SeriesSums::new(self);
         match self.kernel_for(ephemeris) {
             Some(kernel) => kernel.visit(ephemeris, |instant| cuts.add(instant))?,
             None => self.visit_plain(ephemeris, |instant| cuts.add(instant))?,
@@ -185,7 +185,7 @@ impl Evaluator {
     /// If a satellite cannot be propagated.
     #[cfg(test)]
     pub(super) fn series_plain(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
-        let mut cuts = Cuts::new(self);
+        let mut cuts = SeriesSums::new(self);
         self.visit_plain(ephemeris, |instant| cuts.add(instant))?;
         Ok(cuts.series())
     }
@@ -219,14 +219,14 @@ impl Evaluator {
 }
 
 /// The cuts through the samples while they are made.
-struct Cuts<'a> {
+struct SeriesSums<'a> {
     evaluator: &'a Evaluator,
     available: f32,
     epochs: Vec<EpochMetrics>,
     points: Vec<PointSums>,
 }
 
-impl<'a> Cuts<'a> {
+impl<'a> SeriesSums<'a> {
     fn new(evaluator: &'a Evaluator) -> Self {
         let setup = evaluator.setup();
         Self {

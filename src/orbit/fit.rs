@@ -222,6 +222,29 @@ mod tests {
         }
     }
 
+    /// The diagonal is scaled by 1 + damping, so that each step is shorter than that with less damping, and one with very
+    /// much damping is a gradient step divided by it.
+    #[test]
+    fn damping_shortens_the_step() {
+        let (start, positions, epoch) = case("delta:55:6/3/1@925", Model::J2);
+        let problem = FitProblem {
+            template: &start,
+            positions: &positions,
+            origin: epoch,
+        };
+        let unknowns = unknowns_of(&start);
+        let residuals = problem.residuals(&unknowns).unwrap();
+        let length = |damping: f64| {
+            let (next, _) = problem.step(&unknowns, &residuals, damping).unwrap();
+            (next - unknowns).norm()
+        };
+        let [least, some, much, very_much] = [0.0, 1.0, 1e3, 1e6].map(length);
+        assert!(least > some && some > much, "{least} {some} {much}");
+        // The elements off the diagonal are a thousandth of it at a damping of 1000: the lengths are as 1001 to 1000001.
+        let ratio = much / very_much;
+        assert!((ratio / 999.0 - 1.0).abs() < 0.01, "{ratio}");
+    }
+
     #[test]
     fn a_set_that_sgp4_refuses_is_an_error() {
         let (mut start, positions, epoch) = case("delta:55:6/3/1@925", Model::J2);

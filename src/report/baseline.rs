@@ -6,6 +6,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Metrics;
 use crate::exchange::constellation::Constellation;
 use crate::optimize::{Evaluation, dominates};
+use crate::printable::printable;
 use crate::run::{Diagnostic, FrontMember};
 use crate::scenario::{NamedConstellation, Scenario};
 use crate::search::{DesignProblem, Quantity};
@@ -78,8 +79,8 @@ impl Baseline {
         let (satellites, design) = (one.satellite_count(), one.only_design());
         let value = |quantity: &Quantity| goals.value(*quantity, (satellites, design), &metrics);
         Self {
-            name: shown::name(&one.name),
-            made_of: shown::name(&one.made_of()),
+            name: printable(&one.name).into_owned(),
+            made_of: printable(&one.made_of()).into_owned(),
             satellites,
             objectives: goals.objectives.iter().map(value).collect(),
             constraints: goals.constrained().iter().map(value).collect(),

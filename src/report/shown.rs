@@ -1,6 +1,7 @@
 //! Numbers as people read them: one function for each kind, so that a number has the same digits
 //! in a table, in prose and on the page, rounded once and from its full value.
 
+use crate::printable::printable;
 use crate::run::{Diagnostic, FixedSummary, FrontMember, Hypervolume};
 use crate::search::Quantity;
 use crate::units::counted;
@@ -42,29 +43,13 @@ pub(crate) fn named(name: &str, value: Option<f64>) -> String {
     }
 }
 
-/// A name from a user or a file, with escapes for the characters that would change the text around it: controls
-/// and marks of the direction of writing.
-#[must_use]
-pub(crate) fn name(text: &str) -> String {
-    let turns = |c: char| matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        if c.is_control() || turns(c) {
-            shown.extend(c.escape_unicode());
-        } else {
-            shown.push(c);
-        }
-    }
-    shown
-}
-
 /// What is fixed in a search, as a sentence after another.
 #[must_use]
 pub(crate) fn beside(fixed: &FixedSummary) -> String {
     let satellites = counted(fixed.in_design + fixed.from_files, "satellite");
     format!(
         " Beside each design: {satellites} of {}.",
-        name(&fixed.name)
+        printable(&fixed.name)
     )
 }
 
@@ -228,12 +213,6 @@ mod tests {
     }
 
     #[test]
-    fn a_name_cannot_turn_the_text_around_it() {
-        assert_eq!(name("a\u{202e}elt.b\n"), "a\\u{202e}elt.b\\u{a}");
-        assert_eq!(name("Δ-2 <b>"), "Δ-2 <b>");
-    }
-
-    #[test]
     fn a_reference_of_no_use_is_told() {
         let mut volume = Hypervolume {
             value: None,
@@ -249,12 +228,14 @@ mod tests {
             text.contains("(1, 10)") && text.contains("(2, 30)"),
             "{text}"
         );
+        #[cfg(any(feature = "cli", feature = "figures"))]
         assert!(
             super::hypervolume(&volume)
                 .unwrap()
                 .contains("0.50000 at (2, 30)")
         );
         volume.at_chosen = None;
+        #[cfg(any(feature = "cli", feature = "figures"))]
         assert_eq!(super::hypervolume(&volume), None);
         assert!(unused_reference(&volume).is_none());
     }

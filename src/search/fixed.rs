@@ -11,19 +11,19 @@ use std::sync::Arc;
 pub(super) struct FixedSatellites {
     /// `None` if there are no satellites.
     grid: Option<TimeGrid>,
-    satellites: Vec<(String, Arc<Samples>)>,
+    satellites: Vec<(String, Arc<FixedStates>)>,
 }
 
 /// The states of one satellite; `None` where its file has a gap.
-struct Samples {
+struct FixedStates {
     step_s: f64,
     states: Vec<Option<State<Teme>>>,
 }
 
 /// The propagation of a satellite at the samples alone.
-struct Sampled(Arc<Samples>);
+struct FixedTrajectory(Arc<FixedStates>);
 
-impl Propagator for Sampled {
+impl Propagator for FixedTrajectory {
     fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
         let place = (elapsed_s / self.0.step_s).round();
         let is_sample = place >= 0.0 && place * self.0.step_s == elapsed_s;
@@ -39,7 +39,7 @@ impl FixedSatellites {
         let grid = ephemeris.grid();
         let sampled = |satellite: &EphemerisSatellite| {
             let states = grid.iter().map(|at| ephemeris.state_or_gap(satellite, at));
-            let samples = Samples {
+            let samples = FixedStates {
                 step_s: grid.step_s(),
                 states: states.collect::<Result<_, _>>()?,
             };
@@ -63,10 +63,10 @@ impl FixedSatellites {
     /// The satellites of a design, and these after them.
     pub(super) fn join_to(&self, own: Ephemeris) -> Ephemeris {
         let Some(grid) = self.grid else { return own };
-        let copy = |(name, samples): &(String, Arc<Samples>)| EphemerisSatellite {
+        let copy = |(name, samples): &(String, Arc<FixedStates>)| EphemerisSatellite {
             name: name.clone(),
             slot: None,
-            propagator: Box::new(Sampled(Arc::clone(samples))),
+            propagator: Box::new(FixedTrajectory(Arc::clone(samples))),
         };
         own.joined(Ephemeris::new(
             grid,

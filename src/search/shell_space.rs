@@ -76,7 +76,7 @@ impl SweepSteps {
 }
 
 /// A variable that a shell has only where its limits differ.
-struct Optional {
+struct OptionalVariable {
     name: &'static str,
     limits: [f64; 2],
     decimals: usize,
@@ -124,12 +124,12 @@ impl ShellSpace {
     }
 
     /// The real variables after the first five.
-    fn varied(&self) -> Vec<Optional> {
+    fn varied(&self) -> Vec<OptionalVariable> {
         let steps = &self.steps;
         let (orientation, node_step) = (SweepSteps::ORIENTATION_DEG, SweepSteps::NODE_STEP_DEG);
         let one = |name, limits: Option<[f64; 2]>, decimals, step| {
             let limits = limits.filter(|limits| varies(*limits))?;
-            Some(Optional {
+            Some(OptionalVariable {
                 name,
                 limits,
                 decimals,

@@ -342,24 +342,23 @@ fn inputs_stay() {
         ),
         (
             format!("{export} run"),
-            "contains files that this program did not write",
+            "contains files that this command did not write",
         ),
         (format!("{export} run/new"), "is inside the input run"),
+        (format!("{export} ."), "contains the working directory"),
+        (format!("{export} /"), "is the root of the file system"),
+        (format!("{export} repository"), "it is a repository"),
         (
-            format!("{export} ."),
-            "contains files that this program did not write",
-        ),
-        (
-            format!("{export} repository"),
-            "contains files that this program did not write",
+            "optimize --force --out .".to_owned(),
+            "contains the working directory",
         ),
         (
             format!("{evaluate} fleet"),
-            "contains files that this program did not write",
+            "contains files that this command did not write",
         ),
         (
             format!("{evaluate} fleet/of/us"),
-            "contains files that this program did not write",
+            "contains files that this command did not write",
         ),
         (
             "export study.toml --as tle --out study.toml".to_owned(),

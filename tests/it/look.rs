@@ -162,12 +162,16 @@ fn constellations_are_plotted_without_a_run() {
             "{figure}"
         );
     }
-    // A map shows the first, or the one picked by name or number.
-    let map = |pick: &[&str]| table(&[&["--figure", "map"], pick].concat());
-    let (first, second) = (map(&[]), map(&["--pick", "theirs"]));
+    // A map shows the one that is picked by name or number, and does not choose.
+    let map = |pick: &str| table(&["--figure", "map", "--pick", pick]);
+    let (first, second) = (map("ours"), map("theirs"));
     assert_ne!(first, second);
-    assert_eq!(first, map(&["--pick", "1"]));
-    assert_eq!(second, map(&["--pick", "2"]));
+    assert_eq!(first, map("1"));
+    assert_eq!(second, map("2"));
+    let refused = plot(&["--figure", "map"]);
+    let told = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(told.contains("choose one with --pick"), "{told}");
     for (further, error) in [
         (
             ["--figure", "map", "--pick", "3"],
@@ -512,12 +516,10 @@ fn a_run_of_given_designs_is_shown_as_constellations() {
         let arguments = [&["plot", "given", "--quiet", "--as", "csv"], further].concat();
         stdout(&navwalker(directory.path(), &arguments))
     };
-    let map = |pick: &[&str]| plot(&[&["--figure", "map"], pick].concat());
-    assert_eq!(map(&[]), map(&["--pick", "few"]));
-    assert_eq!(map(&["--pick", "2"]), map(&["--pick", "many"]));
-    assert!(
-        [map(&["--pick", "few"]), map(&["--pick", "many"])].contains(&map(&["--pick", "fuzzy"]))
-    );
+    let map = |pick: &str| plot(&["--figure", "map", "--pick", pick]);
+    assert_eq!(map("1"), map("few"));
+    assert_eq!(map("2"), map("many"));
+    assert!([map("few"), map("many")].contains(&map("fuzzy")));
     assert!(plot(&["--figure", "pareto"]).contains(",many\n"));
 }
 

@@ -10,6 +10,7 @@ use crate::cli::study::{Study, read_manifest};
 use crate::cli::{Status, chart, coincidence, constellations, output};
 use crate::evaluate::{Evaluator, Setup};
 use crate::optimize::{Pick, Search, Strategy};
+use crate::printable::printable;
 use crate::report::front_table::front_table;
 use crate::report::shown;
 use crate::run::inputs::InputError;
@@ -328,7 +329,7 @@ fn fixed_text(fixed: &FixedSummary) -> String {
         in_design,
         from_files,
     } = fixed;
-    let name = shown::name(name);
+    let name = printable(name);
     let mut parts = Vec::new();
     if *in_design > 0 {
         parts.push(format!("{in_design} in the last shells of each notation"));

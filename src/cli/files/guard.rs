@@ -71,9 +71,10 @@ pub(super) fn refuse_ground(place: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Refuses to replace a directory that contains files not in `own`, a list of relative paths with `/`;
-/// a path that ends in `/` covers everything below it.
+/// Refuses to replace a directory that matters beyond this program, or contains files not in `own`, a list of relative
+/// paths with `/`; a path that ends in `/` covers everything below it.
 pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result<()> {
+    refuse_ground(directory).with_context(|| format!("cannot replace {}", directory.display()))?;
     let is_own = |path: &str| {
         own.contains(path)
             || own
@@ -96,7 +97,7 @@ pub(crate) fn refuse_foreign(directory: &Path, own: &BTreeSet<String>) -> Result
         String::new()
     };
     bail!(
-        "{} contains files that this program did not write, and --force would delete them: {}{more}; choose \
+        "{} contains files that this command did not write, and --force would delete them: {}{more}; choose \
          another directory, or move them",
         directory.display(),
         named.join(", ")

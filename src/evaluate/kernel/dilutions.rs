@@ -267,7 +267,7 @@ fn dilute(
     number: usize,
     rows: &mut DilutionRows,
 ) {
-    let covariance = Covariance::new(clocks);
+    let covariance = CofactorLanes::new(clocks);
     let up = &tile.double.up;
     let (mut horizontal2, mut vertical2, mut all2) = (ZERO, ZERO, ZERO);
     for l in 0..LANES {
@@ -313,9 +313,9 @@ fn roots(squares: &Lanes<f64>, pdop: &Lanes<f32>) -> Lanes<f32> {
 }
 
 /// The inverse of the normal matrix: (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
-struct Covariance([Lanes<f64>; 6]);
+struct CofactorLanes([Lanes<f64>; 6]);
 
-impl Covariance {
+impl CofactorLanes {
     #[inline(always)]
     fn new(clocks: &[Sums<f64>]) -> Self {
         let mut normal = [ZERO; 6];

@@ -126,7 +126,7 @@ fn joined(before: Outages, after: Outages) -> Outages {
 
 /// Counts over some instants in a row.
 #[derive(Debug, Clone)]
-pub(super) struct Tally {
+pub(super) struct ViewTally {
     leo: ViewLanes,
     all: ViewLanes,
     /// Weight of the available samples.
@@ -136,7 +136,7 @@ pub(super) struct Tally {
     pub(super) rechecks: Rechecks,
 }
 
-impl Tally {
+impl ViewTally {
     /// No sample yet, of so many tiles and satellites.
     pub(super) fn new(tiles: usize, leo: usize, gnss: usize) -> Self {
         Self {
@@ -177,7 +177,7 @@ impl Tally {
     }
 }
 
-impl Merge for Tally {
+impl Merge for ViewTally {
     /// `other` follows in time.
     fn merged(mut self, other: &Self) -> Self {
         self.leo.merge(&other.leo);
@@ -201,14 +201,14 @@ impl Merge for Tally {
 
 impl Kernel {
     /// An empty tally of some satellites.
-    pub(super) fn tally(&self, propagation: &Propagation<'_>) -> Tally {
+    pub(super) fn tally(&self, propagation: &Propagation<'_>) -> ViewTally {
         let leo = propagation.ephemeris.satellites().len();
         let systems = self.fixed.systems.iter();
         let gnss = systems.map(|system| system.satellites().len()).sum();
-        Tally::new(self.scene.tiles.tiles.len(), leo, gnss)
+        ViewTally::new(self.scene.tiles.tiles.len(), leo, gnss)
     }
 
-    pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut Tally) {
+    pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut ViewTally) {
         self.instructions.run(TallySample {
             tiles: &self.scene.tiles.tiles,
             outcome: instant.outcome,
@@ -226,7 +226,7 @@ struct TallySample<'a> {
     fixed: FixedSample<'a>,
     /// PDOP up to which a sample is available.
     available: f32,
-    to: &'a mut Tally,
+    to: &'a mut ViewTally,
 }
 
 impl Work for TallySample<'_> {

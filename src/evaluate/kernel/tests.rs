@@ -21,6 +21,8 @@ use crate::visibility::Mask;
 use nalgebra::Vector3;
 use proptest::prelude::*;
 
+mod decisions;
+mod limits;
 mod propagated;
 
 fn relative(ours: Option<f64>, theirs: Option<f64>) -> f64 {
@@ -315,74 +317,6 @@ fn whole_days_equal_the_plain_path() {
     }
 }
 
-/// A satellite at rest over the rotating Earth.
-struct Hovering {
-    position_km: Position<EarthFixed>,
-    epoch: Epoch,
-}
-
-impl Propagator for Hovering {
-    fn state_at(&self, elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
-        let rotation = EarthRotation::from_gmst(self.epoch.gmst_rad(elapsed_s));
-        Ok(State {
-            position_km: rotation.to_teme(self.position_km),
-            velocity_km_s: Vector3::zeros(),
-        })
-    }
-}
-
-/// Satellites at the mask itself and a nanodegree to either side, a tenth of a millimetre at 1500 km,
-/// which f32 cannot distinguish.
-#[test]
-fn decisions_at_the_mask_are_those_of_the_plain_path() {
-    let base = setup([3.0, 54.0], Surface::Wgs84);
-    let setup = Setup {
-        grid: TimeGrid::new(base.grid.epoch(), 600.0, 60.0).unwrap(),
-        ..base
-    };
-    let mut satellites = Vec::new();
-    for (n, site) in setup.sites.iter().enumerate() {
-        let azimuth = n as f64;
-        let elevation = (7.0 + if n % 2 == 0 { 1e-9 } else { -1e-9_f64 }).to_radians();
-        let level = site.local.east * azimuth.sin() + site.local.north * azimuth.cos();
-        let line = site.local.up * elevation.sin() + level * elevation.cos();
-        satellites.push(EphemerisSatellite {
-            name: n.to_string(),
-            slot: None,
-            propagator: Box::new(Hovering {
-                position_km: site.local.origin_km + line * 1500.0,
-                epoch: setup.grid.epoch(),
-            }),
-        });
-    }
-    let ephemeris = Ephemeris::new(setup.grid, satellites);
-    let evaluator = Evaluator::new(setup).unwrap();
-    let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, rechecks) = kernel.evaluate(&ephemeris).unwrap();
-    assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
-    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
-    compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
-}
-
-/// A satellite exactly at the mask is visible in the lanes too, and one a rounding below is not; what f32 cannot tell is
-/// possible, so that it is decided again.
-#[test]
-fn at_the_mask_is_visible_in_the_lanes() {
-    for mask_deg in [0.0_f64, 7.0, 10.0, 60.0] {
-        let mask = Mask::from_degrees(mask_deg).unwrap();
-        let sine = mask_deg.to_radians().sin();
-        let double = |height: f64| f64::above(&MaskTerms::new(mask), height, 1.0, height);
-        assert_eq!(double(sine), (true, true), "{mask_deg}");
-        let below = sine - f64::from(f32::EPSILON).powi(2);
-        assert_eq!(double(below), (false, false), "{mask_deg}");
-        let single = MaskTerms::new(mask).with_slack(1e-6);
-        for below in [0.0, 5e-7] {
-            let seen = f32::above(&single, 0.0, 1.0, sine as f32 - below);
-            assert_eq!(seen, (false, true), "{mask_deg}");
-        }
-    }
-}
-
 /// No satellite at all, and satellites that never rise.
 #[test]
 fn nothing_in_view_is_no_failure() {
@@ -496,94 +430,4 @@ fn regress_culling_looks_at_twice_what_is_seen() {
     let seen = evaluator.evaluate(&design).unwrap().mean_visible;
     // 16.6 for 7.84; a worse partition into tiles shows here before it shows in the run time.
     assert!((2.0..2.2).contains(&(per_sample / seen)), "{per_sample}");
-}
-
-/// A decision of f32 within rounding of a threshold is not trusted: thresholds a billionth on either
-/// side of actual values, which f32 cannot distinguish.
-#[test]
-fn decisions_at_a_threshold_are_those_of_the_plain_path() {
-    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
-    let setup = setup([3.0, 54.0], Surface::Sphere);
-    let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-    let plain = Evaluator::new(setup.clone())
-        .unwrap()
-        .evaluate_plain(&ephemeris)
-        .unwrap();
-    for value in [
-        plain.p50_pdop,
-        plain.p95_pdop,
-        plain.p99_pdop,
-        plain.max_pdop,
-    ] {
-        for side in [-1e-9, 1e-9] {
-            let mut setup = setup.clone();
-            setup.metrics.availability_pdop = value.unwrap() * (1.0 + side);
-            let evaluator = Evaluator::new(setup).unwrap();
-            let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
-            let fast = evaluator.evaluate(&design).unwrap();
-            assert_eq!(fast.availability, plain.availability, "{value:?} {side}");
-        }
-    }
-}
-
-/// Satellites so low that f32 cannot decide anything, over points that do not fill their tiles: every
-/// decision is in doubt, but none of a lane without a point.
-#[test]
-fn satellites_just_above_the_ground_are_decided_in_f64() {
-    for model in [Model::J2, Model::J2Osculating] {
-        let setup = Setup {
-            model,
-            mask: Mask::from_degrees(0.0).unwrap(),
-            sites: region([30.0, 40.0], [100.0, 140.0], 10.0)
-                .sites(Surface::Sphere)
-                .unwrap(),
-            ..setup([3.0, 54.0], Surface::Sphere)
-        };
-        let design: Design = "delta:40:900/30/1@0.05".parse().unwrap();
-        let ephemeris = Ephemeris::of_design(&design, model, setup.grid).unwrap();
-        let evaluator = Evaluator::new(setup).unwrap();
-        let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
-        compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
-    }
-}
-
-/// Single values in f32 compared with f64, both computed for every sample: 1e-6, for few and for many
-/// satellites in view, with one clock or several. Order statistics rely on this.
-#[test]
-fn single_values_hold_six_digits() {
-    for (text, clocks) in [
-        ("delta:55:182/13/1@925", Clocks::PerSystem),
-        ("star:123.4:60/6/2@1333", Clocks::Shared),
-        ("delta:50:3000/50/1@1400", Clocks::PerSystem),
-    ] {
-        let design: Design = text.parse().unwrap();
-        let setup = Setup {
-            mask: Mask::from_degrees(0.0).unwrap(),
-            clocks,
-            ..setup([3.0, 54.0], Surface::Wgs84)
-        };
-        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
-        let evaluator = Evaluator::new(setup).unwrap();
-        let kernel = evaluator.kernel.as_ref().unwrap();
-        let values = |single_below: f32| {
-            let limits = Limits {
-                single_below,
-                ..kernel.scene.limits
-            };
-            let propagation = &Propagation::new(&ephemeris);
-            let mut all = Vec::new();
-            let take = |instant: &mut Evaluating<'_>| {
-                all.extend(instant.outcome.pdop.iter().flat_map(|tile| tile.0));
-                Ok(())
-            };
-            kernel.run(propagation, 0..200, limits, take).unwrap();
-            all
-        };
-        let (single, double) = (values(SINGLE_BELOW), values(0.0));
-        let apart = |(s, d): (&f32, &f32)| (f64::from(*s) / f64::from(*d) - 1.0).abs();
-        let solved = single.iter().zip(&double).filter(|(_, d)| d.is_finite());
-        let worst = solved.map(apart).fold(0.0, f64::max);
-        // Measured: 7e-7 over a full day. A maximum of 0 would mean that f64 was not used.
-        assert!((1e-8..1e-6).contains(&worst), "{text}: {worst:e}");
-    }
 }

@@ -129,7 +129,7 @@ impl Fleet {
         let mut notes = Vec::from_iter(seams(&sampled, grid));
         let mut interpolated: Vec<(&Trajectory, &String)> = Vec::new();
         for (trajectory, label) in sampled {
-            let look = Coverage::of(trajectory, grid);
+            let look = SampleCoverage::of(trajectory, grid);
             notes.extend(look.gaps(label, grid.len()));
             if look.interpolates {
                 interpolated.push((trajectory, label));
@@ -159,13 +159,13 @@ impl Fleet {
 }
 
 /// The instants of a grid at which a satellite has states.
-struct Coverage {
+struct SampleCoverage {
     missing: usize,
     ends: Option<(Epoch, Epoch)>,
     interpolates: bool,
 }
 
-impl Coverage {
+impl SampleCoverage {
     fn of(trajectory: &Trajectory, grid: TimeGrid) -> Self {
         let mut found = Self {
             missing: 0,

@@ -12,7 +12,7 @@ const RESTING_SHARE: f64 = 0.5;
 const RESTING_DISTANCE: f64 = 1e-3;
 
 /// A variable of a shell: its name, unit, limits and value.
-struct Bounded {
+struct BoundedVariable {
     name: &'static str,
     unit: &'static str,
     limits: [f64; 2],
@@ -38,8 +38,8 @@ pub fn at_bounds(front: &[FrontMember], space: &DesignSpace) -> Vec<Diagnostic> 
             found.push(unused(place, front.len()));
         }
         let widened = bounded(shell).into_iter().filter(|_| is_used);
-        let at_end = |variable: &Bounded, (bound, side): (f64, &str)| {
-            let Bounded {
+        let at_end = |variable: &BoundedVariable, (bound, side): (f64, &str)| {
+            let BoundedVariable {
                 name,
                 unit,
                 limits: [lo, hi],
@@ -85,10 +85,10 @@ fn unused(place: usize, front: usize) -> Diagnostic {
 }
 
 /// The variables of a shell that vary and have ends.
-fn bounded(shell: &ShellSpace) -> Vec<Bounded> {
+fn bounded(shell: &ShellSpace) -> Vec<BoundedVariable> {
     let whole = |[lo, hi]: [u32; 2]| [f64::from(lo), f64::from(hi)];
     let absent = |limits: Option<[f64; 2]>| limits.unwrap_or([0.0; 2]);
-    let variable = |name, unit, limits, value| Bounded {
+    let variable = |name, unit, limits, value| BoundedVariable {
         name,
         unit,
         limits,
@@ -129,7 +129,7 @@ fn bounded(shell: &ShellSpace) -> Vec<Bounded> {
             d.node_step_deg
         }),
     ];
-    let varies = |variable: &Bounded| variable.limits[0] < variable.limits[1];
+    let varies = |variable: &BoundedVariable| variable.limits[0] < variable.limits[1];
     all.into_iter().filter(varies).collect()
 }
 

@@ -214,9 +214,9 @@ fn the_hash_covers_what_is_fixed() {
     let of_files = |further: &[&str]| {
         let files = [
             "constellations.compared.files=['c.tle']",
-            "constellations.flying.files=['f.tle', 'g.tle']",
+            "constellations.orbiting.files=['f.tle', 'g.tle']",
             "gnss.files=['n.tle']",
-            "search.fixed=flying",
+            "search.fixed=orbiting",
         ];
         parse("", &[&files, further].concat()).unwrap()
     };
@@ -232,7 +232,7 @@ fn the_hash_covers_what_is_fixed() {
         scenario.with_files(&copies).hash(&[b"n", b"f", b"g", b"c"]),
         hash
     );
-    let fewer = of_files(&["constellations.flying.exclude=['X*']"]);
+    let fewer = of_files(&["constellations.orbiting.exclude=['X*']"]);
     assert_ne!(fewer.hash(&[b"n", b"f", b"g", b"c"]), hash);
 }
 

@@ -8,14 +8,14 @@ use crate::run::{DesignSummary, FrontMember};
 type Column = (String, Vec<Option<f64>>);
 
 /// The variables of one shell.
-type Variable = (&'static str, fn(&DesignSummary) -> Option<f64>);
+type ShellVariable = (&'static str, fn(&DesignSummary) -> Option<f64>);
 
-const OF_ALL: [Variable; 2] = [
+const OF_ALL: [ShellVariable; 2] = [
     ("satellites", |d| Some(d.satellites as f64)),
     ("planes", |d| Some(d.planes as f64)),
 ];
 
-const OF_A_SHELL: [Variable; 4] = [
+const OF_A_SHELL: [ShellVariable; 4] = [
     ("per plane", |d| Some(d.satellites_per_plane? as f64)),
     ("phasing", |d| Some(d.phasing? as f64)),
     ("inclination (\u{b0})", |d| d.inclination_deg),
@@ -58,7 +58,7 @@ pub(super) fn all(members: &[FrontMember]) -> Vec<Column> {
 
 fn column(
     members: &[FrontMember],
-    (name, value): &Variable,
+    (name, value): &ShellVariable,
     prefix: &str,
     of: impl Fn(&FrontMember) -> Option<DesignSummary>,
 ) -> Column {
