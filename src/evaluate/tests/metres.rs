@@ -52,7 +52,7 @@ fn validate_metres_and_windows_against_numpy() {
     let setup = study();
     let evaluate = |setup: &Setup| {
         // The lanes have six digits.
-        let ephemeris = Ephemeris::of_design(&design, setup.grid, setup.model).unwrap();
+        let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup.clone()).unwrap();
         evaluator.evaluate_plain(&ephemeris).unwrap()
     };
