@@ -73,6 +73,8 @@ SERIES = ["evaluate", *SMALL[:4], "--series", "out", "--design"]
 PLOT = ["plot", "run", "--figure", "pareto", "--out", "run/figures/pareto.svg"]
 FINISHED = [[*OPTIMIZE, *generations(3)]]
 
+# What is repeated or resumed has two generations more than before: of one more, the state before the last is the last
+# of before, which holds the number of generations of its own command.
 CASES = [
     Case("optimize", [*OPTIMIZE, *generations(3)], then=["--resume"], results=[run_in("run")]),
     Case(
@@ -110,7 +112,7 @@ CASES = [
     ),
     Case(
         "seeds, repeated",
-        [*OPTIMIZE, *generations(3), "--seeds", "2"],
+        [*OPTIMIZE, *generations(4), "--seeds", "2"],
         before=[[*OPTIMIZE, *generations(2), "--seeds", "2"]],
         then=["--resume"],
         results=[run_in("run/seed-1"), run_in("run/seed-2"), *TABLES],
@@ -123,7 +125,7 @@ CASES = [
     ),
     Case(
         "certify, repeated",
-        [*OPTIMIZE, *generations(3), "--certify"],
+        [*OPTIMIZE, *generations(4), "--certify"],
         before=[[*OPTIMIZE, *generations(2), "--certify"]],
         then=["--resume"],
         results=[run_in("run"), run_in("run-sweep")],
