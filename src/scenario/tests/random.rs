@@ -329,7 +329,10 @@ fn search() -> impl Strategy<Value = SearchSpace> {
         });
         SearchShells::Listed(shells.collect())
     });
-    let shells = prop_oneof![shell().prop_map(SearchShells::One), listed];
+    let shells = prop_oneof![
+        shell().prop_map(|shell| SearchShells::One(Box::new(shell))),
+        listed
+    ];
     let fixed = option::of(Just("star:86.4:66/6/3@780,node-step=31.6".to_owned()));
     (shells, fixed).prop_map(|(shells, fixed)| SearchSpace { shells, fixed })
 }

@@ -27,7 +27,7 @@ pub(in crate::scenario) const SHELLS: KeyPath = key!(ShellList.shells);
 #[derive(Debug, Clone, PartialEq)]
 pub enum SearchShells {
     /// One, by the keys of `[search]`.
-    One(ShellSpace),
+    One(Box<ShellSpace>),
     /// Those listed as `[[search.shells]]`.
     Listed(Vec<ShellSpace>),
 }
@@ -48,7 +48,7 @@ impl SearchShells {
     #[must_use]
     pub fn as_slice(&self) -> &[ShellSpace] {
         match self {
-            Self::One(shell) => std::slice::from_ref(shell),
+            Self::One(shell) => std::slice::from_ref(shell.as_ref()),
             Self::Listed(shells) => shells,
         }
     }
@@ -60,7 +60,7 @@ impl Section for SearchShells {
     fn walk(walk: &mut impl Walk, values: Option<&Self>) -> Self {
         let (one, listed) = match values {
             None => (None, None),
-            Some(Self::One(shell)) => (Some(shell), None),
+            Some(Self::One(shell)) => (Some(shell.as_ref()), None),
             Some(Self::Listed(shells)) => {
                 let shells = shells.clone();
                 (None, Some(ShellList { shells }))
@@ -68,7 +68,7 @@ impl Section for SearchShells {
         };
         let one = ShellSpace::walk(walk, one);
         let listed = ShellList::walk(walk, listed.as_ref()).shells;
-        walk.finish(Self::One(one), |gathered, reader| {
+        walk.finish(Self::One(Box::new(one)), |gathered, reader| {
             if !reader.is_given(SHELLS) {
                 return;
             }
