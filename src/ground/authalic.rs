@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn validate_the_area_of_the_earth() {
         let radius_km = Authalic::new(Surface::Wgs84).radius2_km2().sqrt();
-        assert!((radius_km - 6371.007_180_9).abs() < 1e-6, "{radius_km}");
+        assert!((radius_km - 6_371.007_180_9).abs() < 1e-6, "{radius_km}");
         let sphere = Authalic::new(Surface::Sphere).radius2_km2();
         assert!((sphere / (RADIUS_KM * RADIUS_KM) - 1.0).abs() < 1e-15);
         assert!((4.0 * PI * radius_km * radius_km - 510_065_621.72).abs() < 0.05);

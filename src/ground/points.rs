@@ -240,7 +240,7 @@ mod tests {
         let sites = sites(text).unwrap();
         let polar_km = sites[0].local.origin_km.km().z;
         assert!(
-            (polar_km - (6356.752_314_245 + 1.0)).abs() < 1e-8,
+            (polar_km - (6_356.752_314_245 + 1.0)).abs() < 1e-8,
             "{polar_km}"
         );
         assert_eq!((sites[0].height_m, sites[1].height_m), (1000.0, 0.0));
