@@ -279,7 +279,9 @@ fn validate_navic_is_always_in_view_of_india() {
 }
 
 /// A phase is the place over the Earth some time later. After a whole cycle of sidereal days the satellites of medium orbits
-/// are back but for the drift of their nodes, at most 0.04° or 20 km a day, and the 0.015° of `validate_ground_tracks_repeat`.
+/// are back but for the drift of their nodes, at most 0.04° or 19 km a day, the argument of latitude by which a repeating track
+/// makes up for it, once a revolution and so at most 2.13 times as much, and the 0.015° or 7 km of
+/// `validate_ground_tracks_repeat`: 66 km a day.
 #[test]
 fn a_phase_is_a_later_place_over_the_earth() {
     for &preset in Preset::ALL {
@@ -295,7 +297,7 @@ fn a_phase_is_a_later_place_over_the_earth() {
                 let apart = (earth_fixed(&later.orbit, t) - place).norm();
                 assert!(apart < 0.02 * days, "{preset} {}: {apart}", nominal.name);
                 let apart = (earth_fixed(&again.orbit, t) - earth_fixed(&nominal.orbit, t)).norm();
-                assert!(apart < 27.0 * days, "{preset} {}: {apart}", nominal.name);
+                assert!(apart < 66.0 * days, "{preset} {}: {apart}", nominal.name);
             }
         }
     }
