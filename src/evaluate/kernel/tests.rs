@@ -218,11 +218,18 @@ proptest! {
     }
 }
 
-/// Series: counts are exact, and PDOP is the same to the rounding of f32 and of its sums.
+/// What f32 may be off by in one sample of N satellites: a rounding of the sums times their condition, which is at most
+/// N PDOP², of which PDOP has half. From PDOP 2 on, values are made in f64.
+fn single_sample(satellites: f64) -> f64 {
+    (0.5 * f64::from(f32::EPSILON) * satellites * 4.0).max(1e-6)
+}
+
+/// Series: counts are exact, and PDOP is the same to the rounding of f32.
 fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
     for (fast, plain) in fast.epochs.iter().zip(&plain.epochs) {
-        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
-        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let bound = single_sample(plain.mean_total_visible);
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < bound);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < bound);
         let counts = EpochMetrics {
             mean_pdop: plain.mean_pdop,
             max_pdop: plain.max_pdop,
@@ -231,9 +238,10 @@ fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
         prop_assert_eq!(&counts, plain);
     }
     for (fast, plain) in fast.points.iter().zip(&plain.points) {
-        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < 1e-6);
-        prop_assert!(relative(fast.p95_pdop, plain.p95_pdop) < 1e-6);
-        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < 1e-6);
+        let bound = single_sample(plain.mean_total_visible);
+        prop_assert!(relative(fast.mean_pdop, plain.mean_pdop) < bound);
+        prop_assert!(relative(fast.p95_pdop, plain.p95_pdop) < bound);
+        prop_assert!(relative(fast.max_pdop, plain.max_pdop) < bound);
         let counts = PointMetrics {
             mean_pdop: plain.mean_pdop,
             p95_pdop: plain.p95_pdop,
@@ -246,7 +254,11 @@ fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
 }
 
 /// All statistics of all dilutions, of which PDOP is that of the metrics.
-fn compare_dops(fast: &DopStatistics, plain: &DopStatistics) -> Result<(), TestCaseError> {
+fn compare_dops(
+    fast: &DopStatistics,
+    plain: &DopStatistics,
+    bound: f64,
+) -> Result<(), TestCaseError> {
     prop_assert_eq!(fast.solved_fraction, plain.solved_fraction);
     for ((name, fast), (_, plain)) in fast.named().into_iter().zip(plain.named()) {
         prop_assert_eq!(fast.is_some(), plain.is_some(), "{}", name);
@@ -262,7 +274,7 @@ fn compare_dops(fast: &DopStatistics, plain: &DopStatistics) -> Result<(), TestC
             (fast.cvar, plain.cvar),
         ] {
             let apart = (ours / theirs - 1.0).abs();
-            prop_assert!(apart < 1e-6, "{name}: {ours} {theirs}");
+            prop_assert!(apart < bound, "{name}: {ours} {theirs}");
         }
     }
     Ok(())
@@ -280,7 +292,9 @@ proptest! {
         let series = first.series(&ephemeris).unwrap();
         compare_series(&series, &first.series_plain(&ephemeris).unwrap())?;
         let dops = first.dops(&ephemeris).unwrap();
-        compare_dops(&dops, &first.dops_plain(&ephemeris).unwrap())?;
+        let visible = series.epochs.iter().map(|epoch| epoch.mean_total_visible);
+        let bound = single_sample(visible.fold(0.0, f64::max));
+        compare_dops(&dops, &first.dops_plain(&ephemeris).unwrap(), bound)?;
         for other in [second, third] {
             prop_assert_eq!(&other.series(&ephemeris).unwrap(), &series);
             prop_assert_eq!(&other.dops(&ephemeris).unwrap(), &dops);
