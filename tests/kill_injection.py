@@ -140,7 +140,7 @@ CASES = [
     Case("report", ["report", "run"], before=FINISHED, results=[["run/report.html"]]),
     Case(
         "report, replaced",
-        ["report", "run", "--compare", "delta:55:4/2/1@925"],
+        ["report", "run", "--design", "delta:55:4/2/1@925"],
         before=[*FINISHED, ["report", "run"]],
         results=[["run/report.html"]],
     ),
@@ -152,7 +152,7 @@ CASES = [
     ),
     Case(
         "plot, replaced",
-        [*PLOT, "--compare", "delta:55:4/2/1@925", "--force"],
+        [*PLOT, "--design", "delta:55:4/2/1@925", "--force"],
         before=[*FINISHED, PLOT],
         results=[["run/figures/pareto.svg"], ["run/figures/pareto.csv"]],
     ),
