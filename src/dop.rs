@@ -35,7 +35,7 @@ keywords! {
     LeoClocks {
         /// All of a constellation.
         Shared = "shared",
-        /// Those of each shell and of each file.
+        /// Those of each shell, and those from files.
         PerPart = "per-part",
     }
 }

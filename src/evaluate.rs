@@ -216,11 +216,18 @@ impl Setup {
     /// Maximum memory of an [`Evaluator`] and `threads` concurrent evaluations, bytes.
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
-        let metrics = if self.suits_kernel() {
-            kernel::memory_bytes(self, threads) as u64
-        } else {
-            self.plain_bytes(threads)
+        let lanes = match self.suits_kernel() {
+            true => kernel::memory_bytes(self, threads) as u64,
+            false => 0,
         };
+        let needs_plain =
+            !self.suits_kernel() || self.window_s.is_some() || self.may_have_several_leo_clocks();
+        let plain = if needs_plain {
+            self.plain_bytes(threads)
+        } else {
+            0
+        };
+        let metrics = lanes.saturating_add(plain);
         metrics.saturating_add(self.on_demand_bytes(threads))
     }
 
@@ -244,7 +251,7 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth.
+    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth (and one LEO clock).
     fn suits_kernel(&self) -> bool {
         self.skyline.is_none() && self.observation_weights == ObservationWeights::Unit
     }

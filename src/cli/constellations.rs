@@ -274,7 +274,6 @@ fn of_files(
             names: vec![output::shown_path(Path::new(name))],
             formats,
             fleet,
-            file_of: Vec::new(),
         }),
         source: ConstellationSource::Files(contents),
     })

@@ -13,7 +13,7 @@ use crate::scenario::{
     Algorithm, KeyDifference, NamedConstellation, Region, Scenario, SetupError, builtin,
 };
 use crate::search::DesignProblem;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use std::cell::OnceCell;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -300,6 +300,11 @@ impl Study {
         let Some(files) = self.fixed()?.and_then(|fixed| fixed.files) else {
             return Ok(problem);
         };
+        if problem.designs().fixed.is_none() && problem.designs().may_be_empty() {
+            bail!(
+                "every shell of the search may be empty, and what is fixed has no shells: let `satellites-per-plane` of one shell begin above 0"
+            );
+        }
         let setup = evaluator.setup();
         let satellites = files.fleet.propagate(setup.grid, setup.model)?;
         Ok(problem.with_satellites(&satellites)?)

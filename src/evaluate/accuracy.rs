@@ -129,10 +129,10 @@ impl Evaluator {
         for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
             leo::positions(setup, ephemeris, elapsed_s, rotation, &mut clocks)?;
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
-            for site in &setup.sites {
+            for (number, site) in setup.sites.iter().enumerate() {
                 let sky = Sky::new(setup, accuracy, &site.local, &clocks, &gnss);
                 if let Some(factor) = sky.solve(setup) {
-                    errors.add(&factor, &site.local, site.weight);
+                    errors.add(&factor, &site.local, self.weights.of(number) as f64);
                 }
             }
         }

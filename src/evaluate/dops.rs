@@ -83,7 +83,10 @@ impl Evaluator {
     }
 
     /// The same of satellites that have these metrics.
-    pub(super) fn dops_beside(
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn dops_beside(
         &self,
         metrics: &Metrics,
         ephemeris: &Ephemeris,

@@ -2,7 +2,7 @@
 
 use super::Setup;
 use super::fixed::PlainPositions;
-use crate::dop::{Clocks, LeoClocks};
+use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
@@ -11,7 +11,6 @@ impl Setup {
     /// nothing is.
     #[must_use]
     pub fn plain_path_note(&self) -> Option<String> {
-        let per_part = self.leo_clocks == LeoClocks::PerPart && self.clocks == Clocks::PerSystem;
         let parts = [
             (
                 self.accuracy.is_some(),
@@ -21,7 +20,18 @@ impl Setup {
                 self.window_s.is_some(),
                 "the PDOP of windows (metrics.window-min)",
             ),
-            (per_part, "several LEO clocks (gnss.leo-clocks)"),
+            (
+                self.may_have_several_leo_clocks(),
+                "several LEO clocks (gnss.leo-clocks)",
+            ),
+            (
+                self.skyline.is_some(),
+                "the mask by azimuth (visibility.mask-table)",
+            ),
+            (
+                self.observation_weights != ObservationWeights::Unit,
+                "weights by elevation (visibility.weighting)",
+            ),
         ];
         let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);
         let slow: Vec<&str> = slow.map(|(_, what)| what).collect();
@@ -33,13 +43,16 @@ impl Setup {
         })
     }
 
+    /// Whether a constellation of several parts has several LEO clocks.
+    pub(super) fn may_have_several_leo_clocks(&self) -> bool {
+        self.leo_clocks == LeoClocks::PerPart && self.clocks == Clocks::PerSystem
+    }
+
     /// Whether the satellites have more than one LEO clock. With one clock for all systems they have none of
     /// their own.
     #[must_use]
     pub fn has_several_leo_clocks(&self, ephemeris: &Ephemeris) -> bool {
-        self.leo_clocks == LeoClocks::PerPart
-            && self.clocks == Clocks::PerSystem
-            && ephemeris.part_count() > 1
+        self.may_have_several_leo_clocks() && ephemeris.part_count() > 1
     }
 }
 

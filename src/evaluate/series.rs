@@ -240,10 +240,11 @@ impl<'a> SeriesSums<'a> {
     fn add(&mut self, instant: &Instant) {
         let setup = self.evaluator.setup();
         let mut epoch = EpochSums::default();
-        let sums = self.points.iter_mut().zip(&setup.sites);
-        for (sample, (sums, site)) in instant.points.iter().zip(sums) {
+        let sums = self.points.iter_mut().enumerate();
+        for (sample, (number, sums)) in instant.points.iter().zip(sums) {
             let is_available = sample.pdop.is_some_and(|pdop| pdop <= self.available);
-            epoch.add(sample, is_available, site.weight);
+            let weight = self.evaluator.weights.of(number) as f64;
+            epoch.add(sample, is_available, weight);
             sums.add(sample, is_available);
         }
         let elapsed_s = setup.grid.elapsed_s(instant.number);
@@ -257,11 +258,14 @@ impl<'a> SeriesSums<'a> {
         let sums = self.points.iter().zip(&setup.sites);
         let points = sums.map(|(sums, site)| sums.metrics(site, instants, step_s, &mut scratch));
         let points = points.collect();
-        let sums = self.points.into_iter().zip(&setup.sites);
+        let weight = |number: usize| self.evaluator.weights.of(number) as f64;
+        let sums = self.points.into_iter().enumerate();
         Series {
             epochs: self.epochs,
             points,
-            solved: sums.map(|(sums, site)| (sums.pdop, site.weight)).collect(),
+            solved: sums
+                .map(|(number, sums)| (sums.pdop, weight(number)))
+                .collect(),
         }
     }
 }

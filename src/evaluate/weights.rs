@@ -90,13 +90,15 @@ fn power_of_two(n: i32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Whole weights keep their ratios exactly, up to the largest and down to the smallest numbers.
+    /// Whole weights keep their ratios to their rounding, half a unit of 2^-40 each, up to the largest and down to the
+    /// smallest numbers.
     #[test]
-    fn ratios_of_whole_weights_are_exact() {
+    fn whole_weights_keep_their_ratios() {
         for scale in [1.0, 1e-300, 3e300, f64::MIN_POSITIVE / 1024.0] {
             let unit = Unit::new(5.0 * scale, 205_920);
             let one = unit.whole(scale);
-            assert_eq!(unit.whole(5.0 * scale).abs_diff(5 * one), 0, "{scale:e}");
+            assert!(unit.whole(5.0 * scale).abs_diff(5 * one) <= 3, "{scale:e}");
+            assert!(one > 1 << (unit.bits - 4), "{scale:e}: {one}");
             assert!(unit.whole(5.0 * scale) <= 1 << unit.bits);
         }
         assert_eq!(power_of_two(-3), 0.125);

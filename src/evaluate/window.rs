@@ -89,7 +89,7 @@ impl Evaluator {
             let Some(sum) = sums[site].push(geometry, count) else {
                 return;
             };
-            let weight = setup.sites[site].weight;
+            let weight = self.weights.of(site) as f64;
             total += weight;
             if let Some(value) = sum.pdop(setup.pdop_cap) {
                 solved += weight;

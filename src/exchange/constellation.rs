@@ -1,7 +1,7 @@
 //! A constellation: the shells of a design, satellites from files, or both.
 //!
 //! It is what every command works on. All satellites of a constellation share one clock state, unless a setup gives
-//! each shell and file its own.
+//! each shell its own, and one to the satellites from files.
 
 mod name;
 
@@ -37,22 +37,6 @@ pub struct FileSatellites {
     pub formats: Vec<Format>,
     /// The satellites.
     pub fleet: Fleet,
-    /// The file of each satellite, from 0 in the order of the names; empty if all are of one.
-    pub file_of: Vec<usize>,
-}
-
-impl FileSatellites {
-    /// The satellites as `propagate` gives them, each of the part that its file is.
-    fn by_parts(
-        &self,
-        propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
-    ) -> Result<Ephemeris, FleetError> {
-        let propagated = propagate(&self.fleet)?;
-        Ok(match self.file_of.as_slice() {
-            [] => propagated,
-            file_of => propagated.with_parts(file_of.to_vec()),
-        })
-    }
 }
 
 /// Why a constellation cannot be propagated.
@@ -156,8 +140,8 @@ impl Constellation {
         model: Model,
         propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
     ) -> Result<Ephemeris, ConstellationError> {
-        let of_files = self.files.as_ref().map(|files| files.by_parts(&propagate));
-        let of_files = of_files.transpose()?;
+        let fleet = self.files.as_ref().map(|files| &files.fleet);
+        let of_files = fleet.map(propagate).transpose()?;
         let Some(design) = &self.design else {
             return Ok(of_files.unwrap_or_else(|| Ephemeris::new(grid, Vec::new())));
         };
@@ -169,12 +153,11 @@ impl Constellation {
         for satellite in shells.satellites() {
             names.take(satellite.name.clone(), NUMBERED);
         }
-        let parts = of_files.parts().to_vec();
         let mut added = of_files.into_satellites();
         for satellite in &mut added {
             satellite.name = names.take(std::mem::take(&mut satellite.name), NUMBERED);
         }
-        Ok(shells.joined(Ephemeris::new(grid, added).with_parts(parts)))
+        Ok(shells.joined(Ephemeris::new(grid, added)))
     }
 }
 
@@ -198,7 +181,6 @@ mod tests {
             names: vec!["two.csv".to_owned()],
             formats: vec![imported.format],
             fleet: imported.fleet,
-            file_of: Vec::new(),
         }
     }
 

@@ -157,7 +157,9 @@ impl<'a> Original<'a> {
         };
         let known = self.source.ephemeris().satellites();
         let propagated = sets.iter().zip(known).map(propagate);
-        let ephemeris = Ephemeris::new(grid, propagated.collect::<Result<_, EphemerisError>>()?);
+        let parts = self.source.ephemeris().parts().to_vec();
+        let propagated = propagated.collect::<Result<_, EphemerisError>>()?;
+        let ephemeris = Ephemeris::new(grid, propagated).with_parts(parts);
         let metrics = self.evaluator.evaluate_ephemeris(&ephemeris)?;
         Ok(Some(Rescored { ephemeris, metrics }))
     }
@@ -192,6 +194,7 @@ impl<'a> Original<'a> {
             None => (propagated, &self.metrics),
         };
         let read_back = fleet.propagate(setup.grid, setup.model)?;
+        let read_back = read_back.with_parts(propagated.parts().to_vec());
         let metrics = self.evaluator.evaluate_ephemeris(&read_back)?;
         let gate_km = self.position_gate_km(product, sets)?;
         let relative = gate_km.map(|km| km / SCALE_KM);

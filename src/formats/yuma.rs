@@ -109,8 +109,10 @@ fn gps_origin() -> NaiveDateTime {
     day.and_time(chrono::NaiveTime::MIN)
 }
 
-/// Angles at an instant and their rates: node, argument of latitude.
-struct CircularAngles {
+/// Angles at an instant and their rates: node, mean argument of latitude; and the ellipse, whose perigee stays.
+struct AlmanacAngles {
+    eccentricity: f64,
+    arg_perigee_rad: f64,
     inclination_rad: f64,
     raan_rad: f64,
     raan_rate_rad_s: f64,
@@ -131,20 +133,20 @@ impl Almanac {
     ) -> Result<Self, NoAlmanac> {
         let since_s = at.epoch().seconds_since(epoch);
         let gmst_rad = epoch.gmst_rad(since_s);
-        let circle = circle(&satellite.orbit, since_s, gmst_rad)?;
-        let rate = circle.latitude_argument_rate_rad_s;
-        let fixed_node = circle.raan_rad - gmst_rad + GPS_EARTH_RATE_RAD_S * at.toa_s;
+        let angles = angles(&satellite.orbit, since_s, gmst_rad)?;
+        let rate = angles.latitude_argument_rate_rad_s;
+        let fixed_node = angles.raan_rad - gmst_rad + GPS_EARTH_RATE_RAD_S * at.toa_s;
         Ok(Self {
             prn,
             health: 0,
-            eccentricity: 0.0,
+            eccentricity: angles.eccentricity,
             toa_s: at.toa_s,
-            inclination_rad: circle.inclination_rad,
-            raan_rate_rad_s: circle.raan_rate_rad_s - (GMST_RATE_RAD_S - GPS_EARTH_RATE_RAD_S),
+            inclination_rad: angles.inclination_rad,
+            raan_rate_rad_s: angles.raan_rate_rad_s - (GMST_RATE_RAD_S - GPS_EARTH_RATE_RAD_S),
             sqrt_a: (GPS_MU_M3_S2 / (rate * rate)).powf(1.0 / 6.0),
             raan_at_week_rad: wrap_pi(fixed_node),
-            arg_perigee_rad: 0.0,
-            mean_anomaly_rad: wrap_pi(circle.latitude_argument_rad),
+            arg_perigee_rad: wrap_pi(angles.arg_perigee_rad),
+            mean_anomaly_rad: wrap_pi(angles.latitude_argument_rad - angles.arg_perigee_rad),
             week: at.week.rem_euclid(WEEKS) as u32,
         })
     }
@@ -193,7 +195,7 @@ fn field(out: &mut impl Write, key: &str, value: f64) -> io::Result<()> {
     writeln!(out, "{key:<27}{digits:>13}E{sign}{:03}", exponent.abs())
 }
 
-fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngles, NoAlmanac> {
+fn angles(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<AlmanacAngles, NoAlmanac> {
     match orbit {
         GnssOrbit::Secular(secular) => {
             let elements = secular.elements_at(since_s);
@@ -201,7 +203,9 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngl
                 return Err(NoAlmanac::Eccentric);
             }
             let rates = secular.rates();
-            Ok(CircularAngles {
+            Ok(AlmanacAngles {
+                eccentricity: 0.0,
+                arg_perigee_rad: 0.0,
                 inclination_rad: elements.inclination_rad,
                 raan_rad: elements.raan_rad,
                 raan_rate_rad_s: rates.raan_rad_s,
@@ -209,7 +213,9 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngl
                 latitude_argument_rate_rad_s: rates.arg_perigee_rad_s + rates.mean_anomaly_rad_s,
             })
         }
-        GnssOrbit::Geosynchronous(orbit) => Ok(CircularAngles {
+        GnssOrbit::Geosynchronous(orbit) => Ok(AlmanacAngles {
+            eccentricity: orbit.eccentricity,
+            arg_perigee_rad: orbit.arg_perigee_rad,
             inclination_rad: orbit.inclination_rad,
             raan_rad: orbit.raan_rad,
             raan_rate_rad_s: 0.0,
@@ -217,7 +223,9 @@ fn circle(orbit: &GnssOrbit, since_s: f64, gmst_rad: f64) -> Result<CircularAngl
             latitude_argument_rate_rad_s: GMST_RATE_RAD_S,
         }),
         // Any node will do on the equator: that of the longitude it is held over.
-        GnssOrbit::Geostationary { longitude_rad, .. } => Ok(CircularAngles {
+        GnssOrbit::Geostationary { longitude_rad, .. } => Ok(AlmanacAngles {
+            eccentricity: 0.0,
+            arg_perigee_rad: 0.0,
             inclination_rad: 0.0,
             raan_rad: gmst_rad + longitude_rad,
             raan_rate_rad_s: 0.0,

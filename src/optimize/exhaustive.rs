@@ -336,7 +336,7 @@ mod tests {
         assert_eq!(refused(&[1.0, 0.1], 0), "batch must be at least 1, found 0");
         assert_eq!(
             refused(&[0.5, 0.1], 1),
-            "grid step must be whole for an integer variable, found 0.5"
+            "grid step must be whole for an integer or a choice, found 0.5"
         );
         for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(refused(&[1.0, step], 1).contains("finite and greater than 0"));

@@ -1,7 +1,7 @@
 //! How far the metrics depend on the phase of the GNSS.
 
 use crate::evaluate::Metrics;
-use crate::run::columns::metric_columns;
+use crate::run::columns::{field, metric_columns};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -69,13 +69,12 @@ impl PhaseSpread {
     }
 }
 
-/// The numbers of the metrics by name; the level of the tail is none of them.
+/// The numbers of the metrics by name; the level of the tail and whether an outage is cut are none of them.
 fn named(metrics: &Metrics) -> Vec<(String, Option<f64>)> {
     let value = serde_json::to_value(metrics).unwrap_or_default();
-    let always = metric_columns()
-        .into_iter()
-        .filter(|name| *name != "cvar_level");
-    let always = always.map(|name| (name.to_owned(), value[name].as_f64()));
+    let is_number = |name: &&str| !["cvar_level", "longest_outage_cut"].contains(name);
+    let always = metric_columns().into_iter().filter(is_number);
+    let always = always.map(|name| (name.to_owned(), field(&value, name).as_f64()));
     always.chain(metrics.on_demand()).collect()
 }
 
@@ -103,6 +102,8 @@ mod tests {
         assert_eq!(spread.metrics["mean_visible"], Some(expected));
         assert_eq!(spread.metrics["max_pdop"], None);
         assert!(!spread.metrics.contains_key("cvar_level"));
+        assert!(!spread.metrics.contains_key("longest_outage_cut"));
+        assert!(spread.metrics["coverage_4"].is_some());
         assert_eq!(spread.rows()[0].0, "mean_visible");
     }
 }

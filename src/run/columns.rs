@@ -86,7 +86,7 @@ const COVERAGE_TOTAL: [&str; COVERAGE_LEVELS] = [
 ];
 
 /// The value of a field, or of an element of a field: `coverage_4` is element 4 of `coverage`.
-fn field<'a>(row: &'a Value, name: &str) -> &'a Value {
+pub(crate) fn field<'a>(row: &'a Value, name: &str) -> &'a Value {
     let element = || {
         let (field, element) = name.rsplit_once('_')?;
         row.get(field)?.get(element)

@@ -9,7 +9,6 @@ use crate::exchange::import::{
     Fleet, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter,
 };
 use crate::keyword::nearest;
-use std::collections::HashSet;
 use std::io;
 use thiserror::Error;
 
@@ -156,7 +155,6 @@ impl NamedConstellation {
         } = &self.parts;
         let mut names = Vec::new();
         let mut merged = MergedFiles::default();
-        let mut labels: Vec<HashSet<String>> = Vec::new();
         for file in files {
             let error = |error| self.error(file, error);
             let name = file.rsplit('/').next().unwrap_or(file);
@@ -167,7 +165,6 @@ impl NamedConstellation {
                 notes.push(format!("{file}: {}", imported.left_out));
             }
             names.push(name.to_owned());
-            labels.push(imported.fleet.labels().into_iter().collect());
             merged.add(imported);
         }
         let none = || (Vec::new(), Fleet::Sets(Vec::new()));
@@ -179,14 +176,9 @@ impl NamedConstellation {
         fleet
             .choose(&filter)
             .map_err(|source| self.error(&names.join(", "), source.into()))?;
-        // States that continue those of an earlier file are of that file.
-        let file_of = |label: &String| labels.iter().position(|own| own.contains(label));
-        let known = fleet.labels();
-        let file_of = known.iter().map(|label| file_of(label).unwrap_or(0));
         Ok(FileSatellites {
             names,
             formats,
-            file_of: file_of.collect(),
             fleet,
         })
     }

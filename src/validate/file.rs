@@ -348,7 +348,8 @@ fn metrics(
             slot: ours.satellites()[slot].slot,
             propagator: Box::new(track.clone()) as Box<dyn Propagator>,
         });
-    let theirs = Ephemeris::new(reference.grid(), theirs.collect());
+    let parts = pairs.iter().map(|&(slot, _)| ours.parts()[slot]);
+    let theirs = Ephemeris::new(reference.grid(), theirs.collect()).with_parts(parts.collect());
     let seen = TrajectoryPair {
         evaluator: reference.evaluator,
         first: ours,

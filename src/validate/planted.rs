@@ -43,10 +43,10 @@ const TARGETS: [Target; 4] = [
 ];
 
 /// The findings of some targets on a design at 40°, where no error cancels out, at an epoch that a
-/// TLE cannot represent.
+/// TLE cannot represent, in steps shorter than a pass.
 fn findings(model: Model, parts: Parts, targets: &[Target]) -> Findings {
     let epoch = Epoch::from_utc("2025-03-20T11:22:33.4444444Z".parse().unwrap());
-    let grid = TimeGrid::new(epoch, 86_400.0, 600.0).unwrap();
+    let grid = TimeGrid::new(epoch, 86_400.0, 480.0).unwrap();
     let evaluator = testing::evaluator_of(model, grid);
     let subject = Subject {
         shell: "delta:40:30/6/1@925".parse().unwrap(),

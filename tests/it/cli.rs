@@ -249,7 +249,7 @@ fn a_scenario_too_large_for_memory_is_refused_before_it_starts() {
         "--set",
         "time.step-s=86.4",
         "--set",
-        "region.weights=cos-latitude",
+        "visibility.weighting=sine-elevation",
     ]);
     assert!(stderr.contains("GiB"), "{stderr}");
 }

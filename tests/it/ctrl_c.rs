@@ -63,6 +63,16 @@ const STEPS: [&str; 4] = [
     "search.altitude-step-km=300",
 ];
 
+/// Waits until a search has written a checkpoint. Its mark on the run is there before, and gone again at the end.
+fn wait_for_checkpoint(child: &mut Child, run: &Path) {
+    wait_for(child, &run.join(".lock"));
+    let checkpoint = fs::read(run.join("checkpoint")).unwrap();
+    while fs::read(run.join("checkpoint")).is_ok_and(|now| now == checkpoint) {
+        assert_eq!(child.try_wait().unwrap(), None);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
 /// A finished run is repeated and interrupted: with the same budget nothing changes; with a larger one
 /// the results stay, and the checkpoint goes on.
 #[test]
@@ -82,13 +92,7 @@ fn a_finished_run_outlives_an_interrupted_repetition() {
         for resume in [&[][..], &["--resume"]] {
             let more = [&["--out", "run"], further.as_slice(), &LONG, resume].concat();
             let mut child = started(place, &talking(&more));
-            // The mark is there and gone again at the end.
-            wait_for(&mut child, &run.join(".lock"));
-            let checkpoint = fs::read(run.join("checkpoint")).unwrap();
-            while fs::read(run.join("checkpoint")).is_ok_and(|now| now == checkpoint) {
-                assert_eq!(child.try_wait().unwrap(), None);
-                std::thread::sleep(Duration::from_millis(1));
-            }
+            wait_for_checkpoint(&mut child, &run);
             interrupt(&child);
             let (status, stderr) = ended(child);
             assert_eq!(status, 130, "{further:?}: {stderr}");
@@ -104,7 +108,7 @@ fn a_finished_run_outlives_an_interrupted_repetition() {
         // The whole is reached from what was left.
         let resumed = [&["--out", "run", "--resume"], further.as_slice(), &LONG].concat();
         let mut child = started(place, &talking(&resumed));
-        wait_for(&mut child, &run.join(".lock"));
+        wait_for_checkpoint(&mut child, &run);
         interrupt(&child);
         let (_, stderr) = ended(child);
         assert!(stderr.contains("resuming after generation "), "{stderr}");

@@ -39,8 +39,13 @@ fn place(scenario: &str) -> TempDir {
 
 /// What a search prints as JSON.
 fn searched(place: &Path, further: &[&str]) -> Value {
+    searched_into(place, "run", further)
+}
+
+/// The same into a directory.
+fn searched_into(place: &Path, run: &str, further: &[&str]) -> Value {
     let arguments = [
-        "optimize", "two.toml", "--quiet", "--format", "json", "--out", "run",
+        "optimize", "two.toml", "--quiet", "--format", "json", "--out", run,
     ];
     let ran = ran(place, &[&arguments, further].concat());
     assert_eq!(ran.status, 0, "{}", ran.stderr);
@@ -85,10 +90,7 @@ fn a_search_among_hybrids_resumes_and_is_certified() {
     fs::remove_dir_all(directory.path().join("run")).unwrap();
     searched(directory.path(), &["--set", "optimizer.generations=2"]);
     assert_eq!(searched(directory.path(), &["--resume"]), at_once);
-    let seeds = searched(
-        directory.path(),
-        &["--certify", "--seeds", "2", "--out", "seeds"],
-    );
+    let seeds = searched_into(directory.path(), "seeds", &["--certify", "--seeds", "2"]);
     assert_eq!(seeds["seeds"].as_array().unwrap().len(), 2);
 }
 
@@ -141,7 +143,7 @@ fn a_search_adds_to_satellites_of_a_file() {
             Some(own + 12.0)
         );
     }
-    let alone = searched(place, &["--out", "alone"]);
+    let alone = searched_into(place, "alone", &[]);
     assert!(alone.get("fixed").is_none());
     // The run needs the original no more.
     fs::remove_dir_all(place.join("fixed")).unwrap();

@@ -87,7 +87,7 @@ fn satellites_of_files_are_chosen_and_the_rest_is_told() {
         )
     };
     let file = format!(
-        "<ndm>\n{}{}<opm><header><ORIGINATOR>X</ORIGINATOR></header></opm>\n</ndm>\n",
+        "<ndm>\n{}{}<aem><header><ORIGINATOR>X</ORIGINATOR></header></aem>\n</ndm>\n",
         omm("ALPHA-1", 90001),
         omm("BETA-1", 90002)
     );
@@ -114,7 +114,7 @@ fn satellites_of_files_are_chosen_and_the_rest_is_told() {
         assert_eq!(ran.status, 0, "{}", ran.stderr);
         let result: Value = serde_json::from_str(&ran.stdout).unwrap();
         assert_eq!(result["constellation"]["satellites"], satellites);
-        let told = "mixed.xml: left out: 1 (message: opm)";
+        let told = "mixed.xml: left out: 1 (message: aem)";
         assert!(ran.stderr.contains(told), "{}", ran.stderr);
         assert!(
             ran.stderr.contains("31.0 days from the study"),

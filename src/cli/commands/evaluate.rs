@@ -137,7 +137,7 @@ fn evaluated(
     if !args.dops {
         return Ok((metrics, None));
     }
-    let dops = evaluator.dops(ephemeris)?;
+    let dops = evaluator.dops_beside(&metrics, ephemeris)?;
     Ok((metrics.with_dops(&dops), Some(dops)))
 }
 

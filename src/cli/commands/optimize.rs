@@ -105,6 +105,9 @@ pub(super) fn warn_of_space(study: &Study, setup: &Setup) -> Result<()> {
     for repetition in study.scenario.design_space().repetitions() {
         output::warning(&repetition);
     }
+    if let Some(note) = setup.plain_path_note() {
+        output::hint(&note);
+    }
     if let Some(fixed) = study.fixed()? {
         constellations::propagate(&fixed, setup)?;
     }
@@ -336,7 +339,7 @@ fn fixed_text(fixed: &FixedSummary) -> String {
     }
     if *from_files > 0 {
         parts.push(format!(
-            "{from_files} from files, in no notation and not in T, but in every metric"
+            "{from_files} from files, in no notation and not in the column T, but in `satellites` and every metric"
         ));
     }
     format!(

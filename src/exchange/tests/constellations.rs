@@ -167,7 +167,6 @@ pub(super) fn of_file(name: &str, bytes: &[u8]) -> Constellation {
         names: vec![name.to_owned()],
         formats: vec![imported.format],
         fleet: imported.fleet,
-        file_of: Vec::new(),
     })
 }
 

@@ -75,7 +75,6 @@ fn of_file(name: &str) -> Constellation {
         names: vec![name.to_owned()],
         formats: vec![imported.format],
         fleet: imported.fleet,
-        file_of: Vec::new(),
     })
 }
 

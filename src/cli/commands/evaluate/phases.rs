@@ -1,6 +1,6 @@
 //! The metrics over phases of the GNSS.
 
-use super::EvaluationContext;
+use super::{EvaluationContext, evaluated};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{Evaluator, Metrics, Setup};
 use crate::report::{ConstellationEntry, PhaseSpread};
@@ -39,9 +39,9 @@ impl GnssPhases {
         for setup in &self.setups {
             let evaluator = Evaluator::new(setup.clone())?;
             for (found, ephemeris) in found.iter_mut().zip(ephemerides) {
-                found.push(evaluator.evaluate_ephemeris(ephemeris)?);
+                found.push(evaluated(work.args, &evaluator, ephemeris)?.0);
             }
-            alone.push(evaluator.evaluate_ephemeris(&none)?);
+            alone.push(evaluated(work.args, &evaluator, &none)?.0);
         }
         for (entry, found) in entries.iter_mut().zip(&found) {
             entry.evaluated.gnss_phases = Some(PhaseSpread::of(found));

@@ -32,7 +32,6 @@ fn of_many(name: &str) -> Constellation {
         names: vec![name.to_owned()],
         formats: vec![imported.format],
         fleet: imported.fleet,
-        file_of: Vec::new(),
     })
 }
 

@@ -106,7 +106,9 @@ fn clocks(scenario: &Scenario) -> String {
     let clocks = scenario.gnss.clocks.to_string();
     match scenario.gnss.leo_clocks {
         LeoClocks::Shared => clocks,
-        LeoClocks::PerPart => format!("{clocks}; one for each shell and file of LEO satellites"),
+        LeoClocks::PerPart => {
+            format!("{clocks}; one for each shell of LEO satellites, and one for those from files")
+        }
     }
 }
 
