@@ -1,7 +1,7 @@
 stk.v.12.0
 # Satellite: NW-P03-S01
 # Design: delta:55:3/3/1@925
-# Scenario: paper, hash 7951899e9c4e3bc2f511139e21a8e142d17a3950fa1b73133ee8ecae24075b1c
+# Scenario: paper, hash 1f9e8b8436ef53e1b9c4aee354c38bb5d313c93848b27700eb7fdf19cb8140ec
 # Theory: j2
 # Design constants: mu = 398600.4418 km3/s2, Re = 6378.137 km, J2 = 1.08262668e-3; WGS-72 in SGP4 alone
 # Frame: pseudo-Earth-fixed, TEME rotated by GMST (IAU 1982), UT1 = UTC at the epoch, no polar motion
