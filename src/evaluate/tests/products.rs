@@ -120,7 +120,10 @@ fn series_add_up_to_the_metrics() {
     assert!(rising.windows(2).all(|pair| pair[0].value <= pair[1].value));
     single(rising.last().unwrap().value, metrics.max_pdop);
     let weight: f64 = rising.iter().map(|x| x.weight).sum();
-    close(weight / (3.5 * instants), metrics.solved_fraction);
+    close(
+        weight / evaluator.weights.total() as f64,
+        metrics.solved_fraction,
+    );
     let sum: f64 = rising.iter().map(|x| x.weight * x.value).sum();
     single(sum / weight, metrics.mean_pdop);
 
