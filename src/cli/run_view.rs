@@ -83,7 +83,9 @@ impl View {
                     beside_given(&given, &args.constellations, &study)?
                 } else {
                     fixed = study.fixed()?.and_then(|fixed| fixed.files);
-                    beside_front(&args.constellations, &study)?
+                    let beside = beside_front(&args.constellations, &study)?;
+                    warn_of_fixed(fixed.as_ref(), &beside);
+                    beside
                 };
                 let compared = compared(shown, &study, &evaluator)?;
                 (Some(evaluator), compared)
@@ -203,6 +205,20 @@ fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constella
         all.insert(0, reference.named(Baseline::REFERENCE.to_owned()));
     }
     Ok(all)
+}
+
+/// Warns that what is compared with a front is taken as it is, without what the search adds to each design from files.
+fn warn_of_fixed(fixed: Option<&FileSatellites>, beside: &[Constellation]) {
+    let Some(fixed) = fixed else { return };
+    let without = beside.iter().filter(|one| one.files.is_none());
+    let names: Vec<&str> = without.map(|one| one.name.as_str()).collect();
+    if !names.is_empty() {
+        output::warning(&format!(
+            "compared without the satellites of {}, which every design of the search has: {}",
+            fixed.names.join(", "),
+            names.join(", ")
+        ));
+    }
 }
 
 /// What is shown of a run of given constellations: these, and the constellations given on the command line.

@@ -10,8 +10,12 @@ use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::Lines;
 use crate::formats::text::number;
 use crate::formats::yuma::Almanac;
+use crate::units::counted;
 use std::f64::consts::PI;
 use std::io::{self, BufRead};
+
+/// Maximum number of absent records that are counted: a first line may announce anything.
+const MOST_ABSENT: usize = 1000;
 
 /// Reference inclination of the offsets, semicircles.
 const INCLINATION: f64 = 0.30;
@@ -107,10 +111,13 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
         // Records stand by themselves: taking one out by hand leaves the count.
         Some(count) if count > almanacs.len() => {
             let given = almanacs.len();
-            let message = format!("the first line announces {count} records; there are {given}");
+            let records = counted(given, "record");
+            let message =
+                format!("the first line announces {count} records; the file has {records}");
             findings.warning(place, "sem-count", message);
-            let absent = format!("{} of {count}", count - given);
-            findings.pass_over("announced record that is not there", &absent);
+            for number in (given + 1..=count).take(MOST_ABSENT) {
+                findings.pass_over("announced record that is not there", &number.to_string());
+            }
         }
         Some(_) => {}
     }

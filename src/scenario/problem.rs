@@ -174,6 +174,16 @@ pub enum Fault {
         /// The span, minutes.
         span_min: f64,
     },
+    /// A window that holds one instant.
+    #[error(
+        "a window of {window_min} min holds one instant, since the step is {step_min} min; expected more than the step"
+    )]
+    WindowTooShort {
+        /// The window, minutes.
+        window_min: f64,
+        /// The step, minutes.
+        step_min: f64,
+    },
     /// A quantity that the scenario does not compute.
     #[error("{quantity} needs {needs}")]
     Needs {
@@ -193,7 +203,7 @@ pub enum Fault {
         most: u64,
     },
     /// A list that must be as long as another.
-    #[error("found found {found} numbers for {expected} objectives, expected one for each")]
+    #[error("found {found} numbers for {expected} objectives, expected one for each")]
     Length {
         /// Numbers given.
         found: usize,
@@ -210,7 +220,7 @@ pub enum Fault {
     },
     /// Ellipses that all go below the ground.
     #[error(
-        "at {eccentricity} and {altitude_km} km the perigee height is {perigee_km:.1} km, and no other design of the search space is higher"
+        "with an eccentricity of {eccentricity} at {altitude_km} km the perigee height is {perigee_km:.1} km, and no other design of the search space is higher"
     )]
     Underground {
         /// The least eccentricity.

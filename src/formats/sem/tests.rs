@@ -58,7 +58,7 @@ fn records_that_are_not_there_are_told() {
     let told = reader.left_out().to_string();
     assert_eq!(
         told,
-        "left out: 2 (unhealthy satellite: PRN-02; announced record that is not there: 1 of 3)"
+        "left out: 2 (unhealthy satellite: PRN-02; announced record that is not there: 3)"
     );
     let found = findings(&three);
     let [finding] = found.as_slice() else {

@@ -80,6 +80,9 @@ fn a_window_fits_into_the_span() {
         "study.toml:4: metrics.window-min: a window of 61 min is longer than the span of 60 min";
     assert!(told.starts_with(expected), "{told}");
     reads("[time]\nduration-h = 1\n[metrics]\nwindow-min = 60");
+    let told = problem("[time]\nstep-s = 600\n[metrics]\nwindow-min = 10");
+    let expected = "study.toml:4: metrics.window-min: a window of 10 min holds one instant, since the step is 10 min";
+    assert!(told.contains(expected), "{told}");
     refuses(
         "metrics",
         "window-min = 0",

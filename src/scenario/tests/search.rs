@@ -258,7 +258,7 @@ fn ellipses_that_all_go_underground_are_no_search() {
     let error = super::parse("[search]\neccentricity = [0.5, 0.6]\n", &[]).unwrap_err();
     let text = error.to_string();
     assert!(
-        text.contains("at 0.5 and 1000 km the perigee height is -2689.1 km"),
+        text.contains("with an eccentricity of 0.5 at 1000 km the perigee height is -2689.1 km"),
         "{text}"
     );
     // One design of the search is enough.

@@ -257,6 +257,15 @@ fn check_window(scenario: &Scenario, reader: &mut Reader<'_>) {
         };
         reader.refuse(&keys, fault);
     }
+    let step_min = scenario.time.step_s / 60.0;
+    if window_min <= step_min {
+        let keys = [key!(FurtherMetrics.window_min), key!(TimeSpan.step_s)];
+        let fault = Fault::WindowTooShort {
+            window_min,
+            step_min,
+        };
+        reader.refuse(&keys, fault);
+    }
 }
 
 fn check_quantities(scenario: &Scenario, reader: &mut Reader<'_>, has_errors: bool) {

@@ -102,7 +102,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Opti
     }
     let end = (lines.number().max(1), 1);
     if let Some(manoeuvre) = manoeuvre {
-        manoeuvre.finish(end, findings);
+        end_manoeuvre(manoeuvre, end, findings);
     }
     let message = message(&block, user_defined, end, findings);
     if let Some((at, reason)) = message.as_ref().and_then(|one| unsupported(one, &block)) {
@@ -135,11 +135,18 @@ fn take_manoeuvre(pair: &Pair<'_>, current: &mut Option<KvnBlock>, findings: &mu
     if pair.key == "MAN_EPOCH_IGNITION"
         && let Some(before) = current.take()
     {
-        before.finish(pair.key_place, findings);
+        end_manoeuvre(before, pair.key_place, findings);
     }
     current
         .get_or_insert_with(|| KvnBlock::new(&[MANOEUVRE]))
         .accept(pair, findings);
+}
+
+/// Checks a manoeuvre, which is left out: the satellite is propagated without it.
+pub(super) fn end_manoeuvre(block: KvnBlock, end: (usize, usize), findings: &mut FindingList) {
+    let ignition = block.text("MAN_EPOCH_IGNITION").unwrap_or_default();
+    findings.pass_over("manoeuvre", &ignition);
+    block.finish(end, findings);
 }
 
 /// The message of its keywords.

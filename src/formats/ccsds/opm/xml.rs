@@ -1,6 +1,6 @@
 //! Messages in XML (CCSDS 502.0-B-3, section 8; 505.0-B-2), written and read.
 
-use super::read::{MANOEUVRE, MESSAGE, message, take_user_defined, unsupported};
+use super::read::{MANOEUVRE, MESSAGE, end_manoeuvre, message, take_user_defined, unsupported};
 use super::{Opm, USER_DEFINED, VERSION};
 use crate::formats::ReadError;
 use crate::formats::ccsds::keywords::{COVARIANCE, SPACECRAFT};
@@ -117,7 +117,7 @@ impl OpmXmlMessage {
             }
             XmlNode::Close(name) if name == "maneuverParameters" => {
                 if let Some(manoeuvre) = self.manoeuvre.take() {
-                    manoeuvre.finish(place, findings);
+                    end_manoeuvre(manoeuvre, place, findings);
                 }
             }
             XmlNode::Open(..) | XmlNode::Close(_) => {}
