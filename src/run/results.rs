@@ -175,7 +175,8 @@ impl FrontMember {
     pub fn shell(&self, place: usize) -> Option<&DesignSummary> {
         match self.shells.get(place) {
             Some(shell) => shell.as_ref(),
-            None => (place == 0 && self.shells.is_empty()).then(|| self.design.as_ref())?,
+            None if place == 0 && self.shells.is_empty() => self.design.as_ref(),
+            None => None,
         }
     }
 
