@@ -1,10 +1,8 @@
 //! Numbers as people read them: one function for each kind, so that a number has the same digits
 //! in a table, in prose and on the page, rounded once and from its full value.
 
-use crate::printable::printable;
-use crate::run::{Diagnostic, FixedSummary, FrontMember, Hypervolume};
+use crate::run::{Diagnostic, FrontMember, Hypervolume};
 use crate::search::Quantity;
-use crate::units::counted;
 
 /// Text for a missing value.
 pub(crate) const NONE: &str = "none";
@@ -41,16 +39,6 @@ pub(crate) fn named(name: &str, value: Option<f64>) -> String {
         Ok(known) => quantity(known, value),
         Err(_) => pdop(value),
     }
-}
-
-/// What is fixed in a search, as a sentence after another.
-#[must_use]
-pub(crate) fn beside(fixed: &FixedSummary) -> String {
-    let satellites = counted(fixed.in_design + fixed.from_files, "satellite");
-    format!(
-        " Beside each design: {satellites} of {}.",
-        printable(&fixed.name)
-    )
 }
 
 /// A dilution of precision.

@@ -8,11 +8,13 @@ pub(super) use conventions::conventions;
 use super::Page;
 use crate::constellation::gnss::Preset;
 use crate::keyword::Keyword;
+use crate::printable::printable;
 use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
-use crate::run::{FrontMember, Run};
+use crate::run::{FixedSummary, FrontMember, Run};
 use crate::scenario::{Quantity, Scenario, Visibility};
+use crate::units::counted;
 use crate::validate::Tally;
 
 /// The summary at the top of the page.
@@ -142,6 +144,15 @@ fn preset_title(preset: Preset) -> &'static str {
     }
 }
 
+/// What is fixed in a search, as a sentence after another.
+fn beside(fixed: &FixedSummary) -> String {
+    let satellites = counted(fixed.in_design + fixed.from_files, "satellite");
+    format!(
+        " Beside each design: {satellites} of {}.",
+        printable(&fixed.name)
+    )
+}
+
 /// What the search did.
 fn found(run: &Run) -> String {
     let members = match run.front.len() {
@@ -153,7 +164,7 @@ fn found(run: &Run) -> String {
         return format!("The search found {members}.");
     };
     if search.is_of_given() {
-        let given = crate::units::counted(run.front.len(), "constellation");
+        let given = counted(run.front.len(), "constellation");
         return format!("{given} evaluated as given, without a search.");
     }
     let mut text = format!(
@@ -162,7 +173,7 @@ fn found(run: &Run) -> String {
         search.seed,
         search.evaluations
     );
-    text.extend(search.fixed.as_ref().map(shown::beside));
+    text.extend(search.fixed.as_ref().map(beside));
     let [done, of] = search.generations;
     if done < of {
         text += &format!(" It was stopped after generation {done} of {of}.");
