@@ -402,7 +402,9 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             gnss,
             accuracy: all_range_errors(),
             metrics: FurtherMetrics {
-                window_min: Some(time.duration_h * 30.0),
+                // Longer than the step, and within the span.
+                window_min: (time.duration_h * 60.0 > time.step_s / 60.0)
+                    .then_some(time.duration_h * 60.0),
             },
             objectives,
             search,
