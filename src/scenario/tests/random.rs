@@ -371,11 +371,12 @@ fn scenario() -> impl Strategy<Value = Scenario> {
         "[!-~]{1,20}",
         ("[A-Za-z][A-Za-z0-9-]{0,7}", 1..=339_999_u32),
     );
-    let time = (instant(), 0.1..8.0, 60.0..1e6).prop_map(|(epoch, duration_h, step_s)| TimeSpan {
-        epoch,
-        duration_h,
-        step_s,
-    });
+    let time =
+        (instant(), 0.1..8.0, 60.0..170.0).prop_map(|(epoch, duration_h, step_s)| TimeSpan {
+            epoch,
+            duration_h,
+            step_s,
+        });
     let setting = (
         word(),
         word(),
@@ -402,9 +403,8 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             gnss,
             accuracy: all_range_errors(),
             metrics: FurtherMetrics {
-                // Longer than the step, and within the span.
-                window_min: (time.duration_h * 60.0 > time.step_s / 60.0)
-                    .then_some(time.duration_h * 60.0),
+                // Longer than the longest step, and within the span.
+                window_min: Some(time.duration_h * 30.0),
             },
             objectives,
             search,
