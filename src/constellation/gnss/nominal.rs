@@ -119,7 +119,7 @@ pub(super) fn glonass() -> Vec<GnssSatellite> {
 /// of a sidereal day after each other, and one GEO. The perigee is at the southernmost point.
 ///
 /// Sources: *Quasi-Zenith Satellite System Interface Specification, Satellite Positioning, Navigation and Timing Service*
-/// (IS-QZSS-PNT; e = 0.075, ω = 270°, GEO at 127°E); inclination 41° and centre of the figure of eight at 135°E as reported by JAXA for the
+/// (IS-QZSS-PNT, as others quote it; e = 0.075, ω = 270°, GEO at 127°E); inclination 41° and centre of the figure of eight at 135°E as reported by JAXA for the
 /// first satellite (press release of 27 September 2010: apogee 38 950 km, perigee 32 618 km, 41.0°, about 135°).
 pub(super) fn qzss(epoch: Epoch) -> Vec<GnssSatellite> {
     let perigee_rad = 270_f64.to_radians();
