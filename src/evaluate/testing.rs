@@ -1,6 +1,6 @@
 //! A study for tests, and its observations one by one.
 
-use super::Setup;
+use super::{Coverage, Metrics, Setup};
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::Ephemeris;
 use crate::frames::EarthRotation;
@@ -14,6 +14,40 @@ pub(crate) fn setup(grid: TimeGrid, sites: Vec<Site>, mask_deg: f64) -> Setup {
     Setup::new(grid, sites)
         .with_mask(Mask::from_degrees(mask_deg).unwrap())
         .with_gnss(vec![Preset::Beidou3.into()])
+}
+
+/// Metrics for tests that do not depend on them.
+pub(crate) fn no_metrics() -> Metrics {
+    Metrics {
+        mean_visible: 0.0,
+        mean_pdop: None,
+        cvar_pdop: None,
+        cvar_level: 0.95,
+        p50_pdop: None,
+        p95_pdop: None,
+        p99_pdop: None,
+        max_pdop: None,
+        solved_fraction: 0.0,
+        availability: 0.0,
+        j_pos: None,
+        j_cost: None,
+        least_visible: 0,
+        coverage: Coverage::default(),
+        mean_gnss_visible: 0.0,
+        mean_total_visible: 0.0,
+        coverage_total: Coverage::default(),
+        longest_outage_s: 0.0,
+        longest_outage_cut: false,
+        p95_hdop: None,
+        p95_vdop: None,
+        information_pdop: None,
+        sigma_3d_m: None,
+        sigma_h_m: None,
+        sigma_v_m: None,
+        error95_3d_m: None,
+        error95_h_m: None,
+        error95_v_m: None,
+    }
 }
 
 /// A satellite in view.

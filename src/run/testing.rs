@@ -2,7 +2,8 @@
 
 use super::{DesignSummary, Diagnostic, FrontMember, Hypervolume, ScenarioStamp, SearchSummary};
 use crate::constellation::Design;
-use crate::evaluate::{Coverage, Metrics};
+use crate::evaluate::Metrics;
+use crate::evaluate::testing::no_metrics;
 
 /// A member with this index and design and few visible satellites.
 pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
@@ -15,33 +16,7 @@ pub(crate) fn member(index: usize, notation: &str) -> FrontMember {
         shells: Vec::new(),
         metrics: Metrics {
             mean_visible: 8.0,
-            mean_pdop: None,
-            cvar_pdop: None,
-            cvar_level: 0.95,
-            p50_pdop: None,
-            p95_pdop: None,
-            p99_pdop: None,
-            max_pdop: None,
-            solved_fraction: 0.0,
-            availability: 0.0,
-            j_pos: None,
-            j_cost: None,
-            least_visible: 0,
-            coverage: Coverage::default(),
-            mean_gnss_visible: 0.0,
-            mean_total_visible: 0.0,
-            coverage_total: Coverage::default(),
-            longest_outage_s: 0.0,
-            longest_outage_cut: false,
-            p95_hdop: None,
-            p95_vdop: None,
-            information_pdop: None,
-            sigma_3d_m: None,
-            sigma_h_m: None,
-            sigma_v_m: None,
-            error95_3d_m: None,
-            error95_h_m: None,
-            error95_v_m: None,
+            ..no_metrics()
         },
         objectives: Vec::new(),
         constraints: Vec::new(),

@@ -2,41 +2,7 @@ mod hybrids;
 
 use super::testing::shell;
 use super::*;
-use crate::evaluate::Coverage;
-
-/// Metrics of which no quantity of these tests depends.
-fn no_metrics() -> Metrics {
-    Metrics {
-        mean_visible: 0.0,
-        mean_pdop: None,
-        cvar_pdop: None,
-        cvar_level: 0.95,
-        p50_pdop: None,
-        p95_pdop: None,
-        p99_pdop: None,
-        max_pdop: None,
-        solved_fraction: 0.0,
-        availability: 0.0,
-        j_pos: None,
-        j_cost: None,
-        least_visible: 0,
-        coverage: Coverage::default(),
-        mean_gnss_visible: 0.0,
-        mean_total_visible: 0.0,
-        coverage_total: Coverage::default(),
-        longest_outage_s: 0.0,
-        longest_outage_cut: false,
-        p95_hdop: None,
-        p95_vdop: None,
-        information_pdop: None,
-        sigma_3d_m: None,
-        sigma_h_m: None,
-        sigma_v_m: None,
-        error95_3d_m: None,
-        error95_h_m: None,
-        error95_v_m: None,
-    }
-}
+use crate::evaluate::testing::no_metrics;
 
 fn goals(fixed: Option<&str>) -> Goals {
     Goals {
