@@ -400,7 +400,7 @@ fn streaming_equals_keeping() {
         // The sums are computed in pieces of other sizes: a few ulp.
         assert!(relative(one.mean_pdop, expected.mean_pdop) < 1e-14);
         assert!(relative(one.cvar_pdop, expected.cvar_pdop) < 1e-13);
-        // Counts are whole numbers, and outages go on from one chunk to the next.
+        // Counts are whole numbers, and outages continue from one chunk to the next.
         assert_eq!(one.coverage, expected.coverage);
         assert_eq!(one.availability, expected.availability);
         assert!(one.longest_outage_s > 71.0);
