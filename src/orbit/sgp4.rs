@@ -317,6 +317,21 @@ mod tests {
         );
     }
 
+    /// The constants of designs are close to those of WGS-84 in the crate, whose unit of k_e they have: k_e goes with √μ, which is
+    /// 398600.5 km³/s² there (Vallado et al., AIAA 2006-6753, table 1).
+    #[test]
+    fn validate_the_design_constants() {
+        let own = Sgp4Theory::with_design_constants();
+        let (ours, theirs) = (own.geopotential, ::sgp4::WGS84);
+        assert_eq!(ours.ae, theirs.ae);
+        let expected_ke = theirs.ke * (398_600.4418_f64 / 398_600.5).sqrt();
+        assert!((ours.ke / expected_ke - 1.0).abs() < 1e-12, "{}", ours.ke);
+        // EGM96 and WGS-84 differ by 3e-7 of J2; J3 and J4 are those of SGP4.
+        assert!((ours.j2 / theirs.j2 - 1.0).abs() < 4e-7, "{}", ours.j2);
+        assert_eq!((ours.j3, ours.j4), (::sgp4::WGS72.j3, ::sgp4::WGS72.j4));
+        assert_eq!(own.mode, Sgp4Theory::STANDARD.mode);
+    }
+
     #[test]
     fn validate_a_published_verification_case() {
         let set =

@@ -102,6 +102,27 @@ fn validate_the_sweep() {
     assert_eq!(findings.sweep.len(), 24);
 }
 
+/// The budget, the rates and the frozen eccentricity that fail their gates.
+fn failures_beside_the_sweep(subject: &Subject<'_>) -> Vec<String> {
+    let grid = subject.grid();
+    let scale = GateScale::of(subject, grid);
+    let propagations = Propagations::new(subject, grid).unwrap();
+    let mut findings = Findings::default();
+    let budget = propagations.budget().unwrap();
+    findings.checks.extend(scale.budget_checks(&budget));
+    findings
+        .checks
+        .extend(rates::checks(subject, &scale).unwrap());
+    findings
+        .checks
+        .extend(frozen::checks(subject, &scale).unwrap());
+    let told = |check: &Check| {
+        let gate = check.gate.unwrap_or(f64::NAN);
+        format!("{} {:e} of {gate:e}", check.name, check.value)
+    };
+    findings.failures().map(told).collect()
+}
+
 /// The gates are closed forms that are valid at all inclinations and LEO altitudes, for every model
 /// that must meet them.
 #[test]
@@ -112,26 +133,10 @@ fn gates_follow_inclination_and_altitude() {
         for inclination_deg in (0..=18).map(|n| f64::from(n) * 10.0) {
             for altitude_km in [400.0, 2000.0] {
                 let subject = Subject::new(design(inclination_deg, altitude_km), &evaluator);
-                let scale = GateScale::of(&subject, day());
-                let budget = Propagations::new(&subject, day())
-                    .unwrap()
-                    .budget()
-                    .unwrap();
-                let mut findings = Findings::default();
-                findings.checks.extend(scale.budget_checks(&budget));
-                findings
-                    .checks
-                    .extend(rates::checks(&subject, &scale).unwrap());
-                findings
-                    .checks
-                    .extend(frozen::checks(&subject, &scale).unwrap());
-                failed.extend(findings.failures().map(|check| {
-                    let gate = check.gate.unwrap_or(f64::NAN);
-                    let (name, value) = (&check.name, check.value);
-                    format!(
-                        "{model} {inclination_deg}° {altitude_km} km {name} {value:e} of {gate:e}"
-                    )
-                }));
+                let failures = failures_beside_the_sweep(&subject);
+                let at =
+                    |text: String| format!("{model} {inclination_deg}° {altitude_km} km {text}");
+                failed.extend(failures.into_iter().map(at));
             }
         }
     }
@@ -223,11 +228,9 @@ fn gates_follow_the_samples() {
         for model in [Model::J2, Model::J2Osculating, Model::Sgp4] {
             let evaluator = testing::evaluator_of(model, grid);
             let subject = Subject::new(text.parse().unwrap(), &evaluator);
-            let findings = against_sgp4(&subject).unwrap();
-            failed.extend(findings.failures().map(|check| {
-                let (name, value, gate) = (&check.name, check.value, check.gate);
-                format!("{model} {text} {name} {value:e} of {gate:?}")
-            }));
+            let failures = failures_beside_the_sweep(&subject);
+            let of = |check: String| format!("{model} {text} {check}");
+            failed.extend(failures.into_iter().map(of));
         }
     }
     assert!(failed.is_empty(), "{failed:#?}");

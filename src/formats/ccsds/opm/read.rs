@@ -7,6 +7,7 @@ use crate::formats::ccsds::frame::supported_frame;
 use crate::formats::ccsds::keywords::{COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named};
 use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, Pair, item, lines};
 use crate::formats::text::finding::FindingList;
+use crate::formats::text::lines::keep_comment;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
 use crate::frames::{Frame, State, from_teme};
 use crate::orbit::Model;
@@ -85,7 +86,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Opti
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
             Item::Blank => {}
-            Item::Comment(text) if in_header => block.comments.push(text.to_owned()),
+            Item::Comment(text) if in_header => keep_comment(&mut block.comments, text),
             Item::Comment(_) => {}
             Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {
                 let named = (pair.key, pair.value);
@@ -196,7 +197,7 @@ fn check_elements(message: &Opm, place: (usize, usize), findings: &mut FindingLi
         && apart.distance_km > apart.limit_km
     {
         let text = format!(
-            "the state is {:.0} km from that of the mean elements USER_DEFINED_MEAN_...; the periodic terms explain at most {:.0} km",
+            "the state is {:.0} km off that of the mean elements USER_DEFINED_MEAN_..., and periodic terms explain at most {:.0} km",
             apart.distance_km, apart.limit_km
         );
         findings.error(place, "opm-mean-elements", text);
@@ -210,7 +211,8 @@ pub(super) struct ElementsApart {
     pub(super) limit_km: f64,
 }
 
-/// The distance between the state and that of the mean elements; `None` if one of them is missing or its frame or time
+/// The distance between the state and that of the mean elements, or between their velocities in half a radian of the
+/// orbit if that is larger; `None` if one of them is missing or its frame or time
 /// system is unknown.
 ///
 /// Mean and osculating positions differ by the periodic terms: those of J2 have amplitudes of at most 3/4 J2 R²/p on
@@ -227,11 +229,15 @@ pub(super) fn elements_apart(message: &Opm) -> Option<ElementsApart> {
         .epoch(message.epoch);
     let propagator = Model::J2.propagator(&elements, epoch).ok()?;
     let of_elements: State<Frame> = from_teme(propagator.state_at(0.0).ok()?, frame, epoch, 0.0);
+    let apart_km = (message.state.position_km - of_elements.position_km).norm();
+    let per_s = (message.state.velocity_km_s - of_elements.velocity_km_s).norm();
+    // The terms of J2 have two periods per revolution.
+    let by_velocity_km = per_s / (2.0 * elements.kepler_mean_motion_rad_s());
     let e = elements.eccentricity;
     let j2_km = J2 * RADIUS_KM * RADIUS_KM / (elements.semi_major_axis_km * (1.0 - e * e));
     let periodic_km = (1.5 + 3.0 * 0.75) * j2_km + FROZEN_KM;
     Some(ElementsApart {
-        distance_km: (message.state.position_km - of_elements.position_km).norm(),
+        distance_km: apart_km.max(by_velocity_km),
         limit_km: 2.0 * (1.0 + 8.0 * e) * periodic_km,
     })
 }

@@ -242,7 +242,7 @@ fn mean_elements_and_state_are_of_one_orbit() {
         let [a_km, _, i_deg, _, _, anomaly_deg] = MEAN;
         for (damaged, rule) in [
             (swapped("X", "Y"), "opm-mean-elements"),
-            (swapped("X_DOT", "Y_DOT"), ""),
+            (swapped("X_DOT", "Y_DOT"), "opm-mean-elements"),
             (with(i_deg, "0.959931088597"), "opm-mean-elements"),
             (with(anomaly_deg, "0.0"), "opm-mean-elements"),
             (with(a_km, "7403.137"), "opm-mean-elements"),
