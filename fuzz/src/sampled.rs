@@ -9,9 +9,9 @@ use navwalker::formats::metadata::{Metadata, Object, Theory};
 use navwalker::formats::sp3::{self as format, Sp3Version};
 use navwalker::formats::text::timestamp::TimeSystem;
 use navwalker::formats::trajectory::Trajectory;
-use navwalker::frames::{EarthFixed, Frame};
+use navwalker::frames::{EarthFixed, Frame, State};
 use navwalker::orbit::Model;
-use navwalker::time::TimeGrid;
+use navwalker::time::{Epoch, TimeGrid};
 
 /// The grid that the samples of the first satellite show, if the others have no more.
 fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
@@ -28,10 +28,14 @@ fn propagated(trajectories: &[Trajectory]) -> Option<Ephemeris> {
     }
     let grid = TimeGrid::new(first, span_s, step_s).ok()?;
     // Samples between the instants of the grid would not be written.
-    if trajectories
-        .iter()
-        .any(|one| one.samples().len() != grid.len())
-    {
+    let is_on_grid = |one: &Trajectory| {
+        let samples = one.samples();
+        let near = |(n, (at, ..)): (usize, &(Epoch, Frame, State<Frame>))| {
+            at.seconds_since(first.plus_seconds(grid.elapsed_s(n))).abs() <= 1e-6
+        };
+        samples.len() == grid.len() && samples.iter().enumerate().all(near)
+    };
+    if !trajectories.iter().all(is_on_grid) {
         return None;
     }
     Fleet::Sampled(trajectories.to_vec())

@@ -326,8 +326,8 @@ mod tests {
         assert_eq!(ours.ae, theirs.ae);
         let expected_ke = theirs.ke * (398_600.4418_f64 / 398_600.5).sqrt();
         assert!((ours.ke / expected_ke - 1.0).abs() < 1e-12, "{}", ours.ke);
-        // EGM96 and WGS-84 differ by 3e-7 of J2; J3 and J4 are those of SGP4.
-        assert!((ours.j2 / theirs.j2 - 1.0).abs() < 4e-7, "{}", ours.j2);
+        // EGM96 and WGS-84 differ by 3.1e-6 of J2; J3 and J4 are those of SGP4.
+        assert!((ours.j2 / theirs.j2 - 1.0).abs() < 3.2e-6, "{}", ours.j2);
         assert_eq!((ours.j3, ours.j4), (::sgp4::WGS72.j3, ::sgp4::WGS72.j4));
         assert_eq!(own.mode, Sgp4Theory::STANDARD.mode);
     }

@@ -296,8 +296,14 @@ impl GateScale {
     /// Bounds on the RMS of the model of the study against SGP4, km; none for SGP4 against a part of itself.
     fn rms_gates_km(&self, zonals: ZonalHarmonics) -> Option<[f64; 3]> {
         match self.model {
-            Model::J2 | Model::TwoBody => Some(self.causes.rms_gates_km(zonals, self.days)),
-            Model::J2Osculating => Some(self.causes.osculating_gates_km(zonals, self.days)),
+            Model::J2 | Model::TwoBody => {
+                Some(self.causes.rms_gates_km(zonals, self.days, self.leftover))
+            }
+            Model::J2Osculating => Some(self.causes.osculating_gates_km(
+                zonals,
+                self.days,
+                self.leftover,
+            )),
             Model::Sgp4 => (zonals == ZonalHarmonics::Full).then_some([SAME_KM; 3]),
         }
     }

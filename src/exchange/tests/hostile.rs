@@ -170,7 +170,8 @@ fn comments_do_not_fill_memory() {
             Format::OemXml | Format::OmmXml | Format::OpmXml => {
                 ("<CREATION_DATE", "<COMMENT>more</COMMENT>\n")
             }
-            Format::Sp3 => ("/* ", "/* more\n"),
+            // Names are in the first comments.
+            Format::Sp3 => ("*  2025", "/* more\n"),
             Format::Stk => ("BEGIN Ephemeris", "# more\n"),
             _ => continue,
         };

@@ -6,7 +6,7 @@ use crate::orbit::sgp4::ZonalHarmonics;
 use crate::orbit::{MeanElements, osculating};
 use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 /// SGP4 adds the Sun, the Moon and resonances at periods from 225 minutes on (Hoots and
 /// Roehrich, *Spacetrack Report* 3 (1980), section 6), which no J2 model has.
@@ -151,21 +151,36 @@ impl Causes {
     }
 
     /// Bounds on the RMS of mean J2 against SGP4 over a span, km.
-    pub(in crate::validate) fn rms_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
+    ///
+    /// The mean square of a sine over samples is half that of its amplitude, plus what the samples leave of the mean of
+    /// twice its frequency.
+    pub(in crate::validate) fn rms_gates_km(
+        &self,
+        zonals: ZonalHarmonics,
+        days: f64,
+        leftover: Leftover,
+    ) -> [f64; 3] {
+        let [_, of_two, of_four] = leftover.mean;
         let frozen = match zonals {
-            ZonalHarmonics::Full => self.frozen_km / SQRT_2,
+            ZonalHarmonics::Full => self.frozen_km * (0.5 * (1.0 + of_two)).sqrt(),
             ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
         };
-        let periodic = self.short_period_km.map(|amplitude| amplitude / SQRT_2);
+        let of_twice = (0.5 * (1.0 + of_four)).sqrt();
+        let periodic = self.short_period_km.map(|amplitude| amplitude * of_twice);
+        // The shift of the radius and its periodic term do not average out either.
+        let shift = self.radius_shift_km.abs();
+        let both = 2.0 * shift * self.short_period_km[0] * of_two;
+        let radial = (shift * shift + both).sqrt();
         let first_order = [
-            self.radius_shift_km.hypot(periodic[0]).hypot(frozen),
+            radial.hypot(periodic[0]).hypot(frozen),
             periodic[1].hypot(2.0 * frozen),
             periodic[2],
         ];
         let [along, across] = self.drifts_km_per_day(zonals);
         // RMS of a ramp; across the track it swings with the argument of latitude.
         let ramp_days = days / 3_f64.sqrt();
-        let second_order = [0.0, along * ramp_days, across * ramp_days / SQRT_2];
+        let swing = (0.5 * (1.0 + of_two)).sqrt();
+        let second_order = [0.0, along * ramp_days, across * ramp_days * swing];
         std::array::from_fn(|axis| {
             let size = first_order[axis].hypot(second_order[axis]);
             FIRST_ORDER_MARGIN * self.eccentric_factor * size + HIGHER_ORDER_KM
@@ -177,6 +192,7 @@ impl Causes {
         &self,
         zonals: ZonalHarmonics,
         days: f64,
+        leftover: Leftover,
     ) -> [f64; 3] {
         let mut without = *self;
         // First-order terms are accurate to a fraction J2 of their size, times a factor of a few.
@@ -184,7 +200,7 @@ impl Causes {
         without.short_period_km = self
             .short_period_km
             .map(|amplitude| 0.01 * amplitude + HIGHER_ORDER_KM);
-        without.rms_gates_km(zonals, days)
+        without.rms_gates_km(zonals, days, leftover)
     }
 
     /// What the closed forms at e = 0 leave out of a drift in-track: third order in J2, 2 % of the second,
