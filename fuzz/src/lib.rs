@@ -61,7 +61,11 @@ pub fn tle(bytes: &[u8]) {
     let Ok(sets) = tle::read(bytes) else { return };
     // Longer and foreign names are read with a warning, and have no place in a line of 24 characters.
     let fits = |name: &String| name.len() <= 24 && name.is_ascii();
-    if !sets.iter().filter_map(|set| set.object_name.as_ref()).all(fits) {
+    if !sets
+        .iter()
+        .filter_map(|set| set.object_name.as_ref())
+        .all(fits)
+    {
         return;
     }
     let write = |sets: &Vec<sgp4::Elements>| {
