@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::io;
 
 /// The columns of a table of constellations: name, design, files, metrics, further objectives and constrained
-/// quantities, dilutions of precision, and the verdict on each constraint.
+/// quantities, and dilutions of precision.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstellationColumns {
     /// Whether a constellation has satellites from files.
@@ -27,8 +27,6 @@ pub struct ConstellationColumns {
     dops: Vec<String>,
     /// The metrics whose range over phases of the GNSS is given.
     phases: Vec<String>,
-    /// The constraints, as they are written.
-    constraints: Vec<String>,
 }
 
 impl ConstellationColumns {
@@ -40,7 +38,6 @@ impl ConstellationColumns {
         let quantities = entry.evaluated.quantities.iter().map(|(one, _)| *one);
         let dops = entry.evaluated.dops.iter().flat_map(DopStatistics::named);
         let on_demand = entry.evaluated.metrics.on_demand().into_iter();
-        let constraints = entry.evaluated.constraints.iter();
         Self {
             has_files,
             on_demand: on_demand.map(|(name, _)| name).collect(),
@@ -50,7 +47,6 @@ impl ConstellationColumns {
                 .collect(),
             dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
             phases: ranges(entry).into_iter().map(|(name, _)| name).collect(),
-            constraints: constraints.map(|one| one.constraint.clone()).collect(),
         }
     }
 
@@ -79,7 +75,6 @@ impl ConstellationColumns {
         for name in &self.phases {
             names.extend(["min", "mean", "max"].map(|part| format!("{name}_phases_{part}")));
         }
-        names.extend(self.constraints.iter().cloned());
         line(&names)
     }
 
@@ -119,8 +114,6 @@ impl ConstellationColumns {
             ];
             row.extend(parts.map(optional));
         }
-        let checks = evaluated.constraints.iter();
-        row.extend(checks.map(|check| check.verdict().to_owned()));
         line(&row)
     }
 }
