@@ -234,7 +234,7 @@ impl Causes {
     }
 
     /// Bounds on the slopes that the periodic terms leave in the node and in the argument of latitude, rad/day: the
-    /// short-period terms of J2 ([M-72](crate::models#m-41)), and twice the frozen eccentricity in the latter.
+    /// short-period terms of J2 ([M-41](crate::models#m-41)), and twice the frozen eccentricity in the latter.
     pub(in crate::validate) fn periodic_rates_rad_per_day(&self, leftover: Leftover) -> [f64; 2] {
         let [once, twice, _] = leftover.slope_per_day;
         let frozen = 2.0 * self.frozen_km / self.a_km * once;
@@ -258,7 +258,7 @@ pub(in crate::validate) struct Leftover {
 }
 
 impl Leftover {
-    /// Bounds in closed form ([M-73](crate::models#m-41)).
+    /// Bounds in closed form ([M-41](crate::models#m-41)).
     pub(in crate::validate) fn of(satellites: &[Satellite], grid: TimeGrid) -> Self {
         let Some(first) = satellites.first() else {
             return Self {
