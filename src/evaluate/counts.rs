@@ -71,6 +71,12 @@ impl Views {
         self.0[visible as usize] += weight;
     }
 
+    /// Moves the weight of samples from one number to another.
+    pub(super) fn shift(&mut self, from: u32, to: u32, weight: u64) {
+        self.0[from as usize] -= weight;
+        self.0[to as usize] += weight;
+    }
+
     fn total(&self) -> u64 {
         self.0.iter().sum()
     }

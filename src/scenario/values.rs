@@ -5,6 +5,7 @@ mod accuracy;
 mod constellations;
 mod objectives;
 mod optimizer;
+mod outages;
 mod region;
 mod search;
 mod setting;
@@ -15,6 +16,7 @@ pub use accuracy::{FurtherMetrics, RangeErrors};
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
 pub use optimizer::Optimizer;
+pub use outages::SatelliteOutages;
 #[cfg(test)]
 pub(super) use region::points;
 pub use region::{AreaSource, Region};
@@ -73,6 +75,8 @@ section! {
         pub visibility: Visibility;
         /// The GNSS to augment.
         pub gnss: GnssSetup;
+        /// The satellites out of service.
+        pub outages: SatelliteOutages;
         /// The range errors of the systems.
         pub accuracy: RangeErrors;
         /// Metrics on demand.

@@ -109,6 +109,13 @@ const ROWS: &[Row] = &[
     Row("evaluate", "design", "SMALL", "DESIGN", Status),
     Row(
         "evaluate",
+        "without",
+        "DESIGN SMALL",
+        "--without NW-P01-S02,GEO-1",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
         "constellation",
         "SMALL",
         "--constellation six.csv",

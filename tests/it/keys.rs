@@ -71,13 +71,25 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 85] = [
+const ROWS: [Row; 87] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
         "{one=\"delta:55:4/2/1@800\"}",
         EVALUATE_OWN,
         "/constellations",
+    ),
+    row(
+        "outages.satellites",
+        "[\"NW-P02\"]",
+        EVALUATE,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "outages.file",
+        "outages.csv",
+        EVALUATE,
+        "/metrics/mean_visible",
     ),
     row(
         "export.name-prefix",
@@ -482,6 +494,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("area.geojson"),
         r#"{"type": "Polygon", "coordinates": [[[10,-20],[40,-20],[40,10],[10,10],[10,-20]]]}"#,
+    )
+    .unwrap();
+    fs::write(
+        place.join("outages.csv"),
+        "satellite,start_utc,end_utc\nNW-P01,2025-01-01T06:00:00Z,2025-01-01T18:00:00Z\n",
     )
     .unwrap();
     let almanac: Vec<&str> = "export --quiet --as yuma --out almanac --set gnss.constellations=[\"galileo\"] --design delta:55:2/2/1@925"

@@ -21,6 +21,11 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out", "gnss_phases"])]
     pub(crate) designs: Option<PathBuf>,
 
+    /// Take these satellites out of service throughout: satellites (NW-P01-S03), planes (NW-P03) or shells (NW-A) of the
+    /// constellations, or GNSS satellites (gps:A3); the same as adding them to `outages.satellites` of the scenario.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,

@@ -27,7 +27,7 @@ use print::Printer;
 use series::SeriesDirectory;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
-    let study = Study::load(&args.study, &[])?;
+    let study = Study::load(&args.study, &[])?.without(&args.study, &args.without)?;
     let sourced = given(args, &study)?;
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
     let run = GivenRun::open(args, &study, &sourced)?;
