@@ -23,6 +23,7 @@ mod window;
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
+pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;

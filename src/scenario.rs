@@ -54,8 +54,8 @@ pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
     AreaSource, ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
-    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, SatelliteOutages,
-    Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
+    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, Reliability,
+    SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;

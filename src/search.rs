@@ -2,6 +2,7 @@
 //! designs.
 
 mod constraint;
+pub mod failures;
 mod fixed;
 mod quantity;
 mod shell_space;

@@ -1,4 +1,4 @@
-//! Sums from which observations are taken away again ([M-53](crate::models#m-53)).
+//! Sums from which observations are taken away again ([M-56](crate::models#m-56)).
 
 use super::{ClockGroup, Geometry, Symmetric3};
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! Metrics without some satellites, as evaluated anew, for many sets of satellites at once ([M-53](crate::models#m-53)).
+//! Metrics without some satellites, as evaluated anew, for many sets of satellites at once ([M-56](crate::models#m-56)).
 //!
 //! A satellite that fails changes only the samples that see it. Their sums are downdated instead of made anew; where
 //! rounding of the difference could matter, they are made anew by the plain path. Everything is in f64.
@@ -7,9 +7,12 @@
 //! - [`pass`]: PDOP of all samples, and of those that change without each set.
 //! - [`statistics`]: the metrics of each set, from those of the whole constellation and what changes.
 
+mod expected;
 mod pass;
 mod sight;
 mod statistics;
+
+pub use expected::{ExpectedError, ExpectedMetrics, NEGLECTED};
 
 use super::{Evaluator, Metrics};
 use crate::ephemeris::{Ephemeris, EphemerisError};

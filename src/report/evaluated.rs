@@ -1,8 +1,9 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
 use super::PhaseSpread;
+use super::failures::FailureSummary;
 use crate::constellation::Design;
-use crate::evaluate::{DopStatistics, Metrics};
+use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics};
 use crate::exchange::constellation::{Constellation, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, Goals, Quantity};
@@ -19,6 +20,12 @@ pub struct Assessment {
     /// The spread over phases of the GNSS, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gnss_phases: Option<PhaseSpread>,
+    /// What failures of satellites do, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failures: Option<FailureSummary>,
+    /// The metrics as expected over failures, if the scenario says how reliable the satellites are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected: Option<ExpectedMetrics>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -82,6 +89,8 @@ impl Assessment {
             metrics,
             dops,
             gnss_phases: None,
+            failures: None,
+            expected: None,
             constraints,
             quantities,
         }

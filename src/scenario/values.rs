@@ -7,6 +7,7 @@ mod objectives;
 mod optimizer;
 mod outages;
 mod region;
+mod reliability;
 mod search;
 mod setting;
 mod shell;
@@ -21,6 +22,7 @@ pub use outages::SatelliteOutages;
 pub(super) use region::points;
 pub use region::{AreaSource, Region};
 pub(super) use region::{RegionKeys, rivals};
+pub use reliability::Reliability;
 pub(super) use search::SHELLS;
 pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
@@ -77,6 +79,8 @@ section! {
         pub gnss: GnssSetup;
         /// The satellites out of service.
         pub outages: SatelliteOutages;
+        /// How reliable the satellites are.
+        pub reliability: Reliability;
         /// The range errors of the systems.
         pub accuracy: RangeErrors;
         /// Metrics on demand.

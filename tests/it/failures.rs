@@ -128,3 +128,139 @@ fn bad_outages_are_named() {
         late.stderr
     );
 }
+
+/// The contract of the JSON, against evaluations with `--without`.
+#[test]
+fn each_failure_is_an_evaluation_without_the_satellite() {
+    let place = TempDir::new().unwrap();
+    let design = [
+        "--design",
+        "delta:55:12/3/1@925",
+        "--set",
+        "objectives.availability-pdop=2",
+    ];
+    let of = evaluated(&place, &[&design[..], &["--failures", "1"]].concat());
+    let failures = &of["failures"];
+    assert_eq!(
+        (&failures["k"], &failures["draws"]),
+        (&1.into(), &Value::Null)
+    );
+    let satellites = failures["by_satellite"].as_array().unwrap();
+    let planes = failures["by_plane"].as_array().unwrap();
+    assert_eq!((satellites.len(), planes.len()), (12, 3));
+    for part in satellites.iter().step_by(5).chain(planes) {
+        let name = part["name"].as_str().unwrap();
+        let anew = evaluated(&place, &[&design[..], &["--without", name]].concat());
+        for metric in [
+            "mean_visible",
+            "mean_pdop",
+            "cvar_pdop",
+            "p95_pdop",
+            "max_pdop",
+            "availability",
+            "longest_outage_s",
+        ] {
+            let [ours, anew] = [part, &anew].map(|of| of["metrics"][metric].as_f64().unwrap());
+            // The lanes of the other path are in f32, their maximum to 1e-5.
+            assert!(
+                (ours / anew - 1.0).abs() < 1e-5,
+                "{name} {metric}: {ours} {anew}"
+            );
+        }
+    }
+    let largest = satellites
+        .iter()
+        .map(|one| one["metrics"]["max_pdop"].as_f64().unwrap());
+    let largest = largest.fold(0.0, f64::max);
+    assert_eq!(
+        failures["worst"]["max_pdop"]["value"].as_f64(),
+        Some(largest)
+    );
+    let mean: f64 = satellites
+        .iter()
+        .map(|one| one["metrics"]["cvar_pdop"].as_f64().unwrap())
+        .sum();
+    let mean = mean / 12.0 - failures["mean"]["cvar_pdop"].as_f64().unwrap();
+    assert!(mean.abs() < 1e-12, "{mean}");
+    let csv = with(&[
+        "evaluate",
+        "--format",
+        "csv",
+        "--failures",
+        "1",
+        "--design",
+        "delta:55:12/3/1@925",
+    ]);
+    let csv = ran(place.path(), &csv).stdout;
+    assert_eq!(csv.lines().count(), 1 + 12 + 3);
+    assert!(
+        csv.starts_with("name,lost,without,satellites_lost,mean_visible,"),
+        "{csv}"
+    );
+    let error = refused(&with(&[
+        "evaluate",
+        "--design",
+        "delta:55:2/2/1@925",
+        "--failures",
+        "2",
+    ]));
+    assert!(
+        error.contains("--failures 2: delta:55:2/2/1@925 has 2 satellites, and one must be left"),
+        "{error}"
+    );
+}
+
+/// All pairs of few satellites are brute force; of many, draws of the seed and a search that finds a set at least as bad.
+#[test]
+fn pairs_are_all_or_drawn() {
+    let place = TempDir::new().unwrap();
+    let design = ["--design", "delta:55:8/2/1@925"];
+    let pairs = evaluated(&place, &[&design[..], &["--failures", "2"]].concat());
+    let pairs = &pairs["failures"];
+    assert_eq!(
+        (&pairs["cases"], &pairs["worst_is"]),
+        (&28.into(), &"exact".into())
+    );
+    let worst = &pairs["worst"]["cvar_pdop"];
+    let without = worst["without"].as_array().unwrap().iter();
+    let without: Vec<&str> = without.map(|name| name.as_str().unwrap()).collect();
+    let anew = evaluated(
+        &place,
+        &[&design[..], &["--without", &without.join(",")]].concat(),
+    );
+    let [ours, anew] =
+        [&worst["value"], &anew["metrics"]["cvar_pdop"]].map(|of| of.as_f64().unwrap());
+    assert!((ours / anew - 1.0).abs() < 1e-6, "{ours} {anew}");
+
+    let many = [
+        "--design",
+        "delta:55:30/5/1@925",
+        "--failures",
+        "3",
+        "--draws",
+        "40",
+    ];
+    let first = evaluated(&place, &many);
+    assert_eq!(first, evaluated(&place, &many));
+    let drawn = &first["failures"];
+    assert_eq!(
+        (&drawn["draws"], &drawn["worst_is"]),
+        (&40.into(), &"found-not-proved".into())
+    );
+    assert!(
+        drawn["spread"]["mean_visible"]["standard_error"]
+            .as_f64()
+            .unwrap()
+            > 0.0
+    );
+    let [worst, drawn] = [
+        &drawn["worst"]["cvar_pdop"]["value"],
+        &drawn["spread"]["cvar_pdop"]["max"],
+    ];
+    assert!(worst.as_f64() >= drawn.as_f64(), "{worst} {drawn}");
+    let other = evaluated(
+        &place,
+        &[&many[..], &["--set", "optimizer.seed=2"]].concat(),
+    );
+    assert_ne!(first["failures"]["spread"], other["failures"]["spread"]);
+}

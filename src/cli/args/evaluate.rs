@@ -37,6 +37,18 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]
     pub(crate) gnss_phases: Option<u32>,
 
+    /// Add what the failure of any K LEO satellites does (1 to 3): the mean, the worst and without which satellites.
+    ///
+    /// For one satellite all cases are evaluated exactly, by satellite and by plane (a lost launch). For two and three, all
+    /// sets if there are at most 1000, and otherwise draws, with a greedy search with exchanges for the worst set.
+    /// With `--format csv` one row for each satellite and plane is printed in place of the constellation.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3), conflicts_with = "designs")]
+    pub(crate) failures: Option<u8>,
+
+    /// Number of sets that are drawn for `--failures`, from the seed of the scenario.
+    #[arg(long, value_name = "N", default_value = "200", requires = "failures", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) draws: u32,
+
     /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
     /// constellations to a folder each.
     #[arg(long, value_name = "DIR")]

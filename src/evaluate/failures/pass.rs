@@ -80,14 +80,14 @@ impl<'a> Sets<'a> {
 
 /// A satellite in view.
 #[derive(Clone, Copy)]
-struct Sighted {
+pub(super) struct Sighted {
     satellite: u32,
     unit: Vector3<f64>,
     weight: f64,
 }
 
 /// What a piece of a pass works with.
-struct Worker<'a> {
+pub(super) struct Worker<'a> {
     evaluator: &'a Evaluator,
     tree: &'a SightTree,
     sets: &'a Sets<'a>,
@@ -95,6 +95,8 @@ struct Worker<'a> {
     sky: Vec<Vec<Sighted>>,
     /// The sums of each LEO clock at a sample.
     groups: Vec<ClockGroup>,
+    /// Those of all satellites, while sets of them are taken away.
+    whole: Vec<ClockGroup>,
     /// Set and place in the sky of the satellites of a sample.
     touched: Vec<(u32, u32)>,
     piece: Piece,
@@ -120,13 +122,14 @@ pub(super) fn pass(
 }
 
 impl<'a> Worker<'a> {
-    fn new(evaluator: &'a Evaluator, tree: &'a SightTree, sets: &'a Sets<'a>) -> Self {
+    pub(super) fn new(evaluator: &'a Evaluator, tree: &'a SightTree, sets: &'a Sets<'a>) -> Self {
         Self {
             evaluator,
             tree,
             sets,
             sky: vec![Vec::new(); evaluator.setup().sites.len()],
             groups: Vec::new(),
+            whole: Vec::new(),
             touched: Vec::new(),
             piece: Piece {
                 changed: vec![Vec::new(); sets.count],
@@ -148,7 +151,7 @@ impl<'a> Worker<'a> {
     }
 
     /// Fills the sky of each point, satellite by satellite.
-    fn look(&mut self, instant: usize) -> Result<(), EphemerisError> {
+    pub(super) fn look(&mut self, instant: usize) -> Result<(), EphemerisError> {
         let setup = self.evaluator.setup();
         let elapsed_s = setup.grid.elapsed_s(instant);
         let rotation = self.evaluator.rotations[instant];
@@ -180,8 +183,7 @@ impl<'a> Worker<'a> {
     /// One sample with all satellites and without each set.
     fn sample(&mut self, sample: u32, site: usize, gnss: &PlainGnssSample) {
         let seen = std::mem::take(&mut self.sky[site]);
-        self.sum(&seen, gnss, |_| true);
-        let pdop = self.solved(gnss);
+        let pdop = self.start(&seen, gnss);
         self.piece.pdop.push(pdop);
         self.piece.visible.push(seen.len() as u32);
         self.piece.gnss_visible.push(gnss.visible);
@@ -194,27 +196,58 @@ impl<'a> Worker<'a> {
         if !touched.is_sorted() {
             touched.sort_unstable();
         }
-        let whole = std::mem::take(&mut self.groups);
+        let mut places = Vec::new();
         for together in touched.chunk_by(|a, b| a.0 == b.0) {
-            let places = together.iter().map(|(_, place)| *place as usize);
-            let pdop = match self.downdated(&whole, gnss, places.map(|place| &seen[place])) {
-                Downdated::Pdop(pdop) => pdop,
-                Downdated::TooFew => f64::INFINITY,
-                Downdated::Doubtful => {
-                    let is_left = |place: usize| together.iter().all(|one| one.1 as usize != place);
-                    self.sum(&seen, gnss, is_left);
-                    self.solved(gnss)
-                }
-            };
+            places.clear();
+            places.extend(together.iter().map(|(_, place)| *place as usize));
+            let pdop = self.without(&seen, &places, gnss);
             self.piece.changed[together[0].0 as usize].push(ChangedSample {
                 sample,
                 missing: together.len() as u32,
                 pdop,
             });
         }
-        self.groups = whole;
         self.touched = touched;
         self.sky[site] = seen;
+    }
+
+    /// Begins a sample: PDOP with all satellites, from which sets are then taken away.
+    pub(super) fn start(&mut self, seen: &[Sighted], gnss: &PlainGnssSample) -> f64 {
+        self.sum(seen, gnss, |_| true);
+        self.whole.clone_from(&self.groups);
+        self.solved(gnss)
+    }
+
+    /// PDOP of the sample without the satellites at some places of its sky; infinite if unsolved.
+    pub(super) fn without(
+        &mut self,
+        seen: &[Sighted],
+        places: &[usize],
+        gnss: &PlainGnssSample,
+    ) -> f64 {
+        match self.downdated(gnss, places.iter().map(|place| &seen[*place])) {
+            Downdated::Pdop(pdop) => pdop,
+            Downdated::TooFew => f64::INFINITY,
+            Downdated::Doubtful => {
+                self.sum(seen, gnss, |place| !places.contains(&place));
+                self.solved(gnss)
+            }
+        }
+    }
+
+    /// The satellites in view of each point.
+    pub(super) fn sky(&self) -> &[Vec<Sighted>] {
+        &self.sky
+    }
+
+    /// Takes the sky of a point, to be given back.
+    pub(super) fn take_sky(&mut self, site: usize) -> Vec<Sighted> {
+        std::mem::take(&mut self.sky[site])
+    }
+
+    /// Gives the sky of a point back.
+    pub(super) fn give_sky(&mut self, site: usize, sky: Vec<Sighted>) {
+        self.sky[site] = sky;
     }
 
     /// The sums of the plain path over the satellites that are left, in its order.
@@ -242,12 +275,11 @@ impl<'a> Worker<'a> {
     /// PDOP of the sums of all satellites minus some.
     fn downdated<'s>(
         &self,
-        whole: &[ClockGroup],
         gnss: &PlainGnssSample,
         missing: impl Iterator<Item = &'s Sighted>,
     ) -> Downdated {
         let setup = self.evaluator.setup();
-        let geometry = match whole {
+        let geometry = match self.whole.as_slice() {
             [one] => {
                 let mut left = *one;
                 missing.for_each(|one| left.remove(one.unit, one.weight));

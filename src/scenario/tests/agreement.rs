@@ -26,7 +26,8 @@ fn the_canonical_text_has_every_key_and_parses_back() {
         "fixed",
     ];
     for key in describe_keys().iter().filter(|key| {
-        !absent.contains(&key.name) && !["accuracy", "metrics", "outages"].contains(&key.section)
+        !absent.contains(&key.name)
+            && !["accuracy", "metrics", "outages", "reliability"].contains(&key.section)
     }) {
         assert!(
             text.contains(&format!("\n{} = ", key.name)) || key.name == "name",
@@ -73,6 +74,7 @@ fn the_hash_moves_with_everything_that_is_computed() {
         "gnss.leo-clocks=per-part",
         "metrics.window-min=10",
         "outages.satellites=[\"NW-P01-S03\"]",
+        "reliability.availability=0.9",
         "objectives.minimize=[\"j-cost\", \"j-pos\"]",
         "objectives.cvar-weight=0.6",
         "objectives.cvar-level=0.9",
@@ -140,19 +142,27 @@ fn the_hash_moves_with_everything_that_is_computed() {
     for error in &errors {
         hashes.push(with(&[&base[..], &[error]].concat()).hash(&[]));
     }
+    // Of the times of [reliability], one needs the other.
+    let times = [[1000, 100], [1000, 50]].map(|[up, down]| {
+        let [up, down] = [format!("mtbf-h={up}"), format!("mttr-h={down}")];
+        [up, down].map(|time| format!("reliability.{time}"))
+    });
+    for [up, down] in &times {
+        hashes.push(with(&[up, down]).hash(&[]));
+    }
     hashes.push(with(&base).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files;
+    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files, outages.file;
     // optimizer.generations
-    let (labels, files, budgets) = (6, 3, 1);
+    let (labels, files, budgets) = (6, 4, 1);
     assert_eq!(
-        changes.len() + errors.len() + labels + files + budgets,
+        changes.len() + errors.len() + times.len() + labels + files + budgets,
         describe_keys().len()
     );
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), changes.len() + errors.len() + 2);
+    assert_eq!(hashes.len(), changes.len() + errors.len() + times.len() + 2);
 }
 
 #[test]

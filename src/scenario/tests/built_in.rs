@@ -140,7 +140,8 @@ fn the_template_uncommented_is_still_a_scenario() {
     // exclude the grid, shells the intervals of one, and no constellations, nothing fixed, no
     // orientation, range errors and windows are the default, so these lines stay out.
     let on_demand = describe_keys().into_iter();
-    let on_demand = on_demand.filter(|key| ["accuracy", "metrics"].contains(&key.section));
+    let on_demand = on_demand
+        .filter(|key| ["accuracy", "metrics", "outages", "reliability"].contains(&key.section));
     let mut left_out: Vec<&str> = on_demand.map(|key| key.name).collect();
     left_out.extend([
         "points",
