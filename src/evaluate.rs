@@ -23,7 +23,7 @@ mod window;
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
-pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED};
+pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
@@ -380,6 +380,7 @@ impl Evaluator {
             }
             None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
         };
+        let metrics = self.with_failures(metrics, ephemeris)?;
         if !self.setup.metrics.asks_for_hdop {
             return Ok((metrics, rechecks));
         }

@@ -8,11 +8,13 @@
 //! - [`statistics`]: the metrics of each set, from those of the whole constellation and what changes.
 
 mod expected;
+mod one_lost;
 mod pass;
 mod sight;
 mod statistics;
 
 pub use expected::{ExpectedError, ExpectedMetrics, NEGLECTED};
+pub use one_lost::OneLost;
 
 use super::{Evaluator, Metrics};
 use crate::ephemeris::{Ephemeris, EphemerisError};

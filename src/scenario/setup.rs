@@ -259,18 +259,24 @@ impl Scenario {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
-                asks_for_hdop: self.asks_for_hdop(),
+                asks_for_hdop: self
+                    .asks_for(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop)),
+                asks_for_n1: self.asks_for(Quantity::is_of_one_lost),
+                expects_up: self
+                    .reliability
+                    .satellite_availability()
+                    .filter(|_| self.asks_for(|goal| goal == Quantity::ExpectedAvailability)),
             });
         let outages = self.satellite_outages(setup.grid, read)?;
         Ok((setup.with_outages(outages)?, notes))
     }
 
-    /// Whether an objective or a constraint is a quantile of HDOP or VDOP.
-    fn asks_for_hdop(&self) -> bool {
+    /// Whether an objective or a constraint is of a kind.
+    fn asks_for(&self, kind: impl Fn(Quantity) -> bool) -> bool {
         let constraints = self.objectives.constraints.iter();
         let bounded = constraints.map(|constraint| constraint.quantity);
         let mut goals = self.objectives.minimize.iter().copied().chain(bounded);
-        goals.any(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop))
+        goals.any(kind)
     }
 
     /// The error of a file, among [`Scenario::files`], that cannot be read.

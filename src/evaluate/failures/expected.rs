@@ -215,28 +215,41 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         up: f64,
     ) -> Result<ExpectedMetrics, ExpectedError> {
-        self.fixed()?;
         let tree = SightTree::new(self.setup());
         let sets = Sets::new(self, ephemeris, &[]);
-        let instants = self.setup().grid.len();
-        let starts: Vec<usize> = (0..instants).step_by(PIECE).collect();
-        let ranges = || {
-            let range = |start: &usize| *start..(start + PIECE).min(instants);
-            starts.par_iter().map(range)
-        };
-        let states: Result<Vec<f64>, EphemerisError> = ranges()
-            .map(|range| self.states(&tree, &sets, range, up))
-            .collect();
+        let ranges = self.expected_pieces().into_par_iter();
+        let states = ranges.map(|range| self.states(&tree, &sets, range, up));
+        let states = states.collect::<Result<Vec<f64>, EphemerisError>>();
         let states: f64 = states?.iter().sum();
         if states > MOST_STATES {
             return Err(ExpectedError::TooMany { states });
         }
-        let pieces: Result<Vec<Expected>, EphemerisError> = ranges()
-            .map(|range| self.expected_of(&tree, &sets, range, up))
-            .collect();
+        Ok(self.expected_of_any(ephemeris, up)?)
+    }
+
+    /// The same for any number of states.
+    pub(super) fn expected_of_any(
+        &self,
+        ephemeris: &Ephemeris,
+        up: f64,
+    ) -> Result<ExpectedMetrics, EphemerisError> {
+        self.fixed()?;
+        let tree = SightTree::new(self.setup());
+        let sets = Sets::new(self, ephemeris, &[]);
+        let ranges = self.expected_pieces().into_par_iter();
+        let pieces = ranges.map(|range| self.expected_of(&tree, &sets, range, up));
         let mut all = Expected::new();
-        pieces?.iter().for_each(|piece| all.merge(piece));
+        let pieces = pieces.collect::<Result<Vec<Expected>, EphemerisError>>()?;
+        pieces.iter().for_each(|piece| all.merge(piece));
         Ok(all.metrics(up, self.setup().metrics.cvar_level.get()))
+    }
+
+    fn expected_pieces(&self) -> Vec<Range<usize>> {
+        let instants = self.setup().grid.len();
+        let starts = (0..instants).step_by(PIECE);
+        starts
+            .map(|start| start..(start + PIECE).min(instants))
+            .collect()
     }
 
     /// The number of states of some instants.

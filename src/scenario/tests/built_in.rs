@@ -114,7 +114,10 @@ fn regional_is_the_defaults_at_ten_degrees() {
 
 #[test]
 fn every_builtin_has_its_own_name() {
-    assert_eq!(builtin_names(), ["paper", "regional", "global", "europe"]);
+    assert_eq!(
+        builtin_names(),
+        ["paper", "regional", "global", "europe", "robust"]
+    );
     for name in builtin_names() {
         assert_eq!(built_in(name).name, name);
     }
@@ -125,7 +128,7 @@ fn an_unknown_builtin_suggests_the_nearest() {
     let message = builtin("regoinal").unwrap_err().to_string();
     assert_eq!(
         message,
-        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional, global, europe)"
+        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional, global, europe, robust)"
     );
 }
 
