@@ -6,6 +6,7 @@
 mod bars;
 mod curves;
 pub mod draw;
+mod failures;
 mod front;
 mod map;
 mod table;
@@ -13,6 +14,7 @@ mod table;
 pub use super::Baseline;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
+pub use failures::{NamedLosses, failures};
 pub use front::{NamedFront, pareto};
 pub use map::map;
 
@@ -40,6 +42,8 @@ keywords! {
         Convergence = "convergence",
         /// The error budget of a validation.
         Budget = "budget",
+        /// What the loss of each satellite does.
+        Failures = "failures",
     }
 }
 

@@ -82,6 +82,14 @@ fn planes_satellites_and_files_are_out_of_service() {
     let plotted = ["plot", "run", "--figure", "series", "--out", "series.svg"];
     let plotted = ran(place.path(), &plotted);
     assert_eq!(plotted.status, 0, "{}", plotted.stderr);
+    let losses = ["plot", "run", "--figure", "failures", "--as", "csv"];
+    let losses = ran(place.path(), &losses);
+    assert_eq!(
+        (losses.status, losses.stdout.lines().count()),
+        (0, 13),
+        "{}",
+        losses.stderr
+    );
 }
 
 #[test]

@@ -6,7 +6,7 @@ use crate::ground::Site;
 use crate::optimize::generator::Generator;
 use crate::time::{Epoch, TimeGrid};
 
-const DESIGN: &str = "delta:55:8/2/1@1200";
+const DESIGN: &str = "delta:55:8/2/1@8000";
 
 fn study() -> Setup {
     let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
@@ -17,7 +17,10 @@ fn study() -> Setup {
         vec![site(-40.0, 1.0), site(10.0, 2.0), site(50.0, 1.0)],
         7.0,
     );
-    setup.metrics.availability_pdop = 1.4;
+    // So that losses matter to it.
+    let whole = Evaluator::new(setup.clone()).unwrap();
+    let whole = whole.evaluate_plain(&propagated(&setup)).unwrap();
+    setup.metrics.availability_pdop = whole.p95_pdop.unwrap();
     setup
 }
 
