@@ -4,7 +4,6 @@ use super::DopStatistics;
 use super::accuracy::{AccuracyMetrics, SigmaSpread};
 use super::counts::{Coverage, LongestOutage, Views};
 use super::failures::OneLost;
-use super::failures::OneLost;
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
