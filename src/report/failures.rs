@@ -210,17 +210,23 @@ impl FailureSummary {
             let spread = self.spread.get(name).copied().flatten();
             let is_maximised = quantity(name).is_some_and(Quantity::is_maximised);
             let bad = spread.map(|of| if is_maximised { of.p05 } else { of.p95 });
+            let all_up = whole.get(name).copied().flatten();
             let shown = |value| match name {
                 "availability" | "solved_fraction" => shown::share(value),
+                "longest_outage_s" => shown::quantity(Quantity::LongestOutageS, value),
                 _ => shown::pdop(value),
             };
             table.row([
                 title.to_owned(),
-                shown(whole.get(name).copied().flatten()),
+                shown(all_up),
                 shown(self.mean_of(name)),
                 shown(bad),
                 shown(worst.value),
-                worst.without.join(", "),
+                if worst.value == all_up {
+                    String::new()
+                } else {
+                    worst.without.join(", ")
+                },
             ]);
         }
         let planes = self

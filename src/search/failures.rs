@@ -85,9 +85,12 @@ pub fn drawn_sets(satellites: usize, k: usize, draws: usize, seed: u64) -> Vec<V
     (0..draws).map(&mut draw).collect()
 }
 
+/// An evaluation without each of some sets of satellites, which may fail.
+type SetEvaluation<'a, E> = Box<dyn FnMut(&[Vec<usize>]) -> Result<Vec<Metrics>, E> + 'a>;
+
 /// Sets that were evaluated, each once.
 pub struct FailureSearch<'a, E> {
-    evaluate: Box<dyn FnMut(&[Vec<usize>]) -> Result<Vec<Metrics>, E> + 'a>,
+    evaluate: SetEvaluation<'a, E>,
     known: BTreeMap<Vec<usize>, Metrics>,
     satellites: usize,
 }

@@ -158,7 +158,7 @@ impl<'a> Whole<'a> {
         let setup = evaluator.setup();
         let sites = setup.sites.len();
         let joined = |of: fn(&Piece) -> &Vec<u32>| -> Vec<u32> {
-            pieces.iter().flat_map(|piece| of(piece)).copied().collect()
+            pieces.iter().flat_map(of).copied().collect()
         };
         let pdop: Vec<f64> = pieces
             .iter()

@@ -49,6 +49,28 @@ fn spelling_does_not_move_the_canonical_text() {
     assert_eq!(one.hash(&[]), two.hash(&[]));
 }
 
+/// A key of [accuracy] needs those of the systems in use.
+const RANGE_ERRORS: [&str; 8] = [
+    "accuracy.leo-m=0.5",
+    "accuracy.beidou-3-m=0.6",
+    "accuracy.galileo-m=0.7",
+    "accuracy.gps-m=0.7",
+    "accuracy.glonass-m=0.7",
+    "accuracy.qzss-m=0.7",
+    "accuracy.navic-m=0.7",
+    "accuracy.files-m=0.7",
+];
+
+/// Of the times of [reliability], one needs the other.
+const TIMES: [[&str; 2]; 2] = [
+    ["reliability.mtbf-h=1000", "reliability.mttr-h=100"],
+    ["reliability.mtbf-h=1000", "reliability.mttr-h=50"],
+];
+
+fn hashes_of_times() -> [String; 2] {
+    TIMES.map(|times| with(&times).hash(&[]))
+}
+
 #[test]
 fn the_hash_moves_with_everything_that_is_computed() {
     let changes = [
@@ -116,17 +138,6 @@ fn the_hash_moves_with_everything_that_is_computed() {
         .iter()
         .map(|change| with(&[change]).hash(&[]))
         .collect();
-    // A key of [accuracy] needs those of the systems in use.
-    let base = [
-        "accuracy.leo-m=0.5",
-        "accuracy.beidou-3-m=0.6",
-        "accuracy.galileo-m=0.7",
-        "accuracy.gps-m=0.7",
-        "accuracy.glonass-m=0.7",
-        "accuracy.qzss-m=0.7",
-        "accuracy.navic-m=0.7",
-        "accuracy.files-m=0.7",
-    ];
     let errors: Vec<String> = describe_keys()
         .iter()
         .filter(|key| key.section == "accuracy")
@@ -140,29 +151,22 @@ fn the_hash_moves_with_everything_that_is_computed() {
         })
         .collect();
     for error in &errors {
-        hashes.push(with(&[&base[..], &[error]].concat()).hash(&[]));
+        hashes.push(with(&[&RANGE_ERRORS[..], &[error]].concat()).hash(&[]));
     }
-    // Of the times of [reliability], one needs the other.
-    let times = [[1000, 100], [1000, 50]].map(|[up, down]| {
-        let [up, down] = [format!("mtbf-h={up}"), format!("mttr-h={down}")];
-        [up, down].map(|time| format!("reliability.{time}"))
-    });
-    for [up, down] in &times {
-        hashes.push(with(&[up, down]).hash(&[]));
-    }
-    hashes.push(with(&base).hash(&[]));
+    hashes.extend(hashes_of_times());
+    hashes.push(with(&RANGE_ERRORS).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
     // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files, outages.file;
     // optimizer.generations
     let (labels, files, budgets) = (6, 4, 1);
     assert_eq!(
-        changes.len() + errors.len() + times.len() + labels + files + budgets,
+        changes.len() + errors.len() + TIMES.len() + labels + files + budgets,
         describe_keys().len()
     );
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), changes.len() + errors.len() + times.len() + 2);
+    assert_eq!(hashes.len(), changes.len() + errors.len() + TIMES.len() + 2);
 }
 
 #[test]

@@ -229,7 +229,7 @@ pub(super) fn expected_table(of: &ExpectedMetrics) -> String {
     }
     format!(
         "\nexpected with each satellite up with probability {} (states left out: at most {:.1e} of a sample)\n{}",
-        of.satellite_availability,
+        crate::units::round_decimal(of.satellite_availability, 5),
         of.neglected,
         table.to_text()
     )
