@@ -86,7 +86,7 @@ fn down_probabilities(visible: usize, up: f64) -> (Vec<f64>, f64) {
 
 /// Sums over states and samples, each sample with the weight of its point.
 #[derive(Clone)]
-struct Expected {
+struct ExpectedSums {
     weight: f64,
     visible: f64,
     coverage: [f64; COVERAGE_LEVELS],
@@ -96,7 +96,7 @@ struct Expected {
     neglected: f64,
 }
 
-impl Expected {
+impl ExpectedSums {
     fn new() -> Self {
         Self {
             weight: 0.0,
@@ -179,7 +179,7 @@ struct States<'a, 'w> {
     of_state: &'a [f64],
     weight: f64,
     available_up_to: f64,
-    sums: &'a mut Expected,
+    sums: &'a mut ExpectedSums,
 }
 
 impl States<'_, '_> {
@@ -238,8 +238,8 @@ impl Evaluator {
         let sets = Sets::new(self, ephemeris, &[]);
         let ranges = self.expected_pieces().into_par_iter();
         let pieces = ranges.map(|range| self.expected_of(&tree, &sets, range, up));
-        let mut all = Expected::new();
-        let pieces = pieces.collect::<Result<Vec<Expected>, EphemerisError>>()?;
+        let mut all = ExpectedSums::new();
+        let pieces = pieces.collect::<Result<Vec<ExpectedSums>, EphemerisError>>()?;
         pieces.iter().for_each(|piece| all.merge(piece));
         Ok(all.metrics(up, self.setup().metrics.cvar_level.get()))
     }
@@ -282,11 +282,11 @@ impl Evaluator {
         sets: &Sets<'_>,
         range: Range<usize>,
         up: f64,
-    ) -> Result<Expected, EphemerisError> {
+    ) -> Result<ExpectedSums, EphemerisError> {
         let fixed = self.fixed()?;
         let available_up_to = self.setup().metrics.availability_pdop;
         let mut worker = Worker::new(self, tree, sets);
-        let mut sums = Expected::new();
+        let mut sums = ExpectedSums::new();
         for instant in range {
             worker.look(instant)?;
             for (site, gnss) in fixed.at(instant).iter().enumerate() {

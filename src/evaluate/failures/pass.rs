@@ -22,7 +22,7 @@ pub(super) struct ChangedSample {
 
 /// The samples of some instants, instant by instant and point by point.
 #[derive(Default)]
-pub(super) struct Piece {
+pub(super) struct PassPiece {
     /// PDOP with all satellites; infinite if unsolved.
     pub(super) pdop: Vec<f64>,
     /// Visible LEO satellites.
@@ -99,7 +99,7 @@ pub(super) struct Worker<'a> {
     whole: Vec<ClockGroup>,
     /// Set and place in the sky of the satellites of a sample.
     touched: Vec<(u32, u32)>,
-    piece: Piece,
+    piece: PassPiece,
 }
 
 /// Evaluates the instants piece by piece, on all threads; the pieces are in the order of time.
@@ -107,7 +107,7 @@ pub(super) fn pass(
     evaluator: &Evaluator,
     tree: &SightTree,
     sets: &Sets<'_>,
-) -> Result<Vec<Piece>, EphemerisError> {
+) -> Result<Vec<PassPiece>, EphemerisError> {
     // Made before the threads ask for it.
     evaluator.fixed()?;
     let instants = evaluator.setup().grid.len();
@@ -131,9 +131,9 @@ impl<'a> Worker<'a> {
             groups: Vec::new(),
             whole: Vec::new(),
             touched: Vec::new(),
-            piece: Piece {
+            piece: PassPiece {
                 changed: vec![Vec::new(); sets.count],
-                ..Piece::default()
+                ..PassPiece::default()
             },
         }
     }

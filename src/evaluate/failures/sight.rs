@@ -15,7 +15,7 @@ const REUSED: f64 = 1.001;
 
 /// The points as a tree of caps: those of a node lie within an angle of its centre.
 pub(super) struct SightTree {
-    nodes: Vec<Cap>,
+    nodes: Vec<SightNode>,
     /// The points, leaf by leaf.
     sites: Vec<usize>,
     /// Least distance of a point from the centre of the Earth, km.
@@ -25,7 +25,7 @@ pub(super) struct SightTree {
 }
 
 /// The points of a node: a range, and the nodes of its halves, which are the next one and another.
-struct Cap {
+struct SightNode {
     centre: Vector3<f64>,
     sin_radius: f64,
     cos_radius: f64,
@@ -89,7 +89,7 @@ impl SightTree {
             });
             members.sort_by(|a, b| directions[*a][axis].total_cmp(&directions[*b][axis]));
         }
-        self.nodes.push(Cap {
+        self.nodes.push(SightNode {
             centre,
             sin_radius,
             cos_radius,

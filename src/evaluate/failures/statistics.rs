@@ -3,7 +3,7 @@
 //! PDOP is counted once in buckets of its leading bits. Without a set, the samples that change move to other buckets; then
 //! only the values in buckets that hold a wanted rank are sorted.
 
-use super::pass::{ChangedSample, Piece};
+use super::pass::{ChangedSample, PassPiece};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::counts::{LongestOutage, Outages, Views};
 use crate::evaluate::kernel::quantile_rank;
@@ -14,14 +14,14 @@ use crate::stats::Summary;
 /// Bits of an f64 that a bucket ignores: it uses 10 of the 52 bits of the fraction.
 const TRAILING_BITS: u32 = 42;
 
-/// Wanted order statistics: median, 95 %, 99 %, maximum, value-at-risk.
+/// WantedRank order statistics: median, 95 %, 99 %, maximum, value-at-risk.
 const WANTED: usize = 5;
 const VALUE_AT_RISK: usize = 4;
 
 /// All samples with all satellites.
 pub(super) struct Whole<'a> {
     evaluator: &'a Evaluator,
-    pieces: &'a [Piece],
+    pieces: &'a [PassPiece],
     /// PDOP, infinite if unsolved, and what is visible.
     pdop: Vec<f64>,
     visible: Vec<u32>,
@@ -143,7 +143,7 @@ impl Scratch {
 
 /// A wanted rank, the bucket that holds it, and the weight of the buckets before.
 #[derive(Debug, Clone, Copy, Default)]
-struct Wanted {
+struct WantedRank {
     rank: u64,
     bucket: usize,
     before: u64,
@@ -153,11 +153,11 @@ impl<'a> Whole<'a> {
     pub(super) fn new(
         evaluator: &'a Evaluator,
         ephemeris: &Ephemeris,
-        pieces: &'a [Piece],
+        pieces: &'a [PassPiece],
     ) -> Self {
         let setup = evaluator.setup();
         let sites = setup.sites.len();
-        let joined = |of: fn(&Piece) -> &Vec<u32>| -> Vec<u32> {
+        let joined = |of: fn(&PassPiece) -> &Vec<u32>| -> Vec<u32> {
             pieces.iter().flat_map(of).copied().collect()
         };
         let pdop: Vec<f64> = pieces
@@ -381,7 +381,7 @@ impl Scratch {
 }
 
 /// The value of a rank among those of its bucket, in rising order.
-fn pick(values: &[(f64, u64)], wanted: Wanted) -> f64 {
+fn pick(values: &[(f64, u64)], wanted: WantedRank) -> f64 {
     let mut reached = wanted.before;
     let found = values.iter().find(|(_, weight)| {
         reached += weight;
@@ -391,10 +391,10 @@ fn pick(values: &[(f64, u64)], wanted: Wanted) -> f64 {
 }
 
 /// Finds the buckets of some ranks.
-fn locate(ranks: [u64; WANTED], weights: &[u64]) -> [Wanted; WANTED] {
-    let mut wanted = ranks.map(|rank| Wanted {
+fn locate(ranks: [u64; WANTED], weights: &[u64]) -> [WantedRank; WANTED] {
+    let mut wanted = ranks.map(|rank| WantedRank {
         rank,
-        ..Wanted::default()
+        ..WantedRank::default()
     });
     let mut order: [usize; WANTED] = std::array::from_fn(|number| number);
     order.sort_unstable_by_key(|number| ranks[*number]);
