@@ -416,12 +416,6 @@ impl Evaluator {
         let information = self.information_pdop(ephemeris)?;
         Ok(metrics.with_on_demand(information, self.accuracy(ephemeris)?))
     }
-
-    /// Satellites of all GNSS.
-    fn gnss_count(&self) -> usize {
-        let systems = fixed::systems(&self.setup);
-        systems.iter().map(|system| system.satellites().len()).sum()
-    }
 }
 
 #[cfg(test)]

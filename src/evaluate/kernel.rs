@@ -71,7 +71,7 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Work
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
-use tally::ViewTally;
+use tally::{TileTally, ViewTally};
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -108,7 +108,7 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    let tallies = setup.sites.len().div_ceil(LANES) * ViewTally::TILE_BYTES;
+    let tallies = setup.sites.len().div_ceil(LANES) * size_of::<TileTally>();
     fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
 }
 
@@ -260,7 +260,7 @@ impl Kernel {
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
-        let mut tally = self.tally(propagation);
+        let mut tally = self.tally();
         for chunk in self.chunks(samples) {
             let first = values.len();
             let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
@@ -342,7 +342,7 @@ impl Kernel {
         let ((counts, mut tally), parts) = self.pass(
             propagation,
             &chunks,
-            || (Counts::new(self.places), self.tally(propagation)),
+            || (Counts::new(self.places), self.tally()),
             |instant, (counts, tally), sums| {
                 self.tally_instant(instant, tally);
                 sums[0] += self.count(&instant.outcome.pdop, counts);
@@ -480,7 +480,7 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &ViewTally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(&self, tally: &ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {
@@ -488,7 +488,7 @@ impl Kernel {
             all,
             solved: share(counts.solved()),
             available: share(tally.available()),
-            longest_outage: tally.longest_outage(&self.scene.tiles.tiles),
+            longest_outage: tally.longest_outage(),
             summary,
         }
     }
