@@ -251,9 +251,9 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth (and one LEO clock).
+    /// The kernel supports only a mask that does not depend on azimuth (and one LEO clock).
     fn suits_kernel(&self) -> bool {
-        self.skyline.is_none() && self.observation_weights == ObservationWeights::Unit
+        self.skyline.is_none()
     }
 
     /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.

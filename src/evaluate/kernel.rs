@@ -42,6 +42,7 @@ mod dilutions;
 mod fixed;
 mod instructions;
 mod lanes;
+mod normal;
 mod order_statistics;
 mod propagation;
 mod refine;
@@ -186,6 +187,7 @@ impl Kernel {
             tiles,
             single: MaskTerms::new(setup.mask),
             double: MaskTerms::new(setup.mask),
+            weights: setup.observation_weights,
             limits: Limits {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,

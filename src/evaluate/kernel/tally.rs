@@ -331,6 +331,27 @@ mod tests {
     }
 
     proptest! {
+        /// Point by point, the views are those of the definition: below all levels, across them and above.
+        #[test]
+        fn views_of_points_are_those_of_samples(
+            visible in prop::collection::vec(
+                prop::array::uniform16(prop_oneof![3 => 0..20_u32, 1 => 12..400_u32]), 1..256,
+            ),
+            weights in prop::array::uniform16(1..1_000_000_u64),
+        ) {
+            let (mut lanes, mut expected) = (ViewLanes::NONE, Views::default());
+            for visible in &visible {
+                lanes.add(&Lanes(*visible));
+                let samples = visible.iter().zip(weights);
+                samples.for_each(|(&visible, weight)| expected.add(visible, weight));
+            }
+            let mut views = Views::default();
+            for (lane, &weight) in weights.iter().enumerate() {
+                views.add_point(&lanes.point(lane, visible.len() as u32), weight);
+            }
+            prop_assert_eq!(views, expected);
+        }
+
         /// In lanes, and in two spans, the outages are those of the definition.
         #[test]
         fn outages_of_spans_join(
