@@ -243,6 +243,14 @@ impl Setup {
         each.saturating_mul(threads) as u64
     }
 
+    /// Maximum number of clock states, with one LEO clock.
+    fn clock_states(&self) -> usize {
+        match self.clocks {
+            Clocks::PerSystem => 1 + self.gnss.len(),
+            Clocks::Shared => 1,
+        }
+    }
+
     /// Memory of the plain path.
     fn plain_bytes(&self, threads: usize) -> u64 {
         let samples = self.sample_count() as u64;
@@ -285,8 +293,8 @@ pub struct Evaluator {
     weights: WholeWeights,
     /// For the setups that it supports.
     kernel: Option<Kernel>,
-    /// For the plain path, created on first use.
-    fixed: OnceLock<FixedGeometry>,
+    /// For the plain path, created on first use, by one thread while others wait.
+    fixed: OnceLock<Result<FixedGeometry, EphemerisError>>,
 }
 
 impl Evaluator {
@@ -398,11 +406,8 @@ impl Evaluator {
 
     /// The GNSS part of the plain path.
     fn fixed(&self) -> Result<&FixedGeometry, EphemerisError> {
-        if let Some(fixed) = self.fixed.get() {
-            return Ok(fixed);
-        }
-        let made = FixedGeometry::new(&self.setup, &self.rotations)?;
-        Ok(self.fixed.get_or_init(|| made))
+        let make = || FixedGeometry::new(&self.setup, &self.rotations);
+        self.fixed.get_or_init(make).as_ref().map_err(Clone::clone)
     }
 
     fn metrics(

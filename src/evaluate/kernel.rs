@@ -58,7 +58,6 @@ use super::counts::Threshold;
 use super::metrics::Evaluated;
 use super::series::Instant;
 use super::weights::WholeWeights;
-use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
@@ -192,10 +191,7 @@ impl Kernel {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,
                 available: Threshold(setup.metrics.availability_pdop),
-                clocks: match setup.clocks {
-                    Clocks::PerSystem => 1 + setup.gnss.len() as u32,
-                    Clocks::Shared => 1,
-                },
+                clocks: setup.clock_states() as u32,
             },
         };
         Ok(Self {

@@ -134,8 +134,7 @@ impl Kernel {
     }
 
     fn dilution_places(&self) -> Places {
-        let clocks = f64::from(self.scene.limits.clocks);
-        Places::new(largest_dilution(self.setup.pdop_cap, clocks))
+        Places::new(largest_dilution(&self.setup))
     }
 
     /// One pass over the samples and two over the stored values.
@@ -213,9 +212,14 @@ impl Kernel {
     }
 }
 
-/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
-fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
-    (pdop_cap * pdop_cap + clocks * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP² for unit weights.
+/// For others there is none, because a satellite near the horizon has next to no weight.
+fn largest_dilution(setup: &Setup) -> f64 {
+    let (cap2, clocks) = (setup.pdop_cap * setup.pdop_cap, setup.clock_states() as f64);
+    match setup.observation_weights {
+        ObservationWeights::Unit => (cap2 + clocks * (1.0 + cap2)).sqrt() * 1.001,
+        ObservationWeights::SineElevation => f64::from(f32::MAX),
+    }
 }
 
 /// The dilutions at all points of one instant, after its evaluation.
@@ -259,7 +263,8 @@ impl Dilute<'_> {
                 sums.push(self.work.double_sums::<W>(self.scene, number, group));
                 if self.clocks == Clocks::Shared {
                     let mut all = Sums::<f64>::zero();
-                    sums.drain(..).for_each(|of_system| all.merge::<W>(&of_system));
+                    sums.drain(..)
+                        .for_each(|of_system| all.merge::<W>(&of_system));
                     sums.push(all);
                 }
                 dilute::<W>(tile, &sums, &self.outcome.pdop[number], number, self.rows);

@@ -4,9 +4,7 @@ use super::super::counts::Threshold;
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{
-    LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting,
-};
+use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
@@ -40,9 +38,9 @@ impl Limits {
     const DOUBLE_BAND: f64 = 1e-6;
 
     #[inline(always)]
-    fn capped(self, single_below: f32) -> Self {
+    fn capped<W: Weighting>(self, single_below: f32) -> Self {
         Self {
-            single_below: self.single_below.min(single_below),
+            single_below: self.single_below.min(single_below) * W::SINGLE_SHARE,
             ..self
         }
     }
@@ -226,7 +224,7 @@ fn evaluate<W: Weighting>(
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
-    let limits = limits.capped(horizon.single_below(&work.positions));
+    let limits = limits.capped::<W>(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     for group in &scene.tiles.groups {
@@ -285,7 +283,12 @@ impl<'a> TileCandidates<'a> {
     }
 
     #[inline(always)]
-    fn double_sums<W: Weighting>(self, scene: &SampleContext, number: usize, positions: &Positions) -> Sums<f64> {
+    fn double_sums<W: Weighting>(
+        self,
+        scene: &SampleContext,
+        number: usize,
+        positions: &Positions,
+    ) -> Sums<f64> {
         let mut sums = Sums::zero();
         let sites = &scene.tiles.tiles[number].double;
         for n in self.satellites() {
