@@ -250,6 +250,14 @@ impl Setup {
         each.saturating_mul(threads) as u64
     }
 
+    /// Maximum number of clock states, with one LEO clock.
+    fn clock_states(&self) -> usize {
+        match self.clocks {
+            Clocks::PerSystem => 1 + self.gnss.len(),
+            Clocks::Shared => 1,
+        }
+    }
+
     /// Memory of the plain path.
     fn plain_bytes(&self, threads: usize) -> u64 {
         let samples = self.sample_count() as u64;
@@ -258,9 +266,9 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only unit weights of observations and a mask that does not depend on azimuth (and one LEO clock).
+    /// The kernel supports only a mask that does not depend on azimuth (and one LEO clock).
     fn suits_kernel(&self) -> bool {
-        self.skyline.is_none() && self.observation_weights == ObservationWeights::Unit
+        self.skyline.is_none()
     }
 
     /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.
@@ -292,8 +300,8 @@ pub struct Evaluator {
     weights: WholeWeights,
     /// For the setups that it supports.
     kernel: Option<Kernel>,
-    /// For the plain path, created on first use.
-    fixed: OnceLock<FixedGeometry>,
+    /// For the plain path, created on first use, by one thread while others wait.
+    fixed: OnceLock<Result<FixedGeometry, EphemerisError>>,
 }
 
 impl Evaluator {
@@ -406,11 +414,8 @@ impl Evaluator {
 
     /// The GNSS part of the plain path.
     fn fixed(&self) -> Result<&FixedGeometry, EphemerisError> {
-        if let Some(fixed) = self.fixed.get() {
-            return Ok(fixed);
-        }
-        let made = FixedGeometry::new(&self.setup, &self.rotations)?;
-        Ok(self.fixed.get_or_init(|| made))
+        let make = || FixedGeometry::new(&self.setup, &self.rotations);
+        self.fixed.get_or_init(make).as_ref().map_err(Clone::clone)
     }
 
     fn metrics(
@@ -423,12 +428,6 @@ impl Evaluator {
         let metrics = Metrics::new(evaluated, self.setup.metrics, satellites, step_s);
         let information = self.information_pdop(ephemeris)?;
         Ok(metrics.with_on_demand(information, self.accuracy(ephemeris)?))
-    }
-
-    /// Satellites of all GNSS.
-    fn gnss_count(&self) -> usize {
-        let systems = fixed::systems(&self.setup);
-        systems.iter().map(|system| system.satellites().len()).sum()
     }
 }
 

@@ -19,11 +19,6 @@ impl Coverage {
         self.0.get(satellites.checked_sub(1)?).copied()
     }
 
-    /// From the fractions for 1, 2, … 12 satellites.
-    pub(super) fn from_shares(shares: [f64; COVERAGE_LEVELS]) -> Self {
-        Self(shares)
-    }
-
     /// The fractions for 1, 2, … 12 satellites.
     #[must_use]
     pub fn shares(&self) -> [f64; COVERAGE_LEVELS] {
@@ -57,66 +52,81 @@ impl<'de> Deserialize<'de> for Coverage {
     }
 }
 
-/// The weight of the samples by their number of satellites in view.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Views(Vec<u64>);
+/// Satellites in view over some samples, each with the weight of its point.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Views {
+    /// Weight of the samples.
+    total: u64,
+    /// Number of satellites times weight.
+    sum: u128,
+    /// Weight of the samples with fewer than 1, 2, … 12 satellites.
+    fewer: [u64; COVERAGE_LEVELS],
+    least: Option<u32>,
+}
+
+/// Satellites in view of one point over some samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PointViews {
+    pub(super) samples: u32,
+    /// Satellites of all samples together.
+    pub(super) sum: u32,
+    /// Samples with fewer than 1, 2, … 12 satellites.
+    pub(super) fewer: [u8; COVERAGE_LEVELS],
+    pub(super) least: u32,
+}
 
 impl Views {
-    /// No sample yet, and at most `most` satellites in view.
-    pub(super) fn new(most: usize) -> Self {
-        Self(vec![0; most + 1])
-    }
-
-    /// From the weight of the samples with 0, 1, … satellites.
-    pub(super) fn of(weights: Vec<u64>) -> Self {
-        Self(weights)
-    }
-
     pub(super) fn add(&mut self, visible: u32, weight: u64) {
-        self.0[visible as usize] += weight;
+        self.total += weight;
+        self.sum += u128::from(visible) * u128::from(weight);
+        for fewer in self.fewer.iter_mut().skip(visible as usize) {
+            *fewer += weight;
+        }
+        self.reach_down_to(visible);
     }
 
-    /// Moves the weight of samples from one number to another.
-    pub(super) fn shift(&mut self, from: u32, to: u32, weight: u64) {
-        self.0[from as usize] -= weight;
-        self.0[to as usize] += weight;
+    pub(super) fn add_point(&mut self, point: &PointViews, weight: u64) {
+        self.total += u64::from(point.samples) * weight;
+        self.sum += u128::from(point.sum) * u128::from(weight);
+        for (fewer, &samples) in self.fewer.iter_mut().zip(&point.fewer) {
+            *fewer += u64::from(samples) * weight;
+        }
+        self.reach_down_to(point.least);
     }
 
-    fn total(&self) -> u64 {
-        self.0.iter().sum()
+    pub(super) fn merge(&mut self, other: &Self) {
+        self.total += other.total;
+        self.sum += other.sum;
+        for (mine, theirs) in self.fewer.iter_mut().zip(&other.fewer) {
+            *mine += theirs;
+        }
+        if let Some(least) = other.least {
+            self.reach_down_to(least);
+        }
     }
 
-    /// Number times weight.
-    fn sum(&self) -> u128 {
-        let bins = (0..).zip(&self.0);
-        bins.map(|(n, &weight)| n * u128::from(weight)).sum()
+    fn reach_down_to(&mut self, visible: u32) {
+        self.least = Some(self.least.map_or(visible, |least| least.min(visible)));
     }
 
     /// Mean number.
     pub(super) fn mean(&self) -> f64 {
-        self.sum() as f64 / self.total() as f64
+        self.sum as f64 / self.total as f64
     }
 
     /// How many more there are in the mean than in `part`, which is of the same samples.
     pub(super) fn mean_beyond(&self, part: &Self) -> f64 {
-        (self.sum() - part.sum()) as f64 / self.total() as f64
+        (self.sum - part.sum) as f64 / self.total as f64
     }
 
     /// Least number, whatever the weight of the point.
     pub(super) fn least(&self) -> u32 {
-        let found = (0..).zip(&self.0).find(|(_, weight)| **weight > 0);
-        found.map_or(0, |(n, _)| n)
+        self.least.unwrap_or(0)
     }
 
     pub(super) fn coverage(&self) -> Coverage {
-        let total = self.total();
-        let mut rest = total;
-        let mut coverage = Coverage::default();
-        for (n, share) in coverage.0.iter_mut().enumerate() {
-            rest -= self.0.get(n).copied().unwrap_or(0);
-            *share = rest as f64 / total as f64;
-        }
-        coverage
+        let share = |fewer: u64| (self.total - fewer) as f64 / self.total as f64;
+        Coverage(self.fewer.map(share))
     }
 }
 
@@ -218,7 +228,7 @@ mod tests {
     /// Weights 3, 1, 4 on 0, 2, 13 satellites: mean 54/8.
     #[test]
     fn validate_views_by_hand() {
-        let mut views = Views::new(13);
+        let mut views = Views::default();
         for (visible, weight) in [(2, 1), (0, 3), (13, 4)] {
             views.add(visible, weight);
         }
@@ -230,7 +240,7 @@ mod tests {
             (coverage.of(12), coverage.of(13), coverage.of(0)),
             (Some(0.5), None, None)
         );
-        let mut seen = Views::new(5);
+        let mut seen = Views::default();
         seen.add(4, 1);
         assert_eq!(
             (seen.least(), seen.coverage().of(4), seen.coverage().of(5)),
@@ -240,7 +250,7 @@ mod tests {
 
     #[test]
     fn coverage_is_a_map_of_numbers() {
-        let mut views = Views::new(1);
+        let mut views = Views::default();
         views.add(1, 1);
         let json = serde_json::to_value(views.coverage()).unwrap();
         assert_eq!((&json["1"], &json["12"]), (&1.0.into(), &0.0.into()));

@@ -42,6 +42,7 @@ mod dilutions;
 mod fixed;
 mod instructions;
 mod lanes;
+mod normal;
 mod order_statistics;
 mod propagation;
 mod refine;
@@ -58,7 +59,6 @@ use super::counts::Threshold;
 use super::metrics::Evaluated;
 use super::series::Instant;
 use super::weights::WholeWeights;
-use crate::dop::Clocks;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
@@ -72,7 +72,7 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Work
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
-use tally::ViewTally;
+use tally::{TileTally, ViewTally};
 use tiles::Tiles;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
@@ -109,7 +109,7 @@ pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
         bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
         bytes => bytes,
     };
-    let tallies = setup.sites.len().div_ceil(LANES) * ViewTally::TILE_BYTES;
+    let tallies = setup.sites.len().div_ceil(LANES) * size_of::<TileTally>();
     fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
 }
 
@@ -187,14 +187,12 @@ impl Kernel {
             tiles,
             single: MaskTerms::new(setup.mask),
             double: MaskTerms::new(setup.mask),
+            weights: setup.observation_weights,
             limits: Limits {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),
                 cap: setup.pdop_cap,
                 available: Threshold(setup.metrics.availability_pdop),
-                clocks: match setup.clocks {
-                    Clocks::PerSystem => 1 + setup.gnss.len() as u32,
-                    Clocks::Shared => 1,
-                },
+                clocks: setup.clock_states() as u32,
             },
         };
         Ok(Self {
@@ -261,7 +259,7 @@ impl Kernel {
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
-        let mut tally = self.tally(propagation);
+        let mut tally = self.tally();
         for chunk in self.chunks(samples) {
             let first = values.len();
             let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
@@ -343,7 +341,7 @@ impl Kernel {
         let ((counts, mut tally), parts) = self.pass(
             propagation,
             &chunks,
-            || (Counts::new(self.places), self.tally(propagation)),
+            || (Counts::new(self.places), self.tally()),
             |instant, (counts, tally), sums| {
                 self.tally_instant(instant, tally);
                 sums[0] += self.count(&instant.outcome.pdop, counts);
@@ -481,7 +479,7 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &ViewTally, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(&self, tally: &ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {
@@ -489,7 +487,7 @@ impl Kernel {
             all,
             solved: share(counts.solved()),
             available: share(tally.available()),
-            longest_outage: tally.longest_outage(&self.scene.tiles.tiles),
+            longest_outage: tally.longest_outage(),
             summary,
         }
     }

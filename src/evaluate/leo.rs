@@ -2,7 +2,7 @@
 
 use super::Setup;
 use super::fixed::PlainPositions;
-use crate::dop::{Clocks, LeoClocks, ObservationWeights};
+use crate::dop::{Clocks, LeoClocks};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
@@ -27,10 +27,6 @@ impl Setup {
             (
                 self.skyline.is_some(),
                 "the mask by azimuth (visibility.mask-table)",
-            ),
-            (
-                self.observation_weights != ObservationWeights::Unit,
-                "weights by elevation (visibility.weighting)",
             ),
         ];
         let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);

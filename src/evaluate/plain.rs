@@ -31,9 +31,7 @@ pub(super) fn evaluate(
 ) -> Result<Evaluated, EphemerisError> {
     let setup = evaluator.setup();
     let weights = &evaluator.weights;
-    let satellites = ephemeris.satellites().len();
-    let gnss = evaluator.gnss_count();
-    let (mut leo, mut all) = (Views::new(satellites), Views::new(satellites + gnss));
+    let (mut leo, mut all) = (Views::default(), Views::default());
     let mut pdop = Vec::with_capacity(setup.sample_count());
     let mut is_out = vec![Vec::with_capacity(setup.grid.len()); setup.sites.len()];
     let (mut solved, mut available) = (0, 0);

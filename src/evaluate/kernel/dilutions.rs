@@ -7,15 +7,15 @@
 
 use super::super::dops::{CLOCKS_FROM, groups};
 use super::super::{Setup, fixed, plain};
-use super::fixed::{Fixed, FixedSystem};
+use super::fixed::{Fixed, FixedSystem, add_group, weight_or_one};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, MaskTerms, Sums};
+use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
 use super::order_statistics::{Counts, Found, Places, RankSearch};
 use super::propagation::Propagation;
 use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use super::tiles::Tile;
 use super::{Evaluating, Kernel, summed};
-use crate::dop::{Clocks, DopFamily};
+use crate::dop::{Clocks, DopFamily, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::stats::Summary;
 
@@ -134,8 +134,7 @@ impl Kernel {
     }
 
     fn dilution_places(&self) -> Places {
-        let clocks = f64::from(self.scene.limits.clocks);
-        Places::new(largest_dilution(self.setup.pdop_cap, clocks))
+        Places::new(largest_dilution(&self.setup))
     }
 
     /// One pass over the samples and two over the stored values.
@@ -213,9 +212,14 @@ impl Kernel {
     }
 }
 
-/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
-fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
-    (pdop_cap * pdop_cap + clocks * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP² for unit weights.
+/// For others there is none, because a satellite near the horizon has next to no weight.
+fn largest_dilution(setup: &Setup) -> f64 {
+    let (cap2, clocks) = (setup.pdop_cap * setup.pdop_cap, setup.clock_states() as f64);
+    match setup.observation_weights {
+        ObservationWeights::Unit => (cap2 + clocks * (1.0 + cap2)).sqrt() * 1.001,
+        ObservationWeights::SineElevation => f64::from(f32::MAX),
+    }
 }
 
 /// The dilutions at all points of one instant, after its evaluation.
@@ -234,6 +238,16 @@ impl Work for Dilute<'_> {
 
     #[inline(always)]
     fn run(self) {
+        match self.scene.weights {
+            ObservationWeights::Unit => self.dilute::<UnitWeights>(),
+            ObservationWeights::SineElevation => self.dilute::<SineWeights>(),
+        }
+    }
+}
+
+impl Dilute<'_> {
+    #[inline(always)]
+    fn dilute<W: Weighting>(self) {
         let tiles = &self.scene.tiles.tiles;
         let mut sums = Vec::with_capacity(self.systems.len() + 1);
         for group in &self.scene.tiles.groups {
@@ -243,16 +257,17 @@ impl Work for Dilute<'_> {
                 sums.clear();
                 for system in self.systems {
                     let mut seen = Sums::<f64>::zero();
-                    system.add_to(&mut seen, tile, self.fixed_mask);
+                    system.add_to::<W>(&mut seen, tile, self.fixed_mask);
                     sums.push(seen);
                 }
-                sums.push(self.work.double_sums(self.scene, number, group));
+                sums.push(self.work.double_sums::<W>(self.scene, number, group));
                 if self.clocks == Clocks::Shared {
                     let mut all = Sums::<f64>::zero();
-                    sums.drain(..).for_each(|of_system| all.merge(&of_system));
+                    sums.drain(..)
+                        .for_each(|of_system| all.merge::<W>(&of_system));
                     sums.push(all);
                 }
-                dilute(tile, &sums, &self.outcome.pdop[number], number, self.rows);
+                dilute::<W>(tile, &sums, &self.outcome.pdop[number], number, self.rows);
             }
         }
     }
@@ -260,14 +275,14 @@ impl Work for Dilute<'_> {
 
 /// The dilutions at the points of a tile from the sums of each clock.
 #[inline(always)]
-fn dilute(
+fn dilute<W: Weighting>(
     tile: &Tile,
     clocks: &[Sums<f64>],
     pdop: &Lanes<f32>,
     number: usize,
     rows: &mut DilutionRows,
 ) {
-    let covariance = CofactorLanes::new(clocks);
+    let covariance = CofactorLanes::new::<W>(clocks);
     let up = &tile.double.up;
     let (mut horizontal2, mut vertical2, mut all2) = (ZERO, ZERO, ZERO);
     for l in 0..LANES {
@@ -280,14 +295,14 @@ fn dilute(
     for (clock, sums) in clocks.iter().enumerate() {
         let mut clock2 = ZERO;
         for l in 0..LANES {
-            let count = f64::from(sums.count.0[l].max(1));
+            let weight = weight_or_one::<W>(sums, l);
             let mean = [
-                sums.x.0[l] / count,
-                sums.y.0[l] / count,
-                sums.z.0[l] / count,
+                sums.x.0[l] / weight,
+                sums.y.0[l] / weight,
+                sums.z.0[l] / weight,
             ];
-            let variance = 1.0 / count + covariance.form(mean, l);
-            let is_seen = sums.count.0[l] > 0;
+            let variance = 1.0 / weight + covariance.form(mean, l);
+            let is_seen = sums.used::<W>(l) > 0;
             all2.0[l] += if is_seen { variance } else { 0.0 };
             clock2.0[l] = if is_seen { variance } else { f64::INFINITY };
         }
@@ -317,10 +332,10 @@ struct CofactorLanes([Lanes<f64>; 6]);
 
 impl CofactorLanes {
     #[inline(always)]
-    fn new(clocks: &[Sums<f64>]) -> Self {
+    fn new<W: Weighting>(clocks: &[Sums<f64>]) -> Self {
         let mut normal = [ZERO; 6];
         for sums in clocks {
-            super::fixed::add_group(sums, &mut normal);
+            add_group::<W>(sums, &mut normal);
         }
         let mut covariance = [ZERO; 6];
         for l in 0..LANES {

@@ -4,12 +4,11 @@ use super::super::Setup;
 use super::super::fixed::systems;
 use super::candidates::{Candidates, bits};
 use super::instructions::{InstructionSet, Work};
-use super::lanes::{
-    FixedTile, LANES, Lanes, MaskTerms, Normal, SharedClock, Sums, nearest, remainder,
-};
+use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
+use super::normal::{FixedTile, Normal, SharedClock, nearest, remainder};
 use super::propagation::Positions;
 use super::tiles::{Horizon, Tile, Tiles};
-use crate::dop::Clocks;
+use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 
@@ -18,6 +17,7 @@ pub(super) struct Fixed {
     pub(super) systems: Vec<Ephemeris>,
     clocks: Clocks,
     pub(super) mask: MaskTerms<f64>,
+    weights: ObservationWeights,
     pub(super) instructions: InstructionSet,
     /// Empty if there is no GNSS, or too much to store.
     kept: FixedTiles,
@@ -109,6 +109,7 @@ impl Fixed {
             systems: systems(setup),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
+            weights: setup.observation_weights,
             instructions,
             kept: FixedTiles::default(),
         };
@@ -177,7 +178,7 @@ impl Fixed {
     }
 
     #[inline(always)]
-    fn push_tile(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
+    fn push_tile<W: Weighting>(&self, tile: &Tile, systems: &[FixedSystem], to: &mut FixedTiles) {
         let mut normal = [Lanes([0.0; LANES]); 6];
         let (mut surplus, mut visible) = ([0_u16; LANES], [0_u16; LANES]);
         let together = match self.clocks {
@@ -187,19 +188,20 @@ impl Fixed {
         for group in systems.chunks(together) {
             let mut sums = Sums::<f64>::zero();
             for system in group {
-                system.add_to(&mut sums, tile, &self.mask);
+                system.add_to::<W>(&mut sums, tile, &self.mask);
             }
-            add_group(&sums, &mut normal);
+            add_group::<W>(&sums, &mut normal);
             for (visible, &seen) in visible.iter_mut().zip(&sums.count.0) {
                 *visible = visible.saturating_add(at_most_u16(seen));
             }
             match self.clocks {
                 Clocks::PerSystem => {
-                    for (surplus, &seen) in surplus.iter_mut().zip(&sums.count.0) {
-                        *surplus = surplus.saturating_add(at_most_u16(seen.saturating_sub(1)));
+                    for (l, surplus) in surplus.iter_mut().enumerate() {
+                        let used = sums.used::<W>(l);
+                        *surplus = surplus.saturating_add(at_most_u16(used.saturating_sub(1)));
                     }
                 }
-                Clocks::Shared => to.shared.push(shared_clock(&sums)),
+                Clocks::Shared => to.shared.push(shared_clock::<W>(&sums)),
             }
         }
         to.normals
@@ -236,10 +238,15 @@ impl FixedSystem {
 
     /// Adds the satellites visible from the points of a tile.
     #[inline(always)]
-    pub(super) fn add_to(&self, sums: &mut Sums<f64>, tile: &Tile, mask: &MaskTerms<f64>) {
+    pub(super) fn add_to<W: Weighting>(
+        &self,
+        sums: &mut Sums<f64>,
+        tile: &Tile,
+        mask: &MaskTerms<f64>,
+    ) {
         for block in self.candidates.blocks() {
             for n in bits(block.inside(&tile.fixed_cap, self.slack_km)) {
-                sums.add(&tile.double, self.positions.at(block.index(n)), mask);
+                sums.add::<W>(&tile.double, self.positions.at(block.index(n)), mask);
             }
         }
     }
@@ -258,36 +265,58 @@ impl Work for Make<'_> {
 
     #[inline(always)]
     fn run(self) {
-        for tile in self.tiles {
-            self.fixed.push_tile(tile, self.systems, self.to);
+        match self.fixed.weights {
+            ObservationWeights::Unit => self.make::<UnitWeights>(),
+            ObservationWeights::SineElevation => self.make::<SineWeights>(),
         }
     }
 }
 
-/// Adds Σ v vᵀ - (Σ v)(Σ v)ᵀ / n.
+impl Make<'_> {
+    #[inline(always)]
+    fn make<W: Weighting>(self) {
+        for tile in self.tiles {
+            self.fixed.push_tile::<W>(tile, self.systems, self.to);
+        }
+    }
+}
+
+/// Adds Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w.
 #[inline(always)]
-pub(super) fn add_group(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
+pub(super) fn add_group<W: Weighting>(sums: &Sums<f64>, normal: &mut [Lanes<f64>; 6]) {
     for l in 0..LANES {
-        let (x, y, z, count) = (sums.x.0[l], sums.y.0[l], sums.z.0[l], sums.count.0[l]);
-        let scale = 1.0 / f64::from(count.max(1));
+        let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
+        let scale = 1.0 / weight_or_one::<W>(sums, l);
         normal[0].0[l] += sums.xx.0[l] - x * x * scale;
         normal[1].0[l] += sums.yy.0[l] - y * y * scale;
-        normal[2].0[l] += sums.zz(l) - z * z * scale;
+        normal[2].0[l] += sums.zz::<W>(l) - z * z * scale;
         normal[3].0[l] += sums.xy.0[l] - x * y * scale;
         normal[4].0[l] += sums.xz.0[l] - x * z * scale;
         normal[5].0[l] += sums.yz.0[l] - y * z * scale;
     }
 }
 
+/// Σ w; 1 without satellites.
 #[inline(always)]
-fn shared_clock(sums: &Sums<f64>) -> SharedClock {
+pub(super) fn weight_or_one<W: Weighting>(sums: &Sums<f64>, lane: usize) -> f64 {
+    if sums.used::<W>(lane) > 0 {
+        sums.weight::<W>(lane)
+    } else {
+        1.0
+    }
+}
+
+#[inline(always)]
+fn shared_clock<W: Weighting>(sums: &Sums<f64>) -> SharedClock {
     let means = [&sums.x, &sums.y, &sums.z].map(|sum| {
-        let mean = |l: usize| sum.0[l] / f64::from(sums.count.0[l].max(1));
+        let mean = |l: usize| sum.0[l] / weight_or_one::<W>(sums, l);
         Lanes(std::array::from_fn(mean))
     });
+    let weight = Lanes(std::array::from_fn(|l| sums.weight::<W>(l)));
     SharedClock {
         mean: means.each_ref().map(nearest),
         remainder: means.each_ref().map(remainder),
-        count: sums.count,
+        count: Lanes(std::array::from_fn(|l| sums.used::<W>(l))),
+        weight: [nearest(&weight), remainder(&weight)],
     }
 }

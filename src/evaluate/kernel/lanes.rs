@@ -5,7 +5,6 @@
 //! multiply-add and no approximate reciprocal: IEEE 754 defines the rounding of every operation, so
 //! all instruction sets give the same bits.
 
-use crate::dop::{Factor, Symmetric3, pivot_floor};
 use crate::visibility::Mask;
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
@@ -163,10 +162,46 @@ pub(super) struct SiteLanes<R> {
     pub(super) up: [Lanes<R>; 3],
 }
 
+/// How observations are weighted.
+pub(super) trait Weighting {
+    /// Whether by the square of the sine of the elevation.
+    const BY_SINE: bool;
+    /// What the PDOP up to which f32 is trusted is multiplied by.
+    const SINGLE_SHARE: f32;
+}
+
+/// All alike.
+pub(super) struct UnitWeights;
+
+/// sin² of the elevation.
+pub(super) struct SineWeights;
+
+impl Weighting for UnitWeights {
+    const BY_SINE: bool = false;
+    const SINGLE_SHARE: f32 = 1.0;
+}
+
+impl Weighting for SineWeights {
+    const BY_SINE: bool = true;
+    /// Two roundings of a sine s change s² v vᵀ by up to 4 s beside the 3 s² of v itself: 7/3 of what they change v vᵀ
+    /// by, which PDOP feels by its square.
+    const SINGLE_SHARE: f32 = 0.65;
+}
+
+/// The line from a point to a satellite, km.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<R> {
+    pub(super) to: [R; 3],
+    /// One over the range.
+    inverse: R,
+    /// Of the elevation.
+    pub(super) sine: R,
+}
+
 /// Sums over the visible satellites of one clock group at each point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sums<R> {
-    /// Σ v vᵀ.
+    /// Σ w v vᵀ.
     pub(super) xx: Lanes<R>,
     pub(super) yy: Lanes<R>,
     /// Zero where [`Real::SUMS_ZZ`] says so.
@@ -174,7 +209,7 @@ pub(super) struct Sums<R> {
     pub(super) xy: Lanes<R>,
     pub(super) xz: Lanes<R>,
     pub(super) yz: Lanes<R>,
-    /// Σ v.
+    /// Σ w v.
     pub(super) x: Lanes<R>,
     pub(super) y: Lanes<R>,
     pub(super) z: Lanes<R>,
@@ -182,6 +217,9 @@ pub(super) struct Sums<R> {
     pub(super) count: Lanes<u32>,
     /// Satellites that may be visible.
     pub(super) possible: Lanes<u32>,
+    /// Σ w, and the satellites with a weight: zero for unit weights, whose sum is the count.
+    weight: Lanes<R>,
+    used: Lanes<u32>,
 }
 
 impl<R: Real> Sums<R> {
@@ -200,11 +238,13 @@ impl<R: Real> Sums<R> {
             z: zero,
             count: Lanes([0; LANES]),
             possible: Lanes([0; LANES]),
+            weight: zero,
+            used: Lanes([0; LANES]),
         }
     }
 
     #[inline(always)]
-    pub(super) fn merge(&mut self, other: &Self) {
+    pub(super) fn merge<W: Weighting>(&mut self, other: &Self) {
         for l in 0..LANES {
             self.xx.0[l] += other.xx.0[l];
             self.yy.0[l] += other.yy.0[l];
@@ -219,250 +259,117 @@ impl<R: Real> Sums<R> {
             self.z.0[l] += other.z.0[l];
             self.count.0[l] += other.count.0[l];
             self.possible.0[l] += other.possible.0[l];
+            if W::BY_SINE {
+                self.weight.0[l] += other.weight.0[l];
+                self.used.0[l] += other.used.0[l];
+            }
         }
     }
 
-    /// Element (z, z) of Σ v vᵀ.
+    /// Σ w.
     #[inline(always)]
-    pub(super) fn zz(&self, lane: usize) -> R {
+    pub(super) fn weight<W: Weighting>(&self, lane: usize) -> R {
+        if W::BY_SINE {
+            self.weight.0[lane]
+        } else {
+            R::count(self.count.0[lane])
+        }
+    }
+
+    /// Satellites with a weight.
+    #[inline(always)]
+    pub(super) fn used<W: Weighting>(&self, lane: usize) -> u32 {
+        if W::BY_SINE {
+            self.used.0[lane]
+        } else {
+            self.count.0[lane]
+        }
+    }
+
+    /// Element (z, z) of Σ w v vᵀ.
+    #[inline(always)]
+    pub(super) fn zz<W: Weighting>(&self, lane: usize) -> R {
         if R::SUMS_ZZ {
             self.zz.0[lane]
         } else {
-            R::count(self.count.0[lane]) - self.xx.0[lane] - self.yy.0[lane]
+            self.weight::<W>(lane) - self.xx.0[lane] - self.yy.0[lane]
         }
     }
 
     /// Adds a satellite where it is visible. Most of the time is spent in this loop.
     #[inline(always)]
-    pub(super) fn add(&mut self, sites: &SiteLanes<R>, satellite: [R; 3], mask: &MaskTerms<R>) {
-        let [origin_x, origin_y, origin_z] = &sites.origin;
-        let [up_x, up_y, up_z] = &sites.up;
+    pub(super) fn add<W: Weighting>(
+        &mut self,
+        sites: &SiteLanes<R>,
+        satellite: [R; 3],
+        mask: &MaskTerms<R>,
+    ) {
         for l in 0..LANES {
-            let dx = satellite[0] - origin_x.0[l];
-            let dy = satellite[1] - origin_y.0[l];
-            let dz = satellite[2] - origin_z.0[l];
-            let height = up_x.0[l] * dx + up_y.0[l] * dy + up_z.0[l] * dz;
-            let range2 = dx * dx + dy * dy + dz * dz;
-            let inverse = range2.inverse_root();
-            let sine = height * inverse;
-            let (seen, possible) = R::above(mask, height, range2, sine);
-            let scale = if seen { inverse } else { R::ZERO };
-            self.possible.0[l] += u32::from(possible);
-            self.count.0[l] += u32::from(seen);
-            let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
-            self.x.0[l] += vx;
-            self.y.0[l] += vy;
-            self.z.0[l] += vz;
-            self.xx.0[l] += vx * vx;
-            self.yy.0[l] += vy * vy;
-            if R::SUMS_ZZ {
-                self.zz.0[l] += vz * vz;
-            }
-            self.xy.0[l] += vx * vy;
-            self.xz.0[l] += vx * vz;
-            self.yz.0[l] += vy * vz;
+            let (line, seen, possible) = sites.line(satellite, mask, l);
+            self.add_line::<W>(&line, seen, possible, l);
         }
     }
-}
-
-/// The GNSS part of the normal matrix at the points of a tile: (x, x), (y, y), (z, z), (x, y),
-/// (x, z), (y, z).
-pub(super) type Normal = [Lanes<f32>; 6];
-
-/// The GNSS part at the points of a tile, one sample. Each number is an f32 and a remainder, together
-/// 48 bits; f32 lanes read only the first.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FixedTile<'a> {
-    pub(super) normal: &'a Normal,
-    pub(super) remainder: &'a Normal,
-    /// Satellites minus clocks of the systems with their own clocks.
-    pub(super) surplus: &'a [u16; LANES],
-    /// Visible satellites of all systems.
-    pub(super) visible: &'a [u16; LANES],
-    /// The GNSS satellites that share their clock with the design, if any do.
-    pub(super) shared: Option<&'a SharedClock>,
-}
-
-/// GNSS satellites that share their clock with the design; their own contribution is already part of
-/// the normal matrix.
-#[derive(Debug, Clone)]
-pub(super) struct SharedClock {
-    /// Σ v / n, and its remainder.
-    pub(super) mean: [Lanes<f32>; 3],
-    pub(super) remainder: [Lanes<f32>; 3],
-    pub(super) count: Lanes<u32>,
-}
-
-pub(super) const ZERO: Lanes<f32> = Lanes([0.0; LANES]);
-
-impl SharedClock {
-    #[inline(always)]
-    pub(super) fn mean<R: Real>(&self, axis: usize, lane: usize) -> R {
-        R::joined(self.mean[axis].0[lane], self.remainder[axis].0[lane])
-    }
-}
-
-impl FixedTile<'_> {
-    /// No GNSS.
-    pub(super) const NONE: Self = FixedTile {
-        normal: &[ZERO; 6],
-        remainder: &[ZERO; 6],
-        surplus: &[0; LANES],
-        visible: &[0; LANES],
-        shared: None,
-    };
 
     #[inline(always)]
-    pub(super) fn normal<R: Real>(&self, element: usize, lane: usize) -> R {
-        R::joined(
-            self.normal[element].0[lane],
-            self.remainder[element].0[lane],
-        )
-    }
-}
-
-/// The f32 nearest to each number.
-#[inline(always)]
-pub(super) fn nearest(values: &Lanes<f64>) -> Lanes<f32> {
-    Lanes(std::array::from_fn(|l| values.0[l] as f32))
-}
-
-/// The remainder after the nearest f32.
-#[inline(always)]
-pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
-    Lanes(std::array::from_fn(|l| {
-        (values.0[l] - f64::from(values.0[l] as f32)) as f32
-    }))
-}
-
-/// The normal matrix of the position at the points of a tile.
-pub(super) struct NormalLanes<R> {
-    /// (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
-    matrix: [Lanes<R>; 6],
-    /// Satellites minus clock states.
-    pub(super) surplus: Lanes<u32>,
-}
-
-impl<R: Real> NormalLanes<R> {
-    /// From the sums over the design and the GNSS part.
-    #[inline(always)]
-    pub(super) fn new(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
-        let mut system = Self::of_two_clocks(sums, fixed);
-        if let Some(shared) = fixed.shared {
-            system.join_clocks(sums, shared);
+    pub(super) fn add_line<W: Weighting>(
+        &mut self,
+        line: &Line<R>,
+        seen: bool,
+        possible: bool,
+        l: usize,
+    ) {
+        let [dx, dy, dz] = line.to;
+        let mut scale = if seen { line.inverse } else { R::ZERO };
+        self.possible.0[l] += u32::from(possible);
+        self.count.0[l] += u32::from(seen);
+        if W::BY_SINE {
+            // w v vᵀ is the square of sin(elevation) v.
+            scale = scale * line.sine;
+            let weight = line.sine * line.sine;
+            let weight = if seen { weight } else { R::ZERO };
+            self.weight.0[l] += weight;
+            self.used.0[l] += u32::from(weight > R::ZERO);
         }
-        system
+        let (vx, vy, vz) = (dx * scale, dy * scale, dz * scale);
+        let each = if W::BY_SINE { line.sine } else { R::ONE };
+        self.x.0[l] += vx * each;
+        self.y.0[l] += vy * each;
+        self.z.0[l] += vz * each;
+        self.xx.0[l] += vx * vx;
+        self.yy.0[l] += vy * vy;
+        if R::SUMS_ZZ {
+            self.zz.0[l] += vz * vz;
+        }
+        self.xy.0[l] += vx * vy;
+        self.xz.0[l] += vx * vz;
+        self.yz.0[l] += vy * vz;
     }
+}
 
-    /// The GNSS part and Σ v vᵀ - (Σ v)(Σ v)ᵀ / n of the design.
+impl<R: Real> SiteLanes<R> {
+    /// The line from a point to a satellite, whether this is at or above the mask, and whether it may be.
     #[inline(always)]
-    fn of_two_clocks(sums: &Sums<R>, fixed: &FixedTile<'_>) -> Self {
-        let mut system = Self {
-            matrix: [Lanes([R::ZERO; LANES]); 6],
-            surplus: Lanes([0; LANES]),
+    pub(super) fn line(
+        &self,
+        satellite: [R; 3],
+        mask: &MaskTerms<R>,
+        l: usize,
+    ) -> (Line<R>, bool, bool) {
+        let [origin_x, origin_y, origin_z] = &self.origin;
+        let [up_x, up_y, up_z] = &self.up;
+        let dx = satellite[0] - origin_x.0[l];
+        let dy = satellite[1] - origin_y.0[l];
+        let dz = satellite[2] - origin_z.0[l];
+        let height = up_x.0[l] * dx + up_y.0[l] * dy + up_z.0[l] * dz;
+        let range2 = dx * dx + dy * dy + dz * dz;
+        let inverse = range2.inverse_root();
+        let sine = height * inverse;
+        let (seen, possible) = R::above(mask, height, range2, sine);
+        let line = Line {
+            to: [dx, dy, dz],
+            inverse,
+            sine,
         };
-        for l in 0..LANES {
-            let count = sums.count.0[l];
-            let clocks = u32::from(count > 0);
-            system.surplus.0[l] = u32::from(fixed.surplus[l]) + count - clocks;
-            let scale = R::ONE / R::count(count + 1 - clocks);
-            let (x, y, z) = (sums.x.0[l], sums.y.0[l], sums.z.0[l]);
-            let (xx, yy, zz) = (sums.xx.0[l], sums.yy.0[l], sums.zz(l));
-            let matrix = &mut system.matrix;
-            matrix[0].0[l] = fixed.normal::<R>(0, l) + (xx - x * x * scale);
-            matrix[1].0[l] = fixed.normal::<R>(1, l) + (yy - y * y * scale);
-            matrix[2].0[l] = fixed.normal::<R>(2, l) + (zz - z * z * scale);
-            matrix[3].0[l] = fixed.normal::<R>(3, l) + (sums.xy.0[l] - x * y * scale);
-            matrix[4].0[l] = fixed.normal::<R>(4, l) + (sums.xz.0[l] - x * z * scale);
-            matrix[5].0[l] = fixed.normal::<R>(5, l) + (sums.yz.0[l] - y * z * scale);
-        }
-        system
+        (line, seen, possible)
     }
-
-    /// Merges the clock of the design with that of the GNSS: two groups of n and m satellites that
-    /// become one gain n m / (n + m) δ δᵀ, where δ is the difference of their mean unit vectors (Chan,
-    /// Golub and LeVeque, *Amer. Statist.* 37 (1983) 242). This avoids the cancellation in the sums of
-    /// both groups together.
-    #[inline(always)]
-    fn join_clocks(&mut self, sums: &Sums<R>, shared: &SharedClock) {
-        for l in 0..LANES {
-            let (n, m) = (sums.count.0[l], shared.count.0[l]);
-            let both = u32::from((n > 0) & (m > 0));
-            self.surplus.0[l] += m - u32::from(m > 0) + both;
-            let gain = R::count(n * m) / R::count((n + m).max(1));
-            let scale = R::ONE / R::count(n.max(1));
-            let x = sums.x.0[l] * scale - shared.mean::<R>(0, l);
-            let y = sums.y.0[l] * scale - shared.mean::<R>(1, l);
-            let z = sums.z.0[l] * scale - shared.mean::<R>(2, l);
-            self.matrix[0].0[l] += gain * x * x;
-            self.matrix[1].0[l] += gain * y * y;
-            self.matrix[2].0[l] += gain * z * z;
-            self.matrix[3].0[l] += gain * x * y;
-            self.matrix[4].0[l] += gain * x * z;
-            self.matrix[5].0[l] += gain * y * z;
-        }
-    }
-}
-
-/// Minimum ratio of the determinant to the cube of the trace for which f32 is accurate enough. The
-/// smallest eigenvalue is then at least 2⁻¹⁶ of the trace, and rounding 2⁻²² of it.
-const LEAST_DETERMINANT: f32 = 1.0 / 65_536.0;
-
-/// Minimum trace. PDOP² is at least 9 divided by it, so no PDOP for which f32 is trusted is lost;
-/// below it, rounding may be all there is.
-const LEAST_TRACE: f32 = 1.0;
-
-impl NormalLanes<f32> {
-    /// PDOP by the minors; infinite if the matrix is too close to singular for f32.
-    #[inline(always)]
-    pub(super) fn pdop(&self) -> Lanes<f32> {
-        let mut lanes = Lanes([f32::INFINITY; LANES]);
-        let matrix = &self.matrix;
-        for l in 0..LANES {
-            let (xx, yy, zz) = (matrix[0].0[l], matrix[1].0[l], matrix[2].0[l]);
-            let (xy, xz, yz) = (matrix[3].0[l], matrix[4].0[l], matrix[5].0[l]);
-            let minor_zz = xx * yy - xy * xy;
-            let minor_yy = xx * zz - xz * xz;
-            let minor_xx = yy * zz - yz * yz;
-            let determinant = xx * minor_xx - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-            let trace = xx + yy + zz;
-            let sound =
-                (trace > LEAST_TRACE) & (determinant > LEAST_DETERMINANT * trace * trace * trace);
-            let pdop = ((minor_xx + minor_yy + minor_zz) / determinant).root();
-            lanes.0[l] = if sound { pdop } else { f32::INFINITY };
-        }
-        lanes
-    }
-}
-
-impl NormalLanes<f64> {
-    /// PDOP by the factor of the plain path; infinite where a pivot is not clearly above rounding
-    /// for satellites of unit weight, `clocks` of them beyond the surplus at most.
-    #[inline(always)]
-    pub(super) fn pdop(&self, clocks: u32) -> Lanes<f64> {
-        let mut lanes = Lanes([f64::INFINITY; LANES]);
-        for l in 0..LANES {
-            let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| self.matrix[element].0[l]);
-            let factor = Factor::new(&Symmetric3 {
-                xx,
-                yy,
-                zz,
-                xy,
-                xz,
-                yz,
-            });
-            let clear = factor.exceeds(clear_pivot(self.surplus.0[l] + clocks));
-            let pdop = factor.trace_of_inverse().root();
-            lanes.0[l] = if clear { pdop } else { f64::INFINITY };
-        }
-        lanes
-    }
-}
-
-/// A pivot above this is above the floor of the plain path too, whose sums are made in another
-/// order: storing the GNSS part in 48 bits moves a pivot by at most two floors, and the order of the
-/// sums by less than one.
-#[inline(always)]
-pub(super) fn clear_pivot(satellites: u32) -> f64 {
-    4.0 * pivot_floor(f64::from(satellites))
 }

@@ -102,14 +102,23 @@ impl Counts {
         self.counts[..self.places.unsolved as usize].iter().sum()
     }
 
-    /// The place of the order statistic of a rank (from 1).
+    /// The place of the order statistic of a rank (from 1). Strides of places are passed by their sums.
     fn locate(&self, rank: u64) -> Wanted {
-        let mut before = rank - 1;
-        let mut counted = (0..).zip(&self.counts);
+        const STRIDE: usize = 128;
+        let (mut before, mut first) = (rank - 1, 0);
+        for stride in self.counts.chunks(STRIDE) {
+            let here = stride.iter().sum();
+            if before < here {
+                break;
+            }
+            before -= here;
+            first += STRIDE;
+        }
+        let mut counted = (first..).zip(self.counts.iter().skip(first));
         let place = counted.find_map(|(place, &count)| {
             let here = before < count;
             before -= if here { 0 } else { count };
-            here.then_some(place)
+            here.then_some(place as u32)
         });
         Wanted {
             place: place.unwrap_or(self.places.unsolved),

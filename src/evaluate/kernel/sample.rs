@@ -4,10 +4,11 @@ use super::super::counts::Threshold;
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{FixedTile, LANES, Lanes, MaskTerms, NormalLanes, SiteLanes, Sums};
+use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
+use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
-use crate::dop::pivot_floor;
+use crate::dop::{ObservationWeights, pivot_floor};
 
 /// Marks an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
@@ -37,9 +38,9 @@ impl Limits {
     const DOUBLE_BAND: f64 = 1e-6;
 
     #[inline(always)]
-    fn capped(self, single_below: f32) -> Self {
+    fn capped<W: Weighting>(self, single_below: f32) -> Self {
         Self {
-            single_below: self.single_below.min(single_below),
+            single_below: self.single_below.min(single_below) * W::SINGLE_SHARE,
             ..self
         }
     }
@@ -68,6 +69,7 @@ pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
     pub(super) double: MaskTerms<f64>,
+    pub(super) weights: ObservationWeights,
     pub(super) limits: Limits,
 }
 
@@ -111,14 +113,14 @@ impl Workspace {
 
     /// The sums of a tile of the selected group in f64.
     #[inline(always)]
-    pub(super) fn double_sums(
+    pub(super) fn double_sums<W: Weighting>(
         &self,
         scene: &SampleContext,
         number: usize,
         group: &Group,
     ) -> Sums<f64> {
         let candidates = self.candidates(number, group);
-        candidates.double_sums(scene, number, &self.positions)
+        candidates.double_sums::<W>(scene, number, &self.positions)
     }
 
     pub(super) fn new(satellites: usize) -> Self {
@@ -199,18 +201,20 @@ impl Work for Sample<'_> {
         for (pattern, turn) in self.patterns.iter().zip(&self.work.turns) {
             pattern.place_at(turn, &mut self.work.positions);
         }
-        evaluate(
-            self.scene,
-            self.limits,
-            &self.fixed,
-            self.work,
-            self.outcome,
-        );
+        let (scene, limits, fixed) = (self.scene, self.limits, &self.fixed);
+        match scene.weights {
+            ObservationWeights::Unit => {
+                evaluate::<UnitWeights>(scene, limits, fixed, self.work, self.outcome);
+            }
+            ObservationWeights::SineElevation => {
+                evaluate::<SineWeights>(scene, limits, fixed, self.work, self.outcome);
+            }
+        }
     }
 }
 
 #[inline(always)]
-fn evaluate(
+fn evaluate<W: Weighting>(
     scene: &SampleContext,
     limits: Limits,
     fixed: &FixedSample<'_>,
@@ -220,7 +224,7 @@ fn evaluate(
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
-    let limits = limits.capped(horizon.single_below(&work.positions));
+    let limits = limits.capped::<W>(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     for group in &scene.tiles.groups {
@@ -228,15 +232,15 @@ fn evaluate(
         for number in group.tiles.clone() {
             let candidates = work.candidates(number, group);
             let fixed = fixed.tile(number);
-            let sums = candidates.sums(&scene.tiles.tiles[number].single, &mask);
-            let verdict = LaneVerdict::new(&sums, &fixed, &limits);
+            let sums = candidates.sums::<W>(&scene.tiles.tiles[number].single, &mask);
+            let verdict = LaneVerdict::new::<W>(&sums, &fixed, &limits);
             out.pdop[number] = verdict.pdop;
             out.visible[number] = sums.count;
             if any(&verdict.doubtful) {
                 doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
             }
             if any(&verdict.coarse) {
-                compute_again(
+                compute_again::<W>(
                     scene,
                     number,
                     &fixed,
@@ -265,25 +269,30 @@ struct TileCandidates<'a> {
 
 impl<'a> TileCandidates<'a> {
     #[inline(always)]
-    fn sums(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
+    fn sums<W: Weighting>(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
         let mut all = Sums::zero();
         for (block, &word) in self.blocks.iter().zip(self.words) {
             let mut sums = Sums::zero();
             for n in bits(word) {
-                sums.add(sites, block.position(n), mask);
+                sums.add::<W>(sites, block.position(n), mask);
             }
             // Sums of sums: adding hundreds of visible satellites one by one would cost f32 a digit.
-            all.merge(&sums);
+            all.merge::<W>(&sums);
         }
         all
     }
 
     #[inline(always)]
-    fn double_sums(self, scene: &SampleContext, number: usize, positions: &Positions) -> Sums<f64> {
+    fn double_sums<W: Weighting>(
+        self,
+        scene: &SampleContext,
+        number: usize,
+        positions: &Positions,
+    ) -> Sums<f64> {
         let mut sums = Sums::zero();
         let sites = &scene.tiles.tiles[number].double;
         for n in self.satellites() {
-            sums.add(sites, positions.at(n), &scene.double);
+            sums.add::<W>(sites, positions.at(n), &scene.double);
         }
         sums
     }
@@ -307,8 +316,8 @@ struct LaneVerdict {
 
 impl LaneVerdict {
     #[inline(always)]
-    fn new(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
-        let system = NormalLanes::new(sums, fixed);
+    fn new<W: Weighting>(sums: &Sums<f32>, fixed: &FixedTile<'_>, limits: &Limits) -> Self {
+        let system = NormalLanes::new::<W>(sums, fixed);
         let single = system.pdop();
         let zero = Lanes([0; LANES]);
         let mut verdict = Self {
@@ -352,7 +361,7 @@ fn doubt(
 
 /// Recomputes a tile in f64 for the points for which f32 is too coarse.
 #[inline(always)]
-fn compute_again(
+fn compute_again<W: Weighting>(
     scene: &SampleContext,
     number: usize,
     fixed: &FixedTile<'_>,
@@ -361,9 +370,9 @@ fn compute_again(
     candidates: TileCandidates<'_>,
     out: &mut SampleOutcome,
 ) {
-    let sums = candidates.double_sums(scene, number, positions);
+    let sums = candidates.double_sums::<W>(scene, number, positions);
     let limits = &scene.limits;
-    let system = NormalLanes::new(&sums, fixed);
+    let system = NormalLanes::new::<W>(&sums, fixed);
     let double = system.pdop(limits.clocks);
     let mut undecided = Lanes([0; LANES]);
     for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {

@@ -4,9 +4,9 @@
 use super::super::fixed::{self, PlainGnssSample, PlainPositions};
 use super::super::{Setup, plain};
 use super::fixed::{FixedSample, SampleInstant};
-use super::lanes::{FixedTile, clear_pivot};
+use super::normal::{FixedTile, clear_pivot};
 use super::sample::{Doubt, POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Undecided};
-use crate::dop::{Factor, Symmetric3};
+use crate::dop::{Factor, ObservationWeights, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, LocalFrame, Position, State, Teme};
 use nalgebra::Vector3;
@@ -58,8 +58,10 @@ impl<'a> Settling<'a> {
             let local = &self.setup.sites[site as usize].local;
             let positions = self.candidates(leo, undecided)?;
             let by_lanes = match undecided.doubt {
-                Doubt::Mask => self.with_gnss_of_lanes(local, &positions, undecided),
-                Doubt::Geometry => None,
+                Doubt::Mask if self.scene.weights == ObservationWeights::Unit => {
+                    self.with_gnss_of_lanes(local, &positions, undecided)
+                }
+                Doubt::Mask | Doubt::Geometry => None,
             };
             let settled = match by_lanes {
                 Some(settled) => settled,
@@ -115,7 +117,7 @@ impl<'a> Settling<'a> {
     }
 
     /// The sample with the mask decided by the plain path and the GNSS part from the lanes; `None` if
-    /// that leaves open whether it is solved.
+    /// that leaves open whether it is solved. For unit weights.
     fn with_gnss_of_lanes(
         &self,
         local: &LocalFrame,

@@ -2,79 +2,110 @@
 //!
 //! All are whole numbers, so that they do not depend on how the samples are cut into pieces of time.
 
-use super::super::counts::{LongestOutage, Outages, Views};
+use super::super::counts::{COVERAGE_LEVELS, LongestOutage, Outages, PointViews, Views};
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
 use super::order_statistics::Merge;
-use super::propagation::Propagation;
 use super::sample::SampleOutcome;
 use super::tiles::Tile;
 use super::{Evaluating, Kernel, Rechecks};
 
-/// Neighbouring lanes count apart, because most see the same number of satellites and would wait for
-/// each other.
-const APART: usize = 4;
+/// The most instants that [`ViewLanes`] counts.
+const SPAN: u32 = u8::MAX as u32;
 
-/// The weight of the samples by number of satellites.
+/// The satellites in view of the points of a tile over the last instants.
 #[derive(Debug, Clone)]
-struct ViewLanes(Vec<[u64; APART]>);
+struct ViewLanes {
+    /// Satellites of all instants together.
+    sum: Lanes<u32>,
+    least: Lanes<u32>,
+    /// Instants with fewer than 1, 2, … 12 satellites: bytes, all lanes of which fit in one register of any processor.
+    fewer: [[u8; LANES]; COVERAGE_LEVELS],
+}
 
 impl ViewLanes {
-    fn new(most: usize) -> Self {
-        Self(vec![[0; APART]; most + 1])
-    }
+    const NONE: Self = Self {
+        sum: Lanes([0; LANES]),
+        least: Lanes([u32::MAX; LANES]),
+        fewer: [[0; LANES]; COVERAGE_LEVELS],
+    };
 
     #[inline(always)]
-    fn add(&mut self, visible: u32, weight: u64, lane: usize) {
-        self.0[visible as usize][lane % APART] += weight;
-    }
-
-    fn merge(&mut self, other: &Self) {
-        for (mine, theirs) in self.0.iter_mut().zip(&other.0) {
-            for (mine, theirs) in mine.iter_mut().zip(theirs) {
-                *mine += theirs;
+    fn add(&mut self, visible: &Lanes<u32>) {
+        const LEVELS: u8 = COVERAGE_LEVELS as u8;
+        let (mut few, mut any_few) = ([0; LANES], 0);
+        for (l, few) in few.iter_mut().enumerate() {
+            let visible = visible.0[l];
+            self.sum.0[l] += visible;
+            self.least.0[l] = self.least.0[l].min(visible);
+            *few = visible.min(LEVELS.into()) as u8;
+            any_few |= u8::from(*few < LEVELS);
+        }
+        if any_few == 0 {
+            return;
+        }
+        for (below, fewer) in self.fewer.iter_mut().enumerate() {
+            for l in 0..LANES {
+                fewer[l] += u8::from(few[l] <= below as u8);
             }
         }
     }
 
-    fn views(&self) -> Views {
-        Views::of(self.0.iter().map(|weights| weights.iter().sum()).collect())
+    fn point(&self, lane: usize, samples: u32) -> PointViews {
+        PointViews {
+            samples,
+            sum: self.sum.0[lane],
+            fewer: self.fewer.map(|lanes| lanes[lane]),
+            least: self.least.0[lane],
+        }
     }
 }
 
 /// The outages at the points of a tile, in samples.
 #[derive(Debug, Clone)]
 struct OutageLanes {
-    /// The first sample without outage; the greatest number if there is none yet.
-    first_good: Lanes<u32>,
+    /// Length of the outage at the first sample.
+    first: Lanes<u32>,
     /// Length of the outage at the last sample.
     now: Lanes<u32>,
     longest: Lanes<u32>,
     number: Lanes<u32>,
     total: Lanes<u32>,
+    /// Whether there is an outage at the last sample in some lane.
+    is_out: bool,
 }
 
 impl OutageLanes {
     const NONE: Self = Self {
-        first_good: Lanes([u32::MAX; LANES]),
+        first: Lanes([0; LANES]),
         now: Lanes([0; LANES]),
         longest: Lanes([0; LANES]),
         number: Lanes([0; LANES]),
         total: Lanes([0; LANES]),
+        is_out: false,
     };
 
+    /// Adds a sample after `instants` others; 1 marks an outage.
     #[inline(always)]
-    fn add(&mut self, is_out: &Lanes<u32>, instant: u32) {
+    fn add(&mut self, out: &Lanes<u32>, instants: u32) {
+        let is_out = out.0.iter().fold(0, |all, out| all | out) != 0;
+        if is_out || self.is_out {
+            self.go_on(out, instants);
+        }
+        self.is_out = is_out;
+    }
+
+    #[inline(always)]
+    fn go_on(&mut self, out: &Lanes<u32>, instants: u32) {
         for l in 0..LANES {
-            let out = is_out.0[l];
+            let out = out.0[l];
             let now = (self.now.0[l] + 1) * out;
             self.now.0[l] = now;
             self.longest.0[l] = self.longest.0[l].max(now);
             self.number.0[l] += u32::from(now == 1);
+            self.first.0[l] += if self.total.0[l] == instants { out } else { 0 };
             self.total.0[l] += out;
-            let good = if out == 0 { instant } else { u32::MAX };
-            self.first_good.0[l] = self.first_good.0[l].min(good);
         }
     }
 
@@ -84,7 +115,7 @@ impl OutageLanes {
             number: self.number.0[lane],
             longest: self.longest.0[lane],
             total: self.total.0[lane],
-            first: self.first_good.0[lane].min(instants),
+            first: self.first.0[lane],
             last: self.now.0[lane],
             samples: instants,
         }
@@ -94,11 +125,9 @@ impl OutageLanes {
         self.number.0[lane] = outages.number;
         self.longest.0[lane] = outages.longest;
         self.total.0[lane] = outages.total;
-        self.first_good.0[lane] = match outages.first {
-            all if all == outages.samples => u32::MAX,
-            first => first,
-        };
+        self.first.0[lane] = outages.first;
         self.now.0[lane] = outages.last;
+        self.is_out = self.now.0.iter().any(|&now| now > 0);
     }
 }
 
@@ -124,74 +153,110 @@ fn joined(before: Outages, after: Outages) -> Outages {
     }
 }
 
-/// Counts over some instants in a row.
+/// The counts at the points of a tile.
 #[derive(Debug, Clone)]
-pub(super) struct ViewTally {
+pub(super) struct TileTally {
     leo: ViewLanes,
     all: ViewLanes,
-    /// Weight of the available samples.
-    available: Lanes<u64>,
+    outages: OutageLanes,
+}
+
+impl TileTally {
+    const NONE: Self = Self {
+        leo: ViewLanes::NONE,
+        all: ViewLanes::NONE,
+        outages: OutageLanes::NONE,
+    };
+}
+
+/// Counts over some instants in a row.
+#[derive(Debug, Clone)]
+pub(super) struct ViewTally<'a> {
+    tiles: &'a [Tile],
+    of_tiles: Vec<TileTally>,
     instants: u32,
-    outages: Vec<OutageLanes>,
+    /// Satellites in view, LEO and all, but for the last `pending` instants.
+    views: [Views; 2],
+    pending: u32,
     pub(super) rechecks: Rechecks,
 }
 
-impl ViewTally {
-    /// No sample yet, of so many tiles and satellites.
-    pub(super) fn new(tiles: usize, leo: usize, gnss: usize) -> Self {
+impl<'a> ViewTally<'a> {
+    /// No sample yet.
+    fn new(tiles: &'a [Tile]) -> Self {
         Self {
-            leo: ViewLanes::new(leo),
-            all: ViewLanes::new(leo + gnss),
-            available: Lanes([0; LANES]),
+            tiles,
+            of_tiles: vec![TileTally::NONE; tiles.len()],
             instants: 0,
-            outages: vec![OutageLanes::NONE; tiles],
+            views: [Views::default(), Views::default()],
+            pending: 0,
             rechecks: Rechecks::default(),
         }
     }
 
-    /// Memory for each tile.
-    pub(super) const TILE_BYTES: usize = size_of::<OutageLanes>();
-
     /// LEO satellites in view, and all.
     pub(super) fn views(&self) -> [Views; 2] {
-        [self.leo.views(), self.all.views()]
+        let [mut leo, mut all] = self.views.clone();
+        if self.pending > 0 {
+            for (tile, tally) in self.tiles.iter().zip(&self.of_tiles) {
+                for lane in 0..tile.members.len() {
+                    let weight = tile.weights.whole.0[lane];
+                    leo.add_point(&tally.leo.point(lane, self.pending), weight);
+                    all.add_point(&tally.all.point(lane, self.pending), weight);
+                }
+            }
+        }
+        [leo, all]
+    }
+
+    fn settle_pending(&mut self) {
+        self.views = self.views();
+        self.pending = 0;
+        for tally in &mut self.of_tiles {
+            (tally.leo, tally.all) = (ViewLanes::NONE, ViewLanes::NONE);
+        }
     }
 
     /// Weight of the available samples.
     pub(super) fn available(&self) -> u64 {
-        self.available.0.iter().sum()
-    }
-
-    /// The outages of each point, with its number.
-    pub(super) fn outages(&self, tiles: &[Tile]) -> impl Iterator<Item = (usize, Outages)> {
-        let of_tile = |(tile, outages): (&Tile, &OutageLanes)| {
-            let members = tile.members.iter().enumerate();
-            let point = |(lane, &site)| (site as usize, outages.point(lane, self.instants));
-            members.map(point).collect::<Vec<_>>()
+        let of_tile = |(tile, tally): (&Tile, &TileTally)| {
+            let lanes = tile.weights.whole.0.iter().zip(&tally.outages.total.0);
+            let good = lanes.map(|(weight, out)| weight * u64::from(self.instants - out));
+            good.sum::<u64>()
         };
-        tiles.iter().zip(&self.outages).flat_map(of_tile)
+        self.tiles.iter().zip(&self.of_tiles).map(of_tile).sum()
     }
 
-    pub(super) fn longest_outage(&self, tiles: &[Tile]) -> LongestOutage {
-        LongestOutage::of(self.outages(tiles).map(|(_, outages)| outages))
+    /// The outages of each point.
+    fn outages(&self) -> impl Iterator<Item = Outages> {
+        let instants = self.instants;
+        let of_tile = move |(tile, tally): (&Tile, &TileTally)| {
+            let lanes = 0..tile.members.len();
+            let point = |lane| tally.outages.point(lane, instants);
+            lanes.map(point).collect::<Vec<_>>()
+        };
+        self.tiles.iter().zip(&self.of_tiles).flat_map(of_tile)
+    }
+
+    pub(super) fn longest_outage(&self) -> LongestOutage {
+        LongestOutage::of(self.outages())
     }
 }
 
-impl Merge for ViewTally {
+impl Merge for ViewTally<'_> {
     /// `other` follows in time.
     fn merged(mut self, other: &Self) -> Self {
-        self.leo.merge(&other.leo);
-        self.all.merge(&other.all);
+        self.settle_pending();
+        for (mine, theirs) in self.views.iter_mut().zip(other.views()) {
+            mine.merge(&theirs);
+        }
         let samples = [self.instants, other.instants];
         self.instants += other.instants;
-        for l in 0..LANES {
-            self.available.0[l] += other.available.0[l];
-        }
-        for (mine, theirs) in self.outages.iter_mut().zip(&other.outages) {
+        for (mine, theirs) in self.of_tiles.iter_mut().zip(&other.of_tiles) {
             for lane in 0..LANES {
-                let point = |lanes: &OutageLanes, n: usize| lanes.point(lane, samples[n]);
+                let point = |tally: &TileTally, n: usize| tally.outages.point(lane, samples[n]);
                 let both = joined(point(mine, 0), point(theirs, 1));
-                mine.set(lane, both);
+                mine.outages.set(lane, both);
             }
         }
         self.rechecks = self.rechecks.merged(other.rechecks);
@@ -200,17 +265,13 @@ impl Merge for ViewTally {
 }
 
 impl Kernel {
-    /// An empty tally of some satellites.
-    pub(super) fn tally(&self, propagation: &Propagation<'_>) -> ViewTally {
-        let leo = propagation.ephemeris.satellites().len();
-        let systems = self.fixed.systems.iter();
-        let gnss = systems.map(|system| system.satellites().len()).sum();
-        ViewTally::new(self.scene.tiles.tiles.len(), leo, gnss)
+    /// An empty tally.
+    pub(super) fn tally(&self) -> ViewTally<'_> {
+        ViewTally::new(&self.scene.tiles.tiles)
     }
 
-    pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut ViewTally) {
+    pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut ViewTally<'_>) {
         self.instructions.run(TallySample {
-            tiles: &self.scene.tiles.tiles,
             outcome: instant.outcome,
             fixed: instant.fixed,
             available: self.scene.limits.available.single(),
@@ -220,42 +281,39 @@ impl Kernel {
 }
 
 /// Counts one instant.
-struct TallySample<'a> {
-    tiles: &'a [Tile],
+struct TallySample<'a, 'b> {
     outcome: &'a SampleOutcome,
     fixed: FixedSample<'a>,
     /// PDOP up to which a sample is available.
     available: f32,
-    to: &'a mut ViewTally,
+    to: &'a mut ViewTally<'b>,
 }
 
-impl Work for TallySample<'_> {
+impl Work for TallySample<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         let to = self.to;
-        let instant = to.instants;
-        to.instants += 1;
-        let mut available = to.available;
-        for (number, tile) in self.tiles.iter().enumerate() {
+        if to.pending == SPAN {
+            to.settle_pending();
+        }
+        let tiles = to.tiles.iter().zip(&mut to.of_tiles).enumerate();
+        for (number, (tile, tally)) in tiles {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
             let gnss = self.fixed.tile(number).visible;
-            let weights = &tile.weights;
-            let mut is_out = Lanes([0; LANES]);
-            for l in 0..LANES {
+            let (mut all, mut out) = (*leo, Lanes([0; LANES]));
+            for (l, &gnss) in gnss.iter().enumerate() {
+                all.0[l] += u32::from(gnss);
                 let good = pdop.0[l] <= self.available;
-                available.0[l] += if good { weights.whole.0[l] } else { 0 };
-                is_out.0[l] = if good { 0 } else { weights.member.0[l] };
+                out.0[l] = if good { 0 } else { tile.weights.member.0[l] };
             }
-            to.outages[number].add(&is_out, instant);
-            for l in 0..LANES {
-                let (leo, gnss) = (leo.0[l], u32::from(gnss[l]));
-                to.leo.add(leo, weights.whole.0[l], l);
-                to.all.add(leo + gnss, weights.whole.0[l], l);
-            }
+            tally.outages.add(&out, to.instants);
+            tally.leo.add(leo);
+            tally.all.add(&all);
         }
-        to.available = available;
+        to.instants += 1;
+        to.pending += 1;
     }
 }
 
@@ -273,6 +331,27 @@ mod tests {
     }
 
     proptest! {
+        /// Point by point, the views are those of the definition: below all levels, across them and above.
+        #[test]
+        fn views_of_points_are_those_of_samples(
+            visible in prop::collection::vec(
+                prop::array::uniform16(prop_oneof![3 => 0..20_u32, 1 => 12..400_u32]), 1..256,
+            ),
+            weights in prop::array::uniform16(1..1_000_000_u64),
+        ) {
+            let (mut lanes, mut expected) = (ViewLanes::NONE, Views::default());
+            for visible in &visible {
+                lanes.add(&Lanes(*visible));
+                let samples = visible.iter().zip(weights);
+                samples.for_each(|(&visible, weight)| expected.add(visible, weight));
+            }
+            let mut views = Views::default();
+            for (lane, &weight) in weights.iter().enumerate() {
+                views.add_point(&lanes.point(lane, visible.len() as u32), weight);
+            }
+            prop_assert_eq!(views, expected);
+        }
+
         /// In lanes, and in two spans, the outages are those of the definition.
         #[test]
         fn outages_of_spans_join(

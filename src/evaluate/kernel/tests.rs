@@ -5,7 +5,7 @@ use super::tiles::{Horizon, Tiles};
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::constellation::{Design, Orientation, Pattern, Shell, ShellParameters};
-use crate::dop::Clocks;
+use crate::dop::{Clocks, ObservationWeights};
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
@@ -14,6 +14,7 @@ use crate::evaluate::{
 };
 use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
+use crate::keyword::Keyword;
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::stats::Level;
 use crate::time::{Epoch, TimeGrid};
@@ -170,17 +171,19 @@ fn setups() -> impl Strategy<Value = Setup> {
         vec![Preset::Beidou3.into(), Preset::Beidou3.into()],
     ]);
     let caps = prop::sample::select(vec![(100.0, 6.0), (1.9, 1.2), (8.0, 2.0)]);
+    let weights = prop::sample::select(ObservationWeights::ALL.to_vec());
     (
         weighted_sites(),
         mask,
         0.0..30.0_f64,
         clocks,
         gnss,
-        caps,
+        (caps, weights),
         0..40_000_u32,
     )
         .prop_map(
-            |(sites, mask, gnss_mask, clocks, gnss, (pdop_cap, availability_pdop), hours)| {
+            |(sites, mask, gnss_mask, clocks, gnss, (caps, weights), hours)| {
+                let (pdop_cap, availability_pdop) = caps;
                 let first = Epoch::from_utc("2023-06-01T00:00:00Z".parse().unwrap());
                 let epoch = first.plus_seconds(f64::from(hours) * 3600.0);
                 let metrics = MetricOptions {
@@ -193,6 +196,7 @@ fn setups() -> impl Strategy<Value = Setup> {
                     .with_gnss_mask(Mask::from_degrees(gnss_mask).unwrap())
                     .with_gnss(gnss)
                     .with_clocks(clocks)
+                    .with_observation_weights(weights)
                     .with_pdop_cap(pdop_cap)
                     .with_metrics(metrics)
             },
