@@ -26,7 +26,7 @@ impl Setup {
             ),
             (
                 self.has_skylines(),
-                "masks by azimuth (visibility.mask-table)",
+                "skylines (visibility.mask-table, region.terrain, or of sites)",
             ),
             (
                 self.observation_weights != ObservationWeights::Unit,

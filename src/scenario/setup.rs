@@ -4,11 +4,15 @@ use super::constellations::{ConstellationFileError, NoDesign};
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::RegionKeys;
-use super::{Algorithm, AreaSource, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
+use super::{
+    Algorithm, AreaSource, GnssSetup, Objectives, Region, RegionTerrain, Scenario, TimeSpan,
+    Visibility,
+};
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
+use crate::formats::terrain::{TerrainFileError, terrain};
 use crate::ground::{
     Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv, with_inline_skylines,
 };
@@ -39,7 +43,7 @@ pub enum SetupError {
     /// The points file or the polygons cannot be read.
     #[error("region.{key}: cannot read {file}: {source}")]
     RegionFile {
-        /// The key: `points` or `polygon`.
+        /// The key: `points`, `polygon` or `terrain`.
         key: &'static str,
         /// The path as written.
         file: String,
@@ -61,6 +65,14 @@ pub enum SetupError {
         file: String,
         /// What is wrong with it.
         source: GroundError,
+    },
+    /// The file is not a terrain, or the points do not stand on it.
+    #[error("region.terrain: {file}: {source}")]
+    Terrain {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: TerrainFileError,
     },
     /// The grid or the countries have no points.
     #[error("region: {0}")]
@@ -97,6 +109,9 @@ impl SetupError {
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
+            Self::RegionFile { key: "terrain", .. } | Self::Terrain { .. } => {
+                vec![key!(RegionTerrain.terrain)]
+            }
             Self::RegionFile { key: "points", .. } | Self::Points { .. } => {
                 vec![key!(RegionKeys.points)]
             }
@@ -136,6 +151,7 @@ impl SetupError {
             Self::Points { file, source } | Self::Polygon { file, source } => {
                 format!("{file}: {source}")
             }
+            Self::Terrain { file, source } => format!("{file}: {source}"),
             Self::Region(source) => source.to_string(),
             Self::Time(source) => source.to_string(),
             Self::Mask(source) => source.to_string(),
@@ -218,7 +234,8 @@ impl Scenario {
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<(Setup, Vec<String>), SetupError> {
         let visibility = &self.visibility;
-        let (sites, map) = self.region(read)?;
+        let (mut sites, map) = self.region(read)?;
+        let terrain_note = self.stand_on_terrain(&mut sites, read)?;
         let setup = Setup::new(self.time_grid()?, sites)
             .with_map(map)
             .with_mask(Mask::from_degrees(visibility.mask_deg)?)
@@ -227,7 +244,8 @@ impl Scenario {
             Some(skyline) => setup.with_skyline(skyline),
             None => setup,
         };
-        let (systems, notes) = self.systems(setup.grid, read)?;
+        let (systems, mut notes) = self.systems(setup.grid, read)?;
+        notes.extend(terrain_note);
         let presets = &self.gnss.constellations;
         let setup = Setup {
             accuracy: self
@@ -267,12 +285,15 @@ impl Scenario {
             .region
             .file()
             .is_some_and(|of_region| of_region == file);
+        // A file that is both is told as that of the points.
+        let is_terrain = !is_region && self.terrain.terrain.as_deref() == Some(file);
         let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
         let named = self.constellations.iter();
         let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
-        if is_region {
+        if is_region || is_terrain {
             let key = match self.region {
+                _ if is_terrain => "terrain",
                 Region::Points { .. } => "points",
                 _ => "polygon",
             };
@@ -399,6 +420,33 @@ impl Scenario {
                 Ok((sites, RegionMap::default()))
             }
         }
+    }
+
+    /// Puts the points on the terrain, if there is one, and returns what there is to know about it.
+    fn stand_on_terrain(
+        &self,
+        sites: &mut [Site],
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Option<String>, SetupError> {
+        let Some(file) = &self.terrain.terrain else {
+            return Ok(None);
+        };
+        let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
+        let antenna_m = self.terrain.antenna_height_m.unwrap_or_default();
+        let error = |source| SetupError::Terrain {
+            file: file.clone(),
+            source,
+        };
+        let found = terrain(&bytes).map_err(error)?;
+        let carried = found.terrain.carry(sites, self.earth.surface, antenna_m);
+        let end_km = carried.map_err(|source| error(source.into()))?;
+        let end = end_km.map(|end_km| {
+            format!(
+                "it ends {end_km:.0} km from a point, where higher ground could still be in sight"
+            )
+        });
+        let notes: Vec<String> = found.note.into_iter().chain(end).collect();
+        Ok((!notes.is_empty()).then(|| format!("region.terrain: {file}: {}", notes.join("; "))))
     }
 
     /// The goals of the search.
