@@ -23,6 +23,7 @@ mod document;
 mod gnss_file;
 mod keys;
 mod number;
+mod places;
 mod problem;
 mod reader;
 mod rule;
