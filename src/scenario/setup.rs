@@ -5,8 +5,7 @@ use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::RegionKeys;
 use super::{
-    Algorithm, AreaSource, GnssSetup, Objectives, Region, RegionTerrain, Scenario, TimeSpan,
-    Visibility,
+    Algorithm, GnssSetup, Objectives, Region, RegionTerrain, Scenario, TimeSpan, Visibility,
 };
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
