@@ -234,8 +234,12 @@ impl fmt::Display for Country {
 fn nearest(wanted: &str) -> Vec<&'static str> {
     let names = ALL.iter().map(|entry| (entry.key.clone(), entry.name));
     let aliases = ALIASES.iter().map(|(alias, name)| (key(alias), *name));
+    let shared = SHARED
+        .iter()
+        .flat_map(|(name, both)| both.iter().map(|one| (key(name), *one)));
     let mut alike: Vec<(f64, &str)> = names
         .chain(aliases)
+        .chain(shared)
         .map(|(key, name)| (strsim::jaro_winkler(wanted, &key), name))
         .filter(|(similarity, _)| *similarity >= WORTH_SUGGESTING)
         .collect();

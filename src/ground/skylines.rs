@@ -167,7 +167,7 @@ mod tests {
         };
         assert_eq!(
             error("short.csv"),
-            "line 3: skyline: short.csv: there is a gap from azimuth 120 to 0 degrees; azimuths are at most 30 degrees apart, all around"
+            "line 3: skyline: short.csv: there is a gap from azimuth 150 to 0 degrees; azimuths are at most 30 degrees apart, all around"
         );
         assert_eq!(
             error("none.csv"),

@@ -213,7 +213,7 @@ impl Horizon {
             .map(|pair| (pair[0].0, pair[1].0))
             .chain([(last.0, first.0 + 360.0)]);
         if let Some((from_deg, to_deg)) = pairs.find(|(from, to)| to - from > MAX_GAP_DEG) {
-            let to_deg = if to_deg > 360.0 {
+            let to_deg = if to_deg >= 360.0 {
                 to_deg - 360.0
             } else {
                 to_deg
@@ -280,8 +280,8 @@ mod tests {
                 .map(|n| format!("{n},x,{}\r\n", 20 * n + 15))
                 .collect::<String>();
         let turned = MaskTable::from_csv(text.as_bytes()).unwrap();
-        assert_eq!(turned.vertices()[0], (0.0, 4.25));
-        assert_eq!(turned.vertices()[19], (360.0, 4.25));
+        assert_eq!(turned.vertices()[0], (0.0, 12.75));
+        assert_eq!(turned.vertices()[19], (360.0, 12.75));
         assert_eq!(turned.degrees_at(355.0), 17.0);
         // Below the horizon is the horizon.
         let low = MaskTable::from_csv(table(3, "90,-2.5").as_bytes()).unwrap();

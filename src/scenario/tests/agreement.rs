@@ -13,6 +13,8 @@ fn the_canonical_text_has_every_key_and_parses_back() {
     // What has no value unless it is given.
     let absent = [
         "points",
+        "terrain",
+        "antenna-height-m",
         "polygon",
         "country",
         "spacing-km",
