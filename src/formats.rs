@@ -14,6 +14,7 @@ pub mod outages;
 pub mod sem;
 pub mod sp3;
 pub mod stk;
+pub mod terrain;
 pub mod text;
 pub mod tle;
 pub mod trajectory;

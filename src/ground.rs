@@ -7,19 +7,25 @@ mod countries;
 mod map;
 mod points;
 pub(crate) mod shapes;
+mod skylines;
+mod terrain;
 
 pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
 pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
 pub use points::{ignored_columns, sites_from_csv};
+pub use skylines::with_inline_skylines;
+pub use terrain::{Terrain, TerrainError};
 
 use crate::earth::Surface;
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::keyword::keywords;
 use crate::units::{counted, wrap_360};
+use crate::visibility::{Mask, MaskTable};
 use area::FINEST_STEP_DEG;
 use cells::FINEST_SPACING_KM;
+use nalgebra::Vector3;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -75,7 +81,7 @@ pub enum GroundError {
     #[error("height {0} m is outside {least} to {most} m", least = HEIGHTS_M[0], most = HEIGHTS_M[1])]
     Height(f64),
     /// A weight that is not a positive number.
-    #[error("weight {0} is not a positive number")]
+    #[error("weight {0} is not a positive number; leave out a point that is not to count")]
     Weight(f64),
     /// A line of a point list that cannot be read.
     #[error("line {line}: {reason}")]
@@ -155,6 +161,8 @@ pub struct Site {
     pub weight: f64,
     /// Position and local axes, Earth-fixed.
     pub local: LocalFrame,
+    /// A mask by azimuth that every satellite must clear in addition; points with the same one may share it.
+    pub skyline: Option<Arc<MaskTable>>,
 }
 
 impl Site {
@@ -194,6 +202,7 @@ impl Site {
             height_m: 0.0,
             weight,
             local,
+            skyline: None,
         })
     }
 
@@ -210,6 +219,20 @@ impl Site {
             self.local.origin_km = self.local.origin_km + self.local.up * (height_m / 1000.0);
         }
         Ok(self)
+    }
+
+    /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the skyline of the point.
+    #[must_use]
+    pub fn line_of_sight(
+        &self,
+        mask: Mask,
+        target_km: Position<EarthFixed>,
+    ) -> Option<Vector3<f64>> {
+        let clears = |unit: &Vector3<f64>| {
+            let mut skyline = self.skyline.iter();
+            skyline.all(|skyline| skyline.clears(&self.local, *unit))
+        };
+        mask.line_of_sight(&self.local, target_km).filter(clears)
     }
 }
 

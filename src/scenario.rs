@@ -24,6 +24,7 @@ mod gnss_file;
 mod keys;
 mod number;
 mod outage_files;
+mod places;
 mod problem;
 mod reader;
 mod rule;
@@ -54,8 +55,8 @@ pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
     AreaSource, ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
-    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, Reliability,
-    SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
+    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, RegionTerrain,
+    Reliability, SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;

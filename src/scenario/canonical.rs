@@ -9,7 +9,7 @@ use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::{Rule, parts_without_paths};
 use super::values::{
     AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys,
-    SatelliteOutages, Scenario,
+    RegionTerrain, SatelliteOutages, Scenario,
 };
 use crate::constellation::Design;
 
@@ -40,8 +40,8 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: that of the region, the GNSS files in their
-    /// order, those of outages, then those of each constellation, the one that is fixed in the search before the others.
+    /// The paths of the files that the scenario refers to, as written: that of the region, the terrain, the GNSS files in
+    /// their order, those of outages, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
         let (fixed, compared) = self
@@ -52,6 +52,7 @@ impl Scenario {
         self.region
             .file()
             .into_iter()
+            .chain(&self.terrain.terrain)
             .chain(&self.gnss.files)
             .chain(&self.outages.file)
             .chain(named.into_iter().flatten().flat_map(|one| &one.parts.files))
@@ -89,6 +90,7 @@ impl Scenario {
             .region
             .file_mut()
             .into_iter()
+            .chain(&mut scenario.terrain.terrain)
             .chain(&mut scenario.gnss.files)
             .chain(&mut scenario.outages.file)
             .chain(constellations.flat_map(|one| &mut one.parts.files));
@@ -189,6 +191,7 @@ fn is_computed(path: KeyPath) -> bool {
         key!(Scenario.constellations),
         key!(RegionKeys.points),
         key!(RegionKeys.polygon),
+        key!(RegionTerrain.terrain),
         key!(GnssSetup.files),
         key!(SatelliteOutages.file),
         key!(Optimizer.generations),

@@ -126,8 +126,8 @@ impl<'a> Scene<'a> {
             setup.mask.degrees(),
             self.title_key(),
             setup.gnss_mask.degrees(),
-            if setup.skyline.is_some() {
-                ", and a mask by azimuth (visibility.mask-table)"
+            if setup.has_skylines() {
+                ", and the skylines of points (visibility.mask-table, region.terrain, or of sites)"
             } else {
                 ""
             }

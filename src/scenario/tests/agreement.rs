@@ -13,6 +13,8 @@ fn the_canonical_text_has_every_key_and_parses_back() {
     // What has no value unless it is given.
     let absent = [
         "points",
+        "terrain",
+        "antenna-height-m",
         "polygon",
         "country",
         "spacing-km",
@@ -154,19 +156,23 @@ fn the_hash_moves_with_everything_that_is_computed() {
         hashes.push(with(&[&RANGE_ERRORS[..], &[error]].concat()).hash(&[]));
     }
     hashes.extend(hashes_of_times());
+    // The antenna needs a terrain.
+    let antenna = ["region.terrain=t.asc", "region.antenna-height-m=3"];
+    hashes.push(with(&antenna).hash(&[]));
     hashes.push(with(&RANGE_ERRORS).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files, outages.file;
+    // name, constellations and the keys of [export]; region.points, region.polygon, region.terrain, gnss.files, outages.file;
     // optimizer.generations
-    let (labels, files, budgets) = (6, 4, 1);
+    let (labels, files, budgets) = (6, 5, 1);
+    let with_conditions = errors.len() + TIMES.len() + antenna[1..].len();
     assert_eq!(
-        changes.len() + errors.len() + TIMES.len() + labels + files + budgets,
+        changes.len() + with_conditions + labels + files + budgets,
         describe_keys().len()
     );
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), changes.len() + errors.len() + TIMES.len() + 2);
+    assert_eq!(hashes.len(), changes.len() + with_conditions + 2);
 }
 
 #[test]
