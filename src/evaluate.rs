@@ -8,6 +8,7 @@ mod accuracy;
 mod counts;
 mod dops;
 mod fixed;
+mod gain;
 mod kernel;
 mod leo;
 mod metrics;
@@ -21,6 +22,7 @@ mod window;
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
+pub use gain::Gain;
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
@@ -287,6 +289,8 @@ pub struct Evaluator {
     kernel: Option<Kernel>,
     /// For the plain path, created on first use.
     fixed: OnceLock<FixedGeometry>,
+    /// The metrics of the GNSS alone, created on first use.
+    gnss_only: OnceLock<Metrics>,
 }
 
 impl Evaluator {
@@ -324,13 +328,13 @@ impl Evaluator {
             )
         };
         let kernel = setup.suits_kernel().then(new).transpose()?;
-        let fixed = OnceLock::new();
         Ok(Self {
             setup,
             rotations,
             weights,
             kernel,
-            fixed,
+            fixed: OnceLock::new(),
+            gnss_only: OnceLock::new(),
         })
     }
 

@@ -13,6 +13,7 @@ mod evaluated;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;
+mod labels;
 #[cfg(feature = "figures")]
 pub mod page;
 pub(crate) mod phases;
@@ -27,13 +28,14 @@ pub(crate) mod validation;
 
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
-pub use comparison_columns::{ComparisonColumn, comparison_columns};
+pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_quantities};
 pub use csv::{ConstellationColumns, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use labels::quantity_label;
 pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,

@@ -154,7 +154,7 @@ impl<'a> DesignProblem<'a> {
             let own = Ephemeris::of_design(&design, setup.model, setup.grid).ok()?;
             self.evaluator.evaluate_ephemeris(&self.fixed.join_to(own))
         };
-        Some((design, metrics.ok()?))
+        Some((design, self.with_gain(metrics.ok()?).ok()?))
     }
 
     /// The value of a quantity for a design that was evaluated with what is fixed.
@@ -179,11 +179,16 @@ impl<'a> DesignProblem<'a> {
         )
     }
 
+    /// Metrics with the gain over the GNSS alone, which is the same in the whole search.
+    fn with_gain(&self, metrics: Metrics) -> Result<Metrics, EphemerisError> {
+        self.evaluator.with_gain(metrics)
+    }
+
     /// The metrics of a design, which need not be in the space, and their evaluation for an
     /// optimiser; `None` if it cannot be propagated.
     #[must_use]
     pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
-        let metrics = self.evaluator.evaluate(design).ok()?;
+        let metrics = self.with_gain(self.evaluator.evaluate(design).ok()?).ok()?;
         let satellites = (design.satellite_count(), Some(design));
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Some((metrics, evaluation))
@@ -199,7 +204,7 @@ impl<'a> DesignProblem<'a> {
         ephemeris: &Ephemeris,
         design: Option<&Design>,
     ) -> Result<(Metrics, Evaluation), EphemerisError> {
-        let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;
+        let metrics = self.with_gain(self.evaluator.evaluate_ephemeris(ephemeris)?)?;
         let satellites = (ephemeris.satellites().len(), design);
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Ok((metrics, evaluation))

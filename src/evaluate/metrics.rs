@@ -3,6 +3,7 @@
 use super::DopStatistics;
 use super::accuracy::{AccuracyMetrics, SigmaSpread};
 use super::counts::{Coverage, LongestOutage, Views};
+use super::gain::Gain;
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
@@ -83,9 +84,15 @@ pub struct Metrics {
     pub p95_hdop: Option<f64>,
     /// 95 % quantile of VDOP, where it is asked for.
     pub p95_vdop: Option<f64>,
+    /// Gain over the GNSS alone, where it is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gain>,
     /// PDOP of all observations in a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub information_pdop: Option<InformationPdop>,
+    /// Fraction of samples that have an accuracy in metres: solved, and not singular with the weights of the range errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy_solved_fraction: Option<f64>,
     /// Standard deviation of the position, metres.
     #[serde(
         default,
@@ -199,7 +206,9 @@ impl Metrics {
             longest_outage_cut: longest_outage.is_cut,
             p95_hdop: None,
             p95_vdop: None,
+            gain: None,
             information_pdop: None,
+            accuracy_solved_fraction: None,
             sigma_3d_m: None,
             sigma_h_m: None,
             sigma_v_m: None,
@@ -217,6 +226,7 @@ impl Metrics {
     ) -> Self {
         Self {
             information_pdop,
+            accuracy_solved_fraction: accuracy.map(|of| of.solved_fraction),
             sigma_3d_m: accuracy.map(|of| of.sigma_3d_m),
             sigma_h_m: accuracy.map(|of| of.sigma_h_m),
             sigma_v_m: accuracy.map(|of| of.sigma_v_m),

@@ -41,6 +41,8 @@ pub(crate) fn no_metrics() -> Metrics {
         p95_hdop: None,
         p95_vdop: None,
         information_pdop: None,
+        accuracy_solved_fraction: None,
+        gain: None,
         sigma_3d_m: None,
         sigma_h_m: None,
         sigma_v_m: None,

@@ -11,6 +11,7 @@ mod map;
 mod table;
 
 pub use super::Baseline;
+pub use super::labels::quantity_label;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
 pub use front::{NamedFront, pareto};
@@ -22,7 +23,7 @@ pub(in crate::report) use map::at_point;
 
 use crate::ground::RegionMap;
 use crate::keyword::keywords;
-use crate::scenario::{Keyword, Quantity};
+use crate::scenario::Keyword;
 use thiserror::Error;
 
 keywords! {
@@ -73,52 +74,6 @@ impl Measure {
             Self::Availability => "availability (fraction of the time)",
             Self::Pdop => "PDOP",
         }
-    }
-}
-
-/// The label of a quantity's axis.
-#[must_use]
-pub fn quantity_label(name: &str) -> String {
-    let Ok(quantity) = Quantity::from_keyword(name) else {
-        return name.to_owned();
-    };
-    let label = match quantity {
-        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR of PDOP",
-        Quantity::JCost => "J_cost = satellites / mean visible",
-        Quantity::MeanPdop => "mean PDOP",
-        Quantity::CvarPdop => "CVaR of PDOP",
-        Quantity::P95Pdop => "95 % quantile of PDOP",
-        Quantity::P99Pdop => "99 % quantile of PDOP",
-        Quantity::MaxPdop => "maximum PDOP",
-        Quantity::Satellites => "satellites",
-        Quantity::Planes => "planes",
-        Quantity::NewSatellites => "new satellites",
-        Quantity::NewPlanes => "new planes",
-        Quantity::MeanVisible => "mean visible LEO satellites",
-        Quantity::Availability => "availability",
-        Quantity::InformationPdop => "mean PDOP of a window",
-        Quantity::Sigma3dM => "1-sigma position error (m)",
-        Quantity::SigmaHM => "1-sigma horizontal error (m)",
-        Quantity::SigmaVM => "1-sigma height error (m)",
-        Quantity::Error953dM => "95 % position error (m)",
-        Quantity::Error95HM => "95 % horizontal error (m)",
-        Quantity::Error95VM => "95 % height error (m)",
-        Quantity::LaunchCost => "launch cost (satellites)",
-        Quantity::LeastVisible => "least number of visible LEO satellites",
-        Quantity::MeanTotalVisible => "mean visible satellites, LEO and GNSS",
-        Quantity::LongestOutageS => "longest outage (s)",
-        Quantity::P95Hdop => "95 % quantile of HDOP",
-        Quantity::P95Vdop => "95 % quantile of VDOP",
-        coverage => return coverage_label(coverage),
-    };
-    label.to_owned()
-}
-
-fn coverage_label(quantity: Quantity) -> String {
-    match quantity.coverage_levels() {
-        Some((least, true)) => format!("fraction with at least {least} satellites, LEO and GNSS"),
-        Some((least, false)) => format!("fraction with at least {least} LEO satellites"),
-        None => quantity.to_string(),
     }
 }
 

@@ -24,6 +24,7 @@ pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
         | Quantity::NewPlanes
         | Quantity::LeastVisible
         | Quantity::LongestOutageS => decimals(value, 0),
+        Quantity::GainLongestOutageS => decimals(value, 0),
         coverage if coverage.coverage_levels().is_some() => share(value),
         Quantity::Availability => share(value),
         Quantity::LaunchCost => value.map_or_else(|| NONE.to_owned(), significant),

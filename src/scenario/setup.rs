@@ -247,7 +247,7 @@ impl Scenario {
         let constraints = self.objectives.constraints.iter();
         let bounded = constraints.map(|constraint| constraint.quantity);
         let mut goals = self.objectives.minimize.iter().copied().chain(bounded);
-        goals.any(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop))
+        goals.any(Quantity::is_of_dops)
     }
 
     /// The error of a file, among [`Scenario::files`], that cannot be read.

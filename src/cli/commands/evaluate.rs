@@ -36,12 +36,14 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
+    let goals = study.scenario.goals();
+    let gnss_only = gnss_only(args, &goals, &evaluator)?;
     let mut work = EvaluationContext {
         args,
         scenario: &study.scenario,
         stamp: study.stamp()?,
-        goals: study.scenario.goals(),
-        gnss_only: gnss_only(args, &study.scenario.goals(), &evaluator)?,
+        goals,
+        gnss_only,
         evaluator: &evaluator,
     };
     let mut entries = Vec::new();
@@ -122,7 +124,9 @@ struct EvaluationContext<'a> {
 impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
+        let alone = self.gnss_only.as_ref().map(|of| of.metrics);
         let (metrics, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
+        let metrics = alone.map_or(metrics, |alone| metrics.with_gain_over(&alone));
         Ok(ConstellationEntry::new(one, metrics, dops, &self.goals))
     }
 }
@@ -153,5 +157,6 @@ fn gnss_only(
     }
     let none = Ephemeris::new(setup.grid, Vec::new());
     let (metrics, dops) = evaluated(args, evaluator, &none)?;
+    let metrics = metrics.with_gain_over(&metrics);
     Ok(Some(Assessment::new((0, None), metrics, dops, goals)))
 }
