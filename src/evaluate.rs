@@ -20,14 +20,17 @@ mod weights;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
-pub use counts::{COVERAGE_LEVELS, Coverage};
+pub use counts::{
+    COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage, HistogramRow,
+    ViewHistograms,
+};
 pub use dops::{ClockDop, DopStatistics};
 pub use gain::Gain;
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
-pub use series::{EpochMetrics, PointMetrics, Series};
+pub use series::{EpochMetrics, Outage, PointMetrics, Series};
 pub use window::InformationPdop;
 
 use crate::constellation::Design;
@@ -39,6 +42,7 @@ use crate::ground::{RegionMap, Site};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
+use counts::Views;
 use fixed::FixedGeometry;
 use kernel::Kernel;
 use metrics::Evaluated;
@@ -290,7 +294,9 @@ pub struct Evaluator {
     /// For the plain path, created on first use.
     fixed: OnceLock<FixedGeometry>,
     /// The metrics of the GNSS alone, created on first use.
-    gnss_only: OnceLock<Metrics>,
+    gnss_only: OnceLock<(Metrics, Views)>,
+    /// The series of the GNSS alone, created on first use.
+    gnss_series: OnceLock<Series>,
 }
 
 impl Evaluator {
@@ -335,6 +341,7 @@ impl Evaluator {
             kernel,
             fixed: OnceLock::new(),
             gnss_only: OnceLock::new(),
+            gnss_series: OnceLock::new(),
         })
     }
 
@@ -358,7 +365,8 @@ impl Evaluator {
     /// If the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
-        self.counted(&ephemeris)
+        let (metrics, rechecks, _) = self.counted(&ephemeris)?;
+        Ok((metrics, rechecks))
     }
 
     /// The metrics of some satellites, on the grid of the setup.
@@ -369,19 +377,37 @@ impl Evaluator {
         Ok(self.counted(ephemeris)?.0)
     }
 
-    fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let (metrics, rechecks) = match self.kernel_for(ephemeris) {
-            Some(kernel) => {
-                let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
-                (self.metrics(&evaluated, ephemeris)?, rechecks)
-            }
-            None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
+    /// The metrics of some satellites, and the histograms of the satellites in view.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn evaluate_views(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<(Metrics, ViewHistograms), EphemerisError> {
+        let (metrics, _, [leo, all]) = self.counted(ephemeris)?;
+        let gnss = match self.gnss_alone()? {
+            Some((_, gnss)) => gnss,
+            None => &Views::of(vec![1]),
         };
-        if !self.setup.metrics.asks_for_hdop {
-            return Ok((metrics, rechecks));
+        Ok((metrics, ViewHistograms::new(&leo, gnss, &all)))
+    }
+
+    /// The metrics, the samples that were recomputed, and the views of LEO and of all satellites.
+    fn counted(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<(Metrics, Rechecks, [Views; 2]), EphemerisError> {
+        let (evaluated, rechecks) = match self.kernel_for(ephemeris) {
+            Some(kernel) => kernel.evaluate(ephemeris)?,
+            None => (plain::evaluate(self, ephemeris)?, Rechecks::default()),
+        };
+        let mut metrics = self.metrics(&evaluated, ephemeris)?;
+        if self.setup.metrics.asks_for_hdop {
+            let dops = self.dops_beside(&metrics, ephemeris)?;
+            metrics = metrics.with_dops(&dops);
         }
-        let dops = self.dops_beside(&metrics, ephemeris)?;
-        Ok((metrics.with_dops(&dops), rechecks))
+        Ok((metrics, rechecks, [evaluated.leo, evaluated.all]))
     }
 
     /// The fast path, where it suits the satellites: its lanes have one LEO clock.

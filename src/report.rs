@@ -29,7 +29,7 @@ pub(crate) mod validation;
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
 pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_quantities};
-pub use csv::{ConstellationColumns, records_csv};
+pub use csv::{ConstellationColumns, outages_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,

@@ -8,6 +8,38 @@ use std::collections::BTreeMap;
 /// Numbers of satellites, from 1, of which a [`Coverage`] has the share.
 pub const COVERAGE_LEVELS: usize = 12;
 
+/// The columns of a coverage by LEO satellites in tables.
+pub const COVERAGE_COLUMNS: [&str; COVERAGE_LEVELS] = [
+    "coverage_1",
+    "coverage_2",
+    "coverage_3",
+    "coverage_4",
+    "coverage_5",
+    "coverage_6",
+    "coverage_7",
+    "coverage_8",
+    "coverage_9",
+    "coverage_10",
+    "coverage_11",
+    "coverage_12",
+];
+
+/// The columns of a coverage by LEO and GNSS satellites in tables.
+pub const COVERAGE_TOTAL_COLUMNS: [&str; COVERAGE_LEVELS] = [
+    "coverage_total_1",
+    "coverage_total_2",
+    "coverage_total_3",
+    "coverage_total_4",
+    "coverage_total_5",
+    "coverage_total_6",
+    "coverage_total_7",
+    "coverage_total_8",
+    "coverage_total_9",
+    "coverage_total_10",
+    "coverage_total_11",
+    "coverage_total_12",
+];
+
 /// The fraction of the samples, weighted by point, with at least 1, 2, … 12 satellites in view.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Coverage([f64; COVERAGE_LEVELS]);
@@ -23,6 +55,65 @@ impl Coverage {
     #[must_use]
     pub fn shares(&self) -> [f64; COVERAGE_LEVELS] {
         self.0
+    }
+
+    /// From the weight of the samples with 0, 1, … 11, and with 12 or more satellites, and of all.
+    pub(super) fn of_bins(bins: &[f64; COVERAGE_LEVELS + 1], total: f64) -> Self {
+        let mut coverage = Self::default();
+        let mut at_least = 0.0;
+        for (share, weight) in coverage.0.iter_mut().zip(&bins[1..]).rev() {
+            at_least += weight;
+            *share = at_least / total;
+        }
+        coverage
+    }
+}
+
+/// The fraction of the samples, weighted by point, with exactly 0, 1, 2, … satellites in view, up to the greatest number.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ViewHistograms {
+    /// LEO satellites.
+    pub leo: Vec<f64>,
+    /// GNSS satellites.
+    pub gnss: Vec<f64>,
+    /// LEO and GNSS satellites.
+    pub all: Vec<f64>,
+}
+
+/// A row of the table of the histograms.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct HistogramRow {
+    /// Number of satellites in view.
+    pub satellites: usize,
+    /// Fraction of the samples with as many LEO satellites.
+    pub leo: f64,
+    /// Fraction of the samples with as many GNSS satellites.
+    pub gnss: f64,
+    /// Fraction of the samples with as many satellites, LEO and GNSS.
+    pub all: f64,
+}
+
+impl ViewHistograms {
+    pub(super) fn new(leo: &Views, gnss: &Views, all: &Views) -> Self {
+        Self {
+            leo: leo.shares(),
+            gnss: gnss.shares(),
+            all: all.shares(),
+        }
+    }
+
+    /// The histograms side by side, from 0 satellites to the greatest number of any.
+    #[must_use]
+    pub fn rows(&self) -> Vec<HistogramRow> {
+        let length = self.leo.len().max(self.gnss.len()).max(self.all.len());
+        let share = |of: &[f64], n: usize| of.get(n).copied().unwrap_or(0.0);
+        let row = |n| HistogramRow {
+            satellites: n,
+            leo: share(&self.leo, n),
+            gnss: share(&self.gnss, n),
+            all: share(&self.all, n),
+        };
+        (0..length).map(row).collect()
     }
 }
 
@@ -89,6 +180,14 @@ impl Views {
     /// How many more there are in the mean than in `part`, which is of the same samples.
     pub(super) fn mean_beyond(&self, part: &Self) -> f64 {
         (self.sum() - part.sum()) as f64 / self.total() as f64
+    }
+
+    /// The share of each number, up to the greatest.
+    fn shares(&self) -> Vec<f64> {
+        let total = self.total() as f64;
+        let end = self.0.iter().rposition(|weight| *weight > 0);
+        let bins = &self.0[..end.map_or(0, |last| last + 1)];
+        bins.iter().map(|&weight| weight as f64 / total).collect()
     }
 
     /// Least number, whatever the weight of the point.
@@ -174,6 +273,13 @@ impl Outages {
     }
 }
 
+/// One outage: samples in a row, from its first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OutageRun {
+    pub(super) first: u32,
+    pub(super) samples: u32,
+}
+
 /// The longest outage of any point, in samples, and whether an end of the span cuts it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct LongestOutage {
@@ -225,6 +331,25 @@ mod tests {
             (seen.least(), seen.coverage().of(4), seen.coverage().of(5)),
             (4, Some(1.0), Some(0.0))
         );
+    }
+
+    /// By hand: 1, 2 and 5 of 8 samples see 0, 3 and 14 satellites.
+    #[test]
+    fn validate_histograms_and_bins_by_hand() {
+        let mut views = Views::new(20);
+        let mut bins = [0.0; COVERAGE_LEVELS + 1];
+        for (visible, weight) in [(3_u32, 2), (0, 1), (14, 5)] {
+            views.add(visible, weight);
+            bins[(visible as usize).min(COVERAGE_LEVELS)] += weight as f64;
+        }
+        assert_eq!(Coverage::of_bins(&bins, 8.0), views.coverage());
+        let none = Views::of(vec![8]);
+        let histograms = ViewHistograms::new(&views, &none, &views);
+        assert_eq!(histograms.leo.len(), 15);
+        assert_eq!((histograms.leo[3], histograms.leo[14]), (0.25, 0.625));
+        assert_eq!(histograms.gnss, [1.0]);
+        let rows = histograms.rows();
+        assert_eq!((rows.len(), rows[14].all, rows[14].gnss), (15, 0.625, 0.0));
     }
 
     #[test]

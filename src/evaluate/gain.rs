@@ -1,7 +1,8 @@
-//! What LEO satellites add to the GNSS ([M-53](crate::models#m-53)).
+//! What LEO satellites add to the GNSS ([M-30](crate::models#m-30)).
 
+use super::counts::Views;
 use super::on_demand::{self, OnDemand};
-use super::{Evaluator, Metrics, SigmaSpread};
+use super::{Evaluator, Metrics, Series, SigmaSpread};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use serde::{Deserialize, Serialize};
 
@@ -172,16 +173,36 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn gnss_only(&self) -> Result<Option<&Metrics>, EphemerisError> {
+        Ok(self.gnss_alone()?.map(|(metrics, _)| metrics))
+    }
+
+    /// The same with the GNSS satellites in view.
+    pub(super) fn gnss_alone(&self) -> Result<Option<&(Metrics, Views)>, EphemerisError> {
         if self.setup().gnss.is_empty() {
             return Ok(None);
         }
         if let Some(known) = self.gnss_only.get() {
             return Ok(Some(known));
         }
-        let none = Ephemeris::new(self.setup().grid, Vec::new());
-        let metrics = self.evaluate_ephemeris(&none)?;
+        let (metrics, _, [_, views]) = self.counted(&self.no_satellites())?;
         let metrics = metrics.with_gain_over(&metrics);
-        Ok(Some(self.gnss_only.get_or_init(|| metrics)))
+        Ok(Some(self.gnss_only.get_or_init(|| (metrics, views))))
+    }
+
+    /// The series of the GNSS alone; `None` without GNSS.
+    pub(super) fn gnss_series(&self) -> Result<Option<&Series>, EphemerisError> {
+        if self.setup().gnss.is_empty() {
+            return Ok(None);
+        }
+        if let Some(known) = self.gnss_series.get() {
+            return Ok(Some(known));
+        }
+        let series = self.cuts(&self.no_satellites())?.without_samples();
+        Ok(Some(self.gnss_series.get_or_init(|| series)))
+    }
+
+    fn no_satellites(&self) -> Ephemeris {
+        Ephemeris::new(self.setup().grid, Vec::new())
     }
 
     /// Metrics of this evaluator with their gain over the GNSS alone; without GNSS as they are.

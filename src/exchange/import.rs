@@ -13,7 +13,7 @@ mod objects;
 mod propagation;
 mod sampling;
 
-pub use merged::MergedFiles;
+pub use merged::{Merged, MergedFiles};
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
 pub use sampling::SamplingNote;

@@ -2,7 +2,7 @@
 
 use super::PhaseSpread;
 use crate::constellation::Design;
-use crate::evaluate::{DopStatistics, Metrics};
+use crate::evaluate::{DopStatistics, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, Goals, Quantity};
@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 pub struct Assessment {
     /// The metrics.
     pub metrics: Metrics,
+    /// The satellites in view over all samples.
+    #[serde(rename = "visible_histogram")]
+    pub histograms: ViewHistograms,
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
@@ -58,7 +61,7 @@ impl Assessment {
     #[must_use]
     pub fn new(
         (satellites, design): (usize, Option<&Design>),
-        metrics: Metrics,
+        (metrics, histograms): (Metrics, ViewHistograms),
         dops: Option<DopStatistics>,
         goals: &Goals,
     ) -> Self {
@@ -80,6 +83,7 @@ impl Assessment {
         let quantities = quantities.map(|one| (one, value(one))).collect();
         Self {
             metrics,
+            histograms,
             dops,
             gnss_phases: None,
             constraints,
@@ -172,7 +176,7 @@ impl ConstellationEntry {
     #[must_use]
     pub fn new(
         constellation: &Constellation,
-        metrics: Metrics,
+        metrics: (Metrics, ViewHistograms),
         dops: Option<DopStatistics>,
         goals: &Goals,
     ) -> Self {
@@ -279,7 +283,12 @@ mod tests {
         let design: Design = "delta:55:30/5/1@925".parse().unwrap();
         let metrics = testing::member(1, "delta:55:30/5/1@925").metrics;
         let verdicts = |design: Option<&Design>| {
-            let evaluated = Assessment::new((30, design), metrics, None, &goals());
+            let evaluated = Assessment::new(
+                (30, design),
+                (metrics, ViewHistograms::default()),
+                None,
+                &goals(),
+            );
             let checks = evaluated.constraints.iter();
             checks.map(ConstraintCheck::verdict).collect::<Vec<_>>()
         };

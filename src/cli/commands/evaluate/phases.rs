@@ -41,7 +41,7 @@ impl GnssPhases {
             let gnss_only = evaluated(work.args, &evaluator, &none)?.0;
             alone.push(gnss_only.with_gain_over(&gnss_only));
             for (found, ephemeris) in found.iter_mut().zip(ephemerides) {
-                let (metrics, _) = evaluated(work.args, &evaluator, ephemeris)?;
+                let metrics = evaluated(work.args, &evaluator, ephemeris)?.0;
                 found.push(metrics.with_gain_over(&gnss_only));
             }
         }
