@@ -14,11 +14,11 @@ use crate::cli::study::Study;
 use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics, ViewHistograms};
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::report::{Assessment, ConstellationEntry};
 use crate::run::ScenarioStamp;
 use crate::scenario::Scenario;
-use crate::search::Goals;
+use crate::search::{CountedSatellites, Goals};
 use anyhow::{Result, bail};
 use designs::DesignList;
 use given_run::GivenRun;
@@ -36,7 +36,8 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
-    let goals = study.scenario.goals();
+    let fixed = study.fixed()?;
+    let goals = study.goals(fixed.as_ref());
     let gnss_only = gnss_only(args, &goals, &evaluator)?;
     let mut work = EvaluationContext {
         args,
@@ -44,6 +45,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
         stamp: study.stamp()?,
         goals,
         gnss_only,
+        fixed: fixed.and_then(|fixed| fixed.files),
         evaluator: &evaluator,
     };
     let mut entries = Vec::new();
@@ -117,6 +119,8 @@ struct EvaluationContext<'a> {
     stamp: ScenarioStamp,
     evaluator: &'a Evaluator,
     goals: Goals,
+    /// Satellites from files that are fixed in the search of the scenario, so that they are not new.
+    fixed: Option<FileSatellites>,
     /// The GNSS without LEO satellites; `None` without GNSS.
     gnss_only: Option<Assessment>,
 }
@@ -127,12 +131,8 @@ impl EvaluationContext<'_> {
         let alone = self.gnss_only.as_ref().map(|of| of.metrics);
         let (metrics, views, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
         let metrics = alone.map_or(metrics, |alone| metrics.with_gain_over(&alone));
-        Ok(ConstellationEntry::new(
-            one,
-            (metrics, views),
-            dops,
-            &self.goals,
-        ))
+        let goals = (&self.goals, self.fixed.as_ref());
+        Ok(ConstellationEntry::new(one, (metrics, views), dops, goals))
     }
 }
 
@@ -164,7 +164,7 @@ fn gnss_only(
     let (metrics, views, dops) = evaluated(args, evaluator, &none)?;
     let metrics = metrics.with_gain_over(&metrics);
     Ok(Some(Assessment::new(
-        (0, None),
+        CountedSatellites::default(),
         (metrics, views),
         dops,
         goals,
