@@ -36,7 +36,7 @@ keywords! {
     LeoClocks {
         /// All of a constellation.
         Shared = "shared",
-        /// Those of each shell, and those from files.
+        /// Those of each shell, and those of each file.
         PerPart = "per-part",
     }
 }

@@ -195,7 +195,7 @@ impl Ephemeris {
         places.filter(|place| !is_inside[*place]).collect()
     }
 
-    /// The part of the constellation to which each satellite belongs, from 0: its shell, or the satellites from files.
+    /// The part of the constellation to which each satellite belongs, from 0: its shell, or its file.
     #[must_use]
     pub fn parts(&self) -> &[usize] {
         &self.parts

@@ -9,6 +9,8 @@ mod counts;
 mod dops;
 mod failures;
 mod fixed;
+mod gain;
+mod histograms;
 mod kernel;
 mod leo;
 mod metrics;
@@ -21,14 +23,18 @@ mod weights;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
-pub use counts::{COVERAGE_LEVELS, Coverage};
+pub use counts::{
+    COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage,
+};
 pub use dops::{ClockDop, DopStatistics};
 pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
+pub use gain::Gain;
+pub use histograms::{HistogramRow, ViewHistograms};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
-pub use series::{EpochMetrics, PointMetrics, Series};
+pub use series::{EpochMetrics, Outage, PointMetrics, Series};
 pub use window::InformationPdop;
 
 use crate::constellation::Design;
@@ -41,6 +47,7 @@ use crate::ground::{RegionMap, Site};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
+use histograms::ViewBins;
 use fixed::FixedGeometry;
 use kernel::Kernel;
 use metrics::Evaluated;
@@ -296,6 +303,10 @@ pub struct Evaluator {
     kernel: Option<Kernel>,
     /// For the plain path, created on first use, by one thread while others wait.
     fixed: OnceLock<Result<FixedGeometry, EphemerisError>>,
+    /// The metrics of the GNSS alone, created on first use.
+    gnss_only: OnceLock<(Metrics, ViewBins)>,
+    /// The series of the GNSS alone, created on first use.
+    gnss_series: OnceLock<Series>,
 }
 
 impl Evaluator {
@@ -333,13 +344,14 @@ impl Evaluator {
             )
         };
         let kernel = setup.suits_kernel().then(new).transpose()?;
-        let fixed = OnceLock::new();
         Ok(Self {
             setup,
             rotations,
             weights,
             kernel,
-            fixed,
+            fixed: OnceLock::new(),
+            gnss_only: OnceLock::new(),
+            gnss_series: OnceLock::new(),
         })
     }
 
@@ -363,7 +375,8 @@ impl Evaluator {
     /// If the model cannot propagate a satellite of the design.
     pub fn evaluate_counted(&self, design: &Design) -> Result<(Metrics, Rechecks), EphemerisError> {
         let ephemeris = Ephemeris::of_design(design, self.setup.model, self.setup.grid)?;
-        self.counted(&ephemeris)
+        let (metrics, rechecks, _) = self.counted(&ephemeris, false)?;
+        Ok((metrics, rechecks))
     }
 
     /// The metrics of some satellites, on the grid of the setup.
@@ -371,23 +384,43 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn evaluate_ephemeris(&self, ephemeris: &Ephemeris) -> Result<Metrics, EphemerisError> {
-        Ok(self.counted(ephemeris)?.0)
+        Ok(self.counted(ephemeris, false)?.0)
     }
 
-    fn counted(&self, ephemeris: &Ephemeris) -> Result<(Metrics, Rechecks), EphemerisError> {
-        let (metrics, rechecks) = match self.kernel_for(ephemeris) {
-            Some(kernel) => {
-                let (evaluated, rechecks) = kernel.evaluate(ephemeris)?;
-                (self.metrics(&evaluated, ephemeris)?, rechecks)
-            }
-            None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
+    /// The metrics of some satellites, and the histograms of the satellites in view.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn evaluate_views(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<(Metrics, ViewHistograms), EphemerisError> {
+        let (metrics, _, bins) = self.counted(ephemeris, true)?;
+        let [leo, all] = bins.unwrap_or_default();
+        let gnss = match self.gnss_alone()? {
+            Some((_, gnss)) => gnss,
+            None => &ViewBins::of_none(),
         };
-        let metrics = self.with_failures(metrics, ephemeris)?;
-        if !self.setup.metrics.asks_for_hdop {
-            return Ok((metrics, rechecks));
+        Ok((metrics, ViewHistograms::new(&leo, gnss, &all)))
+    }
+
+    /// The metrics, the samples that were recomputed, and where asked for the satellites in view, LEO and all.
+    fn counted(
+        &self,
+        ephemeris: &Ephemeris,
+        histograms: bool,
+    ) -> Result<(Metrics, Rechecks, Option<[ViewBins; 2]>), EphemerisError> {
+        let (evaluated, rechecks) = match self.kernel_for(ephemeris) {
+            Some(kernel) => kernel.evaluate(ephemeris, histograms)?,
+            None => (plain::evaluate(self, ephemeris)?, Rechecks::default()),
+        };
+        let mut metrics = self.metrics(&evaluated, ephemeris)?;
+        metrics = self.with_failures(metrics, ephemeris)?;
+        if self.setup.metrics.asks_for_hdop {
+            let dops = self.dops_beside(&metrics, ephemeris)?;
+            metrics = metrics.with_dops(&dops);
         }
-        let dops = self.dops_beside(&metrics, ephemeris)?;
-        Ok((metrics.with_dops(&dops), rechecks))
+        Ok((metrics, rechecks, evaluated.bins))
     }
 
     /// The fast path, where it suits the satellites: its lanes have one LEO clock.

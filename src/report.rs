@@ -14,6 +14,7 @@ pub mod failures;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;
+mod labels;
 #[cfg(feature = "figures")]
 pub mod page;
 pub(crate) mod phases;
@@ -28,13 +29,14 @@ pub(crate) mod validation;
 
 pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
-pub use comparison_columns::{ComparisonColumn, comparison_columns};
-pub use csv::{ConstellationColumns, records_csv};
+pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_quantities};
+pub use csv::{ConstellationColumns, outages_csv, records_csv};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use labels::quantity_label;
 pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,

@@ -137,7 +137,7 @@ impl<'a> DesignProblem<'a> {
                 self.evaluator.evaluate_ephemeris(&all)
             }
         };
-        Some((design, metrics.ok()?))
+        Some((design, self.with_gain(metrics.ok()?).ok()?))
     }
 
     /// The satellites of a design and those that are fixed beside it; `None` if there are none.
@@ -183,11 +183,16 @@ impl<'a> DesignProblem<'a> {
         )
     }
 
+    /// Metrics with the gain over the GNSS alone, which is the same in the whole search.
+    fn with_gain(&self, metrics: Metrics) -> Result<Metrics, EphemerisError> {
+        self.evaluator.with_gain(metrics)
+    }
+
     /// The metrics of a design, which need not be in the space, and their evaluation for an
     /// optimiser; `None` if it cannot be propagated.
     #[must_use]
     pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
-        let metrics = self.evaluator.evaluate(design).ok()?;
+        let metrics = self.with_gain(self.evaluator.evaluate(design).ok()?).ok()?;
         let satellites = CountedSatellites::of_design(design);
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Some((metrics, evaluation))
@@ -202,7 +207,7 @@ impl<'a> DesignProblem<'a> {
         ephemeris: &Ephemeris,
         satellites: CountedSatellites<'_>,
     ) -> Result<(Metrics, Evaluation), EphemerisError> {
-        let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;
+        let metrics = self.with_gain(self.evaluator.evaluate_ephemeris(ephemeris)?)?;
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Ok((metrics, evaluation))
     }

@@ -261,20 +261,17 @@ fn of_files(
         );
     }
     let paths = std::slice::from_ref(&path);
-    let (formats, mut fleet, contents) = if with_contents {
+    let (merged, contents) = if with_contents {
         read_constellation::read_with_contents(paths, args.input_format)?
     } else {
-        let (formats, fleet) = read_constellation::read(paths, args.input_format)?;
-        (formats, fleet, Vec::new())
+        let merged = read_constellation::read(paths, args.input_format)?;
+        (merged, Vec::new())
     };
-    fleet.choose(&args.satellites.filter())?;
     let name = path.file_name().unwrap_or(path.as_os_str());
+    let names = vec![output::shown_path(Path::new(name))];
+    let files = FileSatellites::new(names, merged, &args.satellites.filter())?;
     Ok(GivenConstellation {
-        constellation: Constellation::of_files(FileSatellites {
-            names: vec![output::shown_path(Path::new(name))],
-            formats,
-            fleet,
-        }),
+        constellation: Constellation::of_files(files),
         source: ConstellationSource::Files(contents),
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::files;
 use crate::cli::output::{self, shown_path};
-use crate::exchange::import::{Fleet, Imported, MergedFiles};
+use crate::exchange::import::{Fleet, Imported, Merged, MergedFiles};
 use crate::exchange::lint::Format;
 use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
@@ -21,7 +21,7 @@ type Opener<'a> = &'a mut dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>>;
 pub(crate) type FileContents = (PathBuf, Vec<u8>);
 
 /// The satellites of files and directories, in the order of the names, and the formats found.
-pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<Format>, Fleet)> {
+pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<Merged> {
     read_by(&mut open, paths, format)
 }
 
@@ -29,26 +29,22 @@ pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<(Vec<For
 pub(crate) fn read_with_contents(
     paths: &[PathBuf],
     format: Option<Format>,
-) -> Result<(Vec<Format>, Fleet, Vec<FileContents>)> {
+) -> Result<(Merged, Vec<FileContents>)> {
     let mut contents: Vec<FileContents> = Vec::new();
     let mut keep = |file: &Path| {
         let bytes = files::read_whole(file)?;
         contents.push((file.to_owned(), bytes.clone()));
         Ok(Box::new(Cursor::new(bytes)) as Box<dyn BufRead>)
     };
-    let (formats, fleet) = read_by(&mut keep, paths, format)?;
-    Ok((formats, fleet, contents))
+    let merged = read_by(&mut keep, paths, format)?;
+    Ok((merged, contents))
 }
 
 fn open(file: &Path) -> io::Result<Box<dyn BufRead>> {
     Ok(Box::new(BufReader::new(File::open(file)?)))
 }
 
-fn read_by(
-    open: Opener<'_>,
-    paths: &[PathBuf],
-    format: Option<Format>,
-) -> Result<(Vec<Format>, Fleet)> {
+fn read_by(open: Opener<'_>, paths: &[PathBuf], format: Option<Format>) -> Result<Merged> {
     let mut merged = MergedFiles::default();
     for path in paths {
         for (_, imported) in read_each_by(open, path, format)? {

@@ -53,28 +53,15 @@ impl Preset {
 }
 
 impl Preset {
-    /// Sidereal days after which the ground tracks of all its satellites repeat: of the medium orbits, which take longest.
-    #[must_use]
-    pub fn cycle_sidereal_days(self) -> u32 {
-        match self {
-            Self::Beidou3 => 7,
-            Self::Galileo => 10,
-            Self::Glonass => 8,
-            Self::Gps | Self::Qzss | Self::Navic => 1,
-        }
-    }
-
-    /// The satellites for a study that starts at `epoch`, but as they are over the Earth a share of the cycle
-    /// later.
+    /// The satellites for a study that starts at `epoch`, but over the Earth as for one that starts a share of a sidereal
+    /// day later.
     #[must_use]
     pub fn satellites_at_phase(self, epoch: Epoch, share: f64) -> Vec<GnssSatellite> {
-        let sidereal_day_s = TAU / GMST_RATE_RAD_S;
-        let later_s = share * f64::from(self.cycle_sidereal_days()) * sidereal_day_s;
-        let later = |satellite: GnssSatellite| GnssSatellite {
-            orbit: satellite.orbit.later(later_s),
+        let at_phase = |satellite: GnssSatellite| GnssSatellite {
+            orbit: satellite.orbit.at_phase(share * TAU),
             ..satellite
         };
-        self.satellites(epoch).into_iter().map(later).collect()
+        self.satellites(epoch).into_iter().map(at_phase).collect()
     }
 }
 
@@ -216,12 +203,13 @@ impl GeosynchronousOrbit {
 }
 
 impl GnssOrbit {
-    /// The orbit that is over the Earth now where this one is later: nominal orbits alone, others are left as they are.
-    fn later(self, later_s: f64) -> Self {
-        let turned_rad = GMST_RATE_RAD_S * later_s;
+    /// The orbit for a study that starts when the Earth has turned by an angle. Elements hold at the start, so that medium
+    /// orbits have their nodes over other longitudes; geosynchronous satellites are on their tracks where they are that much
+    /// later. Orbits from files are left as they are.
+    fn at_phase(self, turned_rad: f64) -> Self {
         match self {
             Self::Secular(orbit) => {
-                let elements = orbit.elements_at(later_s);
+                let elements = orbit.elements_at(0.0);
                 Self::Secular(SecularOrbit::j2(&MeanElements {
                     raan_rad: wrap_two_pi(elements.raan_rad - turned_rad),
                     ..elements

@@ -15,6 +15,9 @@ use serde::{Deserialize, Serialize};
 /// The share of the errors beyond a 95 % error.
 const BEYOND: f64 = 0.05;
 
+/// Share of the errors of the solved samples below which a length is not resolved: probabilities are good to 1e-10.
+const LEAST_SHARE: f64 = 1e-8;
+
 /// The error of the ranges to the satellites of a system: zero-mean, Gaussian and uncorrelated, with the standard
 /// deviation sigma √(a² + b²/sin² E) at the elevation E.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,16 +86,22 @@ impl SigmaSpread {
     }
 }
 
-/// The accuracy of positions; a value is `None` if no sample is solved.
+/// The accuracy of positions.
+///
+/// A sample has an accuracy if its PDOP is solved and the geometry with the weights of the range errors is not singular.
+/// Standard deviations are over those samples and `None` if there are none. An error is over all samples, where one
+/// without accuracy exceeds any length: it is `None` if those are 5 % or more.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AccuracyMetrics {
+    /// Fraction of the samples that have an accuracy.
+    pub solved_fraction: f64,
     /// Standard deviation of the position.
     pub sigma_3d_m: Option<SigmaSpread>,
     /// Standard deviation of the horizontal position (DRMS).
     pub sigma_h_m: Option<SigmaSpread>,
     /// Standard deviation of the height.
     pub sigma_v_m: Option<SigmaSpread>,
-    /// Length that 5 % of the position errors exceed, over all solved samples.
+    /// Length that 5 % of the position errors exceed.
     pub error95_3d_m: Option<f64>,
     /// Length that 5 % of the horizontal errors exceed.
     pub error95_h_m: Option<f64>,
@@ -106,6 +115,9 @@ struct Errors {
     whole: Vec<(f64, [f64; 3])>,
     horizontal: Vec<(f64, [f64; 2])>,
     vertical: Vec<(f64, [f64; 1])>,
+    /// Weight of the samples that have an accuracy, and of all.
+    solved: f64,
+    total: f64,
 }
 
 /// Memory of one sample, bytes.
@@ -132,8 +144,10 @@ impl Evaluator {
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
             for (number, site) in setup.sites.iter().enumerate() {
                 let sky = Sky::new(setup, accuracy, site, &clocks, &gnss);
+                let weight = self.weights.of(number) as f64;
+                errors.total += weight;
                 if let Some(factor) = sky.solve(setup) {
-                    errors.add(&factor, &site.local, self.weights.of(number) as f64);
+                    errors.add(&factor, &site.local, weight);
                 }
             }
         }
@@ -215,16 +229,24 @@ impl Errors {
         self.horizontal
             .push((weight, [plane.x, plane.y].map(variance)));
         self.vertical.push((weight, [variance(uu)]));
+        self.solved += weight;
+    }
+
+    /// The length that 5 % of the errors of all samples exceed, where a sample without accuracy exceeds any.
+    fn exceeded<const D: usize>(&self, errors: &[(f64, [f64; D])]) -> Option<f64> {
+        let share = (BEYOND * self.total - (self.total - self.solved)) / self.solved;
+        (share > LEAST_SHARE).then(|| length_exceeded_by(share, errors))?
     }
 
     fn metrics(&self, level: Level) -> AccuracyMetrics {
         AccuracyMetrics {
+            solved_fraction: self.solved / self.total,
             sigma_3d_m: sigma(&self.whole, level),
             sigma_h_m: sigma(&self.horizontal, level),
             sigma_v_m: sigma(&self.vertical, level),
-            error95_3d_m: length_exceeded_by(BEYOND, &self.whole),
-            error95_h_m: length_exceeded_by(BEYOND, &self.horizontal),
-            error95_v_m: length_exceeded_by(BEYOND, &self.vertical),
+            error95_3d_m: self.exceeded(&self.whole),
+            error95_h_m: self.exceeded(&self.horizontal),
+            error95_v_m: self.exceeded(&self.vertical),
         }
     }
 }

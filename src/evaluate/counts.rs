@@ -8,6 +8,38 @@ use std::collections::BTreeMap;
 /// Numbers of satellites, from 1, of which a [`Coverage`] has the share.
 pub const COVERAGE_LEVELS: usize = 12;
 
+/// The columns of a coverage by LEO satellites in tables.
+pub const COVERAGE_COLUMNS: [&str; COVERAGE_LEVELS] = [
+    "coverage_1",
+    "coverage_2",
+    "coverage_3",
+    "coverage_4",
+    "coverage_5",
+    "coverage_6",
+    "coverage_7",
+    "coverage_8",
+    "coverage_9",
+    "coverage_10",
+    "coverage_11",
+    "coverage_12",
+];
+
+/// The columns of a coverage by LEO and GNSS satellites in tables.
+pub const COVERAGE_TOTAL_COLUMNS: [&str; COVERAGE_LEVELS] = [
+    "coverage_total_1",
+    "coverage_total_2",
+    "coverage_total_3",
+    "coverage_total_4",
+    "coverage_total_5",
+    "coverage_total_6",
+    "coverage_total_7",
+    "coverage_total_8",
+    "coverage_total_9",
+    "coverage_total_10",
+    "coverage_total_11",
+    "coverage_total_12",
+];
+
 /// The fraction of the samples, weighted by point, with at least 1, 2, … 12 satellites in view.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Coverage([f64; COVERAGE_LEVELS]);
@@ -23,6 +55,17 @@ impl Coverage {
     #[must_use]
     pub fn shares(&self) -> [f64; COVERAGE_LEVELS] {
         self.0
+    }
+
+    /// From the weight of the samples with 0, 1, … 11, and with 12 or more satellites, and of all.
+    pub(super) fn of_bins(bins: &[f64; COVERAGE_LEVELS + 1], total: f64) -> Self {
+        let mut coverage = Self::default();
+        let mut at_least = 0.0;
+        for (share, weight) in coverage.0.iter_mut().zip(&bins[1..]).rev() {
+            at_least += weight;
+            *share = at_least / total;
+        }
+        coverage
     }
 }
 
@@ -193,6 +236,13 @@ impl Outages {
     pub(super) fn is_longest_cut(&self) -> bool {
         self.longest > 0 && (self.longest == self.first || self.longest == self.last)
     }
+}
+
+/// One outage: samples in a row, from its first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct OutageRun {
+    pub(super) first: u32,
+    pub(super) samples: u32,
 }
 
 /// The longest outage of any point, in samples, and whether an end of the span cuts it.

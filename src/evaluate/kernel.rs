@@ -207,16 +207,17 @@ impl Kernel {
         })
     }
 
-    /// Evaluates satellites.
+    /// Evaluates satellites, with histograms of those in view where asked for.
     pub(super) fn evaluate(
         &self,
         ephemeris: &Ephemeris,
+        histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let propagation = &Propagation::new(ephemeris);
         if self.scene.tiles.slots() * self.setup.grid.len() <= self.kept_values {
-            self.keeping(propagation)
+            self.keeping(propagation, histograms)
         } else {
-            self.streaming(propagation)
+            self.streaming(propagation, histograms)
         }
     }
 
@@ -254,12 +255,13 @@ impl Kernel {
     fn keeping(
         &self,
         propagation: &Propagation<'_>,
+        histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let samples = self.setup.grid.len();
         let mut values = Vec::with_capacity(samples * self.scene.tiles.tiles.len());
         let mut counts = Counts::new(self.places);
         let mut sum = 0.0;
-        let mut tally = self.tally();
+        let mut tally = self.tally(histograms);
         for chunk in self.chunks(samples) {
             let first = values.len();
             let rechecks = self.run(propagation, chunk, self.scene.limits, |instant| {
@@ -281,7 +283,7 @@ impl Kernel {
             }
             None => None,
         };
-        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
+        Ok((self.evaluated(&mut tally, &counts, summary), tally.rechecks))
     }
 
     /// Recomputes the order statistics in f64.
@@ -336,12 +338,13 @@ impl Kernel {
     fn streaming(
         &self,
         propagation: &Propagation<'_>,
+        histograms: bool,
     ) -> Result<(Evaluated, Rechecks), EphemerisError> {
         let chunks = self.chunks(self.setup.grid.len());
         let ((counts, mut tally), parts) = self.pass(
             propagation,
             &chunks,
-            || (Counts::new(self.places), self.tally()),
+            || (Counts::new(self.places), self.tally(histograms)),
             |instant, (counts, tally), sums| {
                 self.tally_instant(instant, tally);
                 sums[0] += self.count(&instant.outcome.pdop, counts);
@@ -365,7 +368,7 @@ impl Kernel {
             }
             None => None,
         };
-        Ok((self.evaluated(&tally, &counts, summary), tally.rechecks))
+        Ok((self.evaluated(&mut tally, &counts, summary), tally.rechecks))
     }
 
     /// One pass over the samples on all threads. `note` adds an instant to an accumulator of integers, which
@@ -479,12 +482,13 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(&self, tally: &mut ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {
             leo,
             all,
+            bins: tally.bins.take(),
             solved: share(counts.solved()),
             available: share(tally.available()),
             longest_outage: tally.longest_outage(),

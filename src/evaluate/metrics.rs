@@ -4,6 +4,8 @@ use super::DopStatistics;
 use super::accuracy::{AccuracyMetrics, SigmaSpread};
 use super::counts::{Coverage, LongestOutage, Views};
 use super::failures::OneLost;
+use super::gain::Gain;
+use super::histograms::ViewBins;
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
@@ -96,9 +98,15 @@ pub struct Metrics {
     /// Probability that a sample is available, as expected over failures of the satellites.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub expected_availability: Option<f64>,
+    /// Gain over the GNSS alone, where it is asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Gain>,
     /// PDOP of all observations in a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub information_pdop: Option<InformationPdop>,
+    /// Fraction of samples that have an accuracy in metres: solved, and not singular with the weights of the range errors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy_solved_fraction: Option<f64>,
     /// Standard deviation of the position, metres.
     #[serde(
         default,
@@ -149,6 +157,8 @@ pub(super) struct Evaluated {
     pub(super) leo: Views,
     /// LEO and GNSS satellites in view.
     pub(super) all: Views,
+    /// How often so many are in view, LEO and all, where asked for.
+    pub(super) bins: Option<[ViewBins; 2]>,
     /// Fraction of samples that are solved.
     pub(super) solved: f64,
     /// Fraction of samples that are solved with PDOP at most the availability threshold.
@@ -214,7 +224,9 @@ impl Metrics {
             p95_vdop: None,
             n1: None,
             expected_availability: None,
+            gain: None,
             information_pdop: None,
+            accuracy_solved_fraction: None,
             sigma_3d_m: None,
             sigma_h_m: None,
             sigma_v_m: None,
@@ -232,6 +244,7 @@ impl Metrics {
     ) -> Self {
         Self {
             information_pdop,
+            accuracy_solved_fraction: accuracy.map(|of| of.solved_fraction),
             sigma_3d_m: accuracy.map(|of| of.sigma_3d_m),
             sigma_h_m: accuracy.map(|of| of.sigma_h_m),
             sigma_v_m: accuracy.map(|of| of.sigma_v_m),

@@ -1,7 +1,7 @@
 //! Metrics that are computed where a setup asks for them, and how they are named in tables.
 
-use super::Metrics;
 use super::accuracy::SigmaSpread;
+use super::{Gain, Metrics};
 use serde::{Deserialize, Deserializer};
 
 /// A metric that is computed on demand: `None` if it was not asked for, `Some(None)` if it has no value.
@@ -15,8 +15,10 @@ pub(super) fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 }
 
 /// The fields of [`Metrics`] that are computed on demand.
-const FIELDS: [&str; 9] = [
+const FIELDS: [&str; 11] = [
+    "gain",
     "information_pdop",
+    "accuracy_solved_fraction",
     "sigma_3d_m",
     "sigma_h_m",
     "sigma_v_m",
@@ -38,36 +40,51 @@ impl Metrics {
     #[must_use]
     pub fn on_demand(&self) -> Vec<(String, Option<f64>)> {
         let mut columns = Vec::new();
-        let mut add =
-            |field: &str, part: &str, value| columns.push((format!("{field}{part}"), value));
+        let mut add = |name: String, value| columns.push((name, value));
         if let Some(of) = &self.information_pdop {
-            for (part, value) in [("_mean", of.mean), ("_p95", of.p95), ("_cvar", of.cvar)] {
-                add(FIELDS[0], part, value);
+            let parts = [("mean", of.mean), ("p95", of.p95), ("cvar", of.cvar)];
+            for (part, value) in parts {
+                add(format!("information_pdop_{part}"), value);
             }
-            add(FIELDS[0], "_solved_fraction", Some(of.solved_fraction));
+            let solved = Some(of.solved_fraction);
+            add("information_pdop_solved_fraction".to_owned(), solved);
         }
-        let sigmas = [self.sigma_3d_m, self.sigma_h_m, self.sigma_v_m];
-        for (field, sigma) in FIELDS[1..4].iter().zip(sigmas) {
+        if let Some(solved) = self.accuracy_solved_fraction {
+            add("accuracy_solved_fraction".to_owned(), Some(solved));
+        }
+        let sigmas = [
+            ("sigma_3d_m", self.sigma_3d_m),
+            ("sigma_h_m", self.sigma_h_m),
+            ("sigma_v_m", self.sigma_v_m),
+        ];
+        for (field, sigma) in sigmas {
             let Some(spread) = sigma else { continue };
             let part = |of: fn(SigmaSpread) -> f64| spread.map(of);
-            add(field, "_mean", part(|of| of.mean));
-            add(field, "_p95", part(|of| of.p95));
-            add(field, "_cvar", part(|of| of.cvar));
+            add(format!("{field}_mean"), part(|of| of.mean));
+            add(format!("{field}_p95"), part(|of| of.p95));
+            add(format!("{field}_cvar"), part(|of| of.cvar));
         }
-        let errors = [self.error95_3d_m, self.error95_h_m, self.error95_v_m];
-        for (field, error) in FIELDS[4..7].iter().zip(errors) {
+        let errors = [
+            ("error95_3d_m", self.error95_3d_m),
+            ("error95_h_m", self.error95_h_m),
+            ("error95_v_m", self.error95_v_m),
+        ];
+        for (field, error) in errors {
             if let Some(error) = error {
-                add(field, "", error);
+                add(field.to_owned(), error);
             }
         }
         if let Some(of) = &self.n1 {
-            add(FIELDS[7], "_max_pdop", of.max_pdop);
-            add(FIELDS[7], "_cvar_pdop", of.cvar_pdop);
-            add(FIELDS[7], "_availability", Some(of.availability));
-            add(FIELDS[7], "_solved_fraction", Some(of.solved_fraction));
+            add("n1_max_pdop".to_owned(), of.max_pdop);
+            add("n1_cvar_pdop".to_owned(), of.cvar_pdop);
+            add("n1_availability".to_owned(), Some(of.availability));
+            add("n1_solved_fraction".to_owned(), Some(of.solved_fraction));
         }
         if self.expected_availability.is_some() {
-            add(FIELDS[8], "", self.expected_availability);
+            add("expected_availability".to_owned(), self.expected_availability);
+        }
+        for (name, value) in self.gain.iter().flat_map(Gain::named) {
+            add(format!("gain_{name}"), value);
         }
         columns
     }

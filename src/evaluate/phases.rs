@@ -18,7 +18,7 @@ pub enum PhaseError {
 }
 
 impl Setup {
-    /// The same setup with every GNSS later by a share of its cycle, 0 <= share < 1, while the Earth and the LEO satellites
+    /// The same setup with every GNSS as for an epoch a share of a sidereal day later, 0 <= share < 1, while the Earth and the LEO satellites
     /// stay where they are ([M-52](crate::models#m-52)).
     ///
     /// # Errors

@@ -1,7 +1,8 @@
 //! The plain path: sample by sample in f64, by definition. It is the reference for tests of the kernel
 //! and evaluates setups that the kernel does not support.
 
-use super::counts::{LongestOutage, Outages, Views};
+use super::counts::{LongestOutage, Outages};
+use super::histograms::ViewBins;
 use super::fixed::PlainGnssSample;
 use super::metrics::Evaluated;
 use super::{Evaluator, Setup, leo};
@@ -32,7 +33,7 @@ pub(super) fn evaluate(
 ) -> Result<Evaluated, EphemerisError> {
     let setup = evaluator.setup();
     let weights = &evaluator.weights;
-    let (mut leo, mut all) = (Views::default(), Views::default());
+    let (mut leo, mut all) = (ViewBins::default(), ViewBins::default());
     let mut pdop = Vec::with_capacity(setup.sample_count());
     let mut is_out = vec![Vec::with_capacity(setup.grid.len()); setup.sites.len()];
     let (mut solved, mut available) = (0, 0);
@@ -53,8 +54,9 @@ pub(super) fn evaluate(
         .into_iter()
         .map(|point| Outages::of(point.into_iter()));
     Ok(Evaluated {
-        leo,
-        all,
+        leo: leo.views(),
+        all: all.views(),
+        bins: Some([leo, all]),
         solved: share(solved),
         available: share(available),
         longest_outage: LongestOutage::of(outages),

@@ -1,89 +1,16 @@
 //! Metrics per instant and per point, for figures and maps.
 
+mod records;
+
+pub use records::{EpochMetrics, Outage, PointMetrics};
+
 use super::Evaluator;
-use super::counts::{Outages, Threshold};
+use super::counts::{COVERAGE_LEVELS, Coverage, OutageRun, Outages, Threshold};
+use super::histograms::{ViewBins, ViewHistograms};
 use super::plain::{self, PlainSample};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::ground::Site;
 use crate::stats::{Level, Weighted, quantile};
-use serde::{Serialize, Serializer};
-use std::sync::Arc;
-
-/// One instant, over all points with their weights ([M-31](crate::models#m-31)).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct EpochMetrics {
-    /// Seconds since the epoch of the grid.
-    pub elapsed_s: f64,
-    /// Mean visible LEO satellites, equation (22) of the paper.
-    pub mean_visible: f64,
-    /// Mean PDOP over the solved points, equation (24); `None` if no point is solved.
-    pub mean_pdop: Option<f64>,
-    /// Maximum PDOP of a solved point: its maximum over time is equation (23).
-    pub max_pdop: Option<f64>,
-    /// Fraction of the points that are solved.
-    pub solved_fraction: f64,
-    /// Fraction of the points that are solved with PDOP at most the availability threshold.
-    pub availability: f64,
-    /// Least number of visible LEO satellites at any point.
-    pub least_visible: u32,
-    /// Mean visible GNSS satellites.
-    pub mean_gnss_visible: f64,
-    /// Mean visible satellites, LEO and GNSS.
-    pub mean_total_visible: f64,
-}
-
-/// One point, over all instants.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PointMetrics {
-    /// Latitude of the surface model, degrees.
-    pub latitude_deg: f64,
-    /// East longitude, degrees, as given.
-    pub longitude_deg: f64,
-    /// Mean visible LEO satellites.
-    pub mean_visible: f64,
-    /// Mean PDOP over the solved instants; `None` if there are none.
-    pub mean_pdop: Option<f64>,
-    /// 95 % quantile of PDOP over the solved instants.
-    pub p95_pdop: Option<f64>,
-    /// Maximum PDOP of a solved instant.
-    pub max_pdop: Option<f64>,
-    /// Fraction of the instants that are solved.
-    pub solved_fraction: f64,
-    /// Fraction of the instants that are solved with PDOP at most the availability threshold.
-    pub availability: f64,
-    /// Least number of visible LEO satellites at any instant.
-    pub least_visible: u32,
-    /// Mean visible GNSS satellites.
-    pub mean_gnss_visible: f64,
-    /// Mean visible satellites, LEO and GNSS.
-    pub mean_total_visible: f64,
-    /// Number of outages: runs of instants that are unsolved or above the availability threshold.
-    pub outages: u32,
-    /// Length of the longest outage, seconds: instants times the step.
-    pub longest_outage_s: f64,
-    /// Length of all outages together, seconds.
-    pub total_outage_s: f64,
-    /// Whether the start or the end of the span cuts an outage, which may be longer.
-    pub outage_cut: bool,
-    /// What the point is called, if anything.
-    #[serde(serialize_with = "name")]
-    pub name: Option<Arc<str>>,
-}
-
-fn name<S: Serializer>(name: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
-    name.as_deref().serialize(serializer)
-}
-
-impl PointMetrics {
-    /// How the point is called where it is shown: by its name, or else by its place.
-    #[must_use]
-    pub fn label(&self) -> String {
-        match &self.name {
-            Some(name) => name.to_string(),
-            None => format!("{}°, {}°", self.latitude_deg, self.longitude_deg),
-        }
-    }
-}
 
 /// The cuts through the samples of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,11 +19,48 @@ pub struct Series {
     pub epochs: Vec<EpochMetrics>,
     /// Point by point, in the order of the setup.
     pub points: Vec<PointMetrics>,
+    /// Satellites in view over all samples.
+    pub histograms: ViewHistograms,
+    /// The outages of each point, with the number of instants and the step.
+    outages: Vec<Vec<OutageRun>>,
+    instants: u32,
+    step_s: f64,
     /// PDOP of the solved instants of each point, and the weight of the point.
     solved: Vec<(Vec<f32>, f64)>,
 }
 
 impl Series {
+    /// The outages of the point with this number, in the order of time.
+    pub fn outages(&self, point: usize) -> impl Iterator<Item = Outage> {
+        let runs = self.outages.get(point).into_iter().flatten();
+        runs.map(|run| Outage {
+            start_s: f64::from(run.first) * self.step_s,
+            length_s: f64::from(run.samples) * self.step_s,
+            is_cut: run.first == 0 || run.first + run.samples == self.instants,
+        })
+    }
+
+    /// The same without what is of single samples.
+    pub(super) fn without_samples(self) -> Self {
+        Self {
+            outages: Vec::new(),
+            solved: Vec::new(),
+            ..self
+        }
+    }
+
+    /// Sets the gain over the series of the GNSS alone.
+    fn with_gain_over(mut self, alone: &Self) -> Self {
+        let gain = |alone: Option<f64>, own: Option<f64>| Some(alone? - own?);
+        for (epoch, alone) in self.epochs.iter_mut().zip(&alone.epochs) {
+            epoch.gain_mean_pdop = gain(alone.mean_pdop, epoch.mean_pdop);
+        }
+        for (point, alone) in self.points.iter_mut().zip(&alone.points) {
+            point.gain_mean_pdop = gain(alone.mean_pdop, point.mean_pdop);
+        }
+        self
+    }
+
     /// PDOP of every solved sample with the weight of its point, in ascending order.
     #[must_use]
     pub fn rising_pdop(&self) -> Vec<Weighted> {
@@ -152,6 +116,8 @@ struct EpochSums {
     available: f64,
     pdop: f64,
     max: Option<f64>,
+    leo_bins: [f64; COVERAGE_LEVELS + 1],
+    all_bins: [f64; COVERAGE_LEVELS + 1],
 }
 
 /// Sums of one point over the instants.
@@ -163,6 +129,9 @@ struct PointSums {
     /// Of the solved instants.
     pdop: Vec<f32>,
     outages: Outages,
+    runs: Vec<OutageRun>,
+    leo_bins: [u32; COVERAGE_LEVELS + 1],
+    all_bins: [u32; COVERAGE_LEVELS + 1],
 }
 
 impl Evaluator {
@@ -171,6 +140,16 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn series(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
+        let series = self.cuts(ephemeris)?;
+        let alone = self.gnss_series()?;
+        Ok(match alone {
+            Some(alone) => series.with_gain_over(alone),
+            None => series,
+        })
+    }
+
+    /// The same without gain.
+    pub(super) fn cuts(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
         let mut cuts = SeriesSums::new(self);
         match self.kernel_for(ephemeris) {
             Some(kernel) => kernel.visit(ephemeris, |instant| cuts.add(instant))?,
@@ -224,6 +203,8 @@ struct SeriesSums<'a> {
     available: f32,
     epochs: Vec<EpochMetrics>,
     points: Vec<PointSums>,
+    /// LEO, GNSS and all.
+    views: [ViewBins; 3],
 }
 
 impl<'a> SeriesSums<'a> {
@@ -234,6 +215,7 @@ impl<'a> SeriesSums<'a> {
             available: Threshold(setup.metrics.availability_pdop).single(),
             epochs: Vec::with_capacity(setup.grid.len()),
             points: vec![PointSums::default(); setup.sites.len()],
+            views: <[ViewBins; 3]>::default(),
         }
     }
 
@@ -243,8 +225,12 @@ impl<'a> SeriesSums<'a> {
         let sums = self.points.iter_mut().enumerate();
         for (sample, (number, sums)) in instant.points.iter().zip(sums) {
             let is_available = sample.pdop.is_some_and(|pdop| pdop <= self.available);
-            let weight = self.evaluator.weights.of(number) as f64;
-            epoch.add(sample, is_available, weight);
+            let weight = self.evaluator.weights.of(number);
+            let (leo, gnss) = (sample.visible, sample.gnss_visible);
+            for (views, visible) in self.views.iter_mut().zip([leo, gnss, leo + gnss]) {
+                views.add(visible, weight);
+            }
+            epoch.add(sample, is_available, weight as f64);
             sums.add(sample, is_available);
         }
         let elapsed_s = setup.grid.elapsed_s(instant.number);
@@ -259,15 +245,26 @@ impl<'a> SeriesSums<'a> {
         let points = sums.map(|(sums, site)| sums.metrics(site, instants, step_s, &mut scratch));
         let points = points.collect();
         let weight = |number: usize| self.evaluator.weights.of(number) as f64;
+        let [leo, gnss, all] = &self.views;
+        let histograms = ViewHistograms::new(leo, gnss, all);
         let sums = self.points.into_iter().enumerate();
+        let parts = sums.map(|(number, sums)| ((sums.pdop, weight(number)), sums.runs));
+        let (solved, outages) = parts.unzip();
         Series {
             epochs: self.epochs,
             points,
-            solved: sums
-                .map(|(number, sums)| (sums.pdop, weight(number)))
-                .collect(),
+            histograms,
+            outages,
+            instants: instants as u32,
+            step_s,
+            solved,
         }
     }
+}
+
+/// The bin of a number of satellites.
+fn bin(visible: u32) -> usize {
+    (visible as usize).min(COVERAGE_LEVELS)
 }
 
 /// The smaller of a number and what there may be already.
@@ -281,6 +278,8 @@ impl EpochSums {
         self.visible += weight * f64::from(sample.visible);
         self.gnss_visible += weight * f64::from(sample.gnss_visible);
         self.least_visible = least(self.least_visible, sample.visible);
+        self.leo_bins[bin(sample.visible)] += weight;
+        self.all_bins[bin(sample.visible + sample.gnss_visible)] += weight;
         self.available += if is_available { weight } else { 0.0 };
         if let Some(pdop) = sample.pdop.map(f64::from) {
             self.solved += weight;
@@ -300,6 +299,9 @@ impl EpochSums {
             least_visible: self.least_visible.unwrap_or(0),
             mean_gnss_visible: self.gnss_visible / self.weight,
             mean_total_visible: (self.visible + self.gnss_visible) / self.weight,
+            gain_mean_pdop: None,
+            coverage: Coverage::of_bins(&self.leo_bins, self.weight),
+            coverage_total: Coverage::of_bins(&self.all_bins, self.weight),
         }
     }
 }
@@ -310,7 +312,16 @@ impl PointSums {
         self.gnss_visible += u64::from(sample.gnss_visible);
         self.least_visible = least(self.least_visible, sample.visible);
         self.pdop.extend(sample.pdop);
+        self.leo_bins[bin(sample.visible)] += 1;
+        self.all_bins[bin(sample.visible + sample.gnss_visible)] += 1;
+        let first = self.outages.samples;
         self.outages.add(!is_available);
+        match (self.outages.last, self.runs.last_mut()) {
+            (0, _) => {}
+            (1, _) => self.runs.push(OutageRun { first, samples: 1 }),
+            (samples, Some(run)) => run.samples = samples,
+            (_, None) => {}
+        }
     }
 
     /// `scratch` is memory for the values.
@@ -328,9 +339,12 @@ impl PointSums {
         let sum: f64 = scratch.iter().sum();
         let outages = self.outages;
         let p95 = Level::new(0.95).ok();
+        let coverage =
+            |bins: &[u32; COVERAGE_LEVELS + 1]| Coverage::of_bins(&bins.map(f64::from), count);
         PointMetrics {
             latitude_deg: site.latitude_deg,
             longitude_deg: site.longitude_deg,
+            weight: site.weight,
             mean_visible: self.visible as f64 / count,
             mean_pdop: (solved > 0).then(|| sum / solved as f64),
             max_pdop: scratch.iter().copied().max_by(f64::total_cmp),
@@ -344,6 +358,9 @@ impl PointSums {
             longest_outage_s: f64::from(outages.longest) * step_s,
             total_outage_s: f64::from(outages.total) * step_s,
             outage_cut: outages.first + outages.last > 0,
+            gain_mean_pdop: None,
+            coverage: coverage(&self.leo_bins),
+            coverage_total: coverage(&self.all_bins),
             name: site.name.clone(),
         }
     }

@@ -43,6 +43,8 @@ pub(crate) fn no_metrics() -> Metrics {
         n1: None,
         expected_availability: None,
         information_pdop: None,
+        accuracy_solved_fraction: None,
+        gain: None,
         sigma_3d_m: None,
         sigma_h_m: None,
         sigma_v_m: None,

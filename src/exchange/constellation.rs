@@ -1,7 +1,7 @@
 //! A constellation: the shells of a design, satellites from files, or both.
 //!
 //! It is what every command works on. All satellites of a constellation share one clock state, unless a setup gives
-//! each shell its own, and one to the satellites from files.
+//! each shell and each file its own.
 
 mod name;
 
@@ -13,7 +13,9 @@ use crate::constellation::identity::{NUMBERED, UniqueTexts};
 use crate::ephemeris::outages::OutageError;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Setup;
-use crate::exchange::import::{Fleet, FleetError};
+use crate::exchange::import::{
+    Fleet, FleetError, Imported, Merged, NoSuchSatellite, SatelliteFilter,
+};
 use crate::exchange::lint::Format;
 use crate::orbit::Model;
 use crate::search::CountedSatellites;
@@ -40,6 +42,8 @@ pub struct FileSatellites {
     pub formats: Vec<Format>,
     /// The satellites.
     pub fleet: Fleet,
+    /// A number for each satellite, the same for those of one file.
+    pub origins: Vec<usize>,
 }
 
 /// Why a constellation cannot be propagated.
@@ -57,6 +61,54 @@ pub enum ConstellationError {
 }
 
 impl FileSatellites {
+    /// The satellites of files of these names that `filter` selects.
+    ///
+    /// # Errors
+    /// If a pattern matches none, or no satellite is left.
+    pub fn new(
+        names: Vec<String>,
+        merged: Merged,
+        filter: &SatelliteFilter,
+    ) -> Result<Self, NoSuchSatellite> {
+        let Merged {
+            formats,
+            mut fleet,
+            origins,
+        } = merged;
+        let kept = fleet.choose(filter)?.into_iter();
+        let origins = origins.into_iter().zip(kept);
+        Ok(Self {
+            names,
+            formats,
+            fleet,
+            origins: origins.filter(|(_, kept)| *kept).map(|(n, _)| n).collect(),
+        })
+    }
+
+    /// The satellites of one file.
+    #[must_use]
+    pub fn of_file(name: String, imported: Imported) -> Self {
+        Self {
+            names: vec![name],
+            formats: vec![imported.format],
+            origins: vec![0; imported.fleet.len()],
+            fleet: imported.fleet,
+        }
+    }
+
+    /// The files as parts of an ephemeris, numbered without gaps.
+    fn parts(&self) -> Vec<usize> {
+        let mut known = Vec::new();
+        let part = |origin: &usize| {
+            let place = known.iter().position(|one| one == origin);
+            place.unwrap_or_else(|| {
+                known.push(*origin);
+                known.len() - 1
+            })
+        };
+        self.origins.iter().map(part).collect()
+    }
+
     /// The formats as results name them: `tle+sp3`.
     #[must_use]
     pub fn format(&self) -> String {
@@ -180,8 +232,11 @@ impl Constellation {
         model: Model,
         propagate: impl Fn(&Fleet) -> Result<Ephemeris, FleetError>,
     ) -> Result<Ephemeris, ConstellationError> {
-        let fleet = self.files.as_ref().map(|files| &files.fleet);
-        let of_files = fleet.map(propagate).transpose()?;
+        let by_file = |files: &FileSatellites| {
+            let propagated = propagate(&files.fleet)?;
+            Ok::<_, FleetError>(propagated.with_parts(files.parts()))
+        };
+        let of_files = self.files.as_ref().map(by_file).transpose()?;
         let Some(design) = &self.design else {
             return Ok(of_files.unwrap_or_else(|| Ephemeris::new(grid, Vec::new())));
         };
@@ -193,17 +248,19 @@ impl Constellation {
         for satellite in shells.satellites() {
             names.take(satellite.name.clone(), NUMBERED);
         }
+        let parts = of_files.parts().to_vec();
         let mut added = of_files.into_satellites();
         for satellite in &mut added {
             satellite.name = names.take(std::mem::take(&mut satellite.name), NUMBERED);
         }
-        Ok(shells.joined(Ephemeris::new(grid, added)))
+        Ok(shells.joined(Ephemeris::new(grid, added).with_parts(parts)))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::exchange::import::MergedFiles;
     use crate::time::Epoch;
 
     const TWO_SATELLITES: &str = "object,epoch_utc,semi_major_axis_km,eccentricity,inclination_deg,raan_deg,arg_perigee_deg,mean_anomaly_deg\n\
@@ -217,11 +274,40 @@ mod tests {
 
     fn of_files() -> FileSatellites {
         let imported = Fleet::read(TWO_SATELLITES.as_bytes(), None, Some("two.csv")).unwrap();
-        FileSatellites {
-            names: vec!["two.csv".to_owned()],
-            formats: vec![imported.format],
-            fleet: imported.fleet,
+        FileSatellites::of_file("two.csv".to_owned(), imported)
+    }
+
+    /// The two satellites in two files, one of them taken by the selection.
+    fn of_two_files(filter: &SatelliteFilter) -> Constellation {
+        let mut merged = MergedFiles::default();
+        let (head, rows) = TWO_SATELLITES.split_once('\n').unwrap();
+        for row in rows.lines() {
+            let text = format!("{head}\n{row}\n");
+            merged.add(Fleet::read(text.as_bytes(), None, Some("one.csv")).unwrap());
         }
+        let names = vec!["pair".to_owned()];
+        let files = FileSatellites::new(names, merged.finish().unwrap(), filter);
+        Constellation::of_files(files.unwrap())
+    }
+
+    /// Each file is a part, beside the shells and alone; a file of which nothing is selected is none.
+    #[test]
+    fn files_are_parts() {
+        let all = SatelliteFilter::default();
+        let only = SatelliteFilter {
+            only: vec!["OTHER".to_owned()],
+            ..all.clone()
+        };
+        let parts = |one: Constellation| one.ephemeris(grid(), Model::J2).unwrap().parts().to_vec();
+        assert_eq!(parts(of_two_files(&all)), [0, 1]);
+        assert_eq!(parts(of_two_files(&only)), [0]);
+        let mixed = Constellation {
+            design: Some("delta:55:2/1/0@925".parse().unwrap()),
+            ..of_two_files(&all)
+        };
+        let continuous = mixed.continuous_ephemeris(grid(), Model::J2).unwrap();
+        assert_eq!(continuous.parts(), [0, 0, 1, 2]);
+        assert_eq!(parts(mixed), [0, 0, 1, 2]);
     }
 
     #[test]

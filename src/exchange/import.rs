@@ -15,7 +15,7 @@ mod propagation;
 mod sampling;
 
 use gathered::GatheredFleet;
-pub use merged::MergedFiles;
+pub use merged::{Merged, MergedFiles};
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
 pub use sampling::SamplingNote;

@@ -13,6 +13,8 @@ pub enum ComparisonColumn {
     Quantity(Quantity),
     /// The fraction of solved samples.
     SolvedFraction,
+    /// The fraction of samples that have an accuracy in metres.
+    AccuracySolvedFraction,
 }
 
 /// The columns that every table has.
@@ -30,16 +32,58 @@ const ALWAYS: [ComparisonColumn; 11] = [
     ComparisonColumn::Quantity(Quantity::JCost),
 ];
 
-/// The columns of a table in a scenario: those of every table, then its other objectives and constrained quantities.
+/// The accuracy in metres.
+const METRES: [Quantity; 6] = [
+    Quantity::Sigma3dM,
+    Quantity::SigmaHM,
+    Quantity::SigmaVM,
+    Quantity::Error953dM,
+    Quantity::Error95HM,
+    Quantity::Error95VM,
+];
+
+/// What is shown of the gain over the GNSS alone.
+const GAINS: [Quantity; 3] = [
+    Quantity::GainMeanPdop,
+    Quantity::GainCvarPdop,
+    Quantity::GainMaxPdop,
+];
+
+/// The quantities on demand that are shown in a scenario, because it has what they need.
+#[must_use]
+pub fn on_demand_quantities(scenario: &Scenario) -> Vec<Quantity> {
+    let gnss = &scenario.gnss;
+    let has_gnss = !gnss.constellations.is_empty() || !gnss.files.is_empty();
+    let has_window = scenario.metrics.window_min.is_some();
+    let has_metres = scenario.accuracy.leo_m.is_some();
+    let groups: [(bool, &[Quantity]); 3] = [
+        (has_gnss, &GAINS),
+        (has_window, &[Quantity::InformationPdop]),
+        (has_metres, &METRES),
+    ];
+    let asked = groups.into_iter().filter(|(is_asked, _)| *is_asked);
+    asked.flat_map(|(_, group)| group).copied().collect()
+}
+
+/// The columns of a table in a scenario: those of every table, then its other objectives and constrained quantities,
+/// then what is computed on demand.
 #[must_use]
 pub fn comparison_columns(scenario: &Scenario) -> Vec<ComparisonColumn> {
     let goals = scenario.goals();
+    let on_demand = on_demand_quantities(scenario);
     let wanted = goals.objectives.iter().copied().chain(goals.constrained());
+    let wanted = wanted.filter(|one| !on_demand.contains(one));
     let mut columns = ALWAYS.to_vec();
     for column in wanted.map(ComparisonColumn::Quantity) {
         if !columns.contains(&column) {
             columns.push(column);
         }
+    }
+    for quantity in &on_demand {
+        if *quantity == METRES[0] {
+            columns.push(ComparisonColumn::AccuracySolvedFraction);
+        }
+        columns.push(ComparisonColumn::Quantity(*quantity));
     }
     columns
 }
@@ -51,6 +95,7 @@ impl ComparisonColumn {
         let objectives = &scenario.objectives;
         let quantity = match self {
             Self::SolvedFraction => return "solved\nfraction".to_owned(),
+            Self::AccuracySolvedFraction => return "solved\nin metres".to_owned(),
             Self::Quantity(quantity) => quantity,
         };
         match quantity {
@@ -68,14 +113,18 @@ impl ComparisonColumn {
             Quantity::LongestOutageS => "longest\noutage (s)".to_owned(),
             Quantity::JPos => "J_pos".to_owned(),
             Quantity::JCost => "J_cost".to_owned(),
+            Quantity::InformationPdop => "mean PDOP\nof a window".to_owned(),
+            Quantity::Sigma3dM => "position\n1 sigma (m)".to_owned(),
+            Quantity::SigmaHM => "horizontal\n1 sigma (m)".to_owned(),
+            Quantity::SigmaVM => "height\n1 sigma (m)".to_owned(),
+            Quantity::Error953dM => "position\n95 % (m)".to_owned(),
+            Quantity::Error95HM => "horizontal\n95 % (m)".to_owned(),
+            Quantity::Error95VM => "height\n95 % (m)".to_owned(),
+            Quantity::GainMeanPdop => "gain in\nmean PDOP".to_owned(),
+            Quantity::GainCvarPdop => "gain in CVaR\nof PDOP".to_owned(),
+            Quantity::GainMaxPdop => "gain in\nmaximum PDOP".to_owned(),
             other => other.to_string(),
         }
-    }
-
-    /// Whether it is computed only where the scenario asks for it.
-    #[must_use]
-    pub fn is_on_demand(self) -> bool {
-        matches!(self, Self::Quantity(quantity) if quantity.is_on_demand())
     }
 
     /// The value of a constellation with these metrics, of which `quantity` has the quantities.
@@ -86,6 +135,7 @@ impl ComparisonColumn {
     ) -> Option<f64> {
         match self {
             Self::SolvedFraction => Some(metrics.solved_fraction),
+            Self::AccuracySolvedFraction => metrics.accuracy_solved_fraction,
             Self::Quantity(one) => quantity(one),
         }
     }
@@ -94,7 +144,7 @@ impl ComparisonColumn {
     #[must_use]
     pub fn text(self, value: Option<f64>) -> String {
         match self {
-            Self::SolvedFraction => shown::share(value),
+            Self::SolvedFraction | Self::AccuracySolvedFraction => shown::share(value),
             Self::Quantity(quantity) => shown::quantity(quantity, value),
         }
     }
@@ -103,7 +153,7 @@ impl ComparisonColumn {
     #[cfg(feature = "figures")]
     pub(crate) fn minimised(self, value: f64) -> f64 {
         match self {
-            Self::SolvedFraction => -value,
+            Self::SolvedFraction | Self::AccuracySolvedFraction => -value,
             Self::Quantity(quantity) => quantity.minimised(value),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::evaluated::ConstellationEntry;
 use super::phases::{PhaseRange, PhaseSpread};
-use crate::evaluate::DopStatistics;
+use crate::evaluate::{DopStatistics, Series};
 use crate::formats::csv::write_records;
 use crate::run::DesignSummary;
 use crate::run::columns::{cells, fields, metric_columns, optional};
@@ -137,6 +137,38 @@ fn line(cells: &[String]) -> io::Result<String> {
     writer.write_record(cells)?;
     text(writer)
 }
+
+/// The outages of all points, one per row.
+///
+/// # Errors
+/// Never for a table in memory.
+pub fn outages_csv(series: &Series) -> io::Result<String> {
+    let mut writer = Writer::from_writer(Vec::new());
+    writer.write_record(OUTAGE_COLUMNS)?;
+    for (n, point) in series.points.iter().enumerate() {
+        for outage in series.outages(n) {
+            writer.write_record([
+                point.latitude_deg.to_string(),
+                point.longitude_deg.to_string(),
+                outage.start_s.to_string(),
+                outage.length_s.to_string(),
+                outage.is_cut.to_string(),
+                point.name.as_deref().unwrap_or_default().to_owned(),
+            ])?;
+        }
+    }
+    text(writer)
+}
+
+/// The columns of a table of outages.
+pub(crate) const OUTAGE_COLUMNS: [&str; 6] = [
+    "latitude_deg",
+    "longitude_deg",
+    "start_s",
+    "length_s",
+    "cut",
+    "name",
+];
 
 /// Records whose fields are the columns, one per row: instants or points of a series.
 ///

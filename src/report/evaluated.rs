@@ -2,7 +2,7 @@
 
 use super::PhaseSpread;
 use super::failures::FailureSummary;
-use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics};
+use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, FileSatellites, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, CountedSatellites, Goals, Quantity};
@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 pub struct Assessment {
     /// The metrics.
     pub metrics: Metrics,
+    /// The satellites in view over all samples.
+    #[serde(rename = "visible_histogram")]
+    pub histograms: ViewHistograms,
     /// All dilutions of precision, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dops: Option<DopStatistics>,
@@ -63,7 +66,7 @@ impl Assessment {
     #[must_use]
     pub fn new(
         satellites: CountedSatellites<'_>,
-        metrics: Metrics,
+        (metrics, histograms): (Metrics, ViewHistograms),
         dops: Option<DopStatistics>,
         goals: &Goals,
     ) -> Self {
@@ -86,6 +89,7 @@ impl Assessment {
         let quantities = quantities.map(|one| (one, value(one))).collect();
         Self {
             metrics,
+            histograms,
             dops,
             gnss_phases: None,
             failures: None,
@@ -180,7 +184,7 @@ impl ConstellationEntry {
     #[must_use]
     pub fn new(
         constellation: &Constellation,
-        metrics: Metrics,
+        metrics: (Metrics, ViewHistograms),
         dops: Option<DopStatistics>,
         (goals, fixed): (&Goals, Option<&FileSatellites>),
     ) -> Self {
@@ -289,6 +293,7 @@ mod tests {
         let design: Design = "delta:55:30/5/1@925".parse().unwrap();
         let metrics = testing::member(1, "delta:55:30/5/1@925").metrics;
         let verdicts = |satellites: CountedSatellites<'_>| {
+            let metrics = (metrics, ViewHistograms::default());
             let evaluated = Assessment::new(satellites, metrics, None, &goals());
             let checks = evaluated.constraints.iter();
             checks.map(ConstraintCheck::verdict).collect::<Vec<_>>()

@@ -8,15 +8,20 @@ mod curves;
 pub mod draw;
 mod failures;
 mod front;
+mod histogram;
 mod map;
+mod outages;
 mod table;
 
 pub use super::Baseline;
+pub use super::labels::quantity_label;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
 pub use failures::{NamedLosses, failures};
 pub use front::{NamedFront, pareto};
+pub use histogram::histogram;
 pub use map::map;
+pub use outages::timeline;
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
@@ -24,7 +29,7 @@ pub(in crate::report) use map::at_point;
 
 use crate::ground::RegionMap;
 use crate::keyword::keywords;
-use crate::scenario::{Keyword, Quantity};
+use crate::scenario::Keyword;
 use thiserror::Error;
 
 keywords! {
@@ -40,6 +45,10 @@ keywords! {
         Series = "series",
         /// The hypervolume over the generations.
         Convergence = "convergence",
+        /// How often so many satellites are in view.
+        Histogram = "histogram",
+        /// The outages of the points that are out longest.
+        Timeline = "timeline",
         /// The error budget of a validation.
         Budget = "budget",
         /// What the loss of each satellite does.
@@ -60,6 +69,34 @@ keywords! {
         MaxPdop = "max-pdop",
         /// Fraction of the time that a point is available.
         Availability = "availability",
+        /// Longest outage of a point, seconds.
+        LongestOutageS = "longest-outage-s",
+        /// Gain in mean PDOP over the GNSS alone: of a point, or of an instant.
+        GainMeanPdop = "gain-mean-pdop",
+        /// Fraction with at least 1 visible LEO satellite: of the time at a point, or of the points at an instant.
+        Coverage1 = "coverage-1",
+        /// Fraction with at least 2 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage2 = "coverage-2",
+        /// Fraction with at least 3 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage3 = "coverage-3",
+        /// Fraction with at least 4 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage4 = "coverage-4",
+        /// Fraction with at least 5 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage5 = "coverage-5",
+        /// Fraction with at least 6 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage6 = "coverage-6",
+        /// Fraction with at least 7 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage7 = "coverage-7",
+        /// Fraction with at least 8 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage8 = "coverage-8",
+        /// Fraction with at least 9 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage9 = "coverage-9",
+        /// Fraction with at least 10 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage10 = "coverage-10",
+        /// Fraction with at least 11 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage11 = "coverage-11",
+        /// Fraction with at least 12 visible LEO satellites: of the time at a point, or of the points at an instant.
+        Coverage12 = "coverage-12",
         /// PDOP of every point and instant, with its tail.
         Pdop = "pdop",
     }
@@ -68,65 +105,31 @@ keywords! {
 impl Measure {
     /// The label of its axis.
     #[must_use]
-    pub fn label(self) -> &'static str {
-        match self {
+    pub fn label(self) -> String {
+        if let Some(least) = self.coverage_level() {
+            return format!("fraction of the time with at least {least} LEO satellites");
+        }
+        let label = match self {
+            Self::LongestOutageS => "longest outage (s)",
+            Self::GainMeanPdop => "gain in mean PDOP over the GNSS alone",
             Self::MeanVisible => "mean visible LEO satellites",
             Self::MeanPdop => "mean PDOP",
             Self::P95Pdop => "95 % quantile of PDOP",
             Self::MaxPdop => "maximum PDOP",
             Self::Availability => "availability (fraction of the time)",
-            Self::Pdop => "PDOP",
-        }
+            _ => "PDOP",
+        };
+        label.to_owned()
     }
-}
 
-/// The label of a quantity's axis.
-#[must_use]
-pub fn quantity_label(name: &str) -> String {
-    let Ok(quantity) = Quantity::from_keyword(name) else {
-        return name.to_owned();
-    };
-    let label = match quantity {
-        Quantity::JPos => "J_pos = mean PDOP + \u{3bb} CVaR of PDOP",
-        Quantity::JCost => "J_cost = satellites / mean visible",
-        Quantity::MeanPdop => "mean PDOP",
-        Quantity::CvarPdop => "CVaR of PDOP",
-        Quantity::P95Pdop => "95 % quantile of PDOP",
-        Quantity::P99Pdop => "99 % quantile of PDOP",
-        Quantity::MaxPdop => "maximum PDOP",
-        Quantity::Satellites => "satellites",
-        Quantity::Planes => "planes",
-        Quantity::NewSatellites => "new satellites",
-        Quantity::NewPlanes => "new planes",
-        Quantity::MeanVisible => "mean visible LEO satellites",
-        Quantity::Availability => "availability",
-        Quantity::InformationPdop => "mean PDOP of a window",
-        Quantity::Sigma3dM => "1-sigma position error (m)",
-        Quantity::SigmaHM => "1-sigma horizontal error (m)",
-        Quantity::SigmaVM => "1-sigma height error (m)",
-        Quantity::Error953dM => "95 % position error (m)",
-        Quantity::Error95HM => "95 % horizontal error (m)",
-        Quantity::Error95VM => "95 % height error (m)",
-        Quantity::LaunchCost => "launch cost (satellites)",
-        Quantity::LeastVisible => "least number of visible LEO satellites",
-        Quantity::MeanTotalVisible => "mean visible satellites, LEO and GNSS",
-        Quantity::LongestOutageS => "longest outage (s)",
-        Quantity::N1MaxPdop => "maximum PDOP without any one satellite",
-        Quantity::N1CvarPdop => "CVaR of PDOP without any one satellite",
-        Quantity::N1Availability => "availability without any one satellite",
-        Quantity::ExpectedAvailability => "expected availability",
-        Quantity::P95Hdop => "95 % quantile of HDOP",
-        Quantity::P95Vdop => "95 % quantile of VDOP",
-        coverage => return coverage_label(coverage),
-    };
-    label.to_owned()
-}
+    /// For a coverage: the least number of satellites.
+    pub(in crate::report) fn coverage_level(self) -> Option<usize> {
+        self.keyword().strip_prefix("coverage-")?.parse().ok()
+    }
 
-fn coverage_label(quantity: Quantity) -> String {
-    match quantity.coverage_levels() {
-        Some((least, true)) => format!("fraction with at least {least} satellites, LEO and GNSS"),
-        Some((least, false)) => format!("fraction with at least {least} LEO satellites"),
-        None => quantity.to_string(),
+    /// Its column in a table.
+    fn column(self) -> String {
+        self.keyword().replace('-', "_")
     }
 }
 
@@ -167,6 +170,14 @@ impl FigureError {
     }
 }
 
+/// Name and notation of a constellation.
+fn title(named: &NamedProfile<'_>) -> String {
+    if named.name == named.notation {
+        return named.name.clone();
+    }
+    format!("{} ({})", named.name, named.notation)
+}
+
 /// A figure and the numbers behind it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plate {
@@ -185,6 +196,8 @@ pub enum Chart {
     Map(MapChart),
     /// Groups of bars on a logarithmic axis.
     Bars(BarChart),
+    /// Rows of bars over time.
+    Timeline(TimelineChart),
 }
 
 /// Points and lines in a plane.
@@ -241,6 +254,19 @@ pub struct MapChart {
     pub map: RegionMap,
     /// What is shown.
     pub bounds: super::coastline::Bounds,
+}
+
+/// Rows of bars over time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimelineChart {
+    /// Title.
+    pub title: String,
+    /// Label of the horizontal axis, with its unit.
+    pub x: String,
+    /// The first and the last time shown.
+    pub span: [f64; 2],
+    /// Name, and beginnings and ends, of each row.
+    pub rows: Vec<(String, Vec<[f64; 2]>)>,
 }
 
 /// Groups of bars.

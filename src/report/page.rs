@@ -107,7 +107,7 @@ impl Page<'_> {
 /// Maximum bytes for the cuts of the members, and of the compared constellations. With these, the positions of
 /// satellites from files and the script for the figures (4.7 MB), the page stays below 8 MB, apart from the
 /// history of a long search.
-const CUTS_BYTES: usize = 900_000;
+const CUTS_BYTES: usize = 1_000_000;
 
 /// Maximum bytes for the positions of satellites from files, of all constellations.
 const TRACKS_BYTES: usize = 900_000;

@@ -2,7 +2,7 @@
 //! distribution of PDOP.
 
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::evaluate::{EpochMetrics, Evaluator, PointMetrics};
+use crate::evaluate::{EpochMetrics, Evaluator, Outage, PointMetrics, Series, ViewHistograms};
 use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::stats::{Weighted, summarize_weighted, weighted_quantile};
 use rayon::prelude::*;
@@ -18,6 +18,36 @@ pub struct Profile {
     pub pdop: Vec<Quantile>,
     /// The tail of PDOP; `None` if no sample is solved.
     pub tail: Option<Tail>,
+    /// Satellites in view over all samples.
+    pub histograms: ViewHistograms,
+    /// The outages of the points that are out longest, those first.
+    pub outages: Vec<PointOutages>,
+}
+
+/// The outages of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointOutages {
+    /// Number of the point.
+    pub point: usize,
+    /// Its outages in the order of time.
+    pub outages: Vec<Outage>,
+}
+
+/// Most points whose outages are kept.
+const MOST_OUT: usize = 24;
+
+/// The outages of the points that are out longest; of equal ones the first.
+fn longest_out(series: &Series) -> Vec<PointOutages> {
+    let out_s = |&n: &usize| series.points[n].total_outage_s;
+    let mut points: Vec<usize> = (0..series.points.len()).collect();
+    points.retain(|n| out_s(n) > 0.0);
+    points.sort_by(|a, b| out_s(b).total_cmp(&out_s(a)));
+    points.truncate(MOST_OUT);
+    let outages = points.into_iter().map(|point| PointOutages {
+        point,
+        outages: series.outages(point).collect(),
+    });
+    outages.collect()
 }
 
 /// One step of an empirical distribution.
@@ -72,11 +102,34 @@ impl Profile {
             cvar: summary.cvar,
         });
         Ok(Self {
+            outages: longest_out(&series),
             epochs: series.epochs,
             points: series.points,
+            histograms: series.histograms,
             pdop,
             tail,
         })
+    }
+
+    /// Seconds between the instants; 0 if there is one.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        match self.epochs.as_slice() {
+            [first, second, ..] => second.elapsed_s - first.elapsed_s,
+            _ => 0.0,
+        }
+    }
+
+    /// The distribution over the points, by their weights, of a value that not every point has.
+    #[must_use]
+    pub fn over_points(&self, value: impl Fn(&PointMetrics) -> Option<f64>) -> Vec<Quantile> {
+        let weighted = |point: &PointMetrics| {
+            let weight = point.weight;
+            value(point).map(|value| Weighted { value, weight })
+        };
+        let mut rising: Vec<Weighted> = self.points.iter().filter_map(weighted).collect();
+        rising.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
+        quantiles(&rising)
     }
 
     /// Evaluates several constellations, in parallel and in their order; `None` for one that cannot be

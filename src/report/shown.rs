@@ -24,6 +24,7 @@ pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
         | Quantity::NewPlanes
         | Quantity::LeastVisible
         | Quantity::LongestOutageS => decimals(value, 0),
+        Quantity::GainLongestOutageS => decimals(value, 0),
         coverage if coverage.coverage_levels().is_some() => share(value),
         Quantity::Availability | Quantity::N1Availability | Quantity::ExpectedAvailability => {
             share(value)

@@ -1,6 +1,6 @@
 //! The columns of a table, taken from the fields of the types that its rows serialise.
 
-use crate::evaluate::{COVERAGE_LEVELS, Metrics};
+use crate::evaluate::{COVERAGE_COLUMNS, COVERAGE_TOTAL_COLUMNS, Metrics};
 use serde::de::value::Error;
 use serde::de::{Deserialize, Deserializer, Error as _, Visitor};
 use serde::ser::Serialize;
@@ -46,44 +46,14 @@ impl<'de> Deserializer<'de> for Listener<'_> {
 /// satellites.
 pub(crate) fn metric_columns() -> Vec<&'static str> {
     let columns = |name: &&'static str| match *name {
-        "coverage" => COVERAGE.to_vec(),
-        "coverage_total" => COVERAGE_TOTAL.to_vec(),
+        "coverage" => COVERAGE_COLUMNS.to_vec(),
+        "coverage_total" => COVERAGE_TOTAL_COLUMNS.to_vec(),
         name => vec![name],
     };
     let always = fields::<Metrics>().iter();
     let always = always.filter(|name| !Metrics::is_on_demand(name));
     always.flat_map(columns).collect()
 }
-
-const COVERAGE: [&str; COVERAGE_LEVELS] = [
-    "coverage_1",
-    "coverage_2",
-    "coverage_3",
-    "coverage_4",
-    "coverage_5",
-    "coverage_6",
-    "coverage_7",
-    "coverage_8",
-    "coverage_9",
-    "coverage_10",
-    "coverage_11",
-    "coverage_12",
-];
-
-const COVERAGE_TOTAL: [&str; COVERAGE_LEVELS] = [
-    "coverage_total_1",
-    "coverage_total_2",
-    "coverage_total_3",
-    "coverage_total_4",
-    "coverage_total_5",
-    "coverage_total_6",
-    "coverage_total_7",
-    "coverage_total_8",
-    "coverage_total_9",
-    "coverage_total_10",
-    "coverage_total_11",
-    "coverage_total_12",
-];
 
 /// The value of a field, or of an element of a field: `coverage_4` is element 4 of `coverage`.
 pub(crate) fn field<'a>(row: &'a Value, name: &str) -> &'a Value {

@@ -6,7 +6,7 @@ use super::values::{ConstellationParts, NamedConstellation};
 use crate::constellation::{Design, NotationError};
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::exchange::import::{
-    Fleet, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter,
+    Fleet, Merged, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter,
 };
 use crate::keyword::nearest;
 use std::io;
@@ -167,20 +167,19 @@ impl NamedConstellation {
             names.push(name.to_owned());
             merged.add(imported);
         }
-        let none = || (Vec::new(), Fleet::Sets(Vec::new()));
-        let (formats, mut fleet) = merged.finish().unwrap_or_else(none);
+        let none = || Merged {
+            formats: Vec::new(),
+            fleet: Fleet::Sets(Vec::new()),
+            origins: Vec::new(),
+        };
+        let merged = merged.finish().unwrap_or_else(none);
         let filter = SatelliteFilter {
             only: only.clone(),
             exclude: exclude.clone(),
         };
-        fleet
-            .choose(&filter)
-            .map_err(|source| self.error(&names.join(", "), source.into()))?;
-        Ok(FileSatellites {
-            names,
-            formats,
-            fleet,
-        })
+        let called = names.join(", ");
+        FileSatellites::new(names, merged, &filter)
+            .map_err(|source| self.error(&called, source.into()))
     }
 
     /// The error of a file of this constellation.

@@ -276,8 +276,7 @@ impl Scenario {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
-                asks_for_hdop: self
-                    .asks_for(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop)),
+                asks_for_hdop: self.asks_for(Quantity::is_of_dops),
                 asks_for_n1: self.asks_for(Quantity::is_of_one_lost),
                 expects_up: self
                     .reliability

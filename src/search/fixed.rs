@@ -12,6 +12,8 @@ pub(super) struct FixedSatellites {
     /// `None` if there are no satellites.
     grid: Option<TimeGrid>,
     satellites: Vec<(String, Arc<FixedStates>)>,
+    /// The part of each satellite.
+    parts: Vec<usize>,
 }
 
 /// The states of one satellite; `None` where its file has a gap.
@@ -48,6 +50,7 @@ impl FixedSatellites {
         let satellites = ephemeris.satellites().iter().map(sampled);
         Ok(Self {
             grid: Some(grid),
+            parts: ephemeris.parts().to_vec(),
             satellites: satellites.collect::<Result<_, _>>()?,
         })
     }
@@ -69,6 +72,6 @@ impl FixedSatellites {
             propagator: Box::new(FixedTrajectory(Arc::clone(samples))),
         };
         let satellites = self.satellites.iter().map(copy).collect();
-        Some(Ephemeris::new(grid, satellites))
+        Some(Ephemeris::new(grid, satellites).with_parts(self.parts.clone()))
     }
 }

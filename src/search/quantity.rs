@@ -2,7 +2,7 @@
 
 use super::counted::{CountedSatellites, NewSatellites};
 use crate::constellation::{Design, Shell};
-use crate::evaluate::Metrics;
+use crate::evaluate::{Gain, Metrics};
 use crate::keyword::{Keyword, keywords};
 
 keywords! {
@@ -116,6 +116,36 @@ keywords! {
         ExpectedAvailability = "expected-availability",
         /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
+        /// Gain over the GNSS alone in mean PDOP; dimensionless; maximised.
+        GainMeanPdop = "gain-mean-pdop",
+        /// Gain over the GNSS alone in CVaR of PDOP; dimensionless; maximised.
+        GainCvarPdop = "gain-cvar-pdop",
+        /// Gain over the GNSS alone in 95 % quantile of PDOP; dimensionless; maximised.
+        GainP95Pdop = "gain-p95-pdop",
+        /// Gain over the GNSS alone in 99 % quantile of PDOP; dimensionless; maximised.
+        GainP99Pdop = "gain-p99-pdop",
+        /// Gain over the GNSS alone in maximum PDOP; dimensionless; maximised.
+        GainMaxPdop = "gain-max-pdop",
+        /// Gain over the GNSS alone in 95 % quantile of HDOP; dimensionless; maximised.
+        GainP95Hdop = "gain-p95-hdop",
+        /// Gain over the GNSS alone in 95 % quantile of VDOP; dimensionless; maximised.
+        GainP95Vdop = "gain-p95-vdop",
+        /// Gain over the GNSS alone in longest outage of any point, seconds; maximised.
+        GainLongestOutageS = "gain-longest-outage-s",
+        /// Gain over the GNSS alone in mean PDOP of a window; dimensionless; maximised.
+        GainInformationPdop = "gain-information-pdop",
+        /// Gain over the GNSS alone in mean standard deviation of the position, metres; maximised.
+        GainSigma3dM = "gain-sigma-3d-m",
+        /// Gain over the GNSS alone in mean standard deviation of the horizontal position, metres; maximised.
+        GainSigmaHM = "gain-sigma-h-m",
+        /// Gain over the GNSS alone in mean standard deviation of the height, metres; maximised.
+        GainSigmaVM = "gain-sigma-v-m",
+        /// Gain over the GNSS alone in 95 % error of the position, metres; maximised.
+        GainError953dM = "gain-error95-3d-m",
+        /// Gain over the GNSS alone in 95 % error of the horizontal position, metres; maximised.
+        GainError95HM = "gain-error95-h-m",
+        /// Gain over the GNSS alone in 95 % error of the height, metres; maximised.
+        GainError95VM = "gain-error95-v-m",
     }
 }
 
@@ -145,6 +175,7 @@ impl Quantity {
     #[must_use]
     pub fn is_maximised(self) -> bool {
         self.coverage_levels().is_some()
+            || self.gain_in().is_some()
             || matches!(
                 self,
                 Self::MeanVisible
@@ -173,11 +204,23 @@ impl Quantity {
         Some((level.parse().ok()?, is_total))
     }
 
+    /// For a gain over the GNSS alone: the quantity that gains.
+    #[must_use]
+    pub fn gain_in(self) -> Option<Self> {
+        let name = self.keyword().strip_prefix("gain-")?;
+        Self::from_keyword(name).ok()
+    }
+
+    /// The quantity that the samples of this one are of: that which gains, for a gain.
+    fn of_samples(self) -> Self {
+        self.gain_in().unwrap_or(self)
+    }
+
     /// Whether it is an accuracy in metres, which needs range errors.
     #[must_use]
     pub fn is_in_metres(self) -> bool {
         matches!(
-            self,
+            self.of_samples(),
             Self::Sigma3dM
                 | Self::SigmaHM
                 | Self::SigmaVM
@@ -196,21 +239,34 @@ impl Quantity {
         )
     }
 
-    /// Whether it is computed only where the scenario asks for it.
+    /// Whether it is of windows, which need a length.
     #[must_use]
-    pub fn is_on_demand(self) -> bool {
-        self.is_in_metres() || self == Self::InformationPdop
+    pub fn is_of_windows(self) -> bool {
+        self.of_samples() == Self::InformationPdop
     }
 
-    /// Fraction of its samples that are solved: of the windows for a statistic over windows, else of points and
-    /// instants.
+    /// Whether it is a quantile of HDOP or VDOP, which take several times as long as PDOP.
+    #[must_use]
+    pub fn is_of_dops(self) -> bool {
+        matches!(self.of_samples(), Self::P95Hdop | Self::P95Vdop)
+    }
+
+    /// Whether it is computed only where the scenario has what it needs: range errors, windows, or a GNSS to gain over.
+    #[must_use]
+    pub fn is_on_demand(self) -> bool {
+        self.is_in_metres() || self.is_of_windows() || self.gain_in().is_some()
+    }
+
+    /// Fraction of its samples that are solved: of the windows for a statistic over windows, those that have an accuracy for
+    /// metres, else of points and instants.
     #[must_use]
     pub fn solved_fraction(self, metrics: &Metrics) -> f64 {
         let of_window = metrics.information_pdop.map(|of| of.solved_fraction);
         let of_failures = metrics.n1.map(|of| of.solved_fraction);
-        let own = match self {
+        let own = match self.of_samples() {
             Self::InformationPdop => of_window,
             one if one.is_of_one_lost() => of_failures,
+            one if one.is_in_metres() => metrics.accuracy_solved_fraction,
             _ => None,
         };
         own.unwrap_or(metrics.solved_fraction)
@@ -241,7 +297,7 @@ impl Quantity {
     /// Fraction of the samples that must be solved: all for a mean, a tail or a maximum, q for
     /// a quantile of level q. `None` for a quantity that is not a statistic of the solved samples.
     fn solved_share_needed(self) -> Option<f64> {
-        match self {
+        match self.of_samples() {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
             Self::N1MaxPdop | Self::N1CvarPdop => Some(1.0),
             Self::InformationPdop | Self::Sigma3dM | Self::SigmaHM | Self::SigmaVM => Some(1.0),
@@ -277,13 +333,6 @@ impl Quantity {
         let has_planes = satellites.count() > 0 && new.from_files == 0;
         let of_planes = |value: usize| has_planes.then_some(value as f64);
         match self {
-            Self::JPos => metrics.j_pos,
-            Self::JCost => metrics.j_cost,
-            Self::MeanPdop => metrics.mean_pdop,
-            Self::CvarPdop => metrics.cvar_pdop,
-            Self::P95Pdop => metrics.p95_pdop,
-            Self::P99Pdop => metrics.p99_pdop,
-            Self::MaxPdop => metrics.max_pdop,
             Self::Satellites => Some(satellites.count() as f64),
             Self::Planes => of_planes(satellites.shells.map_or(0, Design::planes)),
             Self::NewSatellites => {
@@ -291,6 +340,26 @@ impl Quantity {
                 Some((of_shells + new.from_files) as f64)
             }
             Self::NewPlanes => of_planes(new_sum(Shell::planes)),
+            // 0 and not -0 for no shell.
+            Self::LaunchCost => has_planes.then(|| {
+                let costs = new.shells.iter().map(|shell| cost.of_shell(shell));
+                costs.fold(0.0, |sum, cost| sum + cost)
+            }),
+            of_metrics => of_metrics.of_metrics(metrics),
+        }
+    }
+
+    /// The value of a quantity that the metrics alone have; `None` for others too, such as planes.
+    #[must_use]
+    pub fn of_metrics(self, metrics: &Metrics) -> Option<f64> {
+        match self {
+            Self::JPos => metrics.j_pos,
+            Self::JCost => metrics.j_cost,
+            Self::MeanPdop => metrics.mean_pdop,
+            Self::CvarPdop => metrics.cvar_pdop,
+            Self::P95Pdop => metrics.p95_pdop,
+            Self::P99Pdop => metrics.p99_pdop,
+            Self::MaxPdop => metrics.max_pdop,
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
             Self::LeastVisible => Some(metrics.least_visible.into()),
@@ -309,11 +378,7 @@ impl Quantity {
             Self::Error953dM => metrics.error95_3d_m?,
             Self::Error95HM => metrics.error95_h_m?,
             Self::Error95VM => metrics.error95_v_m?,
-            // 0 and not -0 for no shell.
-            Self::LaunchCost => has_planes.then(|| {
-                let costs = new.shells.iter().map(|shell| cost.of_shell(shell));
-                costs.fold(0.0, |sum, cost| sum + cost)
-            }),
+            gain if gain.gain_in().is_some() => gain.of_gain(metrics.gain.as_ref()?),
             _ => {
                 let (satellites, is_total) = self.coverage_levels()?;
                 let coverage = if is_total {
@@ -324,5 +389,12 @@ impl Quantity {
                 coverage.of(satellites)
             }
         }
+    }
+
+    /// The value of a gain.
+    fn of_gain(self, gain: &Gain) -> Option<f64> {
+        let metric = self.gain_in()?.keyword().replace('-', "_");
+        let gains = gain.named();
+        gains.into_iter().find(|(name, _)| *name == metric)?.1
     }
 }

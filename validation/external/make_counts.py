@@ -2,7 +2,7 @@
 
     python3 validation/external/make_counts.py
 
-writes `validation/cases/counts.json`: the metrics of three studies on a sphere, by a program that shares nothing
+writes `validation/cases/counts.json`: the metrics of four studies on a sphere, by a program that shares nothing
 with the evaluator. Propagation is that of docs/models.md in closed form (circular Walker delta under secular J2), visibility
 the elevation itself, PDOP, HDOP and VDOP the inverse of the full geometry matrix with its clocks, quantiles and CVaR those of
 the sorted samples with their weights. numpy 2.
@@ -34,6 +34,13 @@ STUDIES = [
         "latitude_deg": [-80.0, 81.0], "longitude_deg": [-180.0, 179.0], "step_deg": 20.0,
         "weights": "cos-latitude", "mask_deg": 5.0, "beidou_3": False, "pdop_cap": 20.0,
         "availability_pdop": 6.0, "duration_s": 21600.0, "step_s": 60.0,
+    },
+    {
+        "name": "LEO alone, some samples unsolved",
+        "planes": 12, "satellites": 168, "phasing": 1, "inclination_deg": 60.0, "altitude_km": 1000.0,
+        "latitude_deg": [-60.0, 61.0], "longitude_deg": [-180.0, 179.0], "step_deg": 30.0,
+        "weights": "cos-latitude", "mask_deg": 5.0, "beidou_3": False, "pdop_cap": 4.5,
+        "availability_pdop": 3.0, "duration_s": 21600.0, "step_s": 120.0,
     },
     {
         "name": "the region of the paper, equal weights",
@@ -146,6 +153,59 @@ def runs(bad):
     return found
 
 
+def statistics(dops, weights, name, column=0):
+    """Mean, quantiles and tail of the solved samples; nothing if there are none."""
+    solved = ~np.isnan(dops[:, 0])
+    if not solved.any():
+        return {}
+    order = np.argsort(dops[solved, column], kind="stable")
+    values, share = dops[solved, column][order], weights[solved][order]
+    return {
+        f"mean_{name}": (values * share).sum() / share.sum(),
+        f"p50_{name}": quantile(values, share, 0.5),
+        f"p95_{name}": quantile(values, share, 0.95),
+        f"p99_{name}": quantile(values, share, 0.99),
+        f"max_{name}": values[-1],
+        f"cvar_{name}": tail(values, share, LEVEL),
+    }
+
+
+def summary(dops, weights, study):
+    """What a gain is taken of: all statistics, fractions and the longest outage, from dops by point and instant."""
+    flat = dops.reshape(-1, 3)
+    solved = ~np.isnan(flat[:, 0])
+    out = ~(dops[:, :, 0] <= study["availability_pdop"])
+    longest = max((n for point in out for n, _ in runs(point)), default=0)
+    return statistics(flat, weights, "pdop") | {
+        "solved_fraction": weights[solved].sum() / weights.sum(),
+        "availability": weights[~out.ravel()].sum() / weights.sum(),
+        "longest_outage_s": longest * study["step_s"],
+    }
+
+
+def mean_of_solved(values):
+    return float(np.nanmean(values)) if not np.isnan(values).all() else None
+
+
+def minus(alone, both):
+    return None if alone is None or both is None else alone - both
+
+
+def error95_v(dops, weights):
+    """Height error that 5 % of all samples exceed with ranges of 1 m, unsolved ones without end; by bisection."""
+    solved = ~np.isnan(dops[:, 0])
+    unsolved = weights[~solved].sum() / weights.sum()
+    if unsolved >= 0.05:
+        return None
+    sigmas, shares = dops[solved, 2], weights[solved] / weights.sum()
+    low, high = 0.0, 100.0 * sigmas.max()
+    for _ in range(200):
+        x = (low + high) / 2
+        beyond = sum(share * math.erfc(x / sigma / math.sqrt(2)) for sigma, share in zip(sigmas, shares))
+        low, high = (x, high) if unsolved + beyond > 0.05 else (low, x)
+    return low
+
+
 def evaluate(study):
     times = np.arange(0.0, study["duration_s"], study["step_s"])
     sidereal = gmst(times)
@@ -153,7 +213,7 @@ def evaluate(study):
                  study["altitude_km"], times, sidereal)
     gnss = beidou(times, sidereal) if study["beidou_3"] else np.zeros((len(times), 0, 3))
     sine = math.sin(math.radians(study["mask_deg"]))
-    n_leo, n_gnss, weights, dops, points = [], [], [], [], []
+    n_leo, n_gnss, weights, dops, alone, points = [], [], [], [], [], []
     for latitude_deg in grid(study["latitude_deg"], study["step_deg"]):
         for longitude_deg in grid(study["longitude_deg"], study["step_deg"]):
             latitude, longitude = math.radians(latitude_deg), math.radians(longitude_deg)
@@ -164,6 +224,7 @@ def evaluate(study):
             for k in range(len(times)):
                 seen = [sky[k][sky[k][:, 2] >= sine] for sky in (of_gnss, of_leo)]
                 dop = dilutions(seen, study["pdop_cap"])
+                alone.append(dilutions(seen[:1], study["pdop_cap"]) or (math.nan,) * 3)
                 n_gnss.append(len(seen[0]))
                 n_leo.append(len(seen[1]))
                 weights.append(weight)
@@ -176,9 +237,10 @@ def evaluate(study):
                 "total_outage_s": sum(bad) * study["step_s"],
                 "outage_cut": any(cut for _, cut in outages),
                 "least_visible": int(min(n_leo[-len(times):])),
+                "availability": 1 - sum(bad) / len(bad),
             })
             points[-1]["cuts"] = [n * study["step_s"] for n, cut in outages if cut]
-    n_leo, n_gnss, weights, dops = map(np.array, (n_leo, n_gnss, weights, dops))
+    n_leo, n_gnss, weights, dops, alone = map(np.array, (n_leo, n_gnss, weights, dops, alone))
     total = weights.sum()
     longest = max(point["longest_outage_s"] for point in points)
     solved = ~np.isnan(dops[:, 0])
@@ -197,17 +259,37 @@ def evaluate(study):
     for point in points:
         point.pop("cuts", None)
     for name, column in (("pdop", 0), ("hdop", 1), ("vdop", 2)):
-        order = np.argsort(dops[solved, column], kind="stable")
-        values, share = dops[solved, column][order], weights[solved][order]
-        metrics |= {
-            f"mean_{name}": (values * share).sum() / share.sum(),
-            f"p50_{name}": quantile(values, share, 0.5),
-            f"p95_{name}": quantile(values, share, 0.95),
-            f"p99_{name}": quantile(values, share, 0.99),
-            f"max_{name}": values[-1],
-            f"cvar_{name}": tail(values, share, LEVEL),
-        }
-    return {"study": study, "metrics": metrics, "points": points}
+        metrics |= statistics(dops, weights, name, column)
+    metrics["error95_v_m"] = error95_v(dops, weights)
+    for name, counts in (("leo", n_leo), ("gnss", n_gnss), ("all", n_leo + n_gnss)):
+        metrics[f"histogram_{name}"] = list(np.bincount(counts, weights) / total)
+    by_point = (len(points), len(times))
+    own, without = (of.reshape(*by_point, 3) for of in (dops, alone))
+    if study["beidou_3"]:
+        both, gnss = summary(own, weights, study), summary(without, weights, study)
+        metrics["gain"] = {name: minus(gnss.get(name), both.get(name)) for name in both}
+    of_leo, of_all, share = (of.reshape(by_point) for of in (n_leo, n_leo + n_gnss, weights))
+    for n, point in enumerate(points):
+        point["coverage"] = [float((of_leo[n] >= least).mean()) for least in range(1, 13)]
+        point["coverage_total"] = [float((of_all[n] >= least).mean()) for least in range(1, 13)]
+        if study["beidou_3"]:
+            point["gain_mean_pdop"] = minus(mean_of_solved(without[n, :, 0]), mean_of_solved(own[n, :, 0]))
+    instants = []
+    for k in range(0, len(times), max(1, len(times) // 24)):
+        weight = share[:, k]
+        instants.append({
+            "number": k,
+            "coverage": [(weight * (of_leo[:, k] >= least)).sum() / weight.sum() for least in range(1, 13)],
+            "coverage_total": [(weight * (of_all[:, k] >= least)).sum() / weight.sum() for least in range(1, 13)],
+            "availability": (weight * (own[:, k, 0] <= study["availability_pdop"])).sum() / weight.sum(),
+        })
+        if study["beidou_3"]:
+            means = []
+            for dop in (without[:, k, 0], own[:, k, 0]):
+                known = ~np.isnan(dop)
+                means.append((weight * dop)[known].sum() / weight[known].sum() if known.any() else None)
+            instants[-1]["gain_mean_pdop"] = minus(*means)
+    return {"study": study, "metrics": metrics, "points": points, "instants": instants}
 
 
 def plain(value):
@@ -216,7 +298,16 @@ def plain(value):
     return float(value) if isinstance(value, np.floating) else int(value)
 
 
+def lines(case):
+    """One study as JSON: a line for each member, and for each point and instant."""
+    def part(value):
+        if isinstance(value, list):
+            return "[\n   " + ",\n   ".join(json.dumps(one, default=plain) for one in value) + "\n  ]"
+        return json.dumps(value, default=plain)
+    return " {\n" + ",\n".join(f'  "{name}": {part(value)}' for name, value in case.items()) + "\n }"
+
+
 if __name__ == "__main__":
     cases = [evaluate(study) for study in STUDIES]
-    OUT.write_text(json.dumps(cases, indent=1, default=plain) + "\n")
+    OUT.write_text("[\n" + ",\n".join(map(lines, cases)) + "\n]\n")
     print(f"{OUT}: {len(cases)} studies, numpy {np.__version__}")

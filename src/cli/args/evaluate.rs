@@ -30,8 +30,8 @@ pub(crate) struct EvaluateArgs {
     #[arg(long)]
     pub(crate) dops: bool,
 
-    /// Evaluate at N equally spaced phases of the built-in GNSS constellations, over the cycle of their ground tracks,
-    /// and add the minimum, mean and maximum of each metric.
+    /// Evaluate at N equally spaced phases of the built-in GNSS constellations, as for N epochs over a sidereal day, and
+    /// add the minimum, mean and maximum of each metric.
     ///
     /// A nominal constellation begins at an arbitrary place; the metrics of a scenario are those of one phase.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]

@@ -62,7 +62,7 @@ pub(crate) struct PlotArgs {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
 
-    /// Figure to draw: pareto, map, cdf, series, convergence or budget.
+    /// Figure to draw: pareto, map, cdf, series, histogram, timeline, convergence or budget.
     #[arg(long)]
     pub(crate) figure: Figure,
 
@@ -70,9 +70,9 @@ pub(crate) struct PlotArgs {
     #[arg(long)]
     pub(crate) measure: Option<Measure>,
 
-    /// What a map shows, and what comes first in a distribution or a series: of a run fuzzy, sum, topsis, knee or
+    /// What a map or a timeline shows, and what comes first in a distribution or a series: of a run fuzzy, sum, topsis, knee or
     /// the index of a design on the front; otherwise, or beside the front, the name of a constellation or its
-    /// number from 1 [default: fuzzy, or the first constellation; needed for a map of one of several].
+    /// number from 1 [default: fuzzy, or the first constellation; needed for a map or a timeline of one of several].
     #[arg(long, value_name = "PICK")]
     pub(crate) pick: Option<String>,
 

@@ -14,7 +14,7 @@ use crate::cli::constellations::GivenConstellation;
 use crate::cli::study::Study;
 use crate::cli::{Status, constellations, output};
 use crate::ephemeris::Ephemeris;
-use crate::evaluate::{DopStatistics, Evaluator, Metrics};
+use crate::evaluate::{DopStatistics, Evaluator, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::report::{Assessment, ConstellationEntry};
 use crate::run::ScenarioStamp;
@@ -39,12 +39,13 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
     let fixed = study.fixed()?;
     let goals = study.goals(fixed.as_ref());
+    let gnss_only = gnss_only(args, &goals, &evaluator)?;
     let mut work = EvaluationContext {
         args,
         scenario: &study.scenario,
         stamp: study.stamp()?,
-        gnss_only: gnss_only(args, &goals, &evaluator)?,
         goals,
+        gnss_only,
         fixed: fixed.and_then(|fixed| fixed.files),
         evaluator: &evaluator,
     };
@@ -137,24 +138,26 @@ struct EvaluationContext<'a> {
 impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
-        let (metrics, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
+        let alone = self.gnss_only.as_ref().map(|of| of.metrics);
+        let (metrics, views, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
+        let metrics = alone.map_or(metrics, |alone| metrics.with_gain_over(&alone));
         let goals = (&self.goals, self.fixed.as_ref());
-        Ok(ConstellationEntry::new(one, metrics, dops, goals))
+        Ok(ConstellationEntry::new(one, (metrics, views), dops, goals))
     }
 }
 
-/// The metrics, and with `--dops` all dilutions of precision.
+/// The metrics with the satellites in view, and with `--dops` all dilutions of precision.
 fn evaluated(
     args: &EvaluateArgs,
     evaluator: &Evaluator,
     ephemeris: &Ephemeris,
-) -> Result<(Metrics, Option<DopStatistics>)> {
-    let metrics = evaluator.evaluate_ephemeris(ephemeris)?;
+) -> Result<(Metrics, ViewHistograms, Option<DopStatistics>)> {
+    let (metrics, views) = evaluator.evaluate_views(ephemeris)?;
     if !args.dops {
-        return Ok((metrics, None));
+        return Ok((metrics, views, None));
     }
     let dops = evaluator.dops_beside(&metrics, ephemeris)?;
-    Ok((metrics.with_dops(&dops), Some(dops)))
+    Ok((metrics.with_dops(&dops), views, Some(dops)))
 }
 
 /// The GNSS of the scenario without LEO satellites.
@@ -168,10 +171,11 @@ fn gnss_only(
         return Ok(None);
     }
     let none = Ephemeris::new(setup.grid, Vec::new());
-    let (metrics, dops) = evaluated(args, evaluator, &none)?;
+    let (metrics, views, dops) = evaluated(args, evaluator, &none)?;
+    let metrics = metrics.with_gain_over(&metrics);
     Ok(Some(Assessment::new(
         CountedSatellites::default(),
-        metrics,
+        (metrics, views),
         dops,
         goals,
     )))

@@ -202,12 +202,13 @@ fn check(
         read_back,
     } in groups(args, manifest, has_elements)
     {
-        let (formats, mut fleet) = read_constellation::read(&paths, None)?;
-        if formats == [LintFormat::Sp3] {
+        let mut merged = read_constellation::read(&paths, None)?;
+        let fleet = &mut merged.fleet;
+        if merged.formats == [LintFormat::Sp3] {
             fleet.name_by_place();
         }
         let found = original
-            .check(&read_back, args.tle_theory, &fleet)
+            .check(&read_back, args.tle_theory, fleet)
             .with_context(|| format!("cannot check {name}"))?;
         passed &= found.passed();
         let cells = |difference: Option<Difference>, scale: f64| {

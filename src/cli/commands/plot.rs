@@ -140,6 +140,11 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
             let first = &named(&profiles)[0];
             figures::map(first, measure(Measure::MeanPdop), &region_map(view))?
         }
+        Figure::Timeline => {
+            require_one(args, view)?;
+            figures::timeline(&named(&profiles(args, view, false)?)[0])?
+        }
+        Figure::Histogram => figures::histogram(&named(&profiles(args, view, true)?))?,
         Figure::Cdf => {
             let profiles = profiles(args, view, true)?;
             figures::cdf(&named(&profiles), measure(Measure::MeanVisible))?
@@ -151,14 +156,15 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
     })
 }
 
-/// Refuses to choose which of several constellations a map shows; of a front it is the fuzzy pick.
+/// Refuses to choose which of several constellations a map or a timeline shows; of a front it is the fuzzy pick.
 fn require_one(args: &PlotArgs, view: &View) -> Result<()> {
     let several = view.compared.as_slice();
     if args.pick.is_some() || view.is_of_search() || several.len() < 2 {
         return Ok(());
     }
     bail!(
-        "a map shows one constellation, and there are {}: choose one with --pick, by its number or its name: {}",
+        "figure {} shows one constellation, and there are {}: choose one with --pick, by its number or its name: {}",
+        args.figure,
         several.len(),
         names(several)
     )

@@ -5,7 +5,8 @@
 
 use super::pass::{ChangedSample, PassPiece};
 use crate::ephemeris::Ephemeris;
-use crate::evaluate::counts::{LongestOutage, Outages, Views};
+use crate::evaluate::counts::{LongestOutage, Outages};
+use crate::evaluate::histograms::ViewBins;
 use crate::evaluate::kernel::quantile_rank;
 use crate::evaluate::metrics::Evaluated;
 use crate::evaluate::{Evaluator, Metrics};
@@ -26,8 +27,8 @@ pub(super) struct Whole<'a> {
     pdop: Vec<f64>,
     visible: Vec<u32>,
     gnss_visible: Vec<u32>,
-    leo: Views,
-    all: Views,
+    leo: ViewBins,
+    all: ViewBins,
     buckets: Buckets,
     totals: Totals,
     /// Whether a sample is unsolved or above the availability threshold, point by point.
@@ -170,10 +171,7 @@ impl<'a> Whole<'a> {
             joined(|piece| &piece.gnss_visible),
         );
         let satellites = ephemeris.satellites().len();
-        let (mut leo, mut all) = (
-            Views::new(satellites),
-            Views::new(satellites + evaluator.gnss_count()),
-        );
+        let (mut leo, mut all) = (ViewBins::default(), ViewBins::default());
         let weight = |sample: usize| evaluator.weights.of(sample % sites);
         let available_up_to = setup.metrics.availability_pdop;
         let mut totals = Totals::default();
@@ -261,8 +259,9 @@ impl<'a> Whole<'a> {
         }
         let share = |weight: u64| weight as f64 / self.evaluator.weights.total() as f64;
         let evaluated = Evaluated {
-            leo,
-            all,
+            leo: leo.views(),
+            all: all.views(),
+            bins: None,
             solved: share(totals.solved),
             available: share(totals.available),
             longest_outage: self.longest_outage(scratch),

@@ -3,6 +3,7 @@
 //! All are whole numbers, so that they do not depend on how the samples are cut into pieces of time.
 
 use super::super::counts::{COVERAGE_LEVELS, LongestOutage, Outages, PointViews, Views};
+use super::super::histograms::ViewBins;
 use super::fixed::FixedSample;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
@@ -178,18 +179,21 @@ pub(super) struct ViewTally<'a> {
     /// Satellites in view, LEO and all, but for the last `pending` instants.
     views: [Views; 2],
     pending: u32,
+    /// How often so many are in view, where asked for.
+    pub(super) bins: Option<[ViewBins; 2]>,
     pub(super) rechecks: Rechecks,
 }
 
 impl<'a> ViewTally<'a> {
     /// No sample yet.
-    fn new(tiles: &'a [Tile]) -> Self {
+    fn new(tiles: &'a [Tile], histograms: bool) -> Self {
         Self {
             tiles,
             of_tiles: vec![TileTally::NONE; tiles.len()],
             instants: 0,
             views: [Views::default(), Views::default()],
             pending: 0,
+            bins: histograms.then(Default::default),
             rechecks: Rechecks::default(),
         }
     }
@@ -250,6 +254,9 @@ impl Merge for ViewTally<'_> {
         for (mine, theirs) in self.views.iter_mut().zip(other.views()) {
             mine.merge(&theirs);
         }
+        for (mine, theirs) in self.bins.iter_mut().flatten().zip(other.bins.iter().flatten()) {
+            mine.merge(theirs);
+        }
         let samples = [self.instants, other.instants];
         self.instants += other.instants;
         for (mine, theirs) in self.of_tiles.iter_mut().zip(&other.of_tiles) {
@@ -265,9 +272,9 @@ impl Merge for ViewTally<'_> {
 }
 
 impl Kernel {
-    /// An empty tally.
-    pub(super) fn tally(&self) -> ViewTally<'_> {
-        ViewTally::new(&self.scene.tiles.tiles)
+    /// An empty tally, perhaps with histograms.
+    pub(super) fn tally(&self, histograms: bool) -> ViewTally<'_> {
+        ViewTally::new(&self.scene.tiles.tiles, histograms)
     }
 
     pub(super) fn tally_instant(&self, instant: &Evaluating<'_>, to: &mut ViewTally<'_>) {
@@ -311,6 +318,13 @@ impl Work for TallySample<'_, '_> {
             tally.outages.add(&out, to.instants);
             tally.leo.add(leo);
             tally.all.add(&all);
+            if let Some(bins) = &mut to.bins {
+                for (of, visible) in bins.iter_mut().zip([leo, &all]) {
+                    for lane in 0..tile.members.len() {
+                        of.add(visible.0[lane], tile.weights.whole.0[lane]);
+                    }
+                }
+            }
         }
         to.instants += 1;
         to.pending += 1;

@@ -237,6 +237,7 @@ fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
         let counts = EpochMetrics {
             mean_pdop: plain.mean_pdop,
             max_pdop: plain.max_pdop,
+            gain_mean_pdop: plain.gain_mean_pdop,
             ..*fast
         };
         prop_assert_eq!(&counts, plain);
@@ -250,6 +251,7 @@ fn compare_series(fast: &Series, plain: &Series) -> Result<(), TestCaseError> {
             mean_pdop: plain.mean_pdop,
             p95_pdop: plain.p95_pdop,
             max_pdop: plain.max_pdop,
+            gain_mean_pdop: plain.gain_mean_pdop,
             ..fast.clone()
         };
         prop_assert_eq!(&counts, plain);

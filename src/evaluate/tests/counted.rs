@@ -78,13 +78,94 @@ fn check_metrics(metrics: &Metrics, expected: &Value) {
         exact(ours, number(expected, name), name);
     }
     assert_eq!(expected["longest_outage_cut"], metrics.longest_outage_cut);
-    for (name, coverage) in [
-        ("coverage", metrics.coverage),
-        ("coverage_total", metrics.coverage_total),
-    ] {
+    check_coverage([metrics.coverage, metrics.coverage_total], expected);
+}
+
+fn check_coverage([leo, total]: [Coverage; 2], expected: &Value) {
+    for (name, coverage) in [("coverage", leo), ("coverage_total", total)] {
         for (n, share) in coverage.shares().into_iter().enumerate() {
             exact(share, expected[name][n].as_f64().unwrap(), name);
         }
+    }
+}
+
+/// Differences of values in f32; null and absent are the same.
+fn check_gain(ours: Option<f64>, expected: &Value, what: &str) {
+    match (ours, expected.as_f64()) {
+        (Some(ours), Some(theirs)) => {
+            assert!((ours - theirs).abs() < 5e-6, "{what}: {ours} {theirs}");
+        }
+        (None, None) => {}
+        (ours, theirs) => panic!("{what}: {ours:?} {theirs:?}"),
+    }
+}
+
+/// Histograms, gain, and the cuts by point and by instant.
+fn check_further(evaluator: &Evaluator, ephemeris: &Ephemeris, case: &Value) {
+    let expected = &case["metrics"];
+    let (metrics, histograms) = evaluator.evaluate_views(ephemeris).unwrap();
+    let series = evaluator.series(ephemeris).unwrap();
+    assert_eq!(series.histograms, histograms);
+    for (name, ours) in [
+        ("histogram_leo", &histograms.leo),
+        ("histogram_gnss", &histograms.gnss),
+        ("histogram_all", &histograms.all),
+    ] {
+        let theirs = expected[name].as_array().unwrap();
+        assert_eq!(theirs.len(), ours.len(), "{name}");
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            exact(*ours, theirs.as_f64().unwrap(), name);
+        }
+    }
+    let gain = evaluator.with_gain(metrics).unwrap().gain;
+    assert_eq!(gain.is_some(), expected["gain"].is_object());
+    for (name, ours) in gain.iter().flat_map(Gain::named) {
+        if !name.ends_with("dop") || name.ends_with("_pdop") {
+            check_gain(ours, &expected["gain"][name], name);
+        }
+    }
+    for (ours, theirs) in series.points.iter().zip(case["points"].as_array().unwrap()) {
+        exact(
+            ours.availability,
+            number(theirs, "availability"),
+            "availability",
+        );
+        check_coverage([ours.coverage, ours.coverage_total], theirs);
+        check_gain(ours.gain_mean_pdop, &theirs["gain_mean_pdop"], "of a point");
+    }
+    for theirs in case["instants"].as_array().unwrap() {
+        let ours = &series.epochs[theirs["number"].as_u64().unwrap() as usize];
+        exact(
+            ours.availability,
+            number(theirs, "availability"),
+            "availability",
+        );
+        check_coverage([ours.coverage, ours.coverage_total], theirs);
+        check_gain(
+            ours.gain_mean_pdop,
+            &theirs["gain_mean_pdop"],
+            "of an instant",
+        );
+    }
+}
+
+/// The 95 % height error with ranges of 1 m, over all samples.
+fn check_error95(setup: &Setup, ephemeris: &Ephemeris, expected: &Value) {
+    let metre = RangeError::constant(1.0);
+    let setup = setup.clone().with_accuracy(Accuracy {
+        leo: metre,
+        gnss: vec![metre; setup.gnss.len()],
+    });
+    let evaluator = Evaluator::new(setup).unwrap();
+    let accuracy = evaluator.accuracy(ephemeris).unwrap().unwrap();
+    exact(
+        accuracy.solved_fraction,
+        number(expected, "solved_fraction"),
+        "solved",
+    );
+    match expected["error95_v_m"].as_f64() {
+        Some(theirs) => close(accuracy.error95_v_m.unwrap(), theirs, "error95_v_m"),
+        None => assert_eq!(accuracy.error95_v_m, None),
     }
 }
 
@@ -127,15 +208,24 @@ fn validate_whole_studies_against_numpy() {
         let evaluator = Evaluator::new(setup).unwrap();
         assert_eq!(evaluator.evaluate(&design).unwrap().p95_hdop, None);
         check_metrics(&evaluator.evaluate_plain(&ephemeris).unwrap(), expected);
+        check_further(&evaluator, &ephemeris, &case);
+        check_error95(evaluator.setup(), &ephemeris, expected);
         let dops = evaluator.dops(&ephemeris).unwrap();
         check_summary("pdop", dops.pdop.unwrap(), expected);
         check_summary("hdop", dops.hdop.unwrap(), expected);
         check_summary("vdop", dops.vdop.unwrap(), expected);
-        let points = evaluator.series(&ephemeris).unwrap().points;
+        let series = evaluator.series(&ephemeris).unwrap();
+        let points = &series.points;
         let theirs = case["points"].as_array().unwrap();
         assert_eq!(points.len(), theirs.len());
-        for (ours, theirs) in points.iter().zip(theirs) {
+        for (n, (ours, theirs)) in points.iter().zip(theirs).enumerate() {
+            let of_point: Vec<Outage> = series.outages(n).collect();
             assert_eq!(theirs["outages"], ours.outages);
+            assert_eq!(of_point.len(), ours.outages as usize);
+            let total: f64 = of_point.iter().map(|one| one.length_s).sum();
+            exact(total, ours.total_outage_s, "outages");
+            let is_cut = of_point.iter().any(|one| one.is_cut);
+            assert_eq!(is_cut, ours.outage_cut);
             assert_eq!(theirs["outage_cut"], ours.outage_cut);
             assert_eq!(theirs["least_visible"], ours.least_visible);
             exact(

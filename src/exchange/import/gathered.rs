@@ -74,6 +74,11 @@ impl GatheredFleet {
         })
     }
 
+    /// The satellites so far, kind by kind.
+    pub(super) fn parts(&self) -> &[Fleet] {
+        &self.parts
+    }
+
     /// The fleet; one of a single kind as such.
     pub(super) fn finish(mut self) -> Fleet {
         match self.parts.len() {

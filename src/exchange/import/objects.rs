@@ -54,11 +54,11 @@ impl Fleet {
         unique_labels(&self.identities())
     }
 
-    /// Keeps the satellites that `filter` selects.
+    /// Keeps the satellites that `filter` selects, and says of each whether it is kept.
     ///
     /// # Errors
     /// If a pattern matches none, or no satellite is left.
-    pub fn choose(&mut self, filter: &SatelliteFilter) -> Result<(), NoSuchSatellite> {
+    pub fn choose(&mut self, filter: &SatelliteFilter) -> Result<Vec<bool>, NoSuchSatellite> {
         filter.keep(&mut [self])
     }
 
@@ -113,21 +113,24 @@ impl SatelliteFilter {
         self.only.is_empty() && self.exclude.is_empty()
     }
 
-    /// Keeps the satellites of several fleets that are selected; each pattern must match in one of them.
+    /// Keeps the satellites of several fleets that are selected, and says of each whether it is; each pattern must match in
+    /// one of them.
     ///
     /// # Errors
     /// If a pattern matches none, or no satellite is left.
-    pub fn keep(&self, fleets: &mut [&mut Fleet]) -> Result<(), NoSuchSatellite> {
+    pub fn keep(&self, fleets: &mut [&mut Fleet]) -> Result<Vec<bool>, NoSuchSatellite> {
         if self.is_empty() {
-            return Ok(());
+            let count = fleets.iter().map(|fleet| fleet.len()).sum();
+            return Ok(vec![true; count]);
         }
         let identities: Vec<_> = fleets.iter().flat_map(|fleet| fleet.identities()).collect();
         let labels = unique_labels(&identities);
-        let mut kept = self.choose(&identities, &labels)?.into_iter();
+        let kept = self.choose(&identities, &labels)?;
+        let mut each = kept.iter();
         for fleet in fleets {
-            fleet.retain(&mut || kept.next().unwrap_or(false));
+            fleet.retain(&mut || each.next().copied().unwrap_or(false));
         }
-        Ok(())
+        Ok(kept)
     }
 
     /// Whether each satellite is selected.

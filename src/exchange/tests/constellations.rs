@@ -163,11 +163,7 @@ fn hybrids_pass_the_gates_of_their_digits() {
 /// Satellites of a file that another program could have written.
 pub(super) fn of_file(name: &str, bytes: &[u8]) -> Constellation {
     let imported = Fleet::read(bytes, None, Some(name)).unwrap();
-    Constellation::of_files(FileSatellites {
-        names: vec![name.to_owned()],
-        formats: vec![imported.format],
-        fleet: imported.fleet,
-    })
+    Constellation::of_files(FileSatellites::of_file(name.to_owned(), imported))
 }
 
 /// A star of 6 in one file of a product.

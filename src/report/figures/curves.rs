@@ -1,8 +1,9 @@
 //! Distributions, series over time, and the convergence of the search.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style};
-use crate::evaluate::EpochMetrics;
+use super::{Chart, Figure, FigureError, Layer, Measure, PlaneChart, Plate, Style, at_point};
+use crate::evaluate::{COVERAGE_COLUMNS, EpochMetrics};
+use crate::keyword::Keyword;
 use crate::optimize::Record;
 use crate::report::profile::{Profile, Quantile, quantiles_of};
 use crate::report::shown;
@@ -20,29 +21,56 @@ pub struct NamedProfile<'a> {
     pub profile: &'a Profile,
 }
 
-/// Quantities with a value at each instant.
-const OVER_TIME: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
+/// Measures without a value at each instant.
+const NOT_OVER_TIME: [Measure; 3] = [Measure::P95Pdop, Measure::LongestOutageS, Measure::Pdop];
+
+/// The measures that are not among `others`.
+fn all_but(others: &[Measure]) -> Vec<Measure> {
+    let all = Measure::ALL.iter().copied();
+    all.filter(|one| !others.contains(one)).collect()
+}
 
 /// The value of a measure at an instant.
 pub(in crate::report) fn at_epoch(measure: Measure, epoch: &EpochMetrics) -> Option<f64> {
+    if let Some(least) = measure.coverage_level() {
+        return epoch.coverage.of(least);
+    }
     match measure {
         Measure::MeanVisible => Some(epoch.mean_visible),
         Measure::MaxPdop => epoch.max_pdop,
+        Measure::Availability => Some(epoch.availability),
+        Measure::GainMeanPdop => epoch.gain_mean_pdop,
         _ => epoch.mean_pdop,
     }
 }
 
+/// Whether the distribution of a measure is over the points; of the others it is over the instants.
+fn is_over_points(measure: Measure) -> bool {
+    measure.coverage_level().is_some()
+        || matches!(
+            measure,
+            Measure::Availability | Measure::LongestOutageS | Measure::GainMeanPdop
+        )
+}
+
 /// The label of a measure over the points at one instant.
-fn label_over_points(measure: Measure) -> &'static str {
-    match measure {
+fn label_over_points(measure: Measure) -> String {
+    if let Some(least) = measure.coverage_level() {
+        return format!("fraction of the points with at least {least} LEO satellites");
+    }
+    let label = match measure {
         Measure::MeanVisible => "E_g(N_visible): visible LEO satellites, mean over the points",
         Measure::MaxPdop => "maximum PDOP over the points",
+        Measure::Availability => "availability (fraction of the points)",
+        Measure::GainMeanPdop => "gain in mean PDOP over the GNSS alone",
         _ => "E_g(PDOP): mean PDOP over the points",
-    }
+    };
+    label.to_owned()
 }
 
 /// The distribution of a measure: [`Measure::Pdop`] over all points and instants, with the tail of
-/// the first design; the others over the instants (figures 3a and 4a of the paper).
+/// the first design; availability, coverage, outages and gain over the points; the others over the instants (figures 3a
+/// and 4a of the paper).
 ///
 /// # Errors
 /// If the measure has no distribution, or there is nothing to show.
@@ -52,14 +80,14 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
         let epochs = profile.epochs.iter();
         match measure {
             Measure::Pdop => profile.pdop.clone(),
+            one if is_over_points(one) => profile.over_points(|point| at_point(one, point)),
             _ => quantiles_of(epochs.filter_map(|epoch| at_epoch(measure, epoch))),
         }
     };
-    if measure != Measure::Pdop && !OVER_TIME.contains(&measure) {
-        let choices = [OVER_TIME.as_slice(), &[Measure::Pdop]].concat();
-        return Err(FigureError::measure(figure, measure, &choices));
+    if measure == Measure::P95Pdop {
+        return Err(FigureError::measure(figure, measure, &all_but(&[measure])));
     }
-    let mut csv = Csv::new(&["design", "share", measure_column(measure), "name"])?;
+    let mut csv = Csv::new(&["design", "share", &measure.column(), "name"])?;
     let mut layers = Vec::new();
     for (n, named) in designs.iter().enumerate() {
         let quantiles = distribution(named.profile);
@@ -86,12 +114,13 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
         return Err(FigureError::Nothing { figure, reason });
     }
     let x = match measure {
-        Measure::Pdop => "PDOP of all points and times",
+        Measure::Pdop => "PDOP of all points and times".to_owned(),
+        one if is_over_points(one) => format!("{}, over the points", one.label()),
         _ => label_over_points(measure),
     };
     let chart = PlaneChart {
         title: "Cumulative distribution".to_owned(),
-        x: x.to_owned(),
+        x,
         y: "fraction at or below".to_owned(),
         layers,
     };
@@ -132,46 +161,43 @@ fn tail_marks(profile: &Profile) -> Vec<Layer> {
     ]
 }
 
-fn measure_column(measure: Measure) -> &'static str {
-    match measure {
-        Measure::MeanVisible => "mean_visible",
-        Measure::MaxPdop => "max_pdop",
-        Measure::Pdop => "pdop",
-        _ => "mean_pdop",
-    }
-}
-
 /// A measure over time (figures 3b and 4b of the paper).
 ///
 /// # Errors
 /// If the measure has no value at an instant, or there is nothing to show.
 pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, FigureError> {
     let figure = Figure::Series;
-    if !OVER_TIME.contains(&measure) {
-        return Err(FigureError::measure(figure, measure, &OVER_TIME));
+    if NOT_OVER_TIME.contains(&measure) {
+        let choices = all_but(&NOT_OVER_TIME);
+        return Err(FigureError::measure(figure, measure, &choices));
     }
-    let header = [
+    let before = [
         "design",
         "elapsed_s",
         "mean_visible",
         "mean_pdop",
         "max_pdop",
         "solved_fraction",
-        "name",
+        "availability",
+        "gain_mean_pdop",
     ];
-    let mut csv = Csv::new(&header)?;
+    let mut csv = Csv::new(&[&before[..], &COVERAGE_COLUMNS, &["name"]].concat())?;
     let mut layers = Vec::new();
     for (n, named) in designs.iter().enumerate() {
         for epoch in &named.profile.epochs {
-            csv.row([
-                named.notation.clone(),
-                epoch.elapsed_s.to_string(),
-                epoch.mean_visible.to_string(),
-                optional(epoch.mean_pdop),
-                optional(epoch.max_pdop),
-                epoch.solved_fraction.to_string(),
-                named.name.clone(),
-            ])?;
+            let numbers = [
+                Some(epoch.elapsed_s),
+                Some(epoch.mean_visible),
+                epoch.mean_pdop,
+                epoch.max_pdop,
+                Some(epoch.solved_fraction),
+                Some(epoch.availability),
+                epoch.gain_mean_pdop,
+            ];
+            let coverage = epoch.coverage.shares().map(Some);
+            let cells = numbers.into_iter().chain(coverage).map(optional);
+            let (notation, name) = (named.notation.clone(), named.name.clone());
+            csv.row([notation].into_iter().chain(cells).chain([name]))?;
         }
         let at = |e: &EpochMetrics| Some((e.elapsed_s / SECONDS_PER_HOUR, at_epoch(measure, e)?));
         layers.push(Layer {
@@ -190,7 +216,7 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
     let chart = PlaneChart {
         title: "Over time".to_owned(),
         x: "time since the epoch (h)".to_owned(),
-        y: label_over_points(measure).to_owned(),
+        y: label_over_points(measure),
         layers,
     };
     Ok(Plate {

@@ -5,8 +5,9 @@
 
 mod map;
 mod plane;
+mod timeline;
 
-use super::{BarChart, Chart, PlaneChart};
+use super::{BarChart, Chart, PlaneChart, TimelineChart};
 use crate::keyword::keywords;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -162,6 +163,7 @@ pub fn png(chart: &Chart, to: impl Write) -> Result<(), DrawError> {
 fn size(chart: &Chart) -> (u32, u32) {
     match chart {
         Chart::Map(chart) => (WIDTH, map::height(chart, WIDTH)),
+        Chart::Timeline(chart) => (WIDTH, timeline::height(chart)),
         Chart::Plane(_) | Chart::Bars(_) => (WIDTH, HEIGHT),
     }
 }
@@ -178,6 +180,7 @@ fn text(chart: &Chart) -> Result<String, DrawError> {
             Chart::Plane(chart) => plane::draw(&root, chart)?,
             Chart::Map(chart) => map::draw(&root, chart)?,
             Chart::Bars(chart) => bars(&root, chart)?,
+            Chart::Timeline(chart) => timeline::draw(&root, chart)?,
         }
         root.present()?;
     }

@@ -1,29 +1,29 @@
 //! A measure over the region.
 
 use super::table::{Csv, optional};
-use super::{Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate};
-use crate::evaluate::PointMetrics;
+use super::{Chart, Figure, FigureError, MapChart, Measure, NamedProfile, Plate, title};
+use crate::evaluate::{COVERAGE_COLUMNS, PointMetrics};
 use crate::ground::RegionMap;
+use crate::keyword::Keyword;
 use crate::report::coastline::Bounds;
 
-/// Measures that a map can show.
-const MEASURES: [Measure; 5] = [
-    Measure::MeanVisible,
-    Measure::MeanPdop,
-    Measure::P95Pdop,
-    Measure::MaxPdop,
-    Measure::Availability,
-];
+/// Measures that a map does not show.
+const NOT_OF_POINTS: [Measure; 1] = [Measure::Pdop];
 
 /// The value of a measure at a point; `None` for PDOP without a solution.
 #[must_use]
 pub(in crate::report) fn at_point(measure: Measure, point: &PointMetrics) -> Option<f64> {
+    if let Some(least) = measure.coverage_level() {
+        return point.coverage.of(least);
+    }
     match measure {
         Measure::MeanVisible => Some(point.mean_visible),
-        Measure::MeanPdop | Measure::Pdop => point.mean_pdop,
         Measure::P95Pdop => point.p95_pdop,
         Measure::MaxPdop => point.max_pdop,
         Measure::Availability => Some(point.availability),
+        Measure::LongestOutageS => Some(point.longest_outage_s),
+        Measure::GainMeanPdop => point.gain_mean_pdop,
+        _ => point.mean_pdop,
     }
 }
 
@@ -37,8 +37,10 @@ pub fn map(
     map: &RegionMap,
 ) -> Result<Plate, FigureError> {
     let figure = Figure::Map;
-    if !MEASURES.contains(&measure) {
-        return Err(FigureError::measure(figure, measure, &MEASURES));
+    if NOT_OF_POINTS.contains(&measure) {
+        let choices = Measure::ALL.iter().copied();
+        let choices: Vec<_> = choices.filter(|one| !NOT_OF_POINTS.contains(one)).collect();
+        return Err(FigureError::measure(figure, measure, &choices));
     }
     let profile = named.profile;
     let places = profile
@@ -53,7 +55,7 @@ pub fn map(
     let cell = |p: &PointMetrics| (p.longitude_deg, p.latitude_deg, at_point(measure, p));
     let chart = MapChart {
         title: title(named),
-        label: measure.label().to_owned(),
+        label: measure.label(),
         cells: profile.points.iter().map(cell).collect(),
         names: match map.tiling {
             Some(_) => Vec::new(),
@@ -68,16 +70,8 @@ pub fn map(
     })
 }
 
-/// Name and notation.
-fn title(named: &NamedProfile<'_>) -> String {
-    if named.name == named.notation {
-        return named.name.clone();
-    }
-    format!("{} ({})", named.name, named.notation)
-}
-
 fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
-    let mut csv = Csv::new(&[
+    let before = [
         "latitude_deg",
         "longitude_deg",
         "mean_visible",
@@ -86,20 +80,27 @@ fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
         "max_pdop",
         "solved_fraction",
         "availability",
-        "name",
-    ])?;
+        "longest_outage_s",
+        "gain_mean_pdop",
+    ];
+    let mut csv = Csv::new(&[&before[..], &COVERAGE_COLUMNS, &["name"]].concat())?;
     for p in points {
-        csv.row([
-            p.latitude_deg.to_string(),
-            p.longitude_deg.to_string(),
-            p.mean_visible.to_string(),
-            optional(p.mean_pdop),
-            optional(p.p95_pdop),
-            optional(p.max_pdop),
-            p.solved_fraction.to_string(),
-            p.availability.to_string(),
-            p.name.as_deref().unwrap_or_default().to_owned(),
-        ])?;
+        let numbers = [
+            Some(p.latitude_deg),
+            Some(p.longitude_deg),
+            Some(p.mean_visible),
+            p.mean_pdop,
+            p.p95_pdop,
+            p.max_pdop,
+            Some(p.solved_fraction),
+            Some(p.availability),
+            Some(p.longest_outage_s),
+            p.gain_mean_pdop,
+        ];
+        let coverage = p.coverage.shares().map(Some);
+        let cells = numbers.into_iter().chain(coverage).map(optional);
+        let name = p.name.as_deref().unwrap_or_default().to_owned();
+        csv.row(cells.chain([name]))?;
     }
     csv.text()
 }

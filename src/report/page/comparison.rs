@@ -1,7 +1,6 @@
 //! The table of the compared constellations, and what it says.
 
 use super::Page;
-use crate::ephemeris::Ephemeris;
 use crate::evaluate::Metrics;
 use crate::report::dominance::dominance;
 use crate::report::{Baseline, ComparisonColumn, comparison_columns};
@@ -128,9 +127,7 @@ fn best(column: ComparisonColumn, values: impl Iterator<Item = Option<f64>>) -> 
 
 /// The metrics without LEO satellites; none without GNSS.
 fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
-    let evaluator = page.evaluator.filter(|one| !one.setup().gnss.is_empty())?;
-    let nothing = Ephemeris::new(evaluator.setup().grid, Vec::new());
-    evaluator.evaluate_ephemeris(&nothing).ok()
+    page.evaluator?.gnss_only().ok().flatten().copied()
 }
 
 fn without_leo(columns: &[ComparisonColumn], metrics: &Metrics, goals: &Goals) -> Row {

@@ -111,7 +111,7 @@
   }
 
   const LABELS = { "mean-visible": "satellites", "mean-pdop": "PDOP", "p95-pdop": "PDOP", "max-pdop": "PDOP",
-    "availability": "fraction" };
+    "availability": "fraction", "longest-outage-s": "s", "coverage-4": "fraction", "gain-mean-pdop": "gain" };
 
   /** The range of a measure over all maps of it that the page has. */
   function commonRange(measure) {
@@ -233,7 +233,53 @@
       yaxis: { title: { text: "fraction of the time" }, range: [0, 1.02] } }) };
   }
 
+  /** The distribution of a measure over the points. */
+  function overPoints(measure, title) {
+    return (colours) => {
+      const traces = compared(colours).map((one) => curve(one, { x: one.cuts.overPoints[measure], y: data.levels,
+        line: { ...one.line, shape: "vh" }, hovertemplate: "%{x:.5~g} or less at %{y:.1%} of the points<extra></extra>" }));
+      return { data: traces, layout: layout(colours, { xaxis: { title: { text: title } },
+        yaxis: { title: { text: "fraction of the points" }, range: [0, 1.02] } }) };
+    };
+  }
+
+  /** How often so many satellites are in view, of the selected constellation. */
+  function histogram(colours) {
+    const cuts = cutsOf(state.place);
+    const names = ["LEO", "GNSS", "LEO and GNSS"], colour = [colours.accent, colours.second, colours.third];
+    const traces = (cuts?.histograms ?? []).map((shares, n) => ({ type: "bar", name: names[n], x: shares.map((_, k) => k), y: shares,
+      marker: { color: colour[n] }, opacity: 0.75, width: 0.9, hovertemplate: "%{x} in view: %{y:.3%}<extra>" + names[n] + "</extra>" }))
+      .filter((_, n) => n === 0 || data.region.has_gnss);
+    return { data: traces, layout: layout(colours, { barmode: "overlay", xaxis: { title: { text: "satellites in view" } },
+      yaxis: { title: { text: "fraction of points and instants" }, rangemode: "tozero" } }) };
+  }
+
   const hours = unpack(data.region?.elapsed_h);
+
+  /** The outages of the points that are out longest: a bar for each. */
+  function timeline(colours) {
+    const rows = cutsOf(state.place)?.timeline ?? [];
+    const width = hours.length > 1 ? hours[1] - hours[0] : data.region.step_s / 3600;
+    const x = [], y = [], base = [], text = [];
+    rows.forEach(({ bits }, r) => {
+      const bytes = atob(bits);
+      const isOut = (n) => n < hours.length && ((bytes.charCodeAt(n >> 3) >> (n & 7)) & 1) === 1;
+      for (let n = 0; n < hours.length; n++) {
+        if (!isOut(n) || isOut(n - 1)) continue;
+        let end = n;
+        while (isOut(end)) end++;
+        base.push(hours[n]); x.push((end - n) * width); y.push(r);
+        text.push(digits(hours[n], 4) + " h to " + digits(hours[n] + (end - n) * width, 4) + " h");
+      }
+    });
+    const shown = [{ type: "bar", orientation: "h", x, y, base, text, textposition: "none", width: 0.7, marker: { color: colours.second },
+      hovertemplate: "out from %{text}<extra></extra>" }];
+    const none = rows.length > 0 ? [] : [{ text: "no outage at any point", showarrow: false, xref: "paper", yref: "paper", x: 0.5, y: 0.5 }];
+    const last = hours.length > 0 ? hours[hours.length - 1] + width : 1;
+    return { data: shown, layout: layout(colours, { showlegend: false, annotations: none,
+      xaxis: { title: { text: "time since the epoch (h)" }, range: [0, last] },
+      yaxis: { tickvals: rows.map((_, r) => r), ticktext: rows.map((row) => plain(row.label)), range: [Math.max(rows.length, 1) - 0.5, -0.5], showgrid: false } }) };
+  }
 
   function overTime(measure, title) {
     return (colours) => {
@@ -336,6 +382,13 @@
       figure("series-max-pdop", { build: overTime("max-pdop", "maximum PDOP over the points") });
       figure("series-mean-pdop", { build: overTime("mean-pdop", "E<sub>g</sub>(PDOP)") });
       figure("tail", { build: tail });
+      figure("series-availability", { build: overTime("availability", "fraction of the points that are available") });
+      figure("histogram", { build: histogram });
+      figure("timeline", { build: timeline });
+      figure("cdf-availability", { build: overPoints("availability", "availability (fraction of the time)") });
+      figure("cdf-longest-outage-s", { build: overPoints("longest-outage-s", "longest outage (s)") });
+      figure("cdf-coverage-4", { build: overPoints("coverage-4", "fraction of the time with at least 4 LEO satellites") });
+      figure("cdf-gain-mean-pdop", { build: overPoints("gain-mean-pdop", "gain in mean PDOP") });
     }
   }
   if (data.history.length > 0) figure("convergence", { build: convergence, follows: false });

@@ -66,11 +66,17 @@
     Core.listeners.push(show);
     show(state.place);
     if (data.region) {
+      if (!data.region.has_gnss) {
+        for (const id of ["map-gain-mean-pdop", "cdf-gain-mean-pdop"]) document.getElementById(id).closest("figure").hidden = true;
+      }
+      document.getElementById("unseen").textContent = "An outage is a run of samples of a point that are unsolved or above a PDOP of "
+        + data.region.availability_pdop + ". What is shorter than a step of " + data.region.step_s + " s is unseen.";
       document.getElementById("availability-caption").textContent =
         "Availability: fraction of the time with PDOP at most " + data.region.availability_pdop + ".";
     } else {
       document.getElementById("maps").hidden = true;
       document.getElementById("curves").hidden = true;
+      document.getElementById("outages").hidden = true;
     }
   }
   const search = document.getElementById("search");

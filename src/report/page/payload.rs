@@ -1,5 +1,6 @@
 //! The numbers embedded in the page for its figures.
 
+mod outages;
 mod readouts;
 mod setting;
 mod tracks;
@@ -17,6 +18,7 @@ use crate::report::profile::{Profile, Quantile, drawn_levels, quantiles_of};
 use crate::report::{Compared, shown};
 use crate::run::{FrontMember, Run};
 use crate::scenario::{Keyword, Quantity};
+use outages::OutageRow;
 use serde::Serialize;
 use setting::{RegionData, World};
 use std::collections::BTreeMap;
@@ -26,16 +28,32 @@ use tracks::Tracks;
 const MOST_EPOCHS: usize = 1440;
 
 /// Measures shown over the region.
-const MAPS: [Measure; 5] = [
+const MAPS: [Measure; 8] = [
     Measure::MeanVisible,
     Measure::MeanPdop,
     Measure::P95Pdop,
     Measure::MaxPdop,
     Measure::Availability,
+    Measure::LongestOutageS,
+    Measure::Coverage4,
+    Measure::GainMeanPdop,
 ];
 
 /// Measures shown over time.
-const SERIES: [Measure; 3] = [Measure::MeanVisible, Measure::MeanPdop, Measure::MaxPdop];
+const SERIES: [Measure; 4] = [
+    Measure::MeanVisible,
+    Measure::MeanPdop,
+    Measure::MaxPdop,
+    Measure::Availability,
+];
+
+/// Measures whose distribution over the points is shown.
+const OVER_POINTS: [Measure; 4] = [
+    Measure::Availability,
+    Measure::LongestOutageS,
+    Measure::Coverage4,
+    Measure::GainMeanPdop,
+];
 
 /// All data for the script of the page.
 #[derive(Serialize)]
@@ -115,6 +133,12 @@ struct Cuts {
     series: Vec<(&'static str, Packed)>,
     /// Quantiles over the instants, by measure, at the levels.
     over_time: Vec<(&'static str, Packed)>,
+    /// Quantiles over the points, by measure, at the levels.
+    over_points: Vec<(&'static str, Packed)>,
+    /// Fraction of the samples by number of satellites: LEO, GNSS and all.
+    histograms: [Packed; 3],
+    /// The outages of the points that are out longest.
+    timeline: Vec<OutageRow>,
     /// Quantiles of PDOP over all samples.
     pdop: Packed,
     /// Level, quantile and CVaR.
@@ -152,9 +176,10 @@ struct Budget {
 pub(super) fn cut_bytes(epochs: usize, points: usize, satellites: usize) -> usize {
     let numbers = SERIES.len() * epochs.min(MOST_EPOCHS)
         + MAPS.len() * points
-        + (SERIES.len() + 1) * drawn_levels().len();
+        + (SERIES.len() + OVER_POINTS.len() + 1) * drawn_levels().len();
+    let outages = outages::MOST_ROWS * epochs.min(MOST_EPOCHS) / 8;
     // Two bytes each, in base64, and the names.
-    (numbers + satellites) * 2 * 4 / 3 + 2500
+    (2 * (numbers + satellites) + outages) * 4 / 3 + 3500
 }
 
 impl Payload {
@@ -347,11 +372,20 @@ impl Cuts {
             let values = profile.epochs.iter().filter_map(|e| at_epoch(measure, e));
             (measure.keyword(), levels(&quantiles_of(values)))
         };
+        let over_points = |measure: Measure| {
+            let quantiles = profile.over_points(|point| at_point(measure, point));
+            (measure.keyword(), levels(&quantiles))
+        };
+        let shares = |of: &[f64]| Packed::of(of.iter().copied());
+        let histograms = &profile.histograms;
         let series = |measure: Measure| (measure.keyword(), by_intervals(&profile.epochs, measure));
         Self {
             maps: MAPS.into_iter().map(map).collect(),
             series: SERIES.into_iter().map(series).collect(),
             over_time: SERIES.into_iter().map(over_time).collect(),
+            over_points: OVER_POINTS.into_iter().map(over_points).collect(),
+            histograms: [&histograms.leo, &histograms.gnss, &histograms.all].map(|of| shares(of)),
+            timeline: outages::rows(profile),
             pdop: levels(&profile.pdop),
             tail: profile
                 .tail

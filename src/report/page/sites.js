@@ -6,7 +6,7 @@
   const MOST_SITES = 500;
   if (!table || !region || region.step_deg || region.rows_deg.length > 0 || region.name.length > MOST_SITES) return;
   const side = (value, plus, minus) => digits(Math.abs(value)) + "° " + (value < 0 ? minus : plus);
-  const COLUMNS = [["mean visible", "mean-visible"], ["mean PDOP", "mean-pdop"], ["availability", "availability"]];
+  const COLUMNS = [["mean visible", "mean-visible"], ["mean PDOP", "mean-pdop"], ["availability", "availability"], ["longest outage (s)", "longest-outage-s"]];
 
   const head = document.createElement("tr");
   for (const title of ["site", "latitude", "longitude", ...COLUMNS.map((column) => column[0])]) {

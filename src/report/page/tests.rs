@@ -71,11 +71,7 @@ fn of_file(name: &str) -> Constellation {
         A,2025-01-01T00:00:00Z,7300,0,50,0,0,0\n\
         B,2025-01-01T00:00:00Z,7300,0,50,0,0,180\n";
     let imported = Fleet::read(table.as_bytes(), None, Some("two.csv")).unwrap();
-    Constellation::of_files(FileSatellites {
-        names: vec![name.to_owned()],
-        formats: vec![imported.format],
-        fleet: imported.fleet,
-    })
+    Constellation::of_files(FileSatellites::of_file(name.to_owned(), imported))
 }
 
 fn written(page: &Page<'_>) -> String {

@@ -122,7 +122,29 @@ fn a_window_fits_into_the_span() {
 
 #[test]
 fn quantities_need_what_they_are_computed_from() {
+    let without = "[gnss]\nconstellations = []\n[objectives]\n";
+    for goals in [
+        "minimize = [\"satellites\", \"gain-max-pdop\"]",
+        "constraints = [\"gain-mean-pdop >= 0.2\"]",
+    ] {
+        let told = problem(&format!("{without}{goals}"));
+        let (key, rest) = goals.split_once(" = ").unwrap();
+        let named = if rest.contains("max") {
+            "gain-max-pdop"
+        } else {
+            "gain-mean-pdop"
+        };
+        let expected = format!(
+            "study.toml:4: objectives.{key}: {named} needs a GNSS to gain over, from `gnss.constellations` or `gnss.files`"
+        );
+        assert!(told.starts_with(&expected), "{told}");
+        reads(&format!("[objectives]\n{goals}"));
+    }
     for (text, expected) in [
+        (
+            "[objectives]\nconstraints = [\"gain-sigma-v-m >= 1\"]",
+            "study.toml:2: objectives.constraints: gain-sigma-v-m needs the range errors of [accuracy]",
+        ),
         (
             "[objectives]\nminimize = [\"sigma-h-m\", \"satellites\"]",
             "study.toml:2: objectives.minimize: sigma-h-m needs the range errors of [accuracy]",

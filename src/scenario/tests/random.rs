@@ -393,12 +393,19 @@ fn scenario() -> impl Strategy<Value = Scenario> {
     (texts, time, setting, purpose).prop_map(|(texts, time, setting, purpose)| {
         let (name, reference_design, originator, identities) = texts;
         let (name_prefix, first_catalog_number) = identities;
-        let (surface, model, (region, terrain), mut visibility, gnss, constellations) = setting;
+        let (surface, model, (region, terrain), mut visibility, mut gnss, constellations) = setting;
         if terrain.is_some() {
             visibility.mask_table.clear();
         }
         let (terrain, antenna_height_m) = terrain.unzip();
         let (objectives, search, optimizer, creation_date) = purpose;
+        let bounded = objectives.constraints.iter().map(|one| one.quantity);
+        let mut goals = objectives.minimize.iter().copied().chain(bounded);
+        // A gain is over a GNSS.
+        if goals.any(|one| one.gain_in().is_some()) && gnss.files.is_empty() {
+            gnss.constellations.retain(|one| *one != Preset::Beidou3);
+            gnss.constellations.push(Preset::Beidou3);
+        }
         Scenario {
             name,
             reference_design,

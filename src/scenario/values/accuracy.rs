@@ -300,9 +300,17 @@ fn check_quantities(scenario: &Scenario, reader: &mut Reader<'_>, has_errors: bo
         if quantity == Quantity::ExpectedAvailability && up.is_none() {
             return Some(format!("`{}`", key!(Reliability.availability)));
         }
+        let gnss = &scenario.gnss;
+        let has_gnss = !gnss.constellations.is_empty() || !gnss.files.is_empty();
+        if quantity.gain_in().is_some() && !has_gnss {
+            let (built_in, files) = (key!(GnssSetup.constellations), key!(GnssSetup.files));
+            return Some(format!(
+                "a GNSS to gain over, from `{built_in}` or `{files}`"
+            ));
+        }
         let window = key!(FurtherMetrics.window_min);
-        let needs_window = quantity == Quantity::InformationPdop;
-        (needs_window && scenario.metrics.window_min.is_none()).then(|| format!("`{window}`"))
+        let lacks_window = quantity.is_of_windows() && scenario.metrics.window_min.is_none();
+        lacks_window.then(|| format!("`{window}`"))
     };
     let objectives = scenario.objectives.minimize.iter().copied();
     let constraints = scenario.objectives.constraints.iter();

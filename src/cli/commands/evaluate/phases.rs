@@ -38,10 +38,12 @@ impl GnssPhases {
         let mut alone: Vec<Metrics> = work.gnss_only.iter().map(|of| of.metrics).collect();
         for setup in &self.setups {
             let evaluator = Evaluator::new(setup.clone())?;
+            let gnss_only = evaluated(work.args, &evaluator, &none)?.0;
+            alone.push(gnss_only.with_gain_over(&gnss_only));
             for (found, ephemeris) in found.iter_mut().zip(ephemerides) {
-                found.push(evaluated(work.args, &evaluator, ephemeris)?.0);
+                let metrics = evaluated(work.args, &evaluator, ephemeris)?.0;
+                found.push(metrics.with_gain_over(&gnss_only));
             }
-            alone.push(evaluated(work.args, &evaluator, &none)?.0);
         }
         for (entry, found) in entries.iter_mut().zip(&found) {
             entry.evaluated.gnss_phases = Some(PhaseSpread::of(found));

@@ -7,14 +7,14 @@ use crate::constellation::identity::UniqueTexts;
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
-use crate::report::records_csv;
+use crate::report::{outages_csv, records_csv};
 use anyhow::Result;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The tables of a series.
-const TABLES: [&str; 2] = ["epochs.csv", "points.csv"];
+const TABLES: [&str; 4] = ["epochs.csv", "points.csv", "histogram.csv", "outages.csv"];
 
 /// Longest name of a folder, in characters.
 const LONGEST_NAME: usize = 80;
@@ -60,7 +60,12 @@ impl SeriesDirectory {
         ephemeris: &Ephemeris,
     ) -> Result<()> {
         let series = evaluator.series(ephemeris)?;
-        let tables = [records_csv(&series.epochs)?, records_csv(&series.points)?];
+        let tables = [
+            records_csv(&series.epochs)?,
+            records_csv(&series.points)?,
+            records_csv(&series.histograms.rows())?,
+            outages_csv(&series)?,
+        ];
         let path = |name: &str| match self.folders[number].as_str() {
             "" => name.to_owned(),
             folder => format!("{folder}/{name}"),
@@ -74,9 +79,10 @@ impl SeriesDirectory {
     pub(super) fn told(&self) -> String {
         let place = self.place.display();
         match self.folders.as_slice() {
-            [_] => format!("\nepochs.csv and points.csv written to {place}"),
+            [_] => format!("\n{} written to {place}", TABLES.join(", ")),
             several => format!(
-                "\nepochs.csv and points.csv written to {place}, in {}",
+                "\n{} written to {place}, in {}",
+                TABLES.join(", "),
                 several.join(", ")
             ),
         }

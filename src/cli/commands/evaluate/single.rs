@@ -3,12 +3,33 @@
 use super::EvaluationContext;
 use crate::cli::args::OutputFormat;
 use crate::cli::output;
-use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics};
+use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics, OnDemand, SigmaSpread};
+use crate::keyword::Keyword;
 use crate::report::failures::FailureSummary;
-use crate::report::{Align, Alone, ConstellationEntry, ConstraintCheck, PhaseSpread, Table, shown};
+use crate::report::{
+    Align, Alone, Assessment, ConstellationEntry, ConstraintCheck, PhaseSpread, Table,
+    on_demand_quantities, quantity_label, shown,
+};
 use crate::scenario::Scenario;
+use crate::search::Quantity;
 use crate::units::counted;
 use anyhow::Result;
+
+/// The quantities that always have a row.
+const ROWS: [Quantity; 12] = [
+    Quantity::MeanVisible,
+    Quantity::LeastVisible,
+    Quantity::MeanPdop,
+    Quantity::CvarPdop,
+    Quantity::P95Pdop,
+    Quantity::P99Pdop,
+    Quantity::MaxPdop,
+    Quantity::Availability,
+    Quantity::LongestOutageS,
+    Quantity::Coverage4,
+    Quantity::JPos,
+    Quantity::JCost,
+];
 
 /// Prints what was computed of a design, or of the satellites of files.
 pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> Result<()> {
@@ -34,8 +55,7 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
             (title, &result.evaluated)
         }
     };
-    let dops = evaluated.dops.as_ref();
-    let text = text(work.scenario, &title, &evaluated.metrics, dops);
+    let text = text(work.scenario, &title, evaluated);
     let phases = evaluated.gnss_phases.as_ref();
     let text = text + &phases.map_or_else(String::new, phases_table);
     let text = text
@@ -48,12 +68,9 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
     output::result(&(text + &constraint_lines(&evaluated.constraints)))
 }
 
-fn text(
-    scenario: &Scenario,
-    title: &str,
-    metrics: &Metrics,
-    dops: Option<&DopStatistics>,
-) -> String {
+fn text(scenario: &Scenario, title: &str, evaluated: &Assessment) -> String {
+    let metrics = &evaluated.metrics;
+    let dops = evaluated.dops.as_ref();
     let mut table = Table::new(&[("", Align::Left), ("", Align::Right), ("", Align::Left)]);
     let mut row = |name: &str, value: Option<f64>, digits: usize, note: String| {
         let value = value.map_or_else(|| "none".to_owned(), |v| format!("{v:.digits$}"));
@@ -140,7 +157,8 @@ fn text(
         4,
         "satellites / mean visible".to_owned(),
     );
-    for row in on_demand_rows(metrics) {
+    let further = objective_rows(scenario, evaluated).into_iter();
+    for row in further.chain(on_demand_rows(scenario, metrics)) {
         table.row(row);
     }
     let dops = dops.map_or_else(String::new, |dops| format!("\n{}", dops_table(dops)));
@@ -151,38 +169,57 @@ fn text(
     )
 }
 
-/// What is computed on demand: the information of windows, and the accuracy in metres.
-fn on_demand_rows(metrics: &Metrics) -> Vec<[String; 3]> {
-    let value = |value: Option<f64>| shown::pdop(value);
-    let spread = |p95, cvar| format!("mean; 95 % quantile {}, CVaR {}", value(p95), value(cvar));
-    let mut rows = Vec::new();
-    if let Some(of) = metrics.information_pdop {
-        let note = spread(of.p95, of.cvar);
-        let note = format!("{note}; solved {:.5} of the windows", of.solved_fraction);
-        rows.push(["PDOP of a window".to_owned(), value(of.mean), note]);
+/// What is computed on demand: the gain over the GNSS alone, the information of windows, and the accuracy in metres.
+fn on_demand_rows(scenario: &Scenario, metrics: &Metrics) -> Vec<[String; 3]> {
+    let row = |quantity: Quantity| {
+        let label = quantity_label(quantity.keyword());
+        let value = shown::quantity(quantity, quantity.of_metrics(metrics));
+        [label, value, note(quantity, metrics)]
+    };
+    on_demand_quantities(scenario)
+        .into_iter()
+        .map(row)
+        .collect()
+}
+
+/// What is said beside a quantity on demand.
+fn note(quantity: Quantity, metrics: &Metrics) -> String {
+    let spread = |p95, cvar| {
+        let [p95, cvar] = [p95, cvar].map(shown::pdop);
+        format!("mean; 95 % quantile {p95}, CVaR {cvar}")
+    };
+    let sigma = |of: OnDemand<SigmaSpread>| {
+        let of = of.flatten();
+        let solved = shown::share(metrics.accuracy_solved_fraction);
+        let spread = spread(of.map(|of| of.p95), of.map(|of| of.cvar));
+        format!("{spread}; of {solved} of points and instants")
+    };
+    match quantity {
+        Quantity::InformationPdop => metrics.information_pdop.map_or_else(String::new, |of| {
+            let spread = spread(of.p95, of.cvar);
+            format!("{spread}; solved {:.5} of the windows", of.solved_fraction)
+        }),
+        Quantity::Sigma3dM => sigma(metrics.sigma_3d_m),
+        Quantity::SigmaHM => sigma(metrics.sigma_h_m),
+        Quantity::SigmaVM => sigma(metrics.sigma_v_m),
+        Quantity::GainMeanPdop => "GNSS alone minus the above, as for the other gains".to_owned(),
+        one if one.is_in_metres() => {
+            "exceeded by 5 % of all errors; without a solution any length is".to_owned()
+        }
+        _ => String::new(),
     }
-    let sigmas = [
-        ("position", metrics.sigma_3d_m),
-        ("horizontal", metrics.sigma_h_m),
-        ("height", metrics.sigma_v_m),
-    ];
-    for (name, sigma) in sigmas {
-        let Some(sigma) = sigma else { continue };
-        let note = spread(sigma.map(|of| of.p95), sigma.map(|of| of.cvar));
-        let mean = value(sigma.map(|of| of.mean));
-        rows.push([format!("1-sigma {name} error (m)"), mean, note]);
-    }
-    let errors = [
-        ("position", metrics.error95_3d_m),
-        ("horizontal", metrics.error95_h_m),
-        ("height", metrics.error95_v_m),
-    ];
-    for (name, error) in errors {
-        let Some(error) = error else { continue };
-        let note = "exceeded by 5 % of all errors".to_owned();
-        rows.push([format!("95 % {name} error (m)"), value(error), note]);
-    }
-    rows
+}
+
+/// The objectives that no other row shows.
+fn objective_rows(scenario: &Scenario, evaluated: &Assessment) -> Vec<[String; 3]> {
+    let elsewhere = [ROWS.as_slice(), &on_demand_quantities(scenario)].concat();
+    let objectives = scenario.goals().objectives.into_iter();
+    let further = objectives.filter(|one| !elsewhere.contains(one));
+    let row = |one: Quantity| {
+        let value = shown::quantity(one, evaluated.value(one));
+        [quantity_label(one.keyword()), value, String::new()]
+    };
+    further.map(row).collect()
 }
 
 /// The range of each metric over the phases of the GNSS.

@@ -3,7 +3,7 @@
 use super::EvaluationContext;
 use super::designs::DesignList;
 use crate::cli::output;
-use crate::evaluate::{DopStatistics, Metrics};
+use crate::evaluate::DopStatistics;
 use crate::exchange::constellation::Constellation;
 use crate::report::{
     Align, ComparisonColumn, ConstellationEntry, Table, comparison_columns, shown,
@@ -19,11 +19,9 @@ const NAME_WIDTH: usize = 32;
 pub(super) struct TextTable {
     title: String,
     columns: Vec<(String, Align)>,
-    /// The numbers that every table has, and the objectives and constrained quantities.
+    /// The numbers that every table has, the objectives and constrained quantities, and metrics on demand.
     numbers: Vec<ComparisonColumn>,
     goals: Goals,
-    /// Metrics on demand.
-    on_demand: Vec<OnDemandColumn>,
     /// Metrics whose range over phases of the GNSS is shown.
     phases: &'static [(&'static str, &'static str)],
     /// Whether constellations have names of their own.
@@ -47,8 +45,7 @@ impl TextTable {
         list: Option<&DesignList>,
     ) -> Self {
         let goals = &work.goals;
-        let mut numbers = comparison_columns(work.scenario);
-        numbers.retain(|column| !column.is_on_demand());
+        let numbers = comparison_columns(work.scenario);
         let is_named = |one: &Constellation| one.name != one.made_of();
         let may_name =
             |list: &DesignList| list.has_names() || !work.scenario.constellations.is_empty();
@@ -71,7 +68,6 @@ impl TextTable {
             title: format!("{count} in scenario {}\n", work.scenario.name),
             numbers,
             goals: goals.clone(),
-            on_demand: on_demand(work),
             phases: phases(work),
             has_names,
             has_dops: work.args.dops,
@@ -134,9 +130,6 @@ impl TextTable {
         };
         let numbers = self.numbers.iter();
         cells.extend(numbers.map(|one| one.text(one.value(metrics, quantity))));
-        for (_, value) in &self.on_demand {
-            cells.push(shown::pdop(value(metrics)));
-        }
         for (_, name) in self.phases {
             let spread = evaluated.gnss_phases.as_ref();
             let range = spread.and_then(|of| *of.metrics.get(*name)?);
@@ -171,7 +164,6 @@ fn columns(
 ) -> Vec<(String, Align)> {
     let numbers = numbers.iter();
     let mut names: Vec<String> = numbers.map(|one| one.heading(work.scenario)).collect();
-    names.extend(on_demand(work).iter().map(|(name, _)| (*name).to_owned()));
     names.extend(
         phases(work)
             .iter()
@@ -192,32 +184,6 @@ fn columns(
     columns.extend(names.into_iter().map(|name| (name, Align::Right)));
     if !work.goals.constraints.is_empty() {
         columns.push(("constraints".to_owned(), Align::Left));
-    }
-    columns
-}
-
-/// Heading and value of a metric on demand.
-type OnDemandColumn = (&'static str, fn(&Metrics) -> Option<f64>);
-
-/// The columns of what the scenario asks for.
-fn on_demand(work: &EvaluationContext<'_>) -> Vec<OnDemandColumn> {
-    let setup = work.evaluator.setup();
-    let mut columns: Vec<OnDemandColumn> = Vec::new();
-    if setup.window_s.is_some() {
-        columns.push(("mean PDOP\nof a window", |m| m.information_pdop?.mean));
-    }
-    if setup.accuracy.is_some() {
-        columns.extend([
-            (
-                "position\n1 sigma (m)",
-                (|m| Some(m.sigma_3d_m??.mean)) as fn(&Metrics) -> Option<f64>,
-            ),
-            ("horizontal\n1 sigma (m)", |m| Some(m.sigma_h_m??.mean)),
-            ("height\n1 sigma (m)", |m| Some(m.sigma_v_m??.mean)),
-            ("position\n95 % (m)", |m| m.error95_3d_m?),
-            ("horizontal\n95 % (m)", |m| m.error95_h_m?),
-            ("height\n95 % (m)", |m| m.error95_v_m?),
-        ]);
     }
     columns
 }

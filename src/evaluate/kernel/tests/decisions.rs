@@ -45,7 +45,7 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
     let ephemeris = Ephemeris::new(setup.grid, satellites);
     let evaluator = Evaluator::new(setup).unwrap();
     let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, rechecks) = kernel.evaluate(&ephemeris).unwrap();
+    let (_, rechecks) = kernel.evaluate(&ephemeris, false).unwrap();
     assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();

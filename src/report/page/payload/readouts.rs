@@ -3,7 +3,7 @@
 use crate::evaluate::Metrics;
 use crate::keyword::Keyword;
 use crate::report::page::words;
-use crate::report::shown;
+use crate::report::{on_demand_quantities, quantity_label, shown};
 use crate::run::{FrontMember, Run};
 use crate::search::Quantity;
 
@@ -11,6 +11,8 @@ use crate::search::Quantity;
 pub(super) enum Readout {
     /// An objective, or a constrained quantity that has no other tile.
     Quantity(String),
+    /// A quantity on demand, which the metrics have.
+    OnDemand(String),
     /// Label, and name of the quantity that gives its digits, of a metric.
     Metric(&'static str, &'static str, fn(&Metrics) -> Option<f64>),
 }
@@ -19,6 +21,7 @@ impl Readout {
     fn label(&self) -> String {
         match self {
             Self::Quantity(name) => name.clone(),
+            Self::OnDemand(name) => quantity_label(name),
             Self::Metric(label, ..) => (*label).to_owned(),
         }
     }
@@ -26,6 +29,10 @@ impl Readout {
     pub(super) fn text(&self, quantity: &dyn Fn(&str) -> Option<f64>, metrics: &Metrics) -> String {
         match self {
             Self::Quantity(name) => shown::named(name, quantity(name)),
+            Self::OnDemand(name) => {
+                let known = Quantity::from_keyword(name).ok();
+                shown::named(name, known.and_then(|one| one.of_metrics(metrics)))
+            }
             Self::Metric(_, digits, value) => shown::named(digits, value(metrics)),
         }
     }
@@ -53,44 +60,17 @@ pub(super) fn all(run: &Run, names: &[String]) -> Vec<Readout> {
             tiles.push(Readout::Metric(label, name, value));
         }
     }
-    let in_metres: [(&str, &str, Value); 6] = [
-        ("1-sigma position error (m)", "sigma-3d-m", |m| {
-            Some(m.sigma_3d_m??.mean)
-        }),
-        ("1-sigma horizontal error (m)", "sigma-h-m", |m| {
-            Some(m.sigma_h_m??.mean)
-        }),
-        ("1-sigma height error (m)", "sigma-v-m", |m| {
-            Some(m.sigma_v_m??.mean)
-        }),
-        ("95 % position error (m)", "error95-3d-m", |m| {
-            m.error95_3d_m?
-        }),
-        ("95 % horizontal error (m)", "error95-h-m", |m| {
-            m.error95_h_m?
-        }),
-        ("95 % height error (m)", "error95-v-m", |m| m.error95_v_m?),
-    ];
-    let of_window: [(&str, &str, Value); 1] =
-        [("mean PDOP of a window", "information-pdop", |m| {
-            m.information_pdop?.mean
-        })];
-    let scenario = run.scenario.as_ref();
-    let has_metres = scenario.is_some_and(|one| one.accuracy.leo_m.is_some());
-    let has_window = scenario.is_some_and(|one| one.metrics.window_min.is_some());
-    let metres = in_metres.into_iter().filter(|_| has_metres);
-    for (label, name, value) in metres.chain(of_window.into_iter().filter(|_| has_window)) {
-        if !names.iter().any(|objective| objective == name) {
-            tiles.push(Readout::Metric(label, name, value));
-        }
-    }
-    let is_shown = |name: &String| Quantity::from_keyword(name).is_ok_and(Quantity::is_on_demand);
-    tiles.extend(
-        words::further(run)
-            .into_iter()
-            .filter(|name| !is_shown(name))
-            .map(Readout::Quantity),
-    );
+    let on_demand = run.scenario.as_ref().map(on_demand_quantities);
+    let on_demand: Vec<String> = on_demand
+        .iter()
+        .flatten()
+        .map(ToString::to_string)
+        .collect();
+    let of_metrics = on_demand.iter().filter(|name| !names.contains(name));
+    tiles.extend(of_metrics.cloned().map(Readout::OnDemand));
+    let further = words::further(run).into_iter();
+    let further = further.filter(|name| !on_demand.contains(name));
+    tiles.extend(further.map(Readout::Quantity));
     tiles
 }
 

@@ -34,6 +34,8 @@ pub(super) struct RegionData {
     border: Vec<Vec<i32>>,
     elapsed_h: Packed,
     availability_pdop: f64,
+    step_s: f64,
+    has_gnss: bool,
 }
 
 #[derive(Serialize)]
@@ -105,6 +107,8 @@ impl RegionData {
             border: hundredths(coastline::lines_within(&map.outlines, &bounds)),
             elapsed_h: Packed::of(starts.map(|t| t / crate::units::SECONDS_PER_HOUR)),
             availability_pdop: setup.metrics.availability_pdop,
+            step_s: setup.grid.step_s(),
+            has_gnss: !setup.gnss.is_empty(),
         })
     }
 }

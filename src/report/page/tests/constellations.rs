@@ -28,11 +28,7 @@ fn of_many(name: &str) -> Constellation {
         table += &format!("A{n},2025-01-01T00:00:00Z,7300,0,50,{},0,{n}\n", n / 2);
     }
     let imported = Fleet::read(table.as_bytes(), None, Some(name)).unwrap();
-    Constellation::of_files(FileSatellites {
-        names: vec![name.to_owned()],
-        formats: vec![imported.format],
-        fleet: imported.fleet,
-    })
+    Constellation::of_files(FileSatellites::of_file(name.to_owned(), imported))
 }
 
 /// Without GNSS nothing is left when the constellations are taken away, and the table does not say so.

@@ -50,6 +50,11 @@ pub(in crate::report::page) fn conventions(page: &Page<'_>) -> Vec<(&'static str
     if let Some(scenario) = &run.scenario {
         rows.extend(of_scenario(scenario));
         rows.extend(phase(scenario).map(|text| ("GNSS phase", text)));
+        if !scenario.gnss.constellations.is_empty() || !scenario.gnss.files.is_empty() {
+            let gain = "the metric of the GNSS alone minus that with the LEO satellites, each over its own solved samples; \
+                        none where the GNSS alone has none";
+            rows.push(("Gain", gain.to_owned()));
+        }
         rows.extend(metres(scenario).map(|text| ("Metres", text)));
         rows.extend(window(scenario).map(|text| ("PDOP of a window", text)));
     }
@@ -88,6 +93,7 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
                 scenario.visibility.pdop_cap
             ),
         ),
+        ("Outages", outages(scenario)),
         ("Constraints", constraints(scenario)),
         (
             "Objectives",
@@ -102,12 +108,20 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
     ]
 }
 
+fn outages(scenario: &Scenario) -> String {
+    format!(
+        "samples in a row that are unsolved or above a PDOP of {} at one point, times the step of {} s: what is shorter than a \
+         step is unseen, and what an end of the span cuts counts with the length that is seen",
+        scenario.objectives.availability_pdop, scenario.time.step_s
+    )
+}
+
 fn clocks(scenario: &Scenario) -> String {
     let clocks = scenario.gnss.clocks.to_string();
     match scenario.gnss.leo_clocks {
         LeoClocks::Shared => clocks,
         LeoClocks::PerPart => {
-            format!("{clocks}; one for each shell of LEO satellites, and one for those from files")
+            format!("{clocks}; one for each shell of LEO satellites, and one for each file of them")
         }
     }
 }
@@ -136,7 +150,7 @@ fn metres(scenario: &Scenario) -> Option<String> {
         format!(
             "range errors of 1 sigma: {}, times \u{221a}(a\u{b2} + b\u{b2}/sin\u{b2} E) at elevation E. They are assumed to be zero-mean, \
              Gaussian and uncorrelated between satellites, without an error of the atmosphere or of the receiver that several have in \
-             common, which would not average out. A 95 % error is exceeded by 5 % of the errors at all points and instants",
+             common, which would not average out. A 95 % error is exceeded by 5 % of the errors at all points and instants, where a sample without a solution exceeds any",
             texts.join(", ")
         )
     })

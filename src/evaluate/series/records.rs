@@ -1,0 +1,177 @@
+//! The rows of a series, and their form in tables.
+
+use crate::evaluate::counts::{
+    COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage,
+};
+use serde::ser::SerializeStruct;
+use serde::{Serialize, Serializer};
+use std::sync::Arc;
+
+/// One instant, over all points with their weights ([M-31](crate::models#m-31)).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EpochMetrics {
+    /// Seconds since the epoch of the grid.
+    pub elapsed_s: f64,
+    /// Mean visible LEO satellites, equation (22) of the paper.
+    pub mean_visible: f64,
+    /// Mean PDOP over the solved points, equation (24); `None` if no point is solved.
+    pub mean_pdop: Option<f64>,
+    /// Maximum PDOP of a solved point: its maximum over time is equation (23).
+    pub max_pdop: Option<f64>,
+    /// Fraction of the points that are solved.
+    pub solved_fraction: f64,
+    /// Fraction of the points that are solved with PDOP at most the availability threshold.
+    pub availability: f64,
+    /// Least number of visible LEO satellites at any point.
+    pub least_visible: u32,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
+    /// Gain in mean PDOP over the GNSS alone; `None` without GNSS, or if one of the two has none.
+    pub gain_mean_pdop: Option<f64>,
+    /// Fraction of the points with at least n visible LEO satellites.
+    pub coverage: Coverage,
+    /// The same with the GNSS.
+    pub coverage_total: Coverage,
+}
+
+/// One point, over all instants.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PointMetrics {
+    /// Latitude of the surface model, degrees.
+    pub latitude_deg: f64,
+    /// East longitude, degrees, as given.
+    pub longitude_deg: f64,
+    /// Weight of the point in the metrics, as given.
+    pub weight: f64,
+    /// Mean visible LEO satellites.
+    pub mean_visible: f64,
+    /// Mean PDOP over the solved instants; `None` if there are none.
+    pub mean_pdop: Option<f64>,
+    /// 95 % quantile of PDOP over the solved instants.
+    pub p95_pdop: Option<f64>,
+    /// Maximum PDOP of a solved instant.
+    pub max_pdop: Option<f64>,
+    /// Fraction of the instants that are solved.
+    pub solved_fraction: f64,
+    /// Fraction of the instants that are solved with PDOP at most the availability threshold.
+    pub availability: f64,
+    /// Least number of visible LEO satellites at any instant.
+    pub least_visible: u32,
+    /// Mean visible GNSS satellites.
+    pub mean_gnss_visible: f64,
+    /// Mean visible satellites, LEO and GNSS.
+    pub mean_total_visible: f64,
+    /// Number of outages: runs of instants that are unsolved or above the availability threshold.
+    pub outages: u32,
+    /// Length of the longest outage, seconds: instants times the step.
+    pub longest_outage_s: f64,
+    /// Length of all outages together, seconds.
+    pub total_outage_s: f64,
+    /// Whether the start or the end of the span cuts an outage, which may be longer.
+    pub outage_cut: bool,
+    /// Gain in mean PDOP over the GNSS alone; `None` without GNSS, or if one of the two has none.
+    pub gain_mean_pdop: Option<f64>,
+    /// Fraction of the instants with at least n visible LEO satellites.
+    pub coverage: Coverage,
+    /// The same with the GNSS.
+    pub coverage_total: Coverage,
+    /// What the point is called, if anything.
+    pub name: Option<Arc<str>>,
+}
+
+/// An outage of a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outage {
+    /// Seconds from the epoch of the grid to its first instant.
+    pub start_s: f64,
+    /// Its length, seconds: instants times the step.
+    pub length_s: f64,
+    /// Whether the start or the end of the span cuts it.
+    pub is_cut: bool,
+}
+
+/// A record of fields, each under its name.
+macro_rules! record {
+    ($serializer:expr, $row:expr, [$($field:ident),*], $coverages:expr, [$($last:ident: $value:expr),*]) => {{
+        let names = [$(stringify!($field)),*];
+        let more = 2 * COVERAGE_LEVELS + 1;
+        let mut record = $serializer.serialize_struct("record", names.len() + more)?;
+        $(record.serialize_field(stringify!($field), &$row.$field)?;)*
+        let columns = [COVERAGE_COLUMNS, COVERAGE_TOTAL_COLUMNS];
+        for (columns, coverage) in columns.iter().zip($coverages) {
+            for (column, share) in columns.iter().zip(coverage.shares()) {
+                record.serialize_field(column, &share)?;
+            }
+        }
+        $(record.serialize_field(stringify!($last), $value)?;)*
+        record.end()
+    }};
+}
+
+/// Flat, with a column for each number of satellites.
+impl Serialize for EpochMetrics {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        record!(
+            serializer,
+            self,
+            [
+                elapsed_s,
+                mean_visible,
+                mean_pdop,
+                max_pdop,
+                solved_fraction,
+                availability,
+                least_visible,
+                mean_gnss_visible,
+                mean_total_visible,
+                gain_mean_pdop
+            ],
+            [self.coverage, self.coverage_total],
+            []
+        )
+    }
+}
+
+/// Flat, with a column for each number of satellites; the name is last.
+impl Serialize for PointMetrics {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        record!(
+            serializer,
+            self,
+            [
+                latitude_deg,
+                longitude_deg,
+                weight,
+                mean_visible,
+                mean_pdop,
+                p95_pdop,
+                max_pdop,
+                solved_fraction,
+                availability,
+                least_visible,
+                mean_gnss_visible,
+                mean_total_visible,
+                outages,
+                longest_outage_s,
+                total_outage_s,
+                outage_cut,
+                gain_mean_pdop
+            ],
+            [self.coverage, self.coverage_total],
+            [name: &self.name.as_deref()]
+        )
+    }
+}
+
+impl PointMetrics {
+    /// How the point is called where it is shown: by its name, or else by its place.
+    #[must_use]
+    pub fn label(&self) -> String {
+        match &self.name {
+            Some(name) => name.to_string(),
+            None => format!("{}°, {}°", self.latitude_deg, self.longitude_deg),
+        }
+    }
+}
