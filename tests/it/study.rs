@@ -446,7 +446,10 @@ source = \"page 12\"
     let report = fs::read_to_string(place.join("two/report.json")).unwrap();
     assert_eq!(report.trim(), two.stdout.trim());
     let markdown = fs::read_to_string(place.join("two/report.md")).unwrap();
-    assert!(markdown.contains("| mine            |"), "{markdown}");
+    assert!(
+        markdown.contains("| mine | 1 | 0 | 0 | 0 | 0 | 1 | 0 |"),
+        "{markdown}"
+    );
     assert!(
         markdown.contains("- in view: not met, and not explained"),
         "{markdown}"
