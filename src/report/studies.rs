@@ -188,16 +188,20 @@ const LEFT: Align = Align::Left;
 const RIGHT: Align = Align::Right;
 
 fn statements_table(study: &StudyResult) -> Table {
-    let mut table = Table::new(&[
+    let mut columns = vec![
         ("verdict", LEFT),
         ("statement", LEFT),
         ("published", RIGHT),
         ("computed", RIGHT),
         ("unit", LEFT),
         ("source", LEFT),
-        ("assumption under which it is met", LEFT),
-        ("computed under it", RIGHT),
-    ]);
+    ];
+    let mut statements = study.statements().iter();
+    if statements.any(|one| one.assumption.is_some()) {
+        columns.push(("assumption under which it is met", LEFT));
+        columns.push(("computed under it", RIGHT));
+    }
+    let mut table = Table::new(&columns);
     for one in study.statements() {
         table.row([
             one.verdict.to_string(),
@@ -309,7 +313,7 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
         let _ = write!(text, "\n## {}\n\n{}.\n", study.name(), study.title());
         let (source, notes) = study.source_and_notes();
         if let Some(source) = source {
-            let _ = write!(text, "Source: {source}.\n");
+            let _ = writeln!(text, "\nSource: {source}.");
         }
         let _ = write!(text, "\n{}\n", statements_table(study).to_markdown());
         for note in notes.iter().chain(&disagreements(study)) {

@@ -62,7 +62,7 @@ pub enum StudyRunError {
         /// The study.
         study: String,
         /// Why.
-        source: SetupError,
+        source: Box<SetupError>,
     },
     /// A statement names no constellation.
     #[error("study {study}, statement {statement:?}: {source}")]
@@ -72,7 +72,7 @@ pub enum StudyRunError {
         /// The statement.
         statement: String,
         /// Why.
-        source: NoDesign,
+        source: Box<NoDesign>,
     },
     /// A statement about the orbit of several shells.
     #[error(
@@ -93,7 +93,7 @@ pub enum StudyRunError {
     Ephemeris(#[from] EphemerisError),
     /// A constellation cannot be propagated.
     #[error(transparent)]
-    Propagation(#[from] ConstellationError),
+    Propagation(Box<ConstellationError>),
 }
 
 /// A scenario that statements share.
@@ -257,7 +257,7 @@ impl StudyRun<'_> {
         };
         let failed = |source| StudyRunError::Setup {
             study: self.study.name.clone(),
-            source,
+            source: Box::new(source),
         };
         let world = &mut self.worlds[place];
         let evaluator = match world.evaluator.take() {
@@ -266,7 +266,10 @@ impl StudyRun<'_> {
         };
         let setup = evaluator.setup();
         let ephemeris = match &constellation {
-            Some(one) => one.ephemeris(setup.grid, setup.model)?,
+            Some(one) => {
+                let ephemeris = one.ephemeris(setup.grid, setup.model);
+                ephemeris.map_err(|error| StudyRunError::Propagation(Box::new(error)))?
+            }
             None => Ephemeris::new(setup.grid, Vec::new()),
         };
         let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
@@ -289,7 +292,7 @@ impl StudyRun<'_> {
             let read = named.read(self.read);
             let (one, _) = read.map_err(|source| StudyRunError::Setup {
                 study: self.study.name.clone(),
-                source,
+                source: Box::new(source),
             })?;
             return Ok(one);
         }
@@ -305,7 +308,7 @@ impl StudyRun<'_> {
         design.map_err(|source| StudyRunError::Constellation {
             study: self.study.name.clone(),
             statement: statement.name.clone(),
-            source,
+            source: Box::new(source),
         })
     }
 
