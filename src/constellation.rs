@@ -1,11 +1,15 @@
 //! LEO designs and GNSS constellations, with the identity of each slot.
 
+mod coverage_radius;
 mod design;
 pub mod gnss;
 pub mod identity;
 mod notation;
 mod shell;
 
+pub use coverage_radius::{
+    COVERAGE_RADIUS_TOLERANCE_DEG, MOST_COVERING_SATELLITES, coverage_radius_deg,
+};
 pub use design::Design;
 pub use notation::NotationError;
 pub use shell::{DesignError, Orientation, Pattern, Shell, ShellParameters};

@@ -23,6 +23,7 @@ mod reproduction;
 mod results;
 mod seeds;
 pub(crate) mod shown;
+mod studies;
 mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
@@ -39,11 +40,15 @@ pub use evaluated::{
 pub use labels::quantity_label;
 pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
-    REPRODUCTION_FILES, ReproduceResult, reproduction_csv, reproduction_files,
-    reproduction_markdown, reproduction_text,
+    REPRODUCTION_FILES, ReproduceResult, reproduction_files, reproduction_markdown,
+    reproduction_text,
 };
 pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
+pub use studies::{
+    PublishedResult, StatementRecord, StudiesResult, StudyResult, statements_csv, studies_markdown,
+    studies_text,
+};
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]
 pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};

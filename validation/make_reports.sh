@@ -16,4 +16,8 @@ repeated=$(mktemp -d)
     echo "<!-- navwalker reproduce --quiet --format markdown > validation/reports/reproduce.md -->"
     "$program" reproduce --quiet --out "$repeated/study" --format markdown
 } > validation/reports/reproduce.md
+{
+    echo "<!-- navwalker reproduce --all --quiet --format markdown > validation/reports/studies.md -->"
+    "$program" reproduce --all --quiet --out "$repeated/all" --format markdown
+} > validation/reports/studies.md
 rm -r "$repeated"

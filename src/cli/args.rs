@@ -88,13 +88,15 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
-    /// Reproduce the paper that this program implements: its tables and figures next to ours.
+    /// Reproduce published numbers: those of the paper that this program implements, or of other studies.
     ///
-    /// Every statement of the paper gets a computed verdict: met, met-under-assumption (one is changed
-    /// at a time), fitted (the assumption was found from it), input (copied), not-met or unconfirmed.
-    /// DIR gets the report and the data of each figure.
+    /// Every statement gets a computed verdict: met, met-under-assumption (one is changed at a time),
+    /// fitted (the assumption was found from it), input (copied), not-met, or unconfirmed (nothing to
+    /// compare with, or a number from memory). DIR gets the report, and for the paper its tables and the
+    /// data of each figure. The exit status is 1 if a number is not met and its study does not say why.
     ///
-    /// Example: navwalker reproduce --set visibility.mask-deg=10
+    /// Examples: navwalker reproduce --set visibility.mask-deg=10
+    ///           navwalker reproduce gps-sps iridium
     #[command(verbatim_doc_comment)]
     Reproduce(ReproduceArgs),
 
@@ -333,14 +335,27 @@ pub(crate) enum StudyFormat {
 
 #[derive(Debug, Args)]
 pub(crate) struct ReproduceArgs {
-    #[command(flatten)]
-    pub(crate) study: StudyArgs,
+    /// Built-in studies or study files (docs/studies.md) [default: paper].
+    #[arg(value_name = "STUDY", conflicts_with = "all")]
+    pub(crate) studies: Vec<String>,
+
+    /// All built-in studies.
+    #[arg(long)]
+    pub(crate) all: bool,
+
+    /// List the built-in studies.
+    #[arg(long, conflicts_with_all = ["all", "studies"])]
+    pub(crate) list: bool,
+
+    /// Override a key of the scenario of the study, as in `--set visibility.mask-deg=10`; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
 
     /// Directory for the report and the data of the figures.
     #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
     pub(crate) out: PathBuf,
 
-    /// Seed of the searches; the same as `--set optimizer.seed=N`.
+    /// Seed of the paper's searches; the same as `--set optimizer.seed=N`.
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
 

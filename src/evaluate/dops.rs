@@ -5,7 +5,7 @@ use super::{Evaluator, Metrics, Setup, fixed, leo, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::ground::Site;
-use crate::stats::{Level, Summary, Weighted, summarize_weighted};
+use crate::stats::{Level, Summary, Weighted, summarize_weighted, weighted_quantile};
 use serde::Serialize;
 
 /// The place of the first clock among the dilutions: GDOP, PDOP, HDOP and VDOP come before.
@@ -119,10 +119,43 @@ impl Evaluator {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<DopStatistics, EphemerisError> {
+        let clocks = self.clock_names();
+        let level = self.setup().metrics.cvar_level;
+        Ok(self.collected(ephemeris)?.statistics(clocks, level))
+    }
+
+    /// The quantile of level `q` of each dilution of the solved samples, in the order of [`DopStatistics::named`], by
+    /// the plain path; `None` for one without samples.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn dop_quantiles(
+        &self,
+        ephemeris: &Ephemeris,
+        q: Level,
+    ) -> Result<Vec<Option<f64>>, EphemerisError> {
+        let mut collected = self.collected(ephemeris)?;
+        let position = [
+            &mut collected.gdop,
+            &mut collected.pdop,
+            &mut collected.hdop,
+            &mut collected.vdop,
+        ];
+        let position = position.map(|samples| weighted_quantile(samples, q));
+        let clocks = collected.tdop.iter_mut();
+        let mut clocks: Vec<_> = clocks
+            .map(|samples| weighted_quantile(samples, q))
+            .collect();
+        // The clock of the LEO satellites is named first.
+        clocks.rotate_right(1);
+        Ok(position.into_iter().chain(clocks).collect())
+    }
+
+    /// The samples of each dilution, by the plain path.
+    fn collected(&self, ephemeris: &Ephemeris) -> Result<Collected, EphemerisError> {
         let setup = self.setup();
         let systems = fixed::systems(setup);
-        let clocks = self.clock_names();
-        let mut collected = Collected::new(clocks.len());
+        let mut collected = Collected::new(self.clock_names().len());
         let mut leo = Vec::new();
         for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
             leo::positions(setup, ephemeris, elapsed_s, rotation, &mut leo)?;
@@ -133,7 +166,7 @@ impl Evaluator {
                 collected.add(dops.as_ref(), self.weights.of(number));
             }
         }
-        Ok(collected.statistics(clocks, setup.metrics.cvar_level))
+        Ok(collected)
     }
 
     /// The names of the dilutions of precision, in the order of [`DopStatistics::named`].

@@ -2,22 +2,28 @@
 
 mod files;
 
-pub use files::{REPRODUCTION_FILES, reproduction_csv, reproduction_files};
+pub use files::{REPRODUCTION_FILES, reproduction_files};
 
-use super::{Align, Table};
+use super::{Align, StatementRecord, Table};
 use crate::keyword::Keyword;
 use crate::run::{ScenarioStamp, VERSION};
 use crate::scenario::Scenario;
-use crate::study::paper::{Expected, Reproduction, Statement, Verdict};
+use crate::study::paper::Reproduction;
+use crate::study::{Expected, Statement, Verdict};
 use serde::Serialize;
 use std::fmt::Write;
 
-/// The output of `reproduce`.
+/// The paper's study among those of `reproduce`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReproduceResult {
-    /// The study.
+    /// Its name.
+    pub name: &'static str,
+    /// The scenario.
     pub scenario: ScenarioStamp,
+    /// The statements, as those of other studies.
+    pub statements: Vec<StatementRecord>,
     /// Version of the program.
+    #[serde(skip)]
     pub version: &'static str,
     /// Seed of the searches.
     pub seed: u64,
@@ -27,11 +33,16 @@ pub struct ReproduceResult {
 }
 
 impl ReproduceResult {
+    /// The name of the paper's study.
+    pub const NAME: &'static str = "paper";
+
     /// The result for a scenario.
     #[must_use]
     pub fn new(study: Reproduction, scenario: &Scenario, stamp: ScenarioStamp) -> Self {
         Self {
+            name: Self::NAME,
             scenario: stamp,
+            statements: study.lines.iter().map(Into::into).collect(),
             version: VERSION,
             seed: scenario.optimizer.seed,
             study,
@@ -196,7 +207,7 @@ fn expected(line: &Statement) -> String {
 }
 
 /// At most four decimals, without trailing zeros.
-fn round(value: f64) -> String {
+pub(super) fn round(value: f64) -> String {
     let text = format!("{value:.4}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -7,15 +7,14 @@
 mod assumptions;
 mod figures;
 mod fit;
-mod judge;
 mod lines;
 mod measured;
 mod searches;
 mod table;
 
+use super::judge::{Expected, Statement};
 pub use figures::{Curve, Figures, PlacedDesign};
 pub use fit::{MaskFit, RowMask};
-pub use judge::{Expected, Statement, Verdict};
 pub use lines::{JudgedRow, PDOP_TOLERANCE_PERCENT, VISIBLE_TOLERANCE};
 pub use measured::{Measured, RowValue};
 pub use searches::{FoundMember, FoundSet};
@@ -135,6 +134,7 @@ pub struct Reproduction {
     /// Cost against size.
     pub cost_of_size: CostOfSize,
     /// Every statement of the paper that has a number or a direction, with its verdict.
+    #[serde(skip)]
     pub lines: Vec<Statement>,
 }
 

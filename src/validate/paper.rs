@@ -2,7 +2,8 @@
 
 use super::{Check, CheckedQuantity, Findings};
 use crate::evaluate::Setup;
-use crate::study::paper::{self, JudgedRow, PaperError, Scheme, Statement};
+use crate::study::Statement;
+use crate::study::paper::{self, JudgedRow, PaperError, Scheme};
 
 /// Table II compared with the paper, each row as printed.
 ///

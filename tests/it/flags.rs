@@ -188,6 +188,8 @@ const ROWS: &[Row] = &[
         "--set visibility.mask-deg=10",
         Stdout,
     ),
+    Row("reproduce", "all", "--out out LITTLE", "--all", Status),
+    Row("reproduce", "list", "--out out LITTLE", "--list", Stdout),
     Row("reproduce", "out", "LITTLE", "--out out", Out),
     Row("reproduce", "seed", "--out out LITTLE", "--seed 2", Out),
     Row(

@@ -353,6 +353,8 @@ fn the_paper_is_repeated_into_a_directory() {
     let one = with(&["--format", "json", "--threads", "1"]);
     assert_eq!(one.status, 0, "{}", one.stderr);
     let value: Value = serde_json::from_str(&one.stdout).unwrap();
+    let value = &value["studies"][0];
+    assert_eq!(value["name"], "paper");
     assert_eq!(value["rows"].as_array().unwrap().len(), 11);
     let verdicts = [
         "met",
@@ -362,7 +364,7 @@ fn the_paper_is_repeated_into_a_directory() {
         "not-met",
         "unconfirmed",
     ];
-    for line in value["lines"].as_array().unwrap() {
+    for line in value["statements"].as_array().unwrap() {
         assert!(
             verdicts.contains(&line["verdict"].as_str().unwrap()),
             "{line}"
@@ -396,4 +398,141 @@ fn the_paper_is_repeated_into_a_directory() {
     assert!(other.stderr.contains(message), "{}", other.stderr);
     assert_eq!(fs::read_to_string(&notes).unwrap(), "mine");
     assert!(read("report.json") == before);
+}
+
+/// A study of one's own beside a built-in one: what is not met and not explained is status 1.
+#[test]
+fn published_numbers_are_judged() {
+    const MINE: &str = "name = \"mine\"
+title = \"An example\"
+source = \"A book\"
+[scenario]
+time = { duration-h = 1, step-s = 600 }
+region = { latitude-deg = [10, 40], longitude-deg = [100, 100], step-deg = 30 }
+[[statement]]
+name = \"in view\"
+of = \"star:86:72/6/1@900\"
+metric = \"mean-visible\"
+expected = 400
+tolerance = 0.5
+source = \"page 12\"
+";
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    fs::write(place.join("mine.toml"), MINE).unwrap();
+    let reproduced = |studies: &[&str]| {
+        let arguments = [&["reproduce", "--quiet", "--format", "json"], studies].concat();
+        ran(place, &arguments)
+    };
+    let two = reproduced(&["sun-synchronous", "mine.toml", "--out", "two"]);
+    assert_eq!(two.status, 1, "{}", two.stderr);
+    let value: Value = serde_json::from_str(&two.stdout).unwrap();
+    let [sun, mine] = value["studies"].as_array().unwrap().as_slice() else {
+        panic!("{value}");
+    };
+    let sun = &sun["statements"][0];
+    assert_eq!(sun["verdict"], "met");
+    assert_eq!(
+        (&sun["expected"], &sun["tolerance"]),
+        (&0.985_647.into(), &6e-5.into())
+    );
+    assert_eq!(sun["unit"], "deg/day");
+    let mine = &mine["statements"][0];
+    assert_eq!(
+        (&mine["verdict"], &mine["source"]),
+        (&"not-met".into(), &"page 12".into())
+    );
+    assert!(mine["computed"].as_f64().unwrap() < 10.0);
+    let report = fs::read_to_string(place.join("two/report.json")).unwrap();
+    assert_eq!(report.trim(), two.stdout.trim());
+    let markdown = fs::read_to_string(place.join("two/report.md")).unwrap();
+    assert!(
+        markdown.contains("| mine | 1 | 0 | 0 | 0 | 0 | 1 | 0 |"),
+        "{markdown}"
+    );
+    assert!(
+        markdown.contains("- in view: not met, and not explained"),
+        "{markdown}"
+    );
+    // Explained, it is no failure; the same studies again are replaced, others are not.
+    let explained = MINE.replace("source = \"page", "disagreement = \"why\"\nsource = \"page");
+    fs::write(place.join("mine.toml"), explained).unwrap();
+    let other = reproduced(&["mine.toml", "--out", "two"]);
+    assert_eq!(other.status, 2);
+    assert!(
+        other
+            .stderr
+            .contains("holds something other than this study"),
+        "{}",
+        other.stderr
+    );
+    for _ in 0..2 {
+        let again = reproduced(&["mine.toml", "--out", "one"]);
+        assert_eq!(again.status, 0, "{}", again.stderr);
+    }
+    // By area nothing changes for one longitude, by another mask it does.
+    let set = reproduced(&[
+        "mine.toml",
+        "--out",
+        "set",
+        "--set",
+        "visibility.mask-deg=40",
+    ]);
+    let value: Value = serde_json::from_str(&set.stdout).unwrap();
+    let higher = value["studies"][0]["statements"][0]["computed"]
+        .as_f64()
+        .unwrap();
+    assert!(higher < mine["computed"].as_f64().unwrap());
+    let listed = ran(place, &["reproduce", "--list", "--format", "json"]);
+    let listed: Value = serde_json::from_str(&listed.stdout).unwrap();
+    let names: Vec<&str> = listed["studies"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|study| study["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names[..2], ["paper", "gps-sps"]);
+}
+
+#[test]
+fn a_study_that_is_wrong_is_refused() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    fs::write(
+        place.join("wrong.toml"),
+        "name = \"a\"\ntitle = \"b\"\nsource = \"c\"\n",
+    )
+    .unwrap();
+    for (arguments, told) in [
+        (
+            vec!["reproduce", "wrong.toml"],
+            "wrong.toml:1: found no [[statement]], expected at least one",
+        ),
+        (
+            vec!["reproduce", "missing.toml"],
+            "cannot read missing.toml",
+        ),
+        (
+            vec!["reproduce", "gps-spss"],
+            "no built-in study 'gps-spss', did you mean 'gps-sps'? (choices: paper, gps-sps,",
+        ),
+        (
+            vec!["reproduce", "gps-sps", "iridium", "--set", "time.step-s=60"],
+            "--set time.step-s=60: several studies have several scenarios; give one study",
+        ),
+        (
+            vec!["reproduce", "gps-sps", "--seed", "2"],
+            "--seed 2 is of the searches of the paper's study",
+        ),
+        (
+            vec!["reproduce", "sun-synchronous", "--set", "time.stp-s=60"],
+            "--set time.stp-s=60: time.stp-s: unknown key, did you mean `time.step-s`?",
+        ),
+    ] {
+        let found = ran(place, &arguments);
+        assert_eq!(found.status, 2, "{arguments:?}");
+        assert!(found.stderr.contains(told), "{}", found.stderr);
+    }
+    let left: Vec<_> = fs::read_dir(place).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
 }

@@ -1,9 +1,10 @@
 //! The files of the reproduction: its tables and the data of the paper's figures.
 
-use super::{ReproduceResult, expected};
+use super::ReproduceResult;
+use crate::report::studies::rows_csv;
 use crate::run::columns::optional;
 use crate::run::tables::text;
-use crate::study::paper::{Curve, PlacedDesign, Reproduction, Statement};
+use crate::study::paper::{Curve, PlacedDesign, Reproduction};
 use ::csv::Writer;
 use std::io;
 
@@ -26,7 +27,7 @@ pub const REPRODUCTION_FILES: [&str; 8] = [
 pub fn reproduction_files(result: &ReproduceResult) -> io::Result<Vec<(&'static str, String)>> {
     let (study, figures) = (&result.study, &result.study.figures);
     let tables = [
-        reproduction_csv(&study.lines)?,
+        rows_csv(result.statements.iter().map(|one| (result.name, one)))?,
         table2_csv(study)?,
         sensitivity_csv(study)?,
         places_csv(&figures.places)?,
@@ -40,38 +41,6 @@ pub fn reproduction_files(result: &ReproduceResult) -> io::Result<Vec<(&'static 
 
 fn cell(value: f64) -> String {
     value.to_string()
-}
-
-/// The statements, one per row.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn reproduction_csv(lines: &[Statement]) -> io::Result<String> {
-    let mut writer = Writer::from_writer(Vec::new());
-    let header = [
-        "place",
-        "statement",
-        "unit",
-        "paper",
-        "ours",
-        "verdict",
-        "assumption",
-        "ours_there",
-    ];
-    writer.write_record(header)?;
-    for line in lines {
-        writer.write_record([
-            line.place.clone(),
-            line.statement.clone(),
-            line.unit.clone(),
-            expected(line),
-            optional(line.ours),
-            line.verdict.to_string(),
-            line.assumption.clone().unwrap_or_default(),
-            optional(line.ours_there),
-        ])?;
-    }
-    text(writer)
 }
 
 /// Table II with the paper's values and ours, one row each.

@@ -1,6 +1,5 @@
 //! The statements of the paper, one by one.
 
-use super::judge::{OtherAssumption, Provenance, judge};
 use super::measured::Measurements;
 use super::searches::{PROPOSED, SATELLITES, SINGLE};
 use super::table::{PERCENTAGES, Printable, TABLE1};
@@ -12,6 +11,7 @@ use crate::earth::RADIUS_KM;
 use crate::evaluate::Setup;
 use crate::optimize::{dominates, fuzzy};
 use crate::orbit::Propagator;
+use crate::study::judge::{OtherAssumption, Provenance, judge};
 
 /// The row that the paper's text compares with others.
 pub(super) const REFERENCE: &str = "proposed-2";

@@ -2,6 +2,7 @@ use super::*;
 use crate::constellation::Pattern;
 use crate::dop::Clocks;
 use crate::scenario::{Scenario, builtin};
+use crate::study::Verdict;
 use std::sync::LazyLock;
 
 /// The built-in scenario on a coarse time grid; N̄ is a mean over 143 points and a full day, which

@@ -23,7 +23,7 @@ keywords! {
 
 /// How the study came by what a statement is judged with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Provenance {
+pub(in crate::study) enum Provenance {
     /// Copied from the paper.
     Input,
     /// Assumptions were fitted to the quantity, or to what it follows from.
@@ -57,7 +57,7 @@ pub enum Expected {
 
 impl Expected {
     /// Whether `found` agrees with the paper; never true for NaN.
-    pub(super) fn holds(self, found: f64) -> bool {
+    pub(in crate::study) fn holds(self, found: f64) -> bool {
         match self {
             Self::Value { value, tolerance } => (found - value).abs() <= tolerance,
             Self::AtLeast(bound) => found >= bound,
@@ -88,15 +88,15 @@ pub struct Statement {
 }
 
 /// A number under a named assumption.
-pub(super) struct OtherAssumption<'a> {
-    pub(super) assumption: &'a str,
-    pub(super) found: Option<f64>,
+pub(in crate::study) struct OtherAssumption<'a> {
+    pub(in crate::study) assumption: &'a str,
+    pub(in crate::study) found: Option<f64>,
 }
 
 /// Judges a statement. It holds if true under the scenario, or else under any of `others`, of which
 /// the one with the smallest difference is named (the first of equals). A statement that holds is
 /// met, unless its provenance makes it no evidence; one without any number is unconfirmed.
-pub(super) fn judge(
+pub(in crate::study) fn judge(
     [place, statement, unit]: [&str; 3],
     provenance: Provenance,
     expected: Expected,

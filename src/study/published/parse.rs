@@ -1,0 +1,431 @@
+//! A study as written in TOML, checked.
+
+use super::{PublishedStatement, PublishedStudy, StudyAssumption};
+use crate::study::judge::{Expected, Provenance};
+use serde::Deserialize;
+use std::fmt;
+use std::ops::Range;
+use toml::{Spanned, Table, Value};
+
+/// What is wrong with the file of a study.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StudyFileError {
+    /// Every problem: line, from 1, and what is wrong.
+    problems: Vec<(usize, String)>,
+    /// The file as named by the caller.
+    label: String,
+}
+
+impl fmt::Display for StudyFileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (n, (line, what)) in self.problems.iter().enumerate() {
+            if n > 0 {
+                writeln!(f)?;
+            }
+            write!(f, "{}:{line}: {what}", self.label)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for StudyFileError {}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct StudyFile {
+    name: Spanned<String>,
+    title: Spanned<String>,
+    source: Spanned<String>,
+    #[serde(default)]
+    notes: Vec<String>,
+    #[serde(default)]
+    scenario: Table,
+    #[serde(default)]
+    assumption: Vec<AssumptionTable>,
+    #[serde(default)]
+    statement: Vec<Spanned<StatementTable>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct AssumptionTable {
+    name: String,
+    scenario: Table,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct StatementTable {
+    name: Spanned<String>,
+    #[serde(default = "gnss_only")]
+    of: String,
+    metric: Spanned<String>,
+    expected: Option<Spanned<f64>>,
+    tolerance: Option<Spanned<f64>>,
+    at_least: Option<f64>,
+    more_than: Option<f64>,
+    source: Option<Spanned<String>>,
+    #[serde(default = "confirmed")]
+    confirmed: bool,
+    #[serde(default)]
+    fitted: bool,
+    disagreement: Option<String>,
+    #[serde(default)]
+    scenario: Table,
+}
+
+fn gnss_only() -> String {
+    crate::exchange::constellation::GNSS_ONLY.to_owned()
+}
+
+fn confirmed() -> bool {
+    true
+}
+
+/// The problems found so far, with their places in the text.
+struct FileProblems<'t> {
+    text: &'t str,
+    found: Vec<(usize, String)>,
+}
+
+impl FileProblems<'_> {
+    fn add(&mut self, span: Range<usize>, what: String) {
+        let before = self.text.get(..span.start).unwrap_or(self.text);
+        let line = before.matches('\n').count() + 1;
+        self.found.push((line, what));
+    }
+}
+
+impl PublishedStudy {
+    /// Reads a study; `label` names the file in errors. What its scenario says is checked when it is run.
+    ///
+    /// # Errors
+    /// Everything that is wrong, each with its line.
+    pub fn parse(label: &str, text: &str) -> Result<Self, StudyFileError> {
+        let mut problems = FileProblems {
+            text,
+            found: Vec::new(),
+        };
+        let study = match toml::from_str::<StudyFile>(text) {
+            Ok(file) => study(file, &mut problems),
+            Err(error) => {
+                let what = error.message().lines().collect::<Vec<_>>().join("; ");
+                problems.add(error.span().unwrap_or_default(), what);
+                None
+            }
+        };
+        match study {
+            Some(study) if problems.found.is_empty() => Ok(study),
+            _ => Err(StudyFileError {
+                problems: problems.found,
+                label: label.to_owned(),
+            }),
+        }
+    }
+}
+
+fn study(file: StudyFile, problems: &mut FileProblems<'_>) -> Option<PublishedStudy> {
+    for (key, text) in [
+        ("name", &file.name),
+        ("title", &file.title),
+        ("source", &file.source),
+    ] {
+        if text.get_ref().trim().is_empty() {
+            problems.add(text.span(), format!("{key}: found an empty text"));
+        }
+    }
+    if !is_study_name(file.name.get_ref()) {
+        let what = format!(
+            "name: found {:?}, expected letters, digits and '-'",
+            file.name.get_ref()
+        );
+        problems.add(file.name.span(), what);
+    }
+    if file.statement.is_empty() {
+        problems.add(
+            0..0,
+            "found no [[statement]], expected at least one".to_owned(),
+        );
+    }
+    let mut statements: Vec<PublishedStatement> = Vec::new();
+    for table in file.statement {
+        let span = table.span();
+        if let Some(statement) = statement(table.into_inner(), span.clone(), problems) {
+            if statements.iter().any(|known| known.name == statement.name) {
+                let what = format!("name: there are two statements {:?}", statement.name);
+                problems.add(span, what);
+            }
+            statements.push(statement);
+        }
+    }
+    let assumption = |table: AssumptionTable| StudyAssumption {
+        name: table.name,
+        scenario: keys(&table.scenario),
+    };
+    Some(PublishedStudy {
+        name: file.name.into_inner(),
+        title: file.title.into_inner(),
+        source: file.source.into_inner(),
+        notes: file.notes,
+        scenario: keys(&file.scenario),
+        assumptions: file.assumption.into_iter().map(assumption).collect(),
+        statements,
+    })
+}
+
+fn is_study_name(name: &str) -> bool {
+    let is_known = |c: char| c.is_ascii_alphanumeric() || c == '-';
+    !name.is_empty() && name.chars().all(is_known)
+}
+
+fn statement(
+    table: StatementTable,
+    span: Range<usize>,
+    problems: &mut FileProblems<'_>,
+) -> Option<PublishedStatement> {
+    let metric = match table.metric.get_ref().parse() {
+        Ok(metric) => Some(metric),
+        Err(error) => {
+            problems.add(table.metric.span(), format!("metric: {error}"));
+            None
+        }
+    };
+    let source = match table.source {
+        Some(source) if !source.get_ref().trim().is_empty() => Some(source.into_inner()),
+        Some(source) => {
+            problems.add(source.span(), "source: found an empty text".to_owned());
+            None
+        }
+        None => {
+            let what = format!(
+                "statement {:?} has no source: say where the number is, with its page or table",
+                table.name.get_ref()
+            );
+            problems.add(span.clone(), what);
+            None
+        }
+    };
+    let expected = match (table.expected, table.at_least, table.more_than) {
+        (Some(value), None, None) => within(value, table.tolerance, &span, problems),
+        (None, Some(bound), None) if table.tolerance.is_none() && bound.is_finite() => {
+            Some(Expected::AtLeast(bound))
+        }
+        (None, None, Some(bound)) if table.tolerance.is_none() && bound.is_finite() => {
+            Some(Expected::MoreThan(bound))
+        }
+        _ => {
+            let what = format!(
+                "statement {:?} needs expected with tolerance, or one finite bound without: at-least or more-than",
+                table.name.get_ref()
+            );
+            problems.add(span, what);
+            None
+        }
+    };
+    Some(PublishedStatement {
+        name: table.name.into_inner(),
+        of: table.of,
+        metric: metric?,
+        expected: expected?,
+        source: source?,
+        provenance: if table.fitted {
+            Provenance::Fitted
+        } else {
+            Provenance::Computed
+        },
+        is_confirmed: table.confirmed,
+        disagreement: table.disagreement,
+        scenario: keys(&table.scenario),
+    })
+}
+
+/// A number with its tolerance, which is above 0.
+fn within(
+    value: Spanned<f64>,
+    tolerance: Option<Spanned<f64>>,
+    statement: &Range<usize>,
+    problems: &mut FileProblems<'_>,
+) -> Option<Expected> {
+    let Some(tolerance) = tolerance else {
+        let what = "expected has no tolerance: give half of the last digit that is published, or more, with its reason";
+        problems.add(statement.clone(), what.to_owned());
+        return None;
+    };
+    if !value.get_ref().is_finite() {
+        let what = format!(
+            "expected: found {}, expected a finite number",
+            value.get_ref()
+        );
+        problems.add(value.span(), what);
+        return None;
+    }
+    let (span, tolerance) = (tolerance.span(), tolerance.into_inner());
+    if !(tolerance > 0.0 && tolerance.is_finite()) {
+        let what = format!("tolerance: found {tolerance}, expected a number above 0");
+        problems.add(span, what);
+        return None;
+    }
+    Some(Expected::Value {
+        value: value.into_inner(),
+        tolerance,
+    })
+}
+
+/// The keys of a scenario table, as for `--set`: those of a section one by one.
+fn keys(scenario: &Table) -> Vec<String> {
+    let mut keys = Vec::new();
+    for (name, value) in scenario {
+        match value {
+            Value::Table(section) => {
+                let of_section = section.iter();
+                keys.extend(of_section.map(|(key, value)| format!("{name}.{key}={value}")));
+            }
+            value => keys.push(format!("{name}={value}")),
+        }
+    }
+    keys
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STUDY: &str = "name = \"two\"
+title = \"Two numbers\"
+source = \"A book\"
+[scenario]
+time = { step-s = 600 }
+gnss = { constellations = [\"gps\"] }
+[[assumption]]
+name = \"another mask\"
+scenario = { visibility = { mask-deg = 10 } }
+[[statement]]
+name = \"first\"
+metric = \"p95-hdop\"
+expected = 1.25
+tolerance = 0.01
+source = \"page 1\"
+[[statement]]
+name = \"second\"
+of = \"delta:55:4/2/1@900\"
+metric = \"mean-visible\"
+at-least = 0.5
+source = \"page 2\"
+";
+
+    fn told(text: &str) -> String {
+        PublishedStudy::parse("two.toml", text)
+            .unwrap_err()
+            .to_string()
+    }
+
+    #[test]
+    fn a_study_is_read() {
+        let study = PublishedStudy::parse("two.toml", STUDY).unwrap();
+        assert_eq!(
+            study.scenario,
+            ["time.step-s=600", "gnss.constellations=[\"gps\"]"]
+        );
+        assert_eq!(study.assumptions[0].scenario, ["visibility.mask-deg=10"]);
+        let [first, second] = study.statements.as_slice() else {
+            panic!("{study:?}");
+        };
+        assert_eq!(first.of, "gnss-only");
+        let expected = Expected::Value {
+            value: 1.25,
+            tolerance: 0.01,
+        };
+        assert_eq!(first.expected, expected);
+        assert_eq!(second.expected, Expected::AtLeast(0.5));
+        assert!(first.is_confirmed);
+    }
+
+    /// A metric that is unknown, a number without a source, a tolerance of 0: each with its line, all at once.
+    #[test]
+    fn what_is_wrong_is_told_with_its_line() {
+        let wrong = STUDY
+            .replace("p95-hdop", "p95-hdob")
+            .replace("tolerance = 0.01", "tolerance = 0")
+            .replace("source = \"page 2\"\n", "");
+        let told = told(&wrong);
+        let lines: Vec<&str> = told.lines().collect();
+        assert!(
+            lines[0].starts_with(
+                "two.toml:12: metric: unknown metric \"p95-hdob\", did you mean \"p95-hdop\"?"
+            ),
+            "{told}"
+        );
+        assert_eq!(
+            lines[1],
+            "two.toml:14: tolerance: found 0, expected a number above 0"
+        );
+        assert!(
+            lines[2].starts_with("two.toml:16: statement \"second\" has no source"),
+            "{told}"
+        );
+        assert_eq!(lines.len(), 3);
+    }
+
+    #[test]
+    fn other_faults_are_told() {
+        for (from, to, expected) in [
+            (
+                "tolerance = 0.01\n",
+                "",
+                "two.toml:10: expected has no tolerance",
+            ),
+            (
+                "tolerance = 0.01",
+                "tolerance = nan",
+                "tolerance: found NaN, expected a number above 0",
+            ),
+            (
+                "expected = 1.25",
+                "expected = inf",
+                "expected: found inf, expected a finite number",
+            ),
+            (
+                "at-least = 0.5\n",
+                "",
+                "needs expected with tolerance, or one finite bound",
+            ),
+            (
+                "at-least = 0.5\n",
+                "at-least = inf\n",
+                "needs expected with tolerance, or one finite bound",
+            ),
+            (
+                "at-least = 0.5\n",
+                "at-least = 0.5\ntolerance = 1\n",
+                "needs expected with",
+            ),
+            (
+                "name = \"second\"",
+                "name = \"first\"",
+                "there are two statements \"first\"",
+            ),
+            (
+                "name = \"two\"",
+                "name = \"a b\"",
+                "two.toml:1: name: found \"a b\"",
+            ),
+            (
+                "metric = \"mean",
+                "metrik = \"mean",
+                "two.toml:19: unknown field `metrik`",
+            ),
+            (
+                "source = \"A book\"",
+                "source = \" \"",
+                "two.toml:3: source: found an empty text",
+            ),
+            ("title = \"Two", "title = Two", "two.toml:2: "),
+        ] {
+            let told = told(&STUDY.replace(from, to));
+            assert!(told.contains(expected), "{told}");
+        }
+        assert!(
+            told("name = \"a\"\ntitle = \"b\"\nsource = \"c\"").contains("found no [[statement]]")
+        );
+    }
+}
