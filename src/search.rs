@@ -5,6 +5,7 @@ mod constraint;
 mod fixed;
 mod quantity;
 mod shell_space;
+pub mod size;
 mod space;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
@@ -125,6 +126,12 @@ impl<'a> DesignProblem<'a> {
         Ok(Self { fixed, ..self })
     }
 
+    /// What evaluates the designs.
+    #[must_use]
+    pub fn evaluator(&self) -> &'a Evaluator {
+        self.evaluator
+    }
+
     /// The goals of the search.
     #[must_use]
     pub fn goals(&self) -> &Goals {
@@ -147,14 +154,32 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
         let design = self.designs.design(genome).ok()?;
-        let metrics = if self.fixed.is_empty() {
-            self.evaluator.evaluate(&design)
+        let ephemeris = self.ephemeris(&design)?;
+        let metrics = self.evaluator.evaluate_ephemeris(&ephemeris).ok()?;
+        Some((design, metrics))
+    }
+
+    /// A design with the satellites that are beside it; `None` if it cannot be propagated.
+    fn ephemeris(&self, design: &Design) -> Option<Ephemeris> {
+        let setup = self.evaluator.setup();
+        let own = Ephemeris::of_design(design, setup.model, setup.grid).ok()?;
+        Some(if self.fixed.is_empty() {
+            own
         } else {
-            let setup = self.evaluator.setup();
-            let own = Ephemeris::of_design(&design, setup.model, setup.grid).ok()?;
-            self.evaluator.evaluate_ephemeris(&self.fixed.join_to(own))
-        };
-        Some((design, metrics.ok()?))
+            self.fixed.join_to(own)
+        })
+    }
+
+    /// The value of a quantity of the shells for a design with what is fixed; `None` for any other quantity.
+    fn value_of_shells(&self, quantity: Quantity, design: &Design) -> Option<f64> {
+        let satellites = design.satellite_count() + self.fixed.len();
+        let new = self.goals.new_shells(design);
+        quantity.of_shells(
+            satellites,
+            Some(design),
+            Some(&new),
+            &self.goals.launch_cost,
+        )
     }
 
     /// The value of a quantity for a design that was evaluated with what is fixed.

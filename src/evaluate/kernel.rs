@@ -43,6 +43,7 @@ mod fixed;
 mod instructions;
 mod lanes;
 mod order_statistics;
+mod probe;
 mod propagation;
 mod refine;
 mod sample;
@@ -51,6 +52,7 @@ mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
+pub use probe::{SampleTile, SampleTiles};
 
 use super::Setup;
 use super::counts::Threshold;

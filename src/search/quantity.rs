@@ -243,11 +243,9 @@ impl Quantity {
         metrics: &Metrics,
         cost: &LaunchCost,
     ) -> Option<f64> {
-        let new_sum = |of: fn(&Shell) -> usize| {
-            let counts = new.map(|shells| shells.iter().map(|shell| of(shell)).sum());
-            counts.map(|sum: usize| sum as f64)
-        };
-        let satellites = satellites as f64;
+        if self.is_of_shells() {
+            return self.of_shells(satellites, design, new, cost);
+        }
         match self {
             Self::JPos => metrics.j_pos,
             Self::JCost => metrics.j_cost,
@@ -256,10 +254,6 @@ impl Quantity {
             Self::P95Pdop => metrics.p95_pdop,
             Self::P99Pdop => metrics.p99_pdop,
             Self::MaxPdop => metrics.max_pdop,
-            Self::Satellites => Some(satellites),
-            Self::Planes => Some(design?.planes() as f64),
-            Self::NewSatellites => new_sum(Shell::satellite_count).or(Some(satellites)),
-            Self::NewPlanes => new_sum(Shell::planes),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
             Self::LeastVisible => Some(metrics.least_visible.into()),
@@ -274,11 +268,6 @@ impl Quantity {
             Self::Error953dM => metrics.error95_3d_m?,
             Self::Error95HM => metrics.error95_h_m?,
             Self::Error95VM => metrics.error95_v_m?,
-            // 0 and not -0 for no shell.
-            Self::LaunchCost => Some(
-                new?.iter()
-                    .fold(0.0, |sum, shell| sum + cost.of_shell(shell)),
-            ),
             _ => {
                 let (satellites, is_total) = self.coverage_levels()?;
                 let coverage = if is_total {
@@ -288,6 +277,39 @@ impl Quantity {
                 };
                 coverage.of(satellites)
             }
+        }
+    }
+
+    /// Whether it follows from the shells alone, without an evaluation.
+    #[must_use]
+    pub fn is_of_shells(self) -> bool {
+        self.needs_design() || matches!(self, Self::Satellites | Self::NewSatellites)
+    }
+
+    /// The value of a quantity of the shells, as in [`Quantity::value`]; `None` for any other.
+    pub(super) fn of_shells(
+        self,
+        satellites: usize,
+        design: Option<&Design>,
+        new: Option<&[&Shell]>,
+        cost: &LaunchCost,
+    ) -> Option<f64> {
+        let new_sum = |of: fn(&Shell) -> usize| {
+            let counts = new.map(|shells| shells.iter().map(|shell| of(shell)).sum());
+            counts.map(|sum: usize| sum as f64)
+        };
+        let satellites = satellites as f64;
+        match self {
+            Self::Satellites => Some(satellites),
+            Self::Planes => Some(design?.planes() as f64),
+            Self::NewSatellites => new_sum(Shell::satellite_count).or(Some(satellites)),
+            Self::NewPlanes => new_sum(Shell::planes),
+            // 0 and not -0 for no shell.
+            Self::LaunchCost => Some(
+                new?.iter()
+                    .fold(0.0, |sum, shell| sum + cost.of_shell(shell)),
+            ),
+            _ => None,
         }
     }
 }
