@@ -48,14 +48,14 @@ pub(super) enum Proof {
 
 /// A proof with the place of its constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Rule {
+pub(super) struct SampleRule {
     pub(super) constraint: usize,
     pub(super) proof: Proof,
 }
 
 /// What the rules of a search depend on.
 pub(super) struct RuleSet {
-    pub(super) rules: Vec<Rule>,
+    pub(super) rules: Vec<SampleRule>,
     pub(super) shape: SampleTiles,
     /// α of the tail.
     pub(super) tail_level: f64,
@@ -84,7 +84,7 @@ impl RuleSet {
         };
         for (place, constraint) in constraints.iter().enumerate() {
             let proofs = set.proofs(constraint, setup.metrics.cvar_weight);
-            let rule = |proof| Rule {
+            let rule = |proof| SampleRule {
                 constraint: place,
                 proof,
             };
@@ -187,13 +187,14 @@ impl RuleSet {
     }
 
     pub(super) fn has_tail(&self) -> bool {
-        let of_tail =
-            |rule: &Rule| matches!(rule.proof, Proof::Tail { .. } | Proof::MeanAndTail { .. });
+        let of_tail = |rule: &SampleRule| {
+            matches!(rule.proof, Proof::Tail { .. } | Proof::MeanAndTail { .. })
+        };
         self.rules.iter().any(of_tail)
     }
 
     pub(super) fn has_runs(&self) -> bool {
-        let of_run = |rule: &Rule| matches!(rule.proof, Proof::Run { .. });
+        let of_run = |rule: &SampleRule| matches!(rule.proof, Proof::Run { .. });
         self.rules.iter().any(of_run)
     }
 }

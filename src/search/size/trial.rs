@@ -1,7 +1,7 @@
 //! One design on its way through the samples.
 
 use super::order::BadTile;
-use super::rules::{BadSample, Proof, Rule, RuleSet, SUM_MARGIN};
+use super::rules::{BadSample, Proof, RuleSet, SUM_MARGIN, SampleRule};
 use super::tail::TailCounts;
 use crate::evaluate::SampleTile;
 
@@ -82,7 +82,7 @@ impl<'a> Trial<'a> {
     /// What follows from the number of satellites alone, since no geometry of them is good enough.
     fn beforehand(&self) -> Option<Rejection> {
         let least = self.least as f32;
-        let none_is_good = |rule: &&Rule| match rule.proof {
+        let none_is_good = |rule: &&SampleRule| match rule.proof {
             Proof::Count { bad, allowed } => {
                 let too_large = match bad {
                     BadSample::Unavailable(up_to) => least.next_down() > up_to,
@@ -162,7 +162,12 @@ impl<'a> Trial<'a> {
     }
 
     /// Whether a rule rejects the design by now.
-    fn proof(&mut self, number: usize, rule: Rule, tile: &SampleTile<'_>) -> Option<Rejection> {
+    fn proof(
+        &mut self,
+        number: usize,
+        rule: SampleRule,
+        tile: &SampleTile<'_>,
+    ) -> Option<Rejection> {
         let total = self.set.shape.total_weight;
         let bad = self.bad[number];
         let rejection = Rejection {

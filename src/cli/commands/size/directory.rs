@@ -2,12 +2,12 @@
 
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{files, output};
+use crate::run::INPUTS;
 use crate::run::checkpoint::{Identity, hex_sha256};
 use crate::run::size::{
     CERTIFICATE_CSV, SIZE_CHECKPOINT, SIZE_CSV, SIZE_JSON, SizeCertificate, SizeResult,
     certificate_heading, certificate_rows, size_csv,
 };
-use crate::run::{INPUTS, MANIFEST, SCENARIO};
 use crate::search::size::{SizeSearch, Witness};
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -38,16 +38,10 @@ pub(super) struct SizeDirectory {
     _lock: Option<File>,
 }
 
-/// What this program writes in the directory.
+/// What this program writes in such a directory, and in that of another search.
 fn own() -> BTreeSet<String> {
-    let files = [
-        SCENARIO,
-        MANIFEST,
-        SIZE_JSON,
-        SIZE_CSV,
-        SIZE_CHECKPOINT,
-        CERTIFICATE_CSV,
-    ];
+    let files = [SIZE_JSON, SIZE_CSV, SIZE_CHECKPOINT, CERTIFICATE_CSV];
+    let files = files.into_iter().chain(crate::run::FILES);
     let inputs = format!("{INPUTS}/");
     files
         .into_iter()
