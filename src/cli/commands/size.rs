@@ -13,8 +13,8 @@ use crate::cli::{Status, coincidence, limits, output};
 use crate::evaluate::Evaluator;
 use crate::run::size::{SizeResult, size_csv};
 use crate::scenario::Scenario;
-use crate::search::Quantity;
 use crate::search::size::{SizeProblem, SizeSearch};
+use crate::search::{DesignProblem, Quantity};
 use anyhow::{Result, bail};
 use directory::SizeDirectory;
 use std::path::{Path, PathBuf};
@@ -38,6 +38,7 @@ pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
     super::optimize::warn_of_space(&study, &setup)?;
     let evaluator = Evaluator::new(setup)?;
     let problem = study.problem(&evaluator)?;
+    check_shells(&problem)?;
     let problem = SizeProblem::new(&problem);
     check_size(&problem)?;
     warn_of_rules(&problem);
@@ -131,6 +132,17 @@ fn check_constraints(scenario: &Scenario) -> Result<()> {
         bail!(
             "objectives.constraints is empty, so that the fewest satellites of the search space would do; expected at \
              least one constraint, as in --set 'objectives.constraints=[\"availability >= 0.999\"]'"
+        );
+    }
+    Ok(())
+}
+
+/// Refuses a space in which satellites from files alone could be the answer: they have no notation.
+fn check_shells(problem: &DesignProblem<'_>) -> Result<()> {
+    if problem.designs().fixed.is_none() && problem.designs().may_be_empty() {
+        bail!(
+            "every shell of the search may be empty, and what is fixed has no shells: let `satellites-per-plane` of one \
+             shell begin above 0"
         );
     }
     Ok(())

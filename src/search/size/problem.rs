@@ -45,7 +45,8 @@ pub(super) enum Outcome {
 
 impl<'a> SizeProblem<'a> {
     /// The fewest satellites of the designs of a search that keep its constraints, on the grid of a sweep. What the
-    /// search optimises does not matter.
+    /// search optimises does not matter. Fixed satellites from files alone, beside shells that are all empty, are no design
+    /// of it.
     #[must_use]
     pub fn new(problem: &'a DesignProblem<'a>) -> Self {
         let designs = problem.designs();
@@ -160,7 +161,7 @@ impl<'a> SizeProblem<'a> {
             is_evaluated: false,
             bad_tiles: Vec::new(),
         };
-        let Ok(design) = self.problem.designs().design(genome) else {
+        let Ok(Some(design)) = self.problem.designs().design(genome) else {
             return tried;
         };
         tried.outcome = Outcome::Rejected(Box::new(Witness {
@@ -171,7 +172,7 @@ impl<'a> SizeProblem<'a> {
             tried.outcome = Outcome::Rejected(Box::new(witness));
             return tried;
         }
-        let Some(ephemeris) = self.problem.ephemeris(&design) else {
+        let Some(ephemeris) = self.problem.with_fixed(Some(&design)) else {
             return tried;
         };
         if let (Some(rules), Some(order)) = (&self.rules, order) {
@@ -320,7 +321,8 @@ impl<'a> SizeProblem<'a> {
             };
             let design = move |index| {
                 let genome = self.genome(&part, index).transpose()?;
-                let design = genome.map(|genome| self.problem.designs().design(&genome).ok());
+                let design =
+                    genome.map(|genome| self.problem.designs().design(&genome).ok().flatten());
                 Some(design.transpose()?.map(|design| (satellites, design)))
             };
             error.into_iter().chain((0..last).filter_map(design))
@@ -330,7 +332,7 @@ impl<'a> SizeProblem<'a> {
     /// The metrics of a design of the search with what is fixed; `None` if it cannot be propagated.
     #[must_use]
     pub fn assessed(&self, design: &Design) -> Option<Metrics> {
-        let ephemeris = self.problem.ephemeris(design)?;
+        let ephemeris = self.problem.with_fixed(Some(design))?;
         self.problem.evaluator.evaluate_ephemeris(&ephemeris).ok()
     }
 
@@ -342,7 +344,7 @@ impl<'a> SizeProblem<'a> {
     ) -> impl Iterator<Item = (&'s Constraint, Option<f64>, f64)> {
         self.constraints().iter().map(move |constraint| {
             let quantity = constraint.quantity;
-            let value = self.problem.value(quantity, design, metrics);
+            let value = self.problem.value(quantity, Some(design), metrics);
             let violation = constraint.violation(value, quantity.solved_fraction(metrics));
             (constraint, value, violation)
         })

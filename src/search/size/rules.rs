@@ -238,7 +238,6 @@ mod tests {
         assert_eq!(allowed("coverage-4 >= 0.999", 205_920), 205);
         assert_eq!(allowed("coverage-total-9 >= 1", 205_920), 0);
         assert_eq!(allowed("availability >= 0", 205_920), 205_920);
-        assert_eq!(allowed("availability >= 2", 205_920), 0);
     }
 
     /// The last weight that is allowed is kept by the metric, and the next is not, whatever rounding does.

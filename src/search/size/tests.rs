@@ -42,6 +42,7 @@ fn goals(constraints: &[&str]) -> Goals {
             per_1000_km: 0.2,
         },
         fixed: None,
+        fixed_from_files: 0,
     }
 }
 
@@ -80,10 +81,11 @@ fn swept(problem: &DesignProblem<'_>) -> Levels {
             continue;
         };
         let (design, metrics) = problem.evaluated(&genome).unwrap();
+        let design = design.unwrap();
         let level = levels.entry(design.satellite_count()).or_default();
         level.0 += 1;
         let is_kept = problem.goals().constraints.iter().all(|constraint| {
-            let value = problem.value(constraint.quantity, &design, &metrics);
+            let value = problem.value(constraint.quantity, Some(&design), &metrics);
             let solved = constraint.quantity.solved_fraction(&metrics);
             constraint.violation(value, solved) == 0.0
         });
@@ -183,7 +185,7 @@ fn reached(evaluator: &Evaluator, quantity: &str, share: f64) -> f64 {
         .filter_map(|index| grid.admitted(&problem, grid.genome(index)).unwrap())
         .map(|genome| {
             let (design, metrics) = problem.evaluated(&genome).unwrap();
-            quantity.minimised(problem.value(quantity, &design, &metrics).unwrap())
+            quantity.minimised(problem.value(quantity, design.as_ref(), &metrics).unwrap())
         })
         .collect();
     values.sort_by(f64::total_cmp);
@@ -269,7 +271,7 @@ fn a_resumed_search_equals_an_unbroken_one_on_any_threads() {
 fn designs_are_counted_beforehand() {
     let evaluator = Evaluator::new(setup(1, 2, true, 2.0)).unwrap();
     for has_second in [false, true] {
-        let goals = goals(&["availability >= 2"]);
+        let goals = goals(&["mean-visible >= 1000"]);
         let problem = DesignProblem::new(&evaluator, space(has_second), goals).unwrap();
         let size = SizeProblem::new(&problem);
         let (search, witnesses) = found(&size, 0);

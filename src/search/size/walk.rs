@@ -422,7 +422,7 @@ fn kept(
         design: design.to_string(),
         planes: design.planes(),
         margin: margins.fold(f64::INFINITY, f64::min).min(f64::MAX),
-        objective: objective.and_then(|one| problem.problem().value(one, design, &metrics)),
+        objective: objective.and_then(|one| problem.problem().value(one, Some(design), &metrics)),
         metrics,
     }
 }
