@@ -92,6 +92,7 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
     }
     match cli.command {
         Command::Optimize(args) => commands::optimize::run(&args),
+        Command::Size(args) => commands::size::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Export(args) => commands::export::run(&args),

@@ -18,19 +18,18 @@ mod on_demand;
 mod outages;
 mod phases;
 mod plain;
+mod probe;
 mod series;
 mod weights;
 mod window;
 
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
-pub use counts::{
-    COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage,
-};
+pub use counts::{COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
 pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
 pub use gain::Gain;
 pub use histograms::{HistogramRow, ViewHistograms};
-pub use kernel::{InstructionSet, Rechecks};
+pub use kernel::{InstructionSet, Rechecks, SampleTile, SampleTiles};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
@@ -47,8 +46,8 @@ use crate::ground::{RegionMap, Site};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
 use crate::visibility::{Mask, MaskTable};
-use histograms::ViewBins;
 use fixed::FixedGeometry;
+use histograms::ViewBins;
 use kernel::Kernel;
 use metrics::Evaluated;
 use nalgebra::Vector3;

@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub(crate) mod columns;
 pub mod inputs;
 mod results;
+pub mod size;
 pub(crate) mod tables;
 #[cfg(feature = "validate")]
 mod validation;

@@ -7,6 +7,7 @@ pub mod failures;
 mod fixed;
 mod quantity;
 mod shell_space;
+pub mod size;
 mod space;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
@@ -106,6 +107,12 @@ impl<'a> DesignProblem<'a> {
         Ok(self)
     }
 
+    /// What evaluates the designs.
+    #[must_use]
+    pub fn evaluator(&self) -> &'a Evaluator {
+        self.evaluator
+    }
+
     /// The goals of the search.
     #[must_use]
     pub fn goals(&self) -> &Goals {
@@ -161,12 +168,23 @@ impl<'a> DesignProblem<'a> {
         design: Option<&Design>,
         metrics: &Metrics,
     ) -> Option<f64> {
-        let satellites = CountedSatellites {
+        self.goals.value(quantity, self.counted(design), metrics)
+    }
+
+    /// The value of a quantity of the shells for a design with what is fixed; `None` for any other quantity.
+    fn value_of_shells(&self, quantity: Quantity, design: &Design) -> Option<f64> {
+        let satellites = self.counted(Some(design));
+        let new = satellites.without_fixed(&self.goals);
+        quantity.of_shells(satellites, &new, &self.goals.launch_cost)
+    }
+
+    /// The satellites of a design and those that are fixed beside it.
+    fn counted<'d>(&self, design: Option<&'d Design>) -> CountedSatellites<'d> {
+        CountedSatellites {
             shells: design,
             from_files: self.fixed.len(),
             has_fixed_files: true,
-        };
-        self.goals.value(quantity, satellites, metrics)
+        }
     }
 
     fn answer(&self, genome: &[f64]) -> Evaluation {

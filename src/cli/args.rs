@@ -7,6 +7,7 @@ mod products;
 mod run_view;
 mod satellites;
 mod scenario;
+mod size;
 
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
@@ -14,6 +15,7 @@ pub(crate) use member_pick::MemberPick;
 pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
+pub(crate) use size::SizeArgs;
 
 use crate::cli::constellations::Named;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -43,7 +45,7 @@ pub(crate) struct Cli {
     pub(crate) threads: Option<NonZeroUsize>,
 
     /// Start what is very large: an export of more than 10 GB, an evaluation that needs more memory than is
-    /// available.
+    /// available, a search for the fewest satellites among more than 1e9 designs.
     #[arg(long, global = true)]
     pub(crate) allow_large: bool,
 
@@ -70,6 +72,21 @@ pub(crate) enum Command {
     /// Example: navwalker optimize --seed 7 --set optimizer.generations=60
     #[command(verbatim_doc_comment)]
     Optimize(OptimizeArgs),
+
+    /// Find the fewest satellites that keep the constraints, exactly, with a proof for every design below.
+    ///
+    /// Takes the designs of the search space on the steps of a sweep by rising number of satellites, and
+    /// drops each as soon as its samples prove that a constraint of the scenario (`objectives.constraints`)
+    /// cannot be kept. The answer is that of a sweep: exact for the samples and the grid of the scenario.
+    /// The exit status is 1 if no design keeps the constraints.
+    ///
+    /// DIR gets the result, the designs and the certificate, a proof for each rejected design. Ctrl-C keeps
+    /// what is done; `--resume` continues.
+    ///
+    /// Example: navwalker size --set objectives.availability-pdop=1.5 --set search.phasing=[0,14]
+    ///            --set 'objectives.constraints=["availability >= 0.999"]'
+    #[command(verbatim_doc_comment)]
+    Size(SizeArgs),
 
     /// Compute visibility, PDOP with its tail, and cost of constellations: designs, or satellites from files.
     ///

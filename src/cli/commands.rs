@@ -9,4 +9,5 @@ pub(crate) mod plot;
 pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenario;
+pub(crate) mod size;
 pub(crate) mod validate;

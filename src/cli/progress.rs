@@ -3,6 +3,7 @@
 use crate::cli::output;
 use crate::optimize::Strategy;
 use crate::report::shown;
+use crate::search::size::{SizeProblem, SizeSearch};
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A progress bar, or nothing if stderr is not a terminal.
@@ -37,6 +38,44 @@ impl SearchBar {
         });
         bar.set_message(format!("{} evaluations{hypervolume}", progress.evaluations));
         bar.set_position(progress.step);
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// The progress of a search for the fewest satellites, or nothing if stderr is not a terminal.
+pub(crate) struct SizeBar(Option<ProgressBar>);
+
+impl SizeBar {
+    pub(crate) fn new() -> Self {
+        if !output::shows_progress() {
+            return Self(None);
+        }
+        let bar = ProgressBar::new(0);
+        let template = "{msg} {wide_bar} {pos}/{len} designs, {per_sec}, ETA {eta} of this number";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style);
+        }
+        Self(Some(bar))
+    }
+
+    /// Shows the number of satellites, and the designs of it that are done.
+    pub(crate) fn show(&self, problem: &SizeProblem<'_>, search: &SizeSearch) {
+        let Some(bar) = &self.0 else { return };
+        let Some((satellites, left, all)) = search.next_level(problem) else {
+            return;
+        };
+        if bar.length() != Some(all) {
+            bar.reset_eta();
+            bar.set_length(all);
+        }
+        bar.set_message(format!("{satellites} satellites, {} tried", search.tried()));
+        bar.set_position(all - left);
     }
 
     /// Removes the bar.

@@ -51,6 +51,11 @@ impl Coverage {
         self.0.get(satellites.checked_sub(1)?).copied()
     }
 
+    /// From the fractions for 1, 2, … 12 satellites.
+    pub(super) fn from_shares(shares: [f64; COVERAGE_LEVELS]) -> Self {
+        Self(shares)
+    }
+
     /// The fractions for 1, 2, … 12 satellites.
     #[must_use]
     pub fn shares(&self) -> [f64; COVERAGE_LEVELS] {

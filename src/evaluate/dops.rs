@@ -78,7 +78,7 @@ impl Evaluator {
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn dops(&self, ephemeris: &Ephemeris) -> Result<DopStatistics, EphemerisError> {
-        let (metrics, ..) = self.counted(ephemeris)?;
+        let (metrics, ..) = self.counted(ephemeris, false)?;
         self.dops_beside(&metrics, ephemeris)
     }
 

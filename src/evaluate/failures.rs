@@ -49,7 +49,7 @@ impl Evaluator {
         for batch in self.batches(ephemeris, sets)? {
             let sets = Sets::new(self, ephemeris, batch);
             let pieces = pass::pass(self, &tree, &sets)?;
-            let whole = Whole::new(self, ephemeris, &pieces);
+            let whole = Whole::new(self, &pieces);
             let of = |scratch: &mut Scratch, number: usize| {
                 let left = ephemeris.satellites().len() - batch[number].len();
                 whole.without(number, left, scratch)

@@ -135,6 +135,9 @@ mod tests {
         let mut expected = ViewBins::default();
         expected.add(4, 1);
         expected.add(2, 7);
-        assert_eq!((first.views(), first.shares()), (expected.views(), expected.shares()));
+        assert_eq!(
+            (first.views(), first.shares()),
+            (expected.views(), expected.shares())
+        );
     }
 }

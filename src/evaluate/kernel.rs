@@ -44,6 +44,7 @@ mod instructions;
 mod lanes;
 mod normal;
 mod order_statistics;
+mod probe;
 mod propagation;
 mod refine;
 mod sample;
@@ -53,6 +54,7 @@ mod tiles;
 
 pub use instructions::InstructionSet;
 pub(super) use order_statistics::quantile_rank;
+pub use probe::{SampleTile, SampleTiles};
 
 use super::Setup;
 use super::counts::Threshold;
@@ -482,7 +484,12 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &mut ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(
+        &self,
+        tally: &mut ViewTally<'_>,
+        counts: &Counts,
+        summary: Option<Summary>,
+    ) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {

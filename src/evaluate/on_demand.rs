@@ -81,7 +81,10 @@ impl Metrics {
             add("n1_solved_fraction".to_owned(), Some(of.solved_fraction));
         }
         if self.expected_availability.is_some() {
-            add("expected_availability".to_owned(), self.expected_availability);
+            add(
+                "expected_availability".to_owned(),
+                self.expected_availability,
+            );
         }
         for (name, value) in self.gain.iter().flat_map(Gain::named) {
             add(format!("gain_{name}"), value);

@@ -2,8 +2,8 @@
 //! and evaluates setups that the kernel does not support.
 
 use super::counts::{LongestOutage, Outages};
-use super::histograms::ViewBins;
 use super::fixed::PlainGnssSample;
+use super::histograms::ViewBins;
 use super::metrics::Evaluated;
 use super::{Evaluator, Setup, leo};
 use crate::dop::{ClockGroup, Geometry};

@@ -5,17 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::archive::offer;
 use super::error::OptimizeError;
+use super::grid::SweepGrid;
 use super::history::History;
-use super::problem::{Individual, Problem, Variable, VariableKind, admit, evaluate};
+use super::problem::{Individual, Problem, VariableKind, admit, evaluate};
 use super::sorting::feasible_front;
 use super::strategy::{
     Progress, Record, Strategy, check_at_most, check_count, check_equal, check_objectives,
     check_setting,
 };
-
-/// How far a range may fall short of an integer number of steps and still include
-/// its upper end, as a fraction of a step: the rounding of a decimal step.
-const SLACK: f64 = 1e-9;
 
 /// The settings of exhaustive search.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,78 +46,6 @@ impl ExhaustiveConfig {
     }
 }
 
-/// One variable's values, from its lower bound upwards.
-struct Axis {
-    lo: f64,
-    hi: f64,
-    step: f64,
-    /// An integer.
-    count: f64,
-}
-
-impl Axis {
-    fn new(variable: &Variable, step: f64) -> Self {
-        let (lo, hi) = variable.kind.bounds();
-        let count = ((hi - lo) / step + SLACK).floor() + 1.0;
-        Self {
-            lo,
-            hi,
-            step,
-            count,
-        }
-    }
-
-    fn value(&self, index: f64) -> f64 {
-        (self.lo + index * self.step).min(self.hi)
-    }
-
-    fn holds(&self, value: f64) -> bool {
-        let index = ((value - self.lo) / self.step).round();
-        index < self.count && self.value(index) == value
-    }
-}
-
-/// The points of a grid, the last variable changing fastest.
-struct GridPoints(Vec<Axis>);
-
-impl GridPoints {
-    fn new(problem: &dyn Problem, steps: &[f64]) -> Self {
-        let variables = problem.space().variables().iter();
-        Self(
-            variables
-                .zip(steps)
-                .map(|(v, &step)| Axis::new(v, step))
-                .collect(),
-        )
-    }
-
-    /// The number of points, exact as long as an `f64` can count it.
-    fn points(&self) -> Result<u64, OptimizeError> {
-        let points: f64 = self.0.iter().map(|axis| axis.count).product();
-        if points > (1_u64 << 53) as f64 {
-            return Err(OptimizeError::GridTooLarge { points });
-        }
-        Ok(points as u64)
-    }
-
-    fn genome(&self, mut index: u64) -> Vec<f64> {
-        let mut genome = vec![0.0; self.0.len()];
-        for (value, axis) in genome.iter_mut().zip(&self.0).rev() {
-            let count = axis.count as u64;
-            *value = axis.value((index % count) as f64);
-            index /= count;
-        }
-        genome
-    }
-
-    fn holds(&self, genome: &[f64]) -> bool {
-        self.0
-            .iter()
-            .zip(genome)
-            .all(|(axis, &value)| axis.holds(value))
-    }
-}
-
 /// An exhaustive search, its own checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Exhaustive {
@@ -143,7 +68,7 @@ impl Exhaustive {
     pub fn start(problem: &dyn Problem, config: ExhaustiveConfig) -> Result<Self, OptimizeError> {
         config.check(problem)?;
         Ok(Self {
-            points: GridPoints::new(problem, &config.steps).points()?,
+            points: SweepGrid::new(problem.space(), &config.steps).count()?,
             config,
             step: 0,
             evaluations: 0,
@@ -158,7 +83,7 @@ impl Exhaustive {
 
     pub(super) fn check(&self, problem: &dyn Problem) -> Result<(), OptimizeError> {
         self.config.check(problem)?;
-        let points = GridPoints::new(problem, &self.config.steps).points()?;
+        let points = SweepGrid::new(problem.space(), &self.config.steps).count()?;
         check_equal("grid points", self.points, points)?;
         self.history.check(problem, self.step)?;
         check_at_most("archive", self.archive.len() as u64, self.evaluations)?;
@@ -188,7 +113,7 @@ impl Exhaustive {
         problem: &dyn Problem,
         count: u64,
     ) -> Result<Vec<Vec<f64>>, OptimizeError> {
-        let grid = GridPoints::new(problem, &self.config.steps);
+        let grid = SweepGrid::new(problem.space(), &self.config.steps);
         let count = count.min(self.remaining());
         let first = self.passed(self.step);
         let place = |n: u64| {
@@ -200,17 +125,12 @@ impl Exhaustive {
             .collect()
     }
 
-    /// The points of the next step. A point that repair turns into another point of
-    /// the grid is left out, since that one has its own turn.
+    /// The points of the next step.
     fn batch(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
-        let grid = GridPoints::new(problem, &self.config.steps);
+        let grid = SweepGrid::new(problem.space(), &self.config.steps);
         let mut batch = Vec::new();
         for index in self.passed(self.step)..self.passed(self.step + 1) {
-            let point = grid.genome(index);
-            let genome = admit(problem, point.clone())?;
-            if genome == point || !grid.holds(&genome) {
-                batch.push(genome);
-            }
+            batch.extend(grid.admitted(problem, grid.genome(index))?);
         }
         Ok(batch)
     }

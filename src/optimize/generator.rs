@@ -8,6 +8,7 @@
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::collections::BTreeSet;
 
 /// A deterministic generator, the same on every platform.
 pub(crate) struct Generator(ChaCha8Rng);
@@ -46,6 +47,21 @@ impl Generator {
         let product = u128::from(self.0.next_u64()) * count as u128;
         (product >> 64) as usize
     }
+}
+
+/// Up to `count` different numbers below `all`, drawn by a seed and sorted.
+#[must_use]
+pub fn drawn(all: usize, count: usize, seed: u64) -> Vec<usize> {
+    let mut generator = Generator::new(seed, 0);
+    let mut found = BTreeSet::new();
+    // Floyd's method: every set of so many is as likely.
+    for most in all.saturating_sub(count)..all {
+        let one = generator.below(most + 1);
+        if !found.insert(one) {
+            found.insert(most);
+        }
+    }
+    found.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -94,5 +110,15 @@ mod tests {
         let mut generator = Generator::new(7, 2);
         assert!((0..1000).all(|_| generator.chance(1.0)));
         assert!(!(0..1000).any(|_| generator.chance(0.0)));
+    }
+
+    #[test]
+    fn drawn_numbers_differ() {
+        let some = drawn(1000, 50, 3);
+        assert_eq!(some.len(), 50);
+        assert!(some.is_sorted_by(|a, b| a < b) && some[49] < 1000);
+        assert_ne!(some, drawn(1000, 50, 4));
+        assert_eq!(drawn(5, 9, 1), [0, 1, 2, 3, 4]);
+        assert!(drawn(0, 9, 1).is_empty());
     }
 }

@@ -67,11 +67,16 @@ impl Constraint {
         let Some(value) = value else {
             return if unsolved > 0.0 { unsolved } else { 1.0 };
         };
-        let excess = match self.relation {
-            Relation::AtMost => value - self.bound,
-            Relation::AtLeast => self.bound - value,
-        };
-        excess.max(0.0) / self.bound.abs().max(1.0) + unsolved
+        (-self.inside(value)).max(0.0) / self.bound.abs().max(1.0) + unsolved
+    }
+
+    /// How far a value is on the right side of the bound, in the unit of the quantity; negative on the wrong side.
+    #[must_use]
+    pub fn inside(&self, value: f64) -> f64 {
+        match self.relation {
+            Relation::AtMost => self.bound - value,
+            Relation::AtLeast => value - self.bound,
+        }
     }
 }
 

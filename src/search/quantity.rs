@@ -329,24 +329,10 @@ impl Quantity {
         metrics: &Metrics,
         cost: &LaunchCost,
     ) -> Option<f64> {
-        let new_sum = |of: fn(&Shell) -> usize| new.shells.iter().map(|shell| of(shell)).sum();
-        let has_planes = satellites.count() > 0 && new.from_files == 0;
-        let of_planes = |value: usize| has_planes.then_some(value as f64);
-        match self {
-            Self::Satellites => Some(satellites.count() as f64),
-            Self::Planes => of_planes(satellites.shells.map_or(0, Design::planes)),
-            Self::NewSatellites => {
-                let of_shells: usize = new_sum(Shell::satellite_count);
-                Some((of_shells + new.from_files) as f64)
-            }
-            Self::NewPlanes => of_planes(new_sum(Shell::planes)),
-            // 0 and not -0 for no shell.
-            Self::LaunchCost => has_planes.then(|| {
-                let costs = new.shells.iter().map(|shell| cost.of_shell(shell));
-                costs.fold(0.0, |sum, cost| sum + cost)
-            }),
-            of_metrics => of_metrics.of_metrics(metrics),
+        if self.is_of_shells() {
+            return self.of_shells(satellites, new, cost);
         }
+        self.of_metrics(metrics)
     }
 
     /// The value of a quantity that the metrics alone have; `None` for others too, such as planes.
@@ -396,5 +382,38 @@ impl Quantity {
         let metric = self.gain_in()?.keyword().replace('-', "_");
         let gains = gain.named();
         gains.into_iter().find(|(name, _)| *name == metric)?.1
+    }
+
+    /// Whether it follows from the shells alone, without an evaluation.
+    #[must_use]
+    pub fn is_of_shells(self) -> bool {
+        self.needs_planes() || matches!(self, Self::Satellites | Self::NewSatellites)
+    }
+
+    /// The value of a quantity of the shells, as in [`Quantity::value`]; `None` for any other.
+    pub(super) fn of_shells(
+        self,
+        satellites: CountedSatellites<'_>,
+        new: &NewSatellites<'_>,
+        cost: &LaunchCost,
+    ) -> Option<f64> {
+        let new_sum = |of: fn(&Shell) -> usize| new.shells.iter().map(|shell| of(shell)).sum();
+        let has_planes = satellites.count() > 0 && new.from_files == 0;
+        let of_planes = |value: usize| has_planes.then_some(value as f64);
+        match self {
+            Self::Satellites => Some(satellites.count() as f64),
+            Self::Planes => of_planes(satellites.shells.map_or(0, Design::planes)),
+            Self::NewSatellites => {
+                let of_shells: usize = new_sum(Shell::satellite_count);
+                Some((of_shells + new.from_files) as f64)
+            }
+            Self::NewPlanes => of_planes(new_sum(Shell::planes)),
+            // 0 and not -0 for no shell.
+            Self::LaunchCost => has_planes.then(|| {
+                let costs = new.shells.iter().map(|shell| cost.of_shell(shell));
+                costs.fold(0.0, |sum, cost| sum + cost)
+            }),
+            _ => None,
+        }
     }
 }

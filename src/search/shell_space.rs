@@ -263,15 +263,36 @@ impl ShellSpace {
         self.node_step_deg.is_some() && both.iter().all(|one| self.pattern.contains(one))
     }
 
+    /// Number of shells of a sweep, each once although phasings beyond P - 1 and empty shells repeat others.
+    #[must_use]
+    pub fn distinct_points(&self) -> f64 {
+        let others = self.variables().zip(self.steps()).enumerate();
+        let others = others.filter(|(n, _)| ![PLANES, PER_PLANE, PHASING].contains(n));
+        let others: f64 = others.map(|(_, (of, step))| steps_of(of.1, step)).product();
+        let [fewest, most] = self.planes;
+        let phasings = |planes: u32| {
+            let [low, high] = self.phasing.map(|f| f.min(planes.saturating_sub(1)));
+            f64::from(high - low + 1)
+        };
+        let phasings: f64 = (fewest..=most).map(phasings).sum();
+        let [low, high] = self.satellites_per_plane;
+        let sizes = f64::from(high - low.max(1) + 1);
+        let empty = if self.may_be_empty() { 1.0 } else { 0.0 };
+        phasings * sizes * others + empty
+    }
+
     /// Upper bound on the number of shells of a sweep.
     #[must_use]
     pub fn grid_points(&self) -> f64 {
-        let counts = self.variables().zip(self.steps()).map(|((_, kind), step)| {
-            let (lo, hi) = kind.bounds();
-            ((hi - lo) / step + STEP_SLACK).floor() + 1.0
-        });
-        counts.product()
+        let variables = self.variables().zip(self.steps());
+        variables.map(|(of, step)| steps_of(of.1, step)).product()
     }
+}
+
+/// Values of a variable with a step.
+fn steps_of(kind: VariableKind, step: f64) -> f64 {
+    let (lo, hi) = kind.bounds();
+    ((hi - lo) / step + STEP_SLACK).floor() + 1.0
 }
 
 /// Lets an interval that is an integer number of steps, up to rounding, include its upper limit, in steps.

@@ -22,7 +22,7 @@ use Seen::{Out, Status, Stderr, Stdout};
 struct Row(&'static str, &'static str, &'static str, &'static str, Seen);
 
 /// In place of these words stand the arguments of a small study.
-const SHORTHANDS: [(&str, &str); 5] = [
+const SHORTHANDS: [(&str, &str); 6] = [
     (
         "SMALL",
         "--set region.step-deg=25 --set time.step-s=1200 --set time.duration-h=4",
@@ -32,6 +32,12 @@ const SHORTHANDS: [(&str, &str); 5] = [
     (
         "SEARCH",
         "--set optimizer.population=4 --set optimizer.generations=2 --set search.planes=[5,7]",
+    ),
+    (
+        "FEWEST",
+        "--set region.step-deg=30 --set time.step-s=7200 --set objectives.constraints=[\"availability>=0.6\"] \
+         --set objectives.availability-pdop=1.6 --set search.planes=[4,6] --set search.satellites-per-plane=[4,8] \
+         --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
     ),
     (
         "LITTLE",
@@ -99,6 +105,44 @@ const ROWS: &[Row] = &[
         "--format csv",
         Stdout,
     ),
+    Row(
+        "size",
+        "set",
+        "--out out FEWEST",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row("size", "out", "FEWEST", "--out out", Out),
+    Row("size", "slack", "--out out FEWEST", "--slack 3", Stdout),
+    Row(
+        "size",
+        "verify",
+        "size --out out FEWEST |",
+        "--verify out",
+        Stdout,
+    ),
+    Row(
+        "size",
+        "draw",
+        "size --out out FEWEST | --verify out",
+        "--draw 3",
+        Stdout,
+    ),
+    Row(
+        "size",
+        "resume",
+        "size --out out FEWEST | --out out FEWEST",
+        "--resume",
+        Stderr,
+    ),
+    Row(
+        "size",
+        "force",
+        "optimize --out out LITTLE | --out out FEWEST",
+        "--force",
+        Status,
+    ),
+    Row("size", "format", "--out out FEWEST", "--format csv", Stdout),
     Row(
         "evaluate",
         "set",

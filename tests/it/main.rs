@@ -28,6 +28,7 @@ mod runs;
 mod scenes;
 mod shells;
 mod singular;
+mod size;
 mod study;
 mod tidy;
 mod trust;

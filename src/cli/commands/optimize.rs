@@ -17,7 +17,7 @@ use crate::report::shown;
 use crate::run::inputs::InputError;
 use crate::run::{FixedSummary, FrontMember, OptimizeResult, front_csv};
 use crate::scenario::{Algorithm, Scenario};
-use crate::search::DesignProblem;
+use crate::search::{DesignProblem, Quantity};
 use crate::units::counted;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -99,6 +99,7 @@ fn one(args: &OptimizeArgs) -> Result<Status> {
         return Ok(Status::Interrupted);
     }
     hint_what_next(result, &out.display().to_string());
+    hint_size(args, scenario);
     Ok(status(result))
 }
 
@@ -400,6 +401,17 @@ fn other_picks(result: &OptimizeResult) -> String {
         }
     }
     text
+}
+
+/// Where satellites are minimised under constraints, a search by chance is not the last word.
+fn hint_size(args: &OptimizeArgs, scenario: &Scenario) {
+    let objectives = &scenario.objectives;
+    if objectives.minimize.contains(&Quantity::Satellites) && !objectives.constraints.is_empty() {
+        output::hint(&format!(
+            "exactly, on the steps of the search: navwalker size {}",
+            args.study.words()
+        ));
+    }
 }
 
 fn hint_what_next(result: &OptimizeResult, out: &str) {

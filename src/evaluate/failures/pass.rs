@@ -171,7 +171,7 @@ impl<'a> Worker<'a> {
                 sky[site].push(Sighted {
                     satellite: number,
                     unit,
-                    weight: setup.observation_weight(&setup.sites[site].local, unit),
+                    weight: setup.observation_weight(&setup.sites[site], unit),
                 });
             };
             self.tree

@@ -152,8 +152,8 @@ impl SightTree {
                 continue;
             }
             for &site in &self.sites[cap.sites.clone()] {
-                let local = &setup.sites[site].local;
-                if let Some(unit) = setup.line_of_sight(setup.mask, local, target_km) {
+                let unit = setup.sites[site].line_of_sight(setup.mask, target_km);
+                if let Some(unit) = unit {
                     see(site, unit);
                 }
             }

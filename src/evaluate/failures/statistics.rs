@@ -4,7 +4,6 @@
 //! only the values in buckets that hold a wanted rank are sorted.
 
 use super::pass::{ChangedSample, PassPiece};
-use crate::ephemeris::Ephemeris;
 use crate::evaluate::counts::{LongestOutage, Outages};
 use crate::evaluate::histograms::ViewBins;
 use crate::evaluate::kernel::quantile_rank;
@@ -151,11 +150,7 @@ struct WantedRank {
 }
 
 impl<'a> Whole<'a> {
-    pub(super) fn new(
-        evaluator: &'a Evaluator,
-        ephemeris: &Ephemeris,
-        pieces: &'a [PassPiece],
-    ) -> Self {
+    pub(super) fn new(evaluator: &'a Evaluator, pieces: &'a [PassPiece]) -> Self {
         let setup = evaluator.setup();
         let sites = setup.sites.len();
         let joined = |of: fn(&PassPiece) -> &Vec<u32>| -> Vec<u32> {
@@ -170,7 +165,6 @@ impl<'a> Whole<'a> {
             joined(|piece| &piece.visible),
             joined(|piece| &piece.gnss_visible),
         );
-        let satellites = ephemeris.satellites().len();
         let (mut leo, mut all) = (ViewBins::default(), ViewBins::default());
         let weight = |sample: usize| evaluator.weights.of(sample % sites);
         let available_up_to = setup.metrics.availability_pdop;

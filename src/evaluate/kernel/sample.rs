@@ -7,7 +7,7 @@ use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
+use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
 use crate::dop::{ObservationWeights, pivot_floor};
 
 /// Marks an unsolved sample among the values of PDOP.
@@ -90,14 +90,30 @@ impl Workspace {
     /// Selects the satellites that the tiles of a group may see.
     #[inline(always)]
     pub(super) fn select(&mut self, scene: &SampleContext, group: &Group) {
-        let slack_km = Horizon::cap_slack_km(&self.positions);
-        self.near.select(&self.all, &group.cap, slack_km);
+        let slack_km = self.select_near(group);
         let blocks = self.near.blocks();
         let tiles = &scene.tiles.tiles[group.tiles.clone()];
         for (tile, words) in tiles.iter().zip(self.words.chunks_exact_mut(self.blocks)) {
             for (block, word) in blocks.iter().zip(words) {
                 *word = block.inside(&tile.cap, slack_km);
             }
+        }
+    }
+
+    /// Selects the satellites that a group may see, and returns the error bound of a cap test, km.
+    #[inline(always)]
+    pub(super) fn select_near(&mut self, group: &Group) -> f32 {
+        let slack_km = Horizon::cap_slack_km(&self.positions);
+        self.near.select(&self.all, &group.cap, slack_km);
+        slack_km
+    }
+
+    /// Selects those that one tile of the group may see.
+    #[inline(always)]
+    pub(super) fn select_tile(&mut self, tile: &Tile, place: usize, slack_km: f32) {
+        let words = &mut self.words[place * self.blocks..(place + 1) * self.blocks];
+        for (block, word) in self.near.blocks().iter().zip(words) {
+            *word = block.inside(&tile.cap, slack_km);
         }
     }
 
@@ -221,35 +237,69 @@ fn evaluate<W: Weighting>(
     work: &mut Workspace,
     out: &mut SampleOutcome,
 ) {
-    let horizon = &scene.tiles.horizon;
-    work.all.fill(&work.positions, horizon);
-    let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
-    let limits = limits.capped::<W>(horizon.single_below(&work.positions));
-    out.doubled = 0;
-    out.doubts.clear();
+    let begun = Begun::new::<W>(scene, limits, work, out);
     for group in &scene.tiles.groups {
         work.select(scene, group);
         for number in group.tiles.clone() {
-            let candidates = work.candidates(number, group);
-            let fixed = fixed.tile(number);
-            let sums = candidates.sums::<W>(&scene.tiles.tiles[number].single, &mask);
-            let verdict = LaneVerdict::new::<W>(&sums, &fixed, &limits);
-            out.pdop[number] = verdict.pdop;
-            out.visible[number] = sums.count;
-            if any(&verdict.doubtful) {
-                doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
-            }
-            if any(&verdict.coarse) {
-                compute_again::<W>(
-                    scene,
-                    number,
-                    &fixed,
-                    &verdict,
-                    &work.positions,
-                    candidates,
-                    out,
-                );
-            }
+            begun.evaluate_tile::<W>((number, group), &fixed.tile(number), work, out);
+        }
+    }
+}
+
+/// An instant at which the satellites have their places.
+pub(super) struct Begun<'a> {
+    scene: &'a SampleContext,
+    mask: MaskTerms<f32>,
+    limits: Limits,
+}
+
+impl<'a> Begun<'a> {
+    #[inline(always)]
+    pub(super) fn new<W: Weighting>(
+        scene: &'a SampleContext,
+        limits: Limits,
+        work: &mut Workspace,
+        out: &mut SampleOutcome,
+    ) -> Self {
+        let horizon = &scene.tiles.horizon;
+        work.all.fill(&work.positions, horizon);
+        out.doubled = 0;
+        out.doubts.clear();
+        Self {
+            scene,
+            mask: scene.single.with_slack(horizon.sine_slack(&work.positions)),
+            limits: limits.capped::<W>(horizon.single_below(&work.positions)),
+        }
+    }
+
+    /// A tile of the selected group.
+    #[inline(always)]
+    pub(super) fn evaluate_tile<W: Weighting>(
+        &self,
+        (number, group): (usize, &Group),
+        fixed: &FixedTile<'_>,
+        work: &Workspace,
+        out: &mut SampleOutcome,
+    ) {
+        let scene = self.scene;
+        let candidates = work.candidates(number, group);
+        let sums = candidates.sums::<W>(&scene.tiles.tiles[number].single, &self.mask);
+        let verdict = LaneVerdict::new::<W>(&sums, fixed, &self.limits);
+        out.pdop[number] = verdict.pdop;
+        out.visible[number] = sums.count;
+        if any(&verdict.doubtful) {
+            doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
+        }
+        if any(&verdict.coarse) {
+            compute_again::<W>(
+                scene,
+                number,
+                fixed,
+                &verdict,
+                &work.positions,
+                candidates,
+                out,
+            );
         }
     }
 }

@@ -254,7 +254,12 @@ impl Merge for ViewTally<'_> {
         for (mine, theirs) in self.views.iter_mut().zip(other.views()) {
             mine.merge(&theirs);
         }
-        for (mine, theirs) in self.bins.iter_mut().flatten().zip(other.bins.iter().flatten()) {
+        for (mine, theirs) in self
+            .bins
+            .iter_mut()
+            .flatten()
+            .zip(other.bins.iter().flatten())
+        {
             mine.merge(theirs);
         }
         let samples = [self.instants, other.instants];

@@ -33,6 +33,37 @@ pub enum Region {
     },
 }
 
+impl Region {
+    /// The same region with points at half the distance; `None` for points of a file.
+    #[must_use]
+    pub fn with_half_distance(&self) -> Option<Self> {
+        let half = |step_deg: [f64; 2]| step_deg.map(|step| step / 2.0);
+        match self {
+            Self::Grid(grid) => Some(Self::Grid(Grid {
+                step_deg: half(grid.step_deg),
+                ..*grid
+            })),
+            Self::Cells(cells) => Some(Self::Cells(EqualAreaCells {
+                spacing_km: cells.spacing_km / 2.0,
+                ..*cells
+            })),
+            Self::Area { source, points } => Some(Self::Area {
+                source: source.clone(),
+                points: match *points {
+                    AreaPoints::Lattice { step_deg, weights } => AreaPoints::Lattice {
+                        step_deg: half(step_deg),
+                        weights,
+                    },
+                    AreaPoints::Cells { spacing_km } => AreaPoints::Cells {
+                        spacing_km: spacing_km / 2.0,
+                    },
+                },
+            }),
+            Self::Points { .. } => None,
+        }
+    }
+}
+
 /// Where the polygons of an area come from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AreaSource {
