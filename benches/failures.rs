@@ -1,7 +1,5 @@
 //! What the loss of each satellite costs beside one evaluation, on the paper's scenario: 143 points, 1440 samples, 182 LEO and 30
 //! BeiDou satellites, one clock per system.
-//!
-//! `docs/failures.md` holds the figures.
 
 use divan::{Bencher, black_box};
 use navwalker::constellation::gnss::Preset;

@@ -22,7 +22,7 @@ pub struct MetricOptions {
     pub availability_pdop: f64,
     /// Whether the quantiles of HDOP and VDOP are computed too, which takes several times as long.
     pub asks_for_hdop: bool,
-    /// Whether the loss of each satellite is evaluated too, which takes some ten times as long.
+    /// Whether the loss of each satellite is evaluated too, which takes many times as long.
     pub asks_for_n1: bool,
     /// The probability that a satellite is up, if the expected availability is computed too.
     pub expects_up: Option<f64>,

@@ -14,7 +14,7 @@ use crate::stats::Summary;
 /// Bits of an f64 that a bucket ignores: it uses 10 of the 52 bits of the fraction.
 const TRAILING_BITS: u32 = 42;
 
-/// WantedRank order statistics: median, 95 %, 99 %, maximum, value-at-risk.
+/// Wanted order statistics: median, 95 %, 99 %, maximum, value-at-risk.
 const WANTED: usize = 5;
 const VALUE_AT_RISK: usize = 4;
 
