@@ -1,13 +1,13 @@
 //! Files that are read one after the other as one constellation.
 
-use super::{Fleet, Imported};
+use super::{Fleet, GatheredFleet, Imported};
 use crate::exchange::lint::Format;
 
 /// The satellites of the files so far, and the formats found, each once.
 #[derive(Debug, Default)]
 pub struct MergedFiles {
     formats: Vec<Format>,
-    fleet: Option<Fleet>,
+    fleet: Option<GatheredFleet>,
 }
 
 impl MergedFiles {
@@ -17,14 +17,14 @@ impl MergedFiles {
             self.formats.push(imported.format);
         }
         match &mut self.fleet {
-            None => self.fleet = Some(imported.fleet),
-            Some(fleet) => fleet.append(imported.fleet),
+            None => self.fleet = Some(imported.fleet.into()),
+            Some(fleet) => fleet.add(imported.fleet),
         }
     }
 
     /// The formats and the satellites; `None` without a file.
     #[must_use]
     pub fn finish(self) -> Option<(Vec<Format>, Fleet)> {
-        Some((self.formats, self.fleet?))
+        Some((self.formats, self.fleet?.finish()))
     }
 }
