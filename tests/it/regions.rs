@@ -457,7 +457,7 @@ fn wrong_skylines_and_terrains_are_refused() {
             "region.terrain: t.asc: the site A is at 1 m, 4.00 m below the terrain",
         ),
         (
-            "A,50.015,10.005,,",
+            "A,50.005,10.015,,",
             Some("t.asc"),
             "region.terrain: t.asc: the terrain has a hole (NODATA)",
         ),
