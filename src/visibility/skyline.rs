@@ -104,7 +104,7 @@ impl MaskTable {
             }
         };
         let columns = [column(COLUMNS[0])?, column(COLUMNS[1])?];
-        let mut horizon = Horizon::default();
+        let mut horizon = DrawnSkyline::default();
         let mut row = csv::StringRecord::new();
         while reader.read_record(&mut row).map_err(unreadable)? {
             // The reader is behind the row, which has no line break in it.
@@ -122,7 +122,7 @@ impl MaskTable {
     /// # Errors
     /// If a pair cannot be read, azimuths do not increase, or they leave a gap.
     pub fn from_pairs(text: &str) -> Result<Self, SkylineError> {
-        let mut horizon = Horizon::default();
+        let mut horizon = DrawnSkyline::default();
         for (number, pair) in (1..).zip(text.split_whitespace()) {
             let (azimuth, elevation) = pair.split_once(':').unwrap_or((pair, ""));
             horizon
@@ -165,12 +165,12 @@ pub(crate) fn is_pairs(cell: &str) -> bool {
 
 /// A skyline as it is read.
 #[derive(Default)]
-struct Horizon {
+struct DrawnSkyline {
     /// (azimuth, elevation), degrees; azimuths increase.
     vertices: Vec<(f64, f64)>,
 }
 
-impl Horizon {
+impl DrawnSkyline {
     fn add(&mut self, azimuth: &str, elevation: &str) -> Result<(), String> {
         let azimuth_deg = number(COLUMNS[0], azimuth)?;
         let elevation_deg = number(COLUMNS[1], elevation)?;

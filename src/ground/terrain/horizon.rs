@@ -28,14 +28,14 @@ pub(super) struct Scan<'a> {
 }
 
 /// A horizon.
-pub(super) struct Horizon {
+pub(super) struct TerrainHorizon {
     /// (azimuth, elevation), degrees; azimuths from 0 to 360, elevations at least 0.
     pub(super) vertices_deg: Vec<(f64, f64)>,
     /// The shortest distance at which a ray ended with the terrain, while higher ground could still have been seen, km.
     pub(super) end_km: Option<f64>,
 }
 
-impl Horizon {
+impl TerrainHorizon {
     pub(super) fn highest_deg(&self) -> f64 {
         let elevations = self.vertices_deg.iter().map(|vertex| vertex.1);
         elevations.fold(0.0, f64::max)
@@ -85,7 +85,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The horizon all around, or the place, in steps, of a hole in sight.
-    pub(super) fn horizon(&self) -> Result<Horizon, [f64; 2]> {
+    pub(super) fn horizon(&self) -> Result<TerrainHorizon, [f64; 2]> {
         let mut vertices_deg = Vec::with_capacity(RAYS + 1);
         let mut end_km: Option<f64> = None;
         for n in 0..RAYS {
@@ -97,7 +97,7 @@ impl<'a> Scan<'a> {
             vertices_deg.push((azimuth_deg, ray.highest.atan().to_degrees()));
         }
         vertices_deg.push((360.0, vertices_deg[0].1));
-        Ok(Horizon {
+        Ok(TerrainHorizon {
             vertices_deg,
             end_km,
         })
