@@ -130,6 +130,9 @@ mod tests {
 
     #[test]
     fn masks_are_checked() {
+        for mask_deg in [0.0, 7.0, 12.5, 89.0] {
+            assert_eq!(Mask::from_degrees(mask_deg).unwrap().degrees(), mask_deg);
+        }
         assert_eq!(Mask::from_degrees(95.0), Err(MaskError(95.0)));
         assert!(Mask::from_degrees(-1.0).is_err() && Mask::from_degrees(f64::NAN).is_err());
     }

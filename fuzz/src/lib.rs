@@ -59,6 +59,15 @@ fn same_state(one: &State<Frame>, other: &State<Frame>) {
 /// Two-line element sets.
 pub fn tle(bytes: &[u8]) {
     let Ok(sets) = tle::read(bytes) else { return };
+    // Longer and foreign names are read with a warning, and have no place in a line of 24 characters.
+    let fits = |name: &String| name.len() <= 24 && name.is_ascii();
+    if !sets
+        .iter()
+        .filter_map(|set| set.object_name.as_ref())
+        .all(fits)
+    {
+        return;
+    }
     let write = |sets: &Vec<sgp4::Elements>| {
         let mut out = Vec::new();
         let written = sets.iter().try_for_each(|set| tle::write(&mut out, set));

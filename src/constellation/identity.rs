@@ -192,30 +192,53 @@ pub struct KnownObjects {
 impl KnownObjects {
     /// The position of the first object with this identity; records the object.
     pub fn meet(&mut self, identity: &ObjectIdentity) -> Option<usize> {
-        let texts = [&identity.designator, &identity.name];
-        let texts = || {
-            texts
-                .into_iter()
-                .flatten()
-                .map(|text| text.to_ascii_uppercase())
-        };
-        let by_number = identity
-            .catalogue_number
-            .and_then(|number| self.by_number.get(&number));
-        let by_text = texts().filter_map(|text| self.by_text.get(&text));
-        let candidates = by_number.into_iter().chain(by_text).flatten();
-        let same = candidates.filter(|place| self.identities[**place].is_same(identity));
-        let found = same.min().copied();
+        let found = self.same(identity).first().copied();
+        self.add(identity.clone());
+        found
+    }
+
+    /// Records an object.
+    pub fn add(&mut self, identity: ObjectIdentity) {
         let place = self.identities.len();
-        self.identities.push(identity.clone());
         if let Some(number) = identity.catalogue_number {
             self.by_number.entry(number).or_default().push(place);
         }
-        for text in texts() {
+        for text in keys(&identity) {
             self.by_text.entry(text).or_default().push(place);
         }
-        found
+        self.identities.push(identity);
     }
+
+    /// The positions of the objects with this identity, in order.
+    #[must_use]
+    pub fn same(&self, identity: &ObjectIdentity) -> Vec<usize> {
+        let by_number = identity
+            .catalogue_number
+            .and_then(|number| self.by_number.get(&number));
+        let by_text = keys(identity).filter_map(|text| self.by_text.get(&text));
+        let candidates = by_number.into_iter().chain(by_text).flatten().copied();
+        let mut same: Vec<usize> = candidates
+            .filter(|place| self.identities[*place].is_same(identity))
+            .collect();
+        same.sort_unstable();
+        same.dedup();
+        same
+    }
+
+    /// The identity of the object at a position.
+    #[must_use]
+    pub fn identity(&self, place: usize) -> &ObjectIdentity {
+        &self.identities[place]
+    }
+}
+
+/// The texts by which an object is found, in capitals.
+fn keys(identity: &ObjectIdentity) -> impl Iterator<Item = String> {
+    let texts = [&identity.designator, &identity.name];
+    texts
+        .into_iter()
+        .flatten()
+        .map(|text| text.to_ascii_uppercase())
 }
 
 /// The positions of the first two entries for the same object.

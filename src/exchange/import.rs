@@ -8,11 +8,13 @@
 //! ([`crate::orbit::earth_orbit`]), and that everything left out is counted and named
 //! ([`crate::formats::text::finding::LeftOut`]). `docs/formats.md` describes them for users.
 
+mod gathered;
 mod merged;
 mod objects;
 mod propagation;
 mod sampling;
 
+use gathered::GatheredFleet;
 pub use merged::{Merged, MergedFiles};
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
@@ -177,11 +179,11 @@ impl Fleet {
         findings: &mut FindingList,
     ) -> Result<Self, ReadFleetError> {
         let fleet = gathered(
-            Self::Mixed(Vec::new()),
+            GatheredFleet::default(),
             findings,
             |findings, take| ndm::parse(input, kinds, findings, take),
             |fleet, message| {
-                fleet.append(match message {
+                fleet.add(match message {
                     NdmMessage::Oem(message) => Self::of_segments(message.segments)?,
                     NdmMessage::Omm(message) => Self::Sets(vec![message.set]),
                     NdmMessage::Opm(message) => Self::of_opm(*message)?,
@@ -189,16 +191,7 @@ impl Fleet {
                 Ok(())
             },
         )?;
-        Ok(fleet.simplified())
-    }
-
-    /// A fleet of one kind as such.
-    fn simplified(self) -> Self {
-        match self {
-            Self::Mixed(mut parts) if parts.len() == 1 => parts.remove(0),
-            Self::Mixed(parts) if parts.is_empty() => Self::Sets(Vec::new()),
-            other => other,
-        }
+        Ok(fleet.finish())
     }
 
     fn of_omm(messages: Vec<omm::Omm>) -> Self {
@@ -212,25 +205,25 @@ impl Fleet {
 
     /// Each segment is turned into a trajectory as soon as it has been read.
     fn of_oem(input: impl BufRead, findings: &mut FindingList) -> Result<Self, ReadFleetError> {
-        let trajectories = gathered(
-            Vec::new(),
+        let fleet = gathered(
+            GatheredFleet::from(Self::Sampled(Vec::new())),
             findings,
             |findings, take| oem::parse(input, findings, take).map(drop),
-            |trajectories, segment: oem::Segment| {
-                objects::unite(trajectories, segment.into_trajectory()?);
+            |fleet, segment: oem::Segment| {
+                fleet.add(Self::Sampled(vec![segment.into_trajectory()?]));
                 Ok(())
             },
         )?;
-        Ok(Self::Sampled(trajectories))
+        Ok(fleet.finish())
     }
 
     /// The segments of one satellite follow each other.
     fn of_segments(segments: Vec<oem::Segment>) -> Result<Self, ReadFleetError> {
-        let mut trajectories = Vec::new();
+        let mut fleet = GatheredFleet::from(Self::Sampled(Vec::new()));
         for segment in segments {
-            objects::unite(&mut trajectories, segment.into_trajectory()?);
+            fleet.add(Self::Sampled(vec![segment.into_trajectory()?]));
         }
-        Ok(Self::Sampled(trajectories))
+        Ok(fleet.finish())
     }
 
     fn of_opm(message: opm::Opm) -> Result<Self, ReadFleetError> {
@@ -343,29 +336,11 @@ impl Fleet {
     }
 
     /// Adds the satellites of another file. Sampled states of a known satellite continue its states if their
-    /// spans do not overlap.
+    /// spans do not overlap. [`MergedFiles`] does the same for many files.
     pub fn append(&mut self, other: Self) {
-        match (&mut *self, other) {
-            (Self::Sets(sets), Self::Sets(more)) => sets.extend(more),
-            (Self::Elements(rows), Self::Elements(more)) => rows.extend(more),
-            (Self::Sampled(states), Self::Sampled(more)) => more
-                .into_iter()
-                .for_each(|next| objects::unite(states, next)),
-            (Self::Almanacs(almanacs), Self::Almanacs(more)) => almanacs.extend(more),
-            (_, Self::Mixed(more)) => more.into_iter().for_each(|part| self.append(part)),
-            (Self::Mixed(parts), other) => {
-                let kind = std::mem::discriminant(&other);
-                let mut parts_mut = parts.iter_mut();
-                match parts_mut.find(|part| std::mem::discriminant(*part) == kind) {
-                    Some(part) => part.append(other),
-                    None => parts.push(other),
-                }
-            }
-            (_, other) => {
-                let first = std::mem::replace(self, Self::Mixed(Vec::new()));
-                *self = Self::Mixed(vec![first, other]);
-            }
-        }
+        let mut gathered = GatheredFleet::from(std::mem::replace(self, Self::Mixed(Vec::new())));
+        gathered.add(other);
+        *self = gathered.finish();
     }
 
     /// Its content, in words.

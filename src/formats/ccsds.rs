@@ -1,5 +1,6 @@
 //! The messages of the CCSDS Navigation Data Messages family, in KVN, XML, JSON and CSV.
 
+mod frame;
 pub(crate) mod keywords;
 pub(crate) mod kvn;
 pub mod ndm;

@@ -317,6 +317,20 @@ mod tests {
         );
     }
 
+    /// The constants of designs are close to those of WGS-84 in the crate, whose unit of k_e they have: k_e goes with √μ, and
+    /// the two values of μ differ by 1.5e-7.
+    #[test]
+    fn validate_the_design_constants() {
+        let own = Sgp4Theory::with_design_constants();
+        let (ours, theirs) = (own.geopotential, ::sgp4::WGS84);
+        assert_eq!(ours.ae, theirs.ae);
+        assert!((ours.ke / theirs.ke - 1.0).abs() < 0.8e-7, "{}", ours.ke);
+        // EGM96 and WGS-84 differ by 3.1e-6 of J2; J3 and J4 are those of SGP4.
+        assert!((ours.j2 / theirs.j2 - 1.0).abs() < 3.2e-6, "{}", ours.j2);
+        assert_eq!((ours.j3, ours.j4), (::sgp4::WGS72.j3, ::sgp4::WGS72.j4));
+        assert_eq!(own.mode, Sgp4Theory::STANDARD.mode);
+    }
+
     #[test]
     fn validate_a_published_verification_case() {
         let set =

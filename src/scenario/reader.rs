@@ -113,6 +113,24 @@ impl<'r> Reader<'r> {
         }
     }
 
+    /// Reports a problem of one element of a list: at that element if the list is given.
+    pub(super) fn refuse_element(&mut self, list: KeyPath, place: usize, fault: Fault) {
+        let element = |given: &Given<'r>| {
+            Some((
+                given.source,
+                given.node.get_ref().as_array()?.get(place)?.span(),
+            ))
+        };
+        match self.given.get(&list).and_then(element) {
+            Some((source, span)) if !self.is_wrong(list) => {
+                self.is_sound = false;
+                let key = self.label(list);
+                self.report.add(source, span, &key, fault);
+            }
+            _ => self.refuse(&[list], fault),
+        }
+    }
+
     /// Rejects more than `most` of something.
     pub(super) fn at_most(&mut self, most: u64, count: f64, what: &'static str, keys: &[KeyPath]) {
         // A count that overflowed to infinity is too many as well.

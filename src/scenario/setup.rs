@@ -199,7 +199,8 @@ impl Scenario {
         Ok(self.setup_with_notes(read)?.0)
     }
 
-    /// The same, with notes on the GNSS files: age, gaps, interpolation, skipped parts.
+    /// The same, with notes on the GNSS files (age, gaps, interpolation, skipped parts) and on range errors that are not
+    /// used.
     ///
     /// # Errors
     /// If a file cannot be read, or the values together leave no point or sample.
@@ -217,7 +218,8 @@ impl Scenario {
             Some(skyline) => setup.with_skyline(skyline),
             None => setup,
         };
-        let (systems, notes) = self.systems(setup.grid, read)?;
+        let (systems, mut notes) = self.systems(setup.grid, read)?;
+        notes.extend(self.unused_range_errors());
         let presets = &self.gnss.constellations;
         let setup = Setup {
             accuracy: self
@@ -240,6 +242,20 @@ impl Scenario {
                 asks_for_hdop: self.asks_for_hdop(),
             });
         Ok((setup, notes))
+    }
+
+    /// Notes on range errors of systems that the study does not have.
+    fn unused_range_errors(&self) -> Vec<String> {
+        let note = |key: KeyPath| {
+            let key = key.to_string();
+            let why = match key.starts_with("accuracy.files") {
+                true => "`gnss.files` is empty",
+                false => "`gnss.constellations` does not have the system",
+            };
+            format!("{key} is not used: {why}")
+        };
+        let unused = self.accuracy.unused(&self.gnss);
+        unused.into_iter().map(note).collect()
     }
 
     /// Whether an objective or a constraint is a quantile of HDOP or VDOP.

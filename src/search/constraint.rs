@@ -47,6 +47,14 @@ pub enum ConstraintError {
         /// The bound as written.
         found: String,
     },
+    /// The bound of a fraction is none.
+    #[error("found the bound {found:?}, expected a number from 0 to 1: {quantity} is a fraction")]
+    NoFraction {
+        /// The quantity.
+        quantity: Quantity,
+        /// The bound as written.
+        found: String,
+    },
 }
 
 impl Constraint {
@@ -79,15 +87,20 @@ impl FromStr for Constraint {
                 .ok_or_else(|| ConstraintError::NoRelation {
                     found: text.to_owned(),
                 })?;
-        let bound = bound.trim();
-        let number = bound.parse().ok().filter(|number: &f64| number.is_finite());
+        let found = || bound.trim().to_owned();
+        let quantity: Quantity = quantity.trim().parse()?;
+        let number = bound.trim().parse().ok();
+        let number = number.filter(|number: &f64| number.is_finite());
+        let bound = number.ok_or_else(|| ConstraintError::Bound { found: found() })?;
+        if quantity.is_fraction() && !(0.0..=1.0).contains(&bound) {
+            let found = found();
+            return Err(ConstraintError::NoFraction { quantity, found });
+        }
         Ok(Self {
-            quantity: quantity.trim().parse()?,
+            quantity,
             relation,
             // Adding zero turns -0 into 0, so that equal bounds are written identically.
-            bound: number.ok_or_else(|| ConstraintError::Bound {
-                found: bound.to_owned(),
-            })? + 0.0,
+            bound: bound + 0.0,
         })
     }
 }

@@ -177,6 +177,12 @@ impl Quantity {
             )
     }
 
+    /// Whether it is a fraction of the samples, from 0 to 1.
+    #[must_use]
+    pub fn is_fraction(self) -> bool {
+        self == Self::Availability || self.coverage_levels().is_some()
+    }
+
     /// For a coverage: the number of satellites, and whether they are of LEO and GNSS.
     #[must_use]
     pub fn coverage_levels(self) -> Option<(usize, bool)> {

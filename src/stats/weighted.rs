@@ -154,6 +154,29 @@ mod tests {
         assert_eq!((summary.max, summary.p95, summary.cvar), (4.0, 4.0, tail));
     }
 
+    /// A level is reached within 1e-9 of the mean weight, whatever the unit of the weights: with total 10 and mean 2.5, six
+    /// tenths are exceeded by 1e-9 of the total and not by 1e-10.
+    #[test]
+    fn a_level_is_reached_within_the_slack() {
+        for unit in [1e-9, 1.0, 1e9] {
+            let weighted = |x: f64| Weighted {
+                value: x,
+                weight: x * unit,
+            };
+            let mut sample: Vec<_> = [4.0, 2.0, 1.0, 3.0].map(weighted).to_vec();
+            for (q, expected) in [
+                (0.5, 3.0),
+                (0.6 + 1e-10, 3.0),
+                (0.6 + 1e-9, 4.0),
+                (0.3 - 1e-9, 2.0),
+                (0.1 + 1e-9, 2.0),
+            ] {
+                let found = weighted_quantile(&mut sample, level(q));
+                assert_eq!(found, Some(expected), "{q} of {unit}");
+            }
+        }
+    }
+
     #[test]
     fn an_empty_sample_has_no_statistics() {
         assert_eq!(weighted_mean(&[]), None);

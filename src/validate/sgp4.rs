@@ -25,7 +25,7 @@ use crate::orbit::Model;
 use crate::orbit::osculating::OsculatingOrbit;
 use crate::orbit::sgp4::{MeanMotionSlot, Sgp4Mode, Sgp4Orbit, Sgp4Theory, ZonalHarmonics};
 use crate::time::TimeGrid;
-use causes::{Causes, is_deep_space, leftover_per_day};
+use causes::{Causes, Leftover, is_deep_space};
 
 pub use sweep::{SweepCell, SweepLine};
 pub use verification::against_the_verification_set;
@@ -212,7 +212,7 @@ pub fn against_sgp4(subject: &Subject<'_>) -> Result<Findings, ValidateError> {
     let mut budget = propagations.budget()?;
     budget.extend(propagations.variants()?);
     findings.notes.extend(note(subject));
-    let scale = GateScale::of(subject);
+    let scale = GateScale::of(subject, subject.grid());
     findings.checks.extend(scale.budget_checks(&budget));
     // The sweep is the same for every shell of a design.
     if subject.number.is_none_or(|number| number == 0) {
@@ -261,12 +261,12 @@ struct GateScale {
     label: &'static str,
     causes: Causes,
     days: f64,
-    leftover_per_day: [f64; 3],
+    leftover: Leftover,
     deep_space: bool,
 }
 
 impl GateScale {
-    fn of(subject: &Subject<'_>) -> Self {
+    fn of(subject: &Subject<'_>, grid: TimeGrid) -> Self {
         let orbit = subject.orbit();
         let days = subject.days();
         Self {
@@ -274,7 +274,7 @@ impl GateScale {
             label: subject.model_label(),
             causes: Causes::of(&orbit),
             days,
-            leftover_per_day: leftover_per_day(&subject.shell.satellites(), days),
+            leftover: Leftover::of(&subject.shell.satellites(), grid),
             deep_space: is_deep_space(&orbit),
         }
     }
@@ -296,8 +296,14 @@ impl GateScale {
     /// Bounds on the RMS of the model of the study against SGP4, km; none for SGP4 against a part of itself.
     fn rms_gates_km(&self, zonals: ZonalHarmonics) -> Option<[f64; 3]> {
         match self.model {
-            Model::J2 | Model::TwoBody => Some(self.causes.rms_gates_km(zonals, self.days)),
-            Model::J2Osculating => Some(self.causes.osculating_gates_km(zonals, self.days)),
+            Model::J2 | Model::TwoBody => {
+                Some(self.causes.rms_gates_km(zonals, self.days, self.leftover))
+            }
+            Model::J2Osculating => Some(self.causes.osculating_gates_km(
+                zonals,
+                self.days,
+                self.leftover,
+            )),
             Model::Sgp4 => (zonals == ZonalHarmonics::Full).then_some([SAME_KM; 3]),
         }
     }
@@ -313,8 +319,7 @@ impl GateScale {
 
     /// Bound on the growth of a mean in-track difference minus its closed form, km/day.
     fn growth_gate_km_per_day(&self, zonals: ZonalHarmonics) -> f64 {
-        self.causes
-            .growth_gate_km_per_day(zonals, self.leftover_per_day)
+        self.causes.growth_gate_km_per_day(zonals, self.leftover)
     }
 
     /// Bound on the share of flipped decisions.
@@ -416,9 +421,11 @@ impl GateScale {
 
     fn radius_check(&self, without_j3j4: &BudgetLine) -> Check {
         let causes = &self.causes;
-        // Terms of relative order J2 of the short-period theory, SGP4's floor of e, and e itself.
+        // Terms of relative order J2 of the short-period theory, SGP4's floor of e, what few samples leave of the
+        // short-period term, and e itself.
         let bound = 0.005
             + 0.003 * causes.radius_shift_km.abs()
+            + self.leftover.mean[1] * causes.short_period_km[0]
             + (causes.eccentric_factor - 1.0) * causes.short_period_km[0];
         Check::new(
             "sgp4/radius-shift/closed-form",
@@ -429,7 +436,7 @@ impl GateScale {
             },
             without_j3j4.mean_km.radial - causes.radius_shift_km,
             self.gate(bound),
-            self.reason("the short-period theory of J2 shifts the mean radius by a constant that is known to first order"),
+            self.reason("the short-period theory of J2 shifts the mean radius by a constant that is known to first order; plus the mean of its periodic term over the samples"),
         )
     }
 

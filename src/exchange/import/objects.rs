@@ -13,30 +13,14 @@ pub(super) fn identity(trajectory: &Trajectory) -> ObjectIdentity {
     ObjectIdentity::new(0, designator, &trajectory.name)
 }
 
-/// Adds states: to those of the same satellite if the spans do not overlap, otherwise as a separate
-/// satellite.
-pub(super) fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
-    let of_next = identity(&next);
-    let continued = known.iter_mut().find(|before| {
-        let of_before = identity(before);
-        of_before.is_same(&of_next)
-            && !of_before.is_named_otherwise(&of_next)
-            && !overlap(before, &next)
-    });
-    match continued {
-        Some(before) => join(before, next),
-        None => known.push(next),
-    }
-}
-
 /// Whether the arcs of two satellites overlap by more than an instant.
-fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
+pub(super) fn overlap(one: &Trajectory, other: &Trajectory) -> bool {
     let mut arcs = one.arcs.iter();
     arcs.any(|arc| other.arcs.iter().any(|next| arc.overlaps(next)))
 }
 
 /// Merges arcs into those of the same satellite; at an instant that two share, the earlier arc's state is used.
-fn join(before: &mut Trajectory, next: Trajectory) {
+pub(super) fn join(before: &mut Trajectory, next: Trajectory) {
     let mut arcs = std::mem::take(&mut before.arcs);
     arcs.extend(next.arcs);
     // The sort is stable.

@@ -3,7 +3,10 @@
 use super::samples;
 use crate::exchange::import::Fleet;
 use crate::exchange::lint::{Format, lint};
+use crate::formats::ccsds::omm::{self, OmmSyntax};
+use crate::formats::ccsds::{oem, opm};
 use crate::formats::text::finding::{Finding, Severity};
+use crate::formats::{sp3, stk};
 use crate::keyword::Keyword;
 use std::io::{self, BufRead, Read};
 
@@ -154,6 +157,65 @@ fn a_line_of_64_mb_is_refused() {
             assert!(has_error(&report.findings), "{format}");
         }
     }
+}
+
+/// Any number of comments is read, and a bounded number of them kept: a compressed file may hold very many.
+#[test]
+fn comments_do_not_fill_memory() {
+    const MANY: usize = 30_000;
+    let mut tried = 0;
+    for (format, text) in samples() {
+        let (before, comment) = match format {
+            Format::Oem | Format::Omm | Format::Opm => ("CREATION_DATE", "COMMENT more\n"),
+            Format::OemXml | Format::OmmXml | Format::OpmXml => {
+                ("<CREATION_DATE", "<COMMENT>more</COMMENT>\n")
+            }
+            // Names are in the first comments.
+            Format::Sp3 => ("*  2025", "/* more\n"),
+            Format::Stk => ("BEGIN Ephemeris", "# more\n"),
+            _ => continue,
+        };
+        tried += 1;
+        let at = text.find(before).unwrap();
+        let long = format!("{}{}{}", &text[..at], comment.repeat(MANY), &text[at..]);
+        let expected = Fleet::read(text.as_bytes(), Some(format), None).unwrap();
+        let found = Fleet::read(long.as_bytes(), Some(format), None).unwrap();
+        assert_eq!(found, expected, "{format}");
+        let kept = match format {
+            Format::Oem => oem::read(long.as_bytes()).unwrap().header.comments,
+            Format::OemXml => {
+                oem::read_xml(long.as_bytes())
+                    .unwrap()
+                    .remove(0)
+                    .header
+                    .comments
+            }
+            Format::Opm => opm::read(long.as_bytes()).unwrap().header.comments,
+            Format::OpmXml => {
+                opm::read_xml(long.as_bytes())
+                    .unwrap()
+                    .remove(0)
+                    .header
+                    .comments
+            }
+            Format::Sp3 => sp3::read(long.as_bytes()).unwrap().comments,
+            Format::Stk => stk::read(long.as_bytes()).unwrap().comments,
+            _ => {
+                let notation = match format {
+                    Format::OmmXml => OmmSyntax::Xml,
+                    _ => OmmSyntax::Kvn,
+                };
+                let mut messages = omm::read(long.as_bytes(), notation).unwrap();
+                messages.remove(0).header.unwrap().comments
+            }
+        };
+        assert!(
+            (1000..MANY / 2).contains(&kept.len()),
+            "{format}: {}",
+            kept.len()
+        );
+    }
+    assert_eq!(tried, 8);
 }
 
 /// The text with the first `from` after `after` replaced by `to`.

@@ -4,7 +4,7 @@ use super::{DM_IN_KM, Sp3, Sp3Sample};
 use crate::ephemeris::derivative::velocity_fault;
 use crate::formats::ReadError;
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::lines::{Line, Lines, keep_comment};
 use crate::formats::text::timestamp::{TimeSystem, stamp};
 use crate::formats::trajectory::{frame_of_sp3_name, time_system_of_name};
 use crate::frames::Position;
@@ -103,7 +103,7 @@ impl Sp3Parser {
             [b'%', b'c', ..] => self.file_type(line, findings),
             bytes if is_comment(bytes) => {
                 let comment = text.trim_start_matches(['%', '/', '*']);
-                self.file.comments.push(comment.trim().to_owned());
+                keep_comment(&mut self.file.comments, comment.trim());
             }
             [b'*', b' ', ..] => self.epoch(line, findings),
             [b'P', ..] => self.position(line, findings),

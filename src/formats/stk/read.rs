@@ -8,7 +8,7 @@ use crate::ephemeris::derivative::{velocities, velocity_fault};
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::{Line, Lines};
+use crate::formats::text::lines::{Line, Lines, keep_comment};
 use crate::formats::text::number;
 use crate::frames::{Frame, State};
 use crate::orbit::earth_orbit::{ImplausibleState, check_position, check_state};
@@ -123,7 +123,7 @@ impl StkParser {
             return;
         }
         if let Some(comment) = text.strip_prefix('#') {
-            self.comments.push(comment.trim_start().to_owned());
+            keep_comment(&mut self.comments, comment.trim_start());
             return;
         }
         let (key, value) = text.split_once(' ').unwrap_or((text, ""));

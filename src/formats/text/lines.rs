@@ -6,6 +6,16 @@ use std::io::{self, BufRead};
 /// Maximum length of a line, in bytes; no supported format allows more than 254.
 const MAX_LINE: usize = 4096;
 
+/// Maximum number of comments kept of a header or section: nothing is computed from them, and a file may have any number.
+const MOST_COMMENTS: usize = 10_000;
+
+/// Keeps a comment, unless there are very many already.
+pub(crate) fn keep_comment(kept: &mut Vec<String>, text: &str) {
+    if kept.len() < MOST_COMMENTS {
+        kept.push(text.to_owned());
+    }
+}
+
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A line without its terminator.

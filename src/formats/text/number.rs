@@ -2,6 +2,9 @@
 
 use crate::formats::text::finding::FindingList;
 
+/// Largest magnitude that is read: rounded to fewer digits it is still a number, and no quantity is as large.
+const LARGEST: f64 = 1e300;
+
 /// A finite decimal number with a C or Fortran exponent; a finding under `rule` if the text is not one.
 pub(crate) fn read(
     text: &str,
@@ -17,7 +20,7 @@ pub(crate) fn read(
         true => text.replace(['d', 'D'], "e").parse::<f64>().ok(),
         false => None,
     };
-    let value = value.filter(|value| value.is_finite());
+    let value = value.filter(|value| value.abs() <= LARGEST);
     if value.is_none() {
         findings.error(place, rule, format!("'{text}' is not a number"));
     }
@@ -57,6 +60,7 @@ mod tests {
             ("nan", None),
             ("inf", None),
             ("1e999", None),
+            ("-1.7976931348623157e308", None),
             ("", None),
             ("1,5", None),
         ] {
@@ -66,6 +70,6 @@ mod tests {
                 "{text}"
             );
         }
-        assert_eq!(findings.into_vec().len(), 5);
+        assert_eq!(findings.into_vec().len(), 6);
     }
 }

@@ -58,6 +58,35 @@ fn every_system_in_use_has_a_range_error() {
     assert_eq!(reads("").accuracy.accuracy(&[], 0), None);
 }
 
+/// A system that comes in by `--set` is told there, not at a range error of the file.
+#[test]
+fn a_missing_range_error_is_told_where_its_system_is_given() {
+    let text = "[accuracy]\nleo-m = 0.5\nbeidou-3-m = 1";
+    let given = parse(text, &["gnss.constellations=[\"gps\"]"]);
+    let told = given.unwrap_err().to_string();
+    let expected = "--set gnss.constellations=[\"gps\"]: gnss.constellations: every system in use needs a range error; `accuracy.gps-m` is missing";
+    assert!(told.starts_with(expected), "{told}");
+}
+
+/// A range error that nothing uses is told, and each only once.
+#[test]
+fn range_errors_of_other_systems_are_told() {
+    let notes = |text: &str| {
+        let read = |_: &str| Err(std::io::ErrorKind::NotFound.into());
+        reads(text).setup_with_notes(&read).unwrap().1
+    };
+    let text =
+        "[accuracy]\nleo-m = 1\nbeidou-3-m = 1\ngps-m = 2\nfiles-m = 3\nfiles-elevation = [1, 1]";
+    assert_eq!(
+        notes(text),
+        [
+            "accuracy.gps-m is not used: `gnss.constellations` does not have the system",
+            "accuracy.files-m is not used: `gnss.files` is empty",
+        ]
+    );
+    assert!(notes("[accuracy]\nleo-m = 1\nbeidou-3-m = 1").is_empty());
+}
+
 #[test]
 fn range_errors_are_in_the_order_of_the_systems() {
     let scenario = reads(
@@ -132,6 +161,16 @@ fn quantities_need_what_they_are_computed_from() {
         let told = problem(text);
         assert!(told.starts_with(expected), "{told}");
     }
+    // Each is told at its place in the list.
+    let told =
+        problem("[objectives]\nminimize = [\"satellites\",\n  \"sigma-h-m\", \"sigma-v-m\"]");
+    let places = "study.toml:3: objectives.minimize: sigma-h-m needs the range errors of [accuracy]
+  3 |   \"sigma-h-m\", \"sigma-v-m\"]
+    |   ^^^^^^^^^^^
+study.toml:3: objectives.minimize: sigma-v-m needs the range errors of [accuracy]
+  3 |   \"sigma-h-m\", \"sigma-v-m\"]
+    |                ^^^^^^^^^^^";
+    assert_eq!(told.trim_end(), places);
     reads(
         "[accuracy]\nleo-m = 1\nbeidou-3-m = 1\n[objectives]\nconstraints = [\"error95-v-m <= 2\"]",
     );

@@ -204,10 +204,13 @@ fn constellations() -> impl Strategy<Value = Vec<NamedConstellation>> {
 
 fn objectives() -> impl Strategy<Value = Objectives> {
     let constraint = (word::<Quantity>(), word::<Relation>(), -1e9..1e9).prop_map(
-        |(quantity, relation, bound)| Constraint {
+        |(quantity, relation, bound): (Quantity, Relation, f64)| Constraint {
             quantity,
             relation,
-            bound,
+            bound: match quantity.is_fraction() {
+                true => bound.abs() / 1e9,
+                false => bound,
+            },
         },
     );
     let scalars = (0.0..1e300, 0.001..0.999, 0.1..50.0, launch_cost());

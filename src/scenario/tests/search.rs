@@ -197,6 +197,10 @@ fn a_reference_point_has_one_number_for_each_objective() {
 
 #[test]
 fn constraints_are_a_quantity_a_relation_and_a_number() {
+    accepts(
+        "objectives",
+        "constraints = [\"availability >= 1\", \"coverage-4 >= 0\", \"least-visible >= 4\"]",
+    );
     let line = "constraints = [\"max-pdop <= 2.5\", \"availability>=0.99\"]";
     let expected = [
         Constraint {
@@ -227,6 +231,18 @@ fn constraints_are_a_quantity_a_relation_and_a_number() {
         (
             "max-pdop <= inf",
             "found the bound \"inf\", expected a finite number",
+        ),
+        (
+            "availability >= 99",
+            "found the bound \"99\", expected a number from 0 to 1: availability is a fraction",
+        ),
+        (
+            "coverage-total-4 >= 1.0000001",
+            "found the bound \"1.0000001\", expected a number from 0 to 1: coverage-total-4 is a fraction",
+        ),
+        (
+            "coverage-1 <= -0.1",
+            "found the bound \"-0.1\", expected a number from 0 to 1",
         ),
         ("<=", "unknown name \"\" (choices: j-pos"),
     ] {

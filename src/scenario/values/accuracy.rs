@@ -159,6 +159,26 @@ impl RangeErrors {
 }
 
 impl RangeErrors {
+    /// The keys of range errors that are given and of systems that are not in use.
+    pub(in crate::scenario) fn unused(&self, gnss: &GnssSetup) -> Vec<KeyPath> {
+        let has = |preset: Preset| gnss.constellations.contains(&preset);
+        // In the order of the keys.
+        let in_use = [
+            true,
+            has(Preset::Beidou3),
+            has(Preset::Gps),
+            has(Preset::Galileo),
+            has(Preset::Glonass),
+            has(Preset::Qzss),
+            has(Preset::Navic),
+            !gnss.files.is_empty(),
+        ];
+        let mut given = *self;
+        let systems = given.systems().into_iter().zip(in_use);
+        let unused = systems.filter(|(system, in_use)| !in_use && system.sigma_m.is_some());
+        unused.map(|(system, _)| system.sigma).collect()
+    }
+
     /// The name and the range error of each system in use that has one, the LEO satellites first.
     #[must_use]
     pub fn in_use(&self, gnss: &GnssSetup) -> Vec<(&'static str, RangeError)> {
@@ -212,7 +232,10 @@ pub(super) fn check(scenario: &mut Scenario, reader: &mut Reader<'_>) {
             let fault = Fault::MissingRangeError {
                 key: missing.to_string(),
             };
-            reader.refuse(&[given.as_slice(), &[missing]].concat(), fault);
+            // The systems may be given by `--set` after the range errors.
+            let systems = [key!(GnssSetup.constellations), key!(GnssSetup.files)];
+            let keys = [given.as_slice(), &systems, &[missing]].concat();
+            reader.refuse(&keys, fault);
         }
     }
     check_window(scenario, reader);
@@ -287,14 +310,19 @@ fn check_quantities(scenario: &Scenario, reader: &mut Reader<'_>, has_errors: bo
     };
     let objectives = scenario.objectives.minimize.iter().copied();
     let constraints = scenario.objectives.constraints.iter();
-    let constraints = constraints.map(|one| (one.quantity, key!(Objectives.constraints)));
-    let all = objectives
-        .map(|one| (one, key!(Objectives.minimize)))
-        .chain(constraints);
-    for (quantity, key) in all {
-        if let Some(needs) = lacks(quantity) {
-            let quantity = quantity.to_string();
-            reader.refuse(&[key], Fault::Needs { quantity, needs });
+    let lists: [(KeyPath, Vec<Quantity>); 2] = [
+        (key!(Objectives.minimize), objectives.collect()),
+        (
+            key!(Objectives.constraints),
+            constraints.map(|one| one.quantity).collect(),
+        ),
+    ];
+    for (key, quantities) in lists {
+        for (place, quantity) in quantities.into_iter().enumerate() {
+            if let Some(needs) = lacks(quantity) {
+                let quantity = quantity.to_string();
+                reader.refuse_element(key, place, Fault::Needs { quantity, needs });
+            }
         }
     }
 }

@@ -4,8 +4,9 @@ use crate::constellation::Satellite;
 use crate::earth::{J2, RADIUS_KM};
 use crate::orbit::sgp4::ZonalHarmonics;
 use crate::orbit::{MeanElements, osculating};
+use crate::time::TimeGrid;
 use crate::units::SECONDS_PER_DAY;
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 /// SGP4 adds the Sun, the Moon and resonances at periods from 225 minutes on (Hoots and
 /// Roehrich, *Spacetrack Report* 3 (1980), section 6), which no J2 model has.
@@ -64,6 +65,8 @@ pub(in crate::validate) struct Causes {
     pub(in crate::validate) radius_shift_km: f64,
     /// Amplitudes of the short-period terms, km.
     pub(in crate::validate) short_period_km: [f64; 3],
+    /// Amplitudes of the short-period terms of the node and of the argument of latitude, rad.
+    short_period_rad: [f64; 2],
     /// Amplitude of the radial effect of the frozen eccentricity, km; in-track is twice that.
     pub(in crate::validate) frozen_km: f64,
     /// Bound on the in-track rate of second-order terms, km/day: a scale for what is of higher order.
@@ -99,6 +102,12 @@ impl Causes {
                 0.125 * first_order_km * sin_i * sin_i,
                 // 3/4 J2 (R²/p) sin i |cos i|
                 0.75 * first_order_km * sin_i * cos_i.abs(),
+            ],
+            short_period_rad: [
+                // 3/4 J2 (R/p)² |cos i|
+                0.75 * J2 * ratio2 * cos_i.abs(),
+                // 1/8 J2 (R/p)² |7 cos² i - 1|
+                0.125 * J2 * ratio2 * (7.0 * cos_i * cos_i - 1.0).abs(),
             ],
             // a e_f = |J3 / (2 J2)| R sin i
             frozen_km: 0.5 * J3_OVER_J2_WGS72 * RADIUS_KM * sin_i,
@@ -142,21 +151,36 @@ impl Causes {
     }
 
     /// Bounds on the RMS of mean J2 against SGP4 over a span, km.
-    pub(in crate::validate) fn rms_gates_km(&self, zonals: ZonalHarmonics, days: f64) -> [f64; 3] {
+    ///
+    /// The mean square of a sine over samples is half that of its amplitude, plus what the samples leave of the mean of
+    /// twice its frequency.
+    pub(in crate::validate) fn rms_gates_km(
+        &self,
+        zonals: ZonalHarmonics,
+        days: f64,
+        leftover: Leftover,
+    ) -> [f64; 3] {
+        let [_, of_two, of_four] = leftover.mean;
         let frozen = match zonals {
-            ZonalHarmonics::Full => self.frozen_km / SQRT_2,
+            ZonalHarmonics::Full => self.frozen_km * (0.5 * (1.0 + of_two)).sqrt(),
             ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
         };
-        let periodic = self.short_period_km.map(|amplitude| amplitude / SQRT_2);
+        let of_twice = (0.5 * (1.0 + of_four)).sqrt();
+        let periodic = self.short_period_km.map(|amplitude| amplitude * of_twice);
+        // The shift of the radius and its periodic term do not average out either.
+        let shift = self.radius_shift_km.abs();
+        let both = 2.0 * shift * self.short_period_km[0] * of_two;
+        let radial = (shift * shift + both).sqrt();
         let first_order = [
-            self.radius_shift_km.hypot(periodic[0]).hypot(frozen),
+            radial.hypot(periodic[0]).hypot(frozen),
             periodic[1].hypot(2.0 * frozen),
             periodic[2],
         ];
         let [along, across] = self.drifts_km_per_day(zonals);
         // RMS of a ramp; across the track it swings with the argument of latitude.
         let ramp_days = days / 3_f64.sqrt();
-        let second_order = [0.0, along * ramp_days, across * ramp_days / SQRT_2];
+        let swing = (0.5 * (1.0 + of_two)).sqrt();
+        let second_order = [0.0, along * ramp_days, across * ramp_days * swing];
         std::array::from_fn(|axis| {
             let size = first_order[axis].hypot(second_order[axis]);
             FIRST_ORDER_MARGIN * self.eccentric_factor * size + HIGHER_ORDER_KM
@@ -168,6 +192,7 @@ impl Causes {
         &self,
         zonals: ZonalHarmonics,
         days: f64,
+        leftover: Leftover,
     ) -> [f64; 3] {
         let mut without = *self;
         // First-order terms are accurate to a fraction J2 of their size, times a factor of a few.
@@ -175,7 +200,7 @@ impl Causes {
         without.short_period_km = self
             .short_period_km
             .map(|amplitude| 0.01 * amplitude + HIGHER_ORDER_KM);
-        without.rms_gates_km(zonals, days)
+        without.rms_gates_km(zonals, days, leftover)
     }
 
     /// What the closed forms at e = 0 leave out of a drift in-track: third order in J2, 2 % of the second,
@@ -184,21 +209,37 @@ impl Causes {
         (self.eccentric_factor - 1.0 + 0.02) * self.second_order_km_per_day
     }
 
-    /// Bound on the slope of the mean in-track difference minus its closed form, km/day: third order
-    /// in J2, the eccentricity, the constants (5 m/day), and the slope left by the periodic terms, as
-    /// fractions of the amplitudes at once and twice per revolution.
+    /// Bound on the slope of the mean in-track difference minus its closed form, km/day: what is of higher
+    /// order, and the slope left by the periodic terms, as fractions of the amplitudes at once and twice per
+    /// revolution.
     pub(in crate::validate) fn growth_gate_km_per_day(
         &self,
         zonals: ZonalHarmonics,
-        leftover_per_day: [f64; 3],
+        leftover: Leftover,
     ) -> f64 {
         let once = match zonals {
             ZonalHarmonics::Full => 2.0 * self.frozen_km,
             ZonalHarmonics::J2Only | ZonalHarmonics::WithoutJ3 => 0.0,
         };
         let twice = self.short_period_km[1];
-        let periodic = once * leftover_per_day[0] + twice * leftover_per_day[1];
-        self.third_order_km_per_day() + self.eccentric_factor * periodic + 0.01
+        let [per_once, per_twice, _] = leftover.slope_per_day;
+        let periodic = once * per_once + twice * per_twice;
+        self.higher_order_km_per_day() + self.eccentric_factor * periodic
+    }
+
+    /// What the closed form of a drift in-track leaves out, km/day: third order in J2, the eccentricity, and the
+    /// constants (5 m/day).
+    pub(in crate::validate) fn higher_order_km_per_day(&self) -> f64 {
+        self.third_order_km_per_day() + 0.01
+    }
+
+    /// Bounds on the slopes that the periodic terms leave in the node and in the argument of latitude, rad/day: the
+    /// short-period terms of J2 ([M-41](crate::models#m-41)), and twice the frozen eccentricity in the latter.
+    pub(in crate::validate) fn periodic_rates_rad_per_day(&self, leftover: Leftover) -> [f64; 2] {
+        let [once, twice, _] = leftover.slope_per_day;
+        let frozen = 2.0 * self.frozen_km / self.a_km * once;
+        let [node, latitude] = self.short_period_rad;
+        [node * twice, latitude * twice + frozen].map(|rate| self.eccentric_factor * rate)
     }
 }
 
@@ -206,27 +247,46 @@ impl Causes {
 /// of the difference of the gravity constants (5 m), km.
 const HIGHER_ORDER_KM: f64 = 0.01;
 
-/// The slope that a difference with one, two or four periods per revolution leaves in the mean over a
-/// constellation, per day and unit of amplitude.
-///
-/// The least-squares slope of a sine of amplitude A over N of its periods in D days is at most
-/// 12 A/(2π N D), and never above the steepest of the sine, 2π N A/D; satellites that are spread evenly
-/// cancel each other.
-pub(in crate::validate) fn leftover_per_day(satellites: &[Satellite], days: f64) -> [f64; 3] {
-    let Some(first) = satellites.first() else {
-        return [0.0; 3];
-    };
-    let turns = days * SECONDS_PER_DAY * first.elements.kepler_mean_motion_rad_s() / TAU;
-    [1.0, 2.0, 4.0].map(|harmonic| {
-        let (mut sine, mut cosine) = (0.0, 0.0);
-        for satellite in satellites {
-            let (s, c) = (harmonic * satellite.elements.mean_argument_of_latitude_rad()).sin_cos();
-            (sine, cosine) = (sine + s, cosine + c);
+/// What periodic terms leave in the mean over a constellation and over its samples, per unit of amplitude, for terms
+/// with one, two and four periods per revolution.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::validate) struct Leftover {
+    /// Of the mean over the samples.
+    pub(in crate::validate) mean: [f64; 3],
+    /// Of the slope of the straight line through the samples, per day.
+    pub(in crate::validate) slope_per_day: [f64; 3],
+}
+
+impl Leftover {
+    /// Bounds in closed form ([M-41](crate::models#m-41)).
+    pub(in crate::validate) fn of(satellites: &[Satellite], grid: TimeGrid) -> Self {
+        let Some(first) = satellites.first() else {
+            return Self {
+                mean: [0.0; 3],
+                slope_per_day: [0.0; 3],
+            };
+        };
+        let span_s = grid.len() as f64 * grid.step_s();
+        let n = first.elements.kepler_mean_motion_rad_s();
+        let bounds = [1.0, 2.0, 4.0].map(|harmonic: f64| {
+            let (mut sine, mut cosine) = (0.0, 0.0);
+            for satellite in satellites {
+                let angle = harmonic * satellite.elements.mean_argument_of_latitude_rad();
+                let (s, c) = angle.sin_cos();
+                (sine, cosine) = (sine + s, cosine + c);
+            }
+            let left = f64::hypot(sine, cosine) / satellites.len() as f64;
+            // What the samples see of the frequency: with a step near the period it is close to zero.
+            let seen_rad_s = 2.0 * (0.5 * harmonic * n * grid.step_s()).sin().abs() / grid.step_s();
+            let radians = seen_rad_s * span_s;
+            let slope = (12.0 / radians).min(radians) / (span_s / SECONDS_PER_DAY);
+            [left * (2.0 / radians).min(1.0), left * slope]
+        });
+        Self {
+            mean: bounds.map(|[mean, _]| mean),
+            slope_per_day: bounds.map(|[_, slope]| slope),
         }
-        let left = f64::hypot(sine, cosine) / satellites.len() as f64;
-        let radians = TAU * harmonic * turns;
-        left * (12.0 / radians).min(radians) / days
-    })
+    }
 }
 
 /// Whether SGP4 uses its deep-space theory for an orbit.

@@ -97,7 +97,7 @@ fn cell(subject: &Subject<'_>) -> Result<(SweepCell, Vec<Share>), ValidateError>
     let grid = TimeGrid::new(subject.epoch(), span_s, step_s)?;
     let budget = Propagations::new(subject, grid)?.budget()?;
     let at = (subject.shell.inclination_deg(), subject.shell.altitude_km());
-    let checks = GateScale::of(subject).budget_checks(&budget);
+    let checks = GateScale::of(subject, grid).budget_checks(&budget);
     let shares: Vec<Share> = checks
         .into_iter()
         .filter_map(|check| {

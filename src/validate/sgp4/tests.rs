@@ -102,6 +102,27 @@ fn validate_the_sweep() {
     assert_eq!(findings.sweep.len(), 24);
 }
 
+/// The budget, the rates and the frozen eccentricity that fail their gates.
+fn failures_beside_the_sweep(subject: &Subject<'_>) -> Vec<String> {
+    let grid = subject.grid();
+    let scale = GateScale::of(subject, grid);
+    let propagations = Propagations::new(subject, grid).unwrap();
+    let mut findings = Findings::default();
+    let budget = propagations.budget().unwrap();
+    findings.checks.extend(scale.budget_checks(&budget));
+    findings
+        .checks
+        .extend(rates::checks(subject, &scale).unwrap());
+    findings
+        .checks
+        .extend(frozen::checks(subject, &scale).unwrap());
+    let told = |check: &Check| {
+        let gate = check.gate.unwrap_or(f64::NAN);
+        format!("{} {:e} of {gate:e}", check.name, check.value)
+    };
+    findings.failures().map(told).collect()
+}
+
 /// The gates are closed forms that are valid at all inclinations and LEO altitudes, for every model
 /// that must meet them.
 #[test]
@@ -112,26 +133,10 @@ fn gates_follow_inclination_and_altitude() {
         for inclination_deg in (0..=18).map(|n| f64::from(n) * 10.0) {
             for altitude_km in [400.0, 2000.0] {
                 let subject = Subject::new(design(inclination_deg, altitude_km), &evaluator);
-                let scale = GateScale::of(&subject);
-                let budget = Propagations::new(&subject, day())
-                    .unwrap()
-                    .budget()
-                    .unwrap();
-                let mut findings = Findings::default();
-                findings.checks.extend(scale.budget_checks(&budget));
-                findings
-                    .checks
-                    .extend(rates::checks(&subject, &scale).unwrap());
-                findings
-                    .checks
-                    .extend(frozen::checks(&subject, &scale).unwrap());
-                failed.extend(findings.failures().map(|check| {
-                    let gate = check.gate.unwrap_or(f64::NAN);
-                    let (name, value) = (&check.name, check.value);
-                    format!(
-                        "{model} {inclination_deg}° {altitude_km} km {name} {value:e} of {gate:e}"
-                    )
-                }));
+                let failures = failures_beside_the_sweep(&subject);
+                let at =
+                    |text: String| format!("{model} {inclination_deg}° {altitude_km} km {text}");
+                failed.extend(failures.into_iter().map(at));
             }
         }
     }
@@ -202,6 +207,70 @@ fn the_model_of_the_study_is_on_trial() {
             "{model}: {failed:?}"
         );
     }
+}
+
+/// A mean over few satellites and samples holds a rest of the periodic terms, more of it with a step near a fraction of
+/// the revolution.
+#[test]
+fn gates_follow_the_samples() {
+    let mut failed = Vec::new();
+    for (text, hours, step_s) in [
+        ("delta:53:2/2/1@550", 12.0, 1200.0),
+        ("star:86.4:2/2/1@780", 12.0, 1200.0),
+        ("delta:40:2/1/0@1000", 12.0, 1200.0),
+        ("delta:55:2/1/0@500", 12.0, 1200.0),
+        ("delta:63.4:1/1/0@1200", 5.0, 1500.0),
+        ("delta:30:1/1/0@700", 24.0, 2950.0),
+        ("delta:30:3/3/0@700", 24.0, 60.0),
+    ] {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, hours * 3600.0, step_s).unwrap();
+        for model in [Model::J2, Model::J2Osculating, Model::Sgp4] {
+            let evaluator = testing::evaluator_of(model, grid);
+            let subject = Subject::new(text.parse().unwrap(), &evaluator);
+            let failures = failures_beside_the_sweep(&subject);
+            let of = |check: String| format!("{model} {text} {check}");
+            failed.extend(failures.into_iter().map(of));
+        }
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
+
+/// A sine that is sampled: its mean and the slope of the straight line through it, whatever its phase, are within the
+/// bounds of a single satellite, and come close to them.
+#[test]
+fn validate_what_samples_leave_of_a_sine() {
+    let shell: Shell = "delta:55:1/1/0@925".parse().unwrap();
+    let satellites = shell.satellites();
+    let n = satellites[0].elements.kepler_mean_motion_rad_s();
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let mut closest = [0.0_f64; 2];
+    for step_s in [60.0, 600.0, 1200.0, 1500.0, 2900.0, 3050.0] {
+        for hours in [5.0, 12.0, 23.0, 24.0] {
+            let grid = TimeGrid::new(epoch, hours * 3600.0, step_s).unwrap();
+            let bounds = Leftover::of(&satellites, grid);
+            let days: Vec<f64> = grid.iter().map(|t| t / SECONDS_PER_DAY).collect();
+            for (place, harmonic) in [1.0, 2.0, 4.0].into_iter().enumerate() {
+                for phase in 0..24 {
+                    let phase = f64::from(phase) * std::f64::consts::TAU / 24.0;
+                    let sine = |t: f64| (harmonic * n * t + phase).sin();
+                    let values: Vec<f64> = grid.iter().map(sine).collect();
+                    let mean = values.iter().sum::<f64>() / values.len() as f64;
+                    let (_, slope) = crate::stats::line_fit(&days, &values).unwrap();
+                    let shares = [
+                        mean.abs() / bounds.mean[place],
+                        slope.abs() / bounds.slope_per_day[place],
+                    ];
+                    for (closest, share) in closest.iter_mut().zip(shares) {
+                        *closest = closest.max(share);
+                    }
+                }
+            }
+        }
+    }
+    // The slope leaves out a term that is smaller by the number of radians in the span, 9 or more here.
+    assert!(closest[0] <= 1.0 && closest[1] <= 1.2, "{closest:?}");
+    assert!(closest[0] > 0.9 && closest[1] > 0.9, "{closest:?}");
 }
 
 #[test]

@@ -159,3 +159,21 @@ fn single_values_hold_six_digits() {
         assert!((1e-8..1e-6).contains(&worst), "{text}: {worst:e}");
     }
 }
+
+/// Where all lanes of a tile have one value, it is every order statistic.
+#[test]
+fn one_value_in_all_lanes_is_every_statistic() {
+    let base = setup([3.0, 54.0], Surface::Wgs84);
+    let setup = Setup {
+        grid: TimeGrid::new(base.grid.epoch(), 60.0, 60.0).unwrap(),
+        sites: vec![base.sites[50].clone(); 16],
+        ..base
+    };
+    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+    let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+    let evaluator = Evaluator::new(setup).unwrap();
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    let fast = evaluator.evaluate(&design).unwrap();
+    assert_eq!(plain.p50_pdop, plain.max_pdop);
+    compare(&fast, &plain).unwrap();
+}

@@ -12,6 +12,15 @@ fn fleet() -> Fleet {
     ])
 }
 
+/// Adds states to satellites as a fleet does.
+fn unite(known: &mut Vec<Trajectory>, next: Trajectory) {
+    let mut fleet = Fleet::Sampled(std::mem::take(known));
+    fleet.append(Fleet::Sampled(vec![next]));
+    if let Fleet::Sampled(united) = fleet {
+        *known = united;
+    }
+}
+
 fn chosen(only: &[&str], exclude: &[&str]) -> Result<Vec<String>, String> {
     let owned = |patterns: &[&str]| patterns.iter().map(|text| (*text).to_owned()).collect();
     let filter = SatelliteFilter {

@@ -8,7 +8,7 @@ use crate::formats::ccsds::kvn::{
     CcsdsHeader, Item, KvnBlock, Pair, item, lines, read_number, read_stamp, words,
 };
 use crate::formats::text::finding::FindingList;
-use crate::formats::text::lines::Line;
+use crate::formats::text::lines::{Line, keep_comment};
 use crate::frames::State;
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
@@ -136,7 +136,7 @@ impl OemParser {
                 return;
             }
         };
-        kept.push(text.to_owned());
+        keep_comment(kept, text);
     }
 
     fn pair(&mut self, pair: &Pair<'_>, findings: &mut FindingList) {

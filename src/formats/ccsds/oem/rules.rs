@@ -2,9 +2,10 @@
 
 use super::{Segment, SegmentMetadata, StateLine};
 use crate::constellation::identity::ObjectIdentity;
+use crate::formats::ccsds::frame::supported_frame;
 use crate::formats::ccsds::kvn::KvnBlock;
 use crate::formats::text::finding::FindingList;
-use crate::formats::trajectory::{frame_of_name, time_system_of_name};
+use crate::formats::trajectory::time_system_of_name;
 use crate::frames::Frame;
 use crate::orbit::earth_orbit::check_state;
 use chrono::NaiveDateTime;
@@ -102,23 +103,7 @@ impl MessageRules {
             findings.unsupported(block.place("CENTER_NAME"), message);
             return;
         }
-        let frame = match frame_of_name(&metadata.ref_frame) {
-            Ok(frame) => frame,
-            Err(unknown) => {
-                let message = format!("REF_FRAME: {unknown}");
-                findings.error(block.place("REF_FRAME"), "oem-frame", message);
-                return;
-            }
-        };
-        let moves = matches!(frame, Frame::Teme | Frame::EarthFixed);
-        if moves && metadata.ref_frame_epoch.is_some() {
-            let message = format!(
-                "{} of epoch is not supported; only {0} of date is",
-                metadata.ref_frame
-            );
-            findings.error(block.place("REF_FRAME_EPOCH"), "oem-frame", message);
-        }
-        self.frame = Some(frame);
+        self.frame = supported_frame(block, "oem-frame", findings);
     }
 
     /// Checks that the usable span is within the full span and shares at most an instant with any other.

@@ -11,6 +11,7 @@ use crate::formats::ccsds::xml::{
     XmlLeaf, XmlNode, begin_file, write_comments, write_header, write_leaves,
 };
 use crate::formats::text::finding::FindingList;
+use crate::formats::text::lines::keep_comment;
 use crate::formats::text::timestamp::{SecondDigits, calendar};
 use crate::frames::State;
 use nalgebra::Vector3;
@@ -196,16 +197,22 @@ impl OemXmlMessage {
 
     fn leaf(&mut self, leaf: &XmlLeaf, place: (usize, usize), findings: &mut FindingList) {
         let is_comment = leaf.name == "COMMENT";
-        let text = || leaf.text.clone();
+        let text = leaf.text.as_str();
         let (pair, unit) = ((leaf.name.as_str(), leaf.text.trim()), leaf.unit.as_deref());
         match (&mut self.part, &mut self.segment) {
-            (OemXmlSection::Header, _) if is_comment => self.header.comments.push(text()),
+            (OemXmlSection::Header, _) if is_comment => {
+                keep_comment(&mut self.header.comments, text)
+            }
             (OemXmlSection::Header, _) => self.header.accept_at(pair, unit, place, findings),
-            (OemXmlSection::Metadata(block), _) if is_comment => block.comments.push(text()),
+            (OemXmlSection::Metadata(block), _) if is_comment => {
+                keep_comment(&mut block.comments, text)
+            }
             (OemXmlSection::Metadata(block) | OemXmlSection::State(block), _) => {
                 block.accept_at(pair, unit, place, findings);
             }
-            (OemXmlSection::Data, Some(segment)) if is_comment => segment.comments.push(text()),
+            (OemXmlSection::Data, Some(segment)) if is_comment => {
+                keep_comment(&mut segment.comments, text)
+            }
             (OemXmlSection::Covariance, _) => {}
             (OemXmlSection::Data, None) if is_comment => {}
             (OemXmlSection::Body | OemXmlSection::Data, _) => {

@@ -10,6 +10,7 @@ use crate::formats::ccsds::xml::XmlNode;
 use crate::formats::csv::CsvTable;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::Objects;
+use crate::formats::text::lines::keep_comment;
 use std::io::{self, BufRead};
 
 /// Tables 4-1 to 4-3 in their order, the covariance at the end. Catalogues leave the date and
@@ -101,7 +102,7 @@ pub fn parse_kvn(
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
             Item::Blank => {}
-            Item::Comment(text) => block.comments.push(text.to_owned()),
+            Item::Comment(text) => keep_comment(&mut block.comments, text),
             Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {}
             Item::Pair(pair) => {
                 if pair.key == VERSION && started {
@@ -176,7 +177,7 @@ impl OmmXmlMessage {
     ) {
         let XmlNode::Leaf(leaf) = node else { return };
         match leaf.name.as_str() {
-            "COMMENT" => self.block.comments.push(leaf.text.clone()),
+            "COMMENT" => keep_comment(&mut self.block.comments, &leaf.text),
             name if name.starts_with(USER_DEFINED) => {}
             name => {
                 let pair = (name, leaf.text.trim());

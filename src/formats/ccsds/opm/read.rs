@@ -1,12 +1,16 @@
 //! Reads messages strictly, line by line.
 
 use super::{Keplerian, MEAN, Opm, USER_DEFINED, VERSION};
+use crate::earth::{J2, RADIUS_KM};
 use crate::formats::ReadError;
+use crate::formats::ccsds::frame::supported_frame;
 use crate::formats::ccsds::keywords::{COVARIANCE, KvnKeyword, SPACECRAFT, may, must, named};
 use crate::formats::ccsds::kvn::{CcsdsHeader, Item, KvnBlock, Pair, item, lines};
 use crate::formats::text::finding::FindingList;
+use crate::formats::text::lines::keep_comment;
 use crate::formats::trajectory::{frame_of_name, time_system_of_name};
-use crate::frames::State;
+use crate::frames::{Frame, State, from_teme};
+use crate::orbit::Model;
 use crate::orbit::earth_orbit::check_state;
 use crate::orbit::kepler::eccentric_anomaly;
 use crate::units::wrap_360;
@@ -82,7 +86,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Opti
     while let Some(line) = lines.next(findings)? {
         match item(&line, findings) {
             Item::Blank => {}
-            Item::Comment(text) if in_header => block.comments.push(text.to_owned()),
+            Item::Comment(text) if in_header => keep_comment(&mut block.comments, text),
             Item::Comment(_) => {}
             Item::Pair(pair) if pair.key.starts_with(USER_DEFINED) => {
                 let named = (pair.key, pair.value);
@@ -178,9 +182,68 @@ pub(super) fn message(
         keplerian,
         user_defined,
     };
+    // Without mean elements the message is not read anyway.
+    if message.is_about_earth() && message.mean_elements().is_some() {
+        supported_frame(block, "opm-frame", findings);
+    }
     check_orbit(&message, block.place("X"), findings);
+    check_elements(&message, block.place("X"), findings);
     Some(message)
 }
+
+/// Refuses mean elements of another orbit than the state beside them.
+fn check_elements(message: &Opm, place: (usize, usize), findings: &mut FindingList) {
+    if let Some(apart) = elements_apart(message)
+        && apart.distance_km > apart.limit_km
+    {
+        let text = format!(
+            "the state is {:.0} km off that of the mean elements USER_DEFINED_MEAN_..., and periodic terms explain at most {:.0} km",
+            apart.distance_km, apart.limit_km
+        );
+        findings.error(place, "opm-mean-elements", text);
+    }
+}
+
+/// How far the state and the mean elements of a message are apart.
+pub(super) struct ElementsApart {
+    pub(super) distance_km: f64,
+    /// What mean and osculating orbits of the theories here may differ by.
+    pub(super) limit_km: f64,
+}
+
+/// The distance between the state and that of the mean elements, or between their velocities in half a radian of the
+/// orbit if that is larger; `None` if one of them is missing or its frame or time
+/// system is unknown.
+///
+/// Mean and osculating positions differ by the periodic terms: those of J2 have amplitudes of at most 3/4 J2 R²/p on
+/// each axis beside a shift of the radius of at most 3/2 J2 R²/p ([M-40](crate::models#m-40) and
+/// [M-41](crate::models#m-41)), J3 adds 2 |J3/(2 J2)| R = 15 km in-track ([M-42](crate::models#m-42)), and both grow with the eccentricity
+/// by at most 1 + 8 e ([M-45](crate::models#m-45)). The limit is the sum, doubled for elements of other constants.
+pub(super) fn elements_apart(message: &Opm) -> Option<ElementsApart> {
+    let elements = message
+        .mean_elements()
+        .filter(|_| message.is_about_earth())?;
+    let frame = frame_of_name(&message.ref_frame).ok()?;
+    let epoch = time_system_of_name(&message.time_system)
+        .ok()?
+        .epoch(message.epoch);
+    let propagator = Model::J2.propagator(&elements, epoch).ok()?;
+    let of_elements: State<Frame> = from_teme(propagator.state_at(0.0).ok()?, frame, epoch, 0.0);
+    let apart_km = (message.state.position_km - of_elements.position_km).norm();
+    let per_s = (message.state.velocity_km_s - of_elements.velocity_km_s).norm();
+    // The terms of J2 have two periods per revolution.
+    let by_velocity_km = per_s / (2.0 * elements.kepler_mean_motion_rad_s());
+    let e = elements.eccentricity;
+    let j2_km = J2 * RADIUS_KM * RADIUS_KM / (elements.semi_major_axis_km * (1.0 - e * e));
+    let periodic_km = (1.5 + 3.0 * 0.75) * j2_km + FROZEN_KM;
+    Some(ElementsApart {
+        distance_km: apart_km.max(by_velocity_km),
+        limit_km: 2.0 * (1.0 + 8.0 * e) * periodic_km,
+    })
+}
+
+/// In-track amplitude of the eccentricity that J3 forces, km.
+const FROZEN_KM: f64 = 15.0;
 
 /// Refuses a state that is no Earth orbit, in a frame that is known.
 fn check_orbit(message: &Opm, place: (usize, usize), findings: &mut FindingList) {

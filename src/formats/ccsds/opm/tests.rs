@@ -4,6 +4,7 @@ use crate::formats::metadata::Theory;
 use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::text::timestamp::TimeSystem;
 use crate::frames::from_teme;
+use crate::keyword::Keyword;
 use crate::orbit::Model;
 use nalgebra::Vector3;
 use proptest::prelude::*;
@@ -207,6 +208,103 @@ fn what_is_written_reads_back_and_writes_the_same() {
             assert!((mean.semi_major_axis_km - elements.semi_major_axis_km).abs() < 1e-9);
         }
     }
+}
+
+/// The mean elements are propagated, and the state beside them must be of the same orbit, in a frame that is known.
+#[test]
+fn mean_elements_and_state_are_of_one_orbit() {
+    for syntax in OpmSyntax::ALL {
+        let (_, message) = written(Frame::Eme2000, "delta:55:6/2/1@925");
+        let mut bytes = Vec::new();
+        message.write_as(*syntax, &mut bytes).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        assert_eq!(findings(&text), [], "{syntax}");
+        let is_xml = *syntax == OpmSyntax::Xml;
+        let value = |key: &str| {
+            let after = match (is_xml, key.strip_prefix(USER_DEFINED)) {
+                (false, _) => format!("\n{key} = "),
+                (true, Some(name)) => format!("\"{name}\">"),
+                (true, None) => format!("<{key}>"),
+            };
+            let at = text.find(&after).unwrap() + after.len();
+            let end = text[at..].find(['\n', '<']).unwrap();
+            (at, at + end)
+        };
+        let with = |key: &str, new: &str| {
+            let (from, to) = value(key);
+            format!("{}{new}{}", &text[..from], &text[to..])
+        };
+        let swapped = |one: &str, other: &str| {
+            let ((a, b), (c, d)) = (value(one), value(other));
+            let (first, second) = (&text[a..b], &text[c..d]);
+            format!("{}{second}{}{first}{}", &text[..a], &text[b..c], &text[d..])
+        };
+        let [a_km, _, i_deg, _, _, anomaly_deg] = MEAN;
+        for (damaged, rule) in [
+            (swapped("X", "Y"), "opm-mean-elements"),
+            (swapped("X_DOT", "Y_DOT"), "opm-mean-elements"),
+            (with(i_deg, "0.959931088597"), "opm-mean-elements"),
+            (with(anomaly_deg, "0.0"), "opm-mean-elements"),
+            (with(a_km, "7403.137"), "opm-mean-elements"),
+            (with(a_km, "7313.137"), ""),
+            (with("REF_FRAME", "ITRF2014"), "opm-mean-elements"),
+            (with("REF_FRAME", "TOD"), "opm-frame"),
+            (with("REF_FRAME", "NONE"), "opm-frame"),
+            (with("TIME_SYSTEM", "UT1"), "unsupported"),
+        ] {
+            let mut all = FindingList::of_linter(50);
+            match is_xml {
+                true => ndm::parse(damaged.as_bytes(), &["opm"], &mut all, |_| ()).unwrap(),
+                false => drop(parse(damaged.as_bytes(), &mut all).unwrap()),
+            }
+            let rules: Vec<&str> = all.into_vec().iter().map(|one| one.rule).collect();
+            let expected = Vec::from_iter(Some(rule).filter(|rule| !rule.is_empty()));
+            assert_eq!(rules, expected, "{damaged}");
+        }
+    }
+    // In a frame that turns, only the one of date is known.
+    let (_, message) = written(Frame::Teme, "delta:55:6/2/1@925");
+    let mut bytes = Vec::new();
+    message.write(&mut bytes).unwrap();
+    let text = String::from_utf8(bytes).unwrap();
+    let of_epoch = "REF_FRAME = TEME\nREF_FRAME_EPOCH = 2025-01-01T00:00:00\n";
+    let text = text.replacen("REF_FRAME = TEME\n", of_epoch, 1);
+    assert_eq!(findings(&text)[0].rule, "opm-frame");
+}
+
+/// States of every theory that is exported are within the limit of their mean elements, at any altitude and place.
+#[test]
+fn periodic_terms_are_within_the_limit() {
+    let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+    let mut nearest = 0.0_f64;
+    for model in Model::ALL {
+        for design in [
+            "delta:0:8/1/0@300",
+            "delta:30:8/1/0@400",
+            "delta:55:8/1/0@925",
+            "delta:90:8/1/0@500",
+            "delta:56:8/1/0@21528",
+            "lattice:63.4:8/1/0@900,e=0.1,w=270",
+            "lattice:116.6:8/1/0@5000,e=0.3,w=90",
+        ] {
+            let design: crate::constellation::Design = design.parse().unwrap();
+            for satellite in design.satellites() {
+                let propagator = model.propagator(&satellite.elements, epoch).unwrap();
+                let teme = propagator.state_at(0.0).unwrap();
+                let state = from_teme(teme, Frame::Gcrf, epoch, 0.0);
+                let (_, message) = written(Frame::Gcrf, "delta:55:6/2/1@925");
+                let message = Opm {
+                    state,
+                    user_defined: mean_parameters(&satellite.elements),
+                    ..message
+                };
+                let apart = read::elements_apart(&message).unwrap();
+                nearest = nearest.max(apart.distance_km / apart.limit_km);
+            }
+        }
+    }
+    // Twice the sum of the amplitudes, which are rarely all reached at once.
+    assert!((0.1..0.5).contains(&nearest), "{nearest}");
 }
 
 /// The message by way of XML.

@@ -10,6 +10,7 @@ use crate::formats::ccsds::xml::{
     XmlLeaf, XmlNode, begin_file, write_comments, write_header, write_leaves,
 };
 use crate::formats::text::finding::FindingList;
+use crate::formats::text::lines::keep_comment;
 use quick_xml::escape::escape;
 use std::io::{self, BufRead, Write};
 
@@ -128,7 +129,7 @@ impl OpmXmlMessage {
     fn leaf(&mut self, leaf: &XmlLeaf, place: (usize, usize), findings: &mut FindingList) {
         let value = leaf.text.trim();
         match leaf.name.as_str() {
-            "COMMENT" if self.in_header => self.block.comments.push(leaf.text.clone()),
+            "COMMENT" if self.in_header => keep_comment(&mut self.block.comments, &leaf.text),
             "COMMENT" => {}
             PARAMETER => {
                 let Some(name) = &leaf.parameter else {
