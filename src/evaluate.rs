@@ -7,12 +7,14 @@
 mod accuracy;
 mod counts;
 mod dops;
+mod failures;
 mod fixed;
 mod gain;
 mod kernel;
 mod leo;
 mod metrics;
 mod on_demand;
+mod outages;
 mod phases;
 mod plain;
 mod series;
@@ -25,6 +27,7 @@ pub use counts::{
     ViewHistograms,
 };
 pub use dops::{ClockDop, DopStatistics};
+pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
 pub use gain::Gain;
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
@@ -36,6 +39,7 @@ pub use window::InformationPdop;
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, LeoClocks, ObservationWeights};
+use crate::ephemeris::outages::SatelliteOutage;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::ground::{RegionMap, Site};
@@ -86,6 +90,8 @@ pub struct Setup {
     pub accuracy: Option<Accuracy>,
     /// Length of the windows whose information is asked for, seconds.
     pub window_s: Option<f64>,
+    /// Satellites out of service, of the GNSS and of constellations.
+    pub outages: Vec<SatelliteOutage>,
 }
 
 impl Setup {
@@ -109,6 +115,7 @@ impl Setup {
             metrics: MetricOptions::default(),
             accuracy: None,
             window_s: None,
+            outages: Vec::new(),
         }
     }
 
@@ -402,7 +409,8 @@ impl Evaluator {
             Some(kernel) => kernel.evaluate(ephemeris)?,
             None => (plain::evaluate(self, ephemeris)?, Rechecks::default()),
         };
-        let mut metrics = self.metrics(&evaluated, ephemeris)?;
+        let metrics = self.metrics(&evaluated, ephemeris)?;
+        let mut metrics = self.with_failures(metrics, ephemeris)?;
         if self.setup.metrics.asks_for_hdop {
             let dops = self.dops_beside(&metrics, ephemeris)?;
             metrics = metrics.with_dops(&dops);

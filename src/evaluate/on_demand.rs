@@ -15,7 +15,7 @@ pub(super) fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 }
 
 /// The fields of [`Metrics`] that are computed on demand.
-const FIELDS: [&str; 9] = [
+const FIELDS: [&str; 11] = [
     "gain",
     "information_pdop",
     "accuracy_solved_fraction",
@@ -25,6 +25,8 @@ const FIELDS: [&str; 9] = [
     "error95_3d_m",
     "error95_h_m",
     "error95_v_m",
+    "n1",
+    "expected_availability",
 ];
 
 impl Metrics {
@@ -71,6 +73,18 @@ impl Metrics {
             if let Some(error) = error {
                 add(field.to_owned(), error);
             }
+        }
+        if let Some(of) = &self.n1 {
+            add("n1_max_pdop".to_owned(), of.max_pdop);
+            add("n1_cvar_pdop".to_owned(), of.cvar_pdop);
+            add("n1_availability".to_owned(), Some(of.availability));
+            add("n1_solved_fraction".to_owned(), Some(of.solved_fraction));
+        }
+        if self.expected_availability.is_some() {
+            add(
+                "expected_availability".to_owned(),
+                self.expected_availability,
+            );
         }
         for (name, value) in self.gain.iter().flat_map(Gain::named) {
             add(format!("gain_{name}"), value);

@@ -6,6 +6,7 @@
 mod bars;
 mod curves;
 pub mod draw;
+mod failures;
 mod front;
 mod histogram;
 mod map;
@@ -16,6 +17,7 @@ pub use super::Baseline;
 pub use super::labels::quantity_label;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
+pub use failures::{NamedLosses, failures};
 pub use front::{NamedFront, pareto};
 pub use histogram::histogram;
 pub use map::map;
@@ -49,6 +51,8 @@ keywords! {
         Timeline = "timeline",
         /// The error budget of a validation.
         Budget = "budget",
+        /// What the loss of each satellite does.
+        Failures = "failures",
     }
 }
 
