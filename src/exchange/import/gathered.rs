@@ -74,7 +74,7 @@ impl GatheredFleet {
         })
     }
 
-    /// The satellites so far, kind by kind.
+    /// The satellites of each kind.
     pub(super) fn parts(&self) -> &[Fleet] {
         &self.parts
     }

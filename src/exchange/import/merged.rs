@@ -2,7 +2,6 @@
 
 use super::{Fleet, GatheredFleet, Imported};
 use crate::exchange::lint::Format;
-use std::mem::{Discriminant, discriminant};
 
 /// The satellites of the files so far, and the formats found, each once.
 #[derive(Debug, Default)]
@@ -11,7 +10,7 @@ pub struct MergedFiles {
     fleet: Option<GatheredFleet>,
     count: usize,
     /// The file of each satellite, kind by kind: those of a file follow the satellites of their kind.
-    origins: Vec<(Discriminant<Fleet>, Vec<usize>)>,
+    origins: Vec<Vec<usize>>,
 }
 
 /// The satellites of all files.
@@ -35,14 +34,10 @@ impl MergedFiles {
             None => self.fleet = Some(imported.fleet.into()),
             Some(fleet) => fleet.add(imported.fleet),
         }
-        for part in self.fleet.iter().flat_map(GatheredFleet::parts) {
-            let kind = discriminant(part);
-            let known = self.origins.iter().position(|(one, _)| *one == kind);
-            let place = known.unwrap_or_else(|| {
-                self.origins.push((kind, Vec::new()));
-                self.origins.len() - 1
-            });
-            self.origins[place].1.resize(part.len(), self.count);
+        let parts = self.fleet.as_ref().map_or(&[][..], GatheredFleet::parts);
+        self.origins.resize_with(parts.len(), Vec::new);
+        for (origins, part) in self.origins.iter_mut().zip(parts) {
+            origins.resize(part.len(), self.count);
         }
         self.count += 1;
     }
@@ -50,25 +45,11 @@ impl MergedFiles {
     /// What was read; `None` without a file.
     #[must_use]
     pub fn finish(self) -> Option<Merged> {
-        let fleet = self.fleet?.finish();
-        let of_kind = |part: &Fleet| {
-            let mut known = self.origins.iter();
-            let found = known.find(|(kind, _)| *kind == discriminant(part));
-            found.map_or_else(Vec::new, |(_, origins)| origins.clone())
-        };
         Some(Merged {
-            origins: kinds(&fleet).iter().flat_map(of_kind).collect(),
             formats: self.formats,
-            fleet,
+            fleet: self.fleet?.finish(),
+            origins: self.origins.concat(),
         })
-    }
-}
-
-/// The parts of a fleet, each of one kind.
-fn kinds(fleet: &Fleet) -> &[Fleet] {
-    match fleet {
-        Fleet::Mixed(parts) => parts,
-        one => std::slice::from_ref(one),
     }
 }
 
