@@ -10,6 +10,7 @@
 //! If the directions leave a component of the position undetermined, A is singular up to rounding.
 //! [`Geometry`] alone decides whether a sample is solved, from the pivots of A.
 
+mod downdate;
 mod factor;
 mod family;
 

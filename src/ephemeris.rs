@@ -5,6 +5,7 @@ pub mod coincidence;
 pub(crate) mod derivative;
 pub mod hermite;
 pub mod meetings;
+pub mod outages;
 pub mod sampled;
 
 use crate::constellation::gnss::GnssSatellite;

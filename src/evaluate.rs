@@ -7,11 +7,13 @@
 mod accuracy;
 mod counts;
 mod dops;
+mod failures;
 mod fixed;
 mod kernel;
 mod leo;
 mod metrics;
 mod on_demand;
+mod outages;
 mod phases;
 mod plain;
 mod series;
@@ -21,6 +23,7 @@ mod window;
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_LEVELS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
+pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
 pub use kernel::{InstructionSet, Rechecks};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
@@ -31,6 +34,7 @@ pub use window::InformationPdop;
 use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, LeoClocks, ObservationWeights};
+use crate::ephemeris::outages::SatelliteOutage;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
 use crate::ground::{RegionMap, Site};
@@ -80,6 +84,8 @@ pub struct Setup {
     pub accuracy: Option<Accuracy>,
     /// Length of the windows whose information is asked for, seconds.
     pub window_s: Option<f64>,
+    /// Satellites out of service, of the GNSS and of constellations.
+    pub outages: Vec<SatelliteOutage>,
 }
 
 impl Setup {
@@ -103,6 +109,7 @@ impl Setup {
             metrics: MetricOptions::default(),
             accuracy: None,
             window_s: None,
+            outages: Vec::new(),
         }
     }
 
@@ -373,6 +380,7 @@ impl Evaluator {
             }
             None => (self.evaluate_plain(ephemeris)?, Rechecks::default()),
         };
+        let metrics = self.with_failures(metrics, ephemeris)?;
         if !self.setup.metrics.asks_for_hdop {
             return Ok((metrics, rechecks));
         }

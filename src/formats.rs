@@ -10,6 +10,7 @@ mod element_set;
 pub mod gmat;
 pub mod maps;
 pub mod metadata;
+pub mod outages;
 pub mod sem;
 pub mod sp3;
 pub mod stk;

@@ -42,7 +42,7 @@ mod archive;
 mod decision;
 mod error;
 mod exhaustive;
-mod generator;
+pub(crate) mod generator;
 mod history;
 mod hypervolume;
 mod method;

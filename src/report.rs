@@ -10,6 +10,7 @@ mod diagnostics;
 #[cfg(feature = "figures")]
 mod dominance;
 mod evaluated;
+pub mod failures;
 #[cfg(feature = "figures")]
 pub mod figures;
 pub(crate) mod front_table;

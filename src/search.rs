@@ -3,6 +3,7 @@
 
 mod constraint;
 mod counted;
+pub mod failures;
 mod fixed;
 mod quantity;
 mod shell_space;

@@ -26,7 +26,7 @@ const MAX_SEEDS: u64 = 1000;
 /// Designs, evaluates, exports and validates LEO Walker constellations that augment a GNSS.
 ///
 /// A study is described by a scenario: a TOML file, or one of the built-in `paper`,
-/// `regional`, `global` and `europe`. Results go to stdout and everything else to stderr. The exit status is 0 when
+/// `regional`, `global`, `europe` and `robust`. Results go to stdout and everything else to stderr. The exit status is 0 when
 /// done, 1 when done but a gate failed or no feasible design was found, 2 when the command could
 /// not run, and 130 after Ctrl-C.
 #[derive(Debug, Parser)]

@@ -166,7 +166,7 @@ pub(crate) fn require_files(args: &ConstellationArgs) -> Result<()> {
 /// place or about to collide.
 pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
     let ephemeris = one
-        .ephemeris(setup.grid, setup.model)
+        .in_service(setup)
         .with_context(|| format!("cannot propagate {}", one.name))?;
     warn_of_files(one, setup.grid);
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));

@@ -51,6 +51,21 @@ impl Study {
         )
     }
 
+    /// The same with further satellites out of service throughout.
+    pub(crate) fn without(self, args: &StudyArgs, satellites: &[String]) -> Result<Self> {
+        if satellites.is_empty() {
+            return Ok(self);
+        }
+        let mut all = self.scenario.outages.satellites.clone();
+        for name in satellites {
+            if !all.contains(name) {
+                all.push(name.clone());
+            }
+        }
+        let all = serde_json::to_string(&all)?;
+        Self::load(args, &[format!("outages.satellites={all}")])
+    }
+
     /// The scenario of a run, which names the run's own copies of its files.
     pub(crate) fn of_run(directory: &Path, overrides: &[String]) -> Result<Self> {
         files::recovered(directory)?;

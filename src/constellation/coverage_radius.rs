@@ -19,7 +19,7 @@ const NO_AREA: f64 = 1e-9;
 /// How far a point may lie beyond a facet by rounding, in units of the sphere's radius.
 const ROUNDING: f64 = 1e-12;
 
-/// The coverage radius of circular orbits ([M-56](crate::models#m-56)), degrees, over all places and all times: within
+/// The coverage radius of circular orbits ([M-58](crate::models#m-58)), degrees, over all places and all times: within
 /// [`COVERAGE_RADIUS_TOLERANCE_DEG`]. It does not depend on the altitude, nor on the rotation of the Earth.
 ///
 /// `None` for ellipses, and for fewer than 3 or more than [`MOST_COVERING_SATELLITES`] satellites.

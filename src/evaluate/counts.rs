@@ -19,6 +19,11 @@ impl Coverage {
         self.0.get(satellites.checked_sub(1)?).copied()
     }
 
+    /// From the fractions for 1, 2, … 12 satellites.
+    pub(super) fn from_shares(shares: [f64; COVERAGE_LEVELS]) -> Self {
+        Self(shares)
+    }
+
     /// The fractions for 1, 2, … 12 satellites.
     #[must_use]
     pub fn shares(&self) -> [f64; COVERAGE_LEVELS] {
@@ -69,6 +74,12 @@ impl Views {
 
     pub(super) fn add(&mut self, visible: u32, weight: u64) {
         self.0[visible as usize] += weight;
+    }
+
+    /// Moves the weight of samples from one number to another.
+    pub(super) fn shift(&mut self, from: u32, to: u32, weight: u64) {
+        self.0[from as usize] -= weight;
+        self.0[to as usize] += weight;
     }
 
     fn total(&self) -> u64 {

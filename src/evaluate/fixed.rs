@@ -1,7 +1,6 @@
 //! The part of the geometry that is the same for all designs: the GNSS, once per setup.
 
 use super::{Setup, plain};
-use crate::constellation::gnss::System;
 use crate::dop::{ClockGroup, Clocks, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
@@ -39,9 +38,10 @@ pub(super) type PlainPositions = Vec<Position<EarthFixed>>;
 
 /// The systems of a setup, to be propagated on its grid.
 pub(super) fn systems(setup: &Setup) -> Vec<Ephemeris> {
-    let satellites =
-        |system: &System| Ephemeris::of_gnss(system.satellites(setup.grid.epoch()), setup.grid);
-    setup.gnss.iter().map(satellites).collect()
+    let systems = setup.gnss_in_service().into_iter();
+    systems
+        .map(|(_, satellites)| Ephemeris::of_gnss(satellites, setup.grid))
+        .collect()
 }
 
 /// The positions of each system at one instant.

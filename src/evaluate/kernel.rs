@@ -51,6 +51,7 @@ mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
+pub(super) use order_statistics::quantile_rank;
 
 use super::Setup;
 use super::counts::Threshold;

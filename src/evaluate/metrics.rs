@@ -3,6 +3,7 @@
 use super::DopStatistics;
 use super::accuracy::{AccuracyMetrics, SigmaSpread};
 use super::counts::{Coverage, LongestOutage, Views};
+use super::failures::OneLost;
 use super::on_demand::{self, OnDemand};
 use super::window::InformationPdop;
 use crate::stats::{Level, Summary};
@@ -19,6 +20,10 @@ pub struct MetricOptions {
     pub availability_pdop: f64,
     /// Whether the quantiles of HDOP and VDOP are computed too, which takes several times as long.
     pub asks_for_hdop: bool,
+    /// Whether the loss of each satellite is evaluated too, which takes many times as long.
+    pub asks_for_n1: bool,
+    /// The probability that a satellite is up, if the expected availability is computed too.
+    pub expects_up: Option<f64>,
 }
 
 impl Default for MetricOptions {
@@ -29,6 +34,8 @@ impl Default for MetricOptions {
             cvar_level: Level::default(),
             availability_pdop: 6.0,
             asks_for_hdop: false,
+            asks_for_n1: false,
+            expects_up: None,
         }
     }
 }
@@ -83,6 +90,12 @@ pub struct Metrics {
     pub p95_hdop: Option<f64>,
     /// 95 % quantile of VDOP, where it is asked for.
     pub p95_vdop: Option<f64>,
+    /// The worst without any one of the satellites.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub n1: Option<OneLost>,
+    /// Probability that a sample is available, as expected over failures of the satellites.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expected_availability: Option<f64>,
     /// PDOP of all observations in a window.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub information_pdop: Option<InformationPdop>,
@@ -199,6 +212,8 @@ impl Metrics {
             longest_outage_cut: longest_outage.is_cut,
             p95_hdop: None,
             p95_vdop: None,
+            n1: None,
+            expected_availability: None,
             information_pdop: None,
             sigma_3d_m: None,
             sigma_h_m: None,

@@ -15,7 +15,7 @@ pub(super) fn given<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
 }
 
 /// The fields of [`Metrics`] that are computed on demand.
-const FIELDS: [&str; 7] = [
+const FIELDS: [&str; 9] = [
     "information_pdop",
     "sigma_3d_m",
     "sigma_h_m",
@@ -23,6 +23,8 @@ const FIELDS: [&str; 7] = [
     "error95_3d_m",
     "error95_h_m",
     "error95_v_m",
+    "n1",
+    "expected_availability",
 ];
 
 impl Metrics {
@@ -53,10 +55,19 @@ impl Metrics {
             add(field, "_cvar", part(|of| of.cvar));
         }
         let errors = [self.error95_3d_m, self.error95_h_m, self.error95_v_m];
-        for (field, error) in FIELDS[4..].iter().zip(errors) {
+        for (field, error) in FIELDS[4..7].iter().zip(errors) {
             if let Some(error) = error {
                 add(field, "", error);
             }
+        }
+        if let Some(of) = &self.n1 {
+            add(FIELDS[7], "_max_pdop", of.max_pdop);
+            add(FIELDS[7], "_cvar_pdop", of.cvar_pdop);
+            add(FIELDS[7], "_availability", Some(of.availability));
+            add(FIELDS[7], "_solved_fraction", Some(of.solved_fraction));
+        }
+        if self.expected_availability.is_some() {
+            add(FIELDS[8], "", self.expected_availability);
         }
         columns
     }

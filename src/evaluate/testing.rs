@@ -40,6 +40,8 @@ pub(crate) fn no_metrics() -> Metrics {
         longest_outage_cut: false,
         p95_hdop: None,
         p95_vdop: None,
+        n1: None,
+        expected_availability: None,
         information_pdop: None,
         sigma_3d_m: None,
         sigma_h_m: None,

@@ -2,6 +2,7 @@ mod clocks;
 mod counted;
 mod limits;
 mod metres;
+mod outages;
 mod products;
 mod skies;
 

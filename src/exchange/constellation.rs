@@ -10,7 +10,9 @@ pub use name::{GNSS_ONLY, LONGEST_NAME, accepted_name, is_name, similar_name};
 
 use crate::constellation::Design;
 use crate::constellation::identity::{NUMBERED, UniqueTexts};
+use crate::ephemeris::outages::OutageError;
 use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::Setup;
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::lint::Format;
 use crate::orbit::Model;
@@ -49,6 +51,9 @@ pub enum ConstellationError {
     /// The satellites of its files.
     #[error(transparent)]
     Fleet(#[from] FleetError),
+    /// Its satellites that are out of service.
+    #[error(transparent)]
+    Outage(#[from] OutageError),
 }
 
 impl FileSatellites {
@@ -144,6 +149,15 @@ impl Constellation {
     /// If a satellite cannot be propagated.
     pub fn ephemeris(&self, grid: TimeGrid, model: Model) -> Result<Ephemeris, ConstellationError> {
         self.with_files(grid, model, |fleet| fleet.propagate(grid, model))
+    }
+
+    /// The satellites on the grid of a setup that are in service at some time.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated, or an outage is of none.
+    pub fn in_service(&self, setup: &Setup) -> Result<Ephemeris, ConstellationError> {
+        let all = self.ephemeris(setup.grid, setup.model)?;
+        Ok(setup.in_service(&self.name, all)?)
     }
 
     /// The same, in which satellites with sampled states also have states between the samples of the grid.

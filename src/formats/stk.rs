@@ -8,6 +8,7 @@
 pub mod connect;
 mod read;
 
+pub(in crate::formats) use read::calendar_date as parse_calendar_date;
 pub use read::{parse, read};
 
 use crate::ephemeris::EphemerisSatellite;

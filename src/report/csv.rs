@@ -38,13 +38,15 @@ impl ConstellationColumns {
         let quantities = entry.evaluated.quantities.iter().map(|(one, _)| *one);
         let dops = entry.evaluated.dops.iter().flat_map(DopStatistics::named);
         let on_demand = entry.evaluated.metrics.on_demand().into_iter();
+        let on_demand: Vec<String> = on_demand.map(|(name, _)| name).collect();
+        let is_new = |one: &Quantity| !on_demand.contains(&column(&one.to_string()));
         Self {
             has_files,
-            on_demand: on_demand.map(|(name, _)| name).collect(),
             quantities: quantities
                 .filter(|one| !known.contains(&column(&one.to_string()).as_str()))
-                .filter(|one| !one.is_on_demand())
+                .filter(|one| !one.is_on_demand() && is_new(one))
                 .collect(),
+            on_demand,
             dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
             phases: ranges(entry).into_iter().map(|(name, _)| name).collect(),
         }

@@ -1,7 +1,8 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
 use super::PhaseSpread;
-use crate::evaluate::{DopStatistics, Metrics};
+use super::failures::FailureSummary;
+use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics};
 use crate::exchange::constellation::{Constellation, FileSatellites, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, CountedSatellites, Goals, Quantity};
@@ -18,6 +19,12 @@ pub struct Assessment {
     /// The spread over phases of the GNSS, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gnss_phases: Option<PhaseSpread>,
+    /// What failures of satellites do, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failures: Option<FailureSummary>,
+    /// The metrics as expected over failures, if the scenario says how reliable the satellites are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub expected: Option<ExpectedMetrics>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -81,6 +88,8 @@ impl Assessment {
             metrics,
             dops,
             gnss_phases: None,
+            failures: None,
+            expected: None,
             constraints,
             quantities,
         }

@@ -6,6 +6,7 @@
 mod bars;
 mod curves;
 pub mod draw;
+mod failures;
 mod front;
 mod map;
 mod table;
@@ -13,6 +14,7 @@ mod table;
 pub use super::Baseline;
 pub use bars::budget;
 pub use curves::{NamedProfile, cdf, convergence, series};
+pub use failures::{NamedLosses, failures};
 pub use front::{NamedFront, pareto};
 pub use map::map;
 
@@ -40,6 +42,8 @@ keywords! {
         Convergence = "convergence",
         /// The error budget of a validation.
         Budget = "budget",
+        /// What the loss of each satellite does.
+        Failures = "failures",
     }
 }
 
@@ -107,6 +111,10 @@ pub fn quantity_label(name: &str) -> String {
         Quantity::LeastVisible => "least number of visible LEO satellites",
         Quantity::MeanTotalVisible => "mean visible satellites, LEO and GNSS",
         Quantity::LongestOutageS => "longest outage (s)",
+        Quantity::N1MaxPdop => "maximum PDOP without any one satellite",
+        Quantity::N1CvarPdop => "CVaR of PDOP without any one satellite",
+        Quantity::N1Availability => "availability without any one satellite",
+        Quantity::ExpectedAvailability => "expected availability",
         Quantity::P95Hdop => "95 % quantile of HDOP",
         Quantity::P95Vdop => "95 % quantile of VDOP",
         coverage => return coverage_label(coverage),

@@ -70,7 +70,7 @@ impl PhaseSpread {
 }
 
 /// The numbers of the metrics by name; the level of the tail and whether an outage is cut are none of them.
-fn named(metrics: &Metrics) -> Vec<(String, Option<f64>)> {
+pub(super) fn named(metrics: &Metrics) -> Vec<(String, Option<f64>)> {
     let value = serde_json::to_value(metrics).unwrap_or_default();
     let is_number = |name: &&str| !["cvar_level", "longest_outage_cut"].contains(name);
     let always = metric_columns().into_iter().filter(is_number);

@@ -50,7 +50,7 @@ impl Profile {
         one: &Constellation,
     ) -> Result<Self, ConstellationError> {
         let setup = evaluator.setup();
-        let ephemeris = one.ephemeris(setup.grid, setup.model)?;
+        let ephemeris = one.in_service(setup)?;
         Ok(Self::new(evaluator, &ephemeris)?)
     }
 

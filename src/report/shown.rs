@@ -25,7 +25,9 @@ pub(crate) fn quantity(quantity: Quantity, value: Option<f64>) -> String {
         | Quantity::LeastVisible
         | Quantity::LongestOutageS => decimals(value, 0),
         coverage if coverage.coverage_levels().is_some() => share(value),
-        Quantity::Availability => share(value),
+        Quantity::Availability | Quantity::N1Availability | Quantity::ExpectedAvailability => {
+            share(value)
+        }
         Quantity::LaunchCost => value.map_or_else(|| NONE.to_owned(), significant),
         _ => decimals(value, 4),
     }

@@ -3,7 +3,7 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in scenario.
-const BUILTINS: [(&str, &str); 4] = [
+const BUILTINS: [(&str, &str); 5] = [
     ("paper", include_str!("../../data/scenarios/paper.toml")),
     (
         "regional",
@@ -11,6 +11,7 @@ const BUILTINS: [(&str, &str); 4] = [
     ),
     ("global", include_str!("../../data/scenarios/global.toml")),
     ("europe", include_str!("../../data/scenarios/europe.toml")),
+    ("robust", include_str!("../../data/scenarios/robust.toml")),
 ];
 
 /// The names of the built-in scenarios.

@@ -8,7 +8,8 @@ use sha2::{Digest, Sha256};
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::{Rule, parts_without_paths};
 use super::values::{
-    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys, Scenario,
+    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys,
+    SatelliteOutages, Scenario,
 };
 use crate::constellation::Design;
 
@@ -40,7 +41,7 @@ impl Scenario {
     }
 
     /// The paths of the files that the scenario refers to, as written: that of the region, the GNSS files in their
-    /// order, then those of each constellation, the one that is fixed in the search before the others.
+    /// order, those of outages, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
         let (fixed, compared) = self
@@ -52,6 +53,7 @@ impl Scenario {
             .file()
             .into_iter()
             .chain(&self.gnss.files)
+            .chain(&self.outages.file)
             .chain(named.into_iter().flatten().flat_map(|one| &one.parts.files))
             .map(String::as_str)
             .collect()
@@ -88,6 +90,7 @@ impl Scenario {
             .file_mut()
             .into_iter()
             .chain(&mut scenario.gnss.files)
+            .chain(&mut scenario.outages.file)
             .chain(constellations.flat_map(|one| &mut one.parts.files));
         for (file, path) in named.zip(&mut paths) {
             *file = path;
@@ -187,6 +190,7 @@ fn is_computed(path: KeyPath) -> bool {
         key!(RegionKeys.points),
         key!(RegionKeys.polygon),
         key!(GnssSetup.files),
+        key!(SatelliteOutages.file),
         key!(Optimizer.generations),
     ];
     path.section != Export::SECTION && !left_out.contains(&path)

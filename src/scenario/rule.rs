@@ -9,7 +9,9 @@ mod text;
 
 pub(super) use constellations::{Constellations, Notation, parts_without_paths};
 pub(super) use country::Countries;
-pub(super) use list::{Constraints, ListOf, Numbers, OneOf, OneOrMore, Skyline, SomeOf, Texts};
+pub(super) use list::{
+    Constraints, ListOf, Numbers, OneOf, OneOrMore, Skyline, SomeOf, TextOrTexts, Texts,
+};
 pub(super) use number::{Eastward, Integer, Interval, Number, Steps, TwoNumbers};
 pub(super) use table::SectionTable;
 pub(super) use text::{Text, UtcInstant};

@@ -4,9 +4,13 @@ use super::constellations::{ConstellationFileError, NoDesign};
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::RegionKeys;
-use super::{Algorithm, AreaSource, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
+use super::{
+    Algorithm, AreaSource, GnssSetup, Objectives, Region, SatelliteOutages, Scenario, TimeSpan,
+    Visibility,
+};
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
+use crate::ephemeris::outages::OutageError;
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
 use crate::ground::{Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv};
@@ -78,6 +82,17 @@ pub enum SetupError {
     /// The reference design is not a design.
     #[error("reference-design: {0}")]
     ReferenceDesign(#[from] NoDesign),
+    /// A file of outages cannot be read, or an interval is wrong.
+    #[error("outages.file: {file}: {reason}")]
+    OutageFile {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// The satellites out of service.
+    #[error(transparent)]
+    Outage(#[from] OutageError),
     /// The files of a constellation do not give its satellites.
     #[error("constellations.{name}: {file}: {source}")]
     Constellation {
@@ -122,6 +137,11 @@ impl SetupError {
             Self::MaskTable(_) => vec![key!(Visibility.mask_table)],
             Self::Level(_) => vec![key!(Objectives.cvar_level)],
             Self::ReferenceDesign(_) => vec![key!(Scenario.reference_design)],
+            Self::OutageFile { .. } => vec![key!(SatelliteOutages.file)],
+            Self::Outage(_) => vec![
+                key!(SatelliteOutages.satellites),
+                key!(SatelliteOutages.file),
+            ],
             Self::Constellation { .. } => vec![key!(Scenario.constellations)],
         }
     }
@@ -140,6 +160,8 @@ impl SetupError {
             Self::MaskTable(source) => source.to_string(),
             Self::Level(source) => source.to_string(),
             Self::ReferenceDesign(source) => source.to_string(),
+            Self::OutageFile { file, reason } => format!("{file}: {reason}"),
+            Self::Outage(source) => source.to_string(),
             Self::Constellation { file, source, .. } => format!("{file}: {source}"),
         }
     }
@@ -239,9 +261,16 @@ impl Scenario {
                 cvar_weight: self.objectives.cvar_weight,
                 cvar_level: Level::new(self.objectives.cvar_level)?,
                 availability_pdop: self.objectives.availability_pdop,
-                asks_for_hdop: self.asks_for_hdop(),
+                asks_for_hdop: self
+                    .asks_for(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop)),
+                asks_for_n1: self.asks_for(Quantity::is_of_one_lost),
+                expects_up: self
+                    .reliability
+                    .satellite_availability()
+                    .filter(|_| self.asks_for(|goal| goal == Quantity::ExpectedAvailability)),
             });
-        Ok((setup, notes))
+        let outages = self.satellite_outages(setup.grid, read)?;
+        Ok((setup.with_outages(outages)?, notes))
     }
 
     /// Notes on range errors of systems that the study does not have.
@@ -258,12 +287,12 @@ impl Scenario {
         unused.into_iter().map(note).collect()
     }
 
-    /// Whether an objective or a constraint is a quantile of HDOP or VDOP.
-    fn asks_for_hdop(&self) -> bool {
+    /// Whether an objective or a constraint is of a kind.
+    fn asks_for(&self, kind: impl Fn(Quantity) -> bool) -> bool {
         let constraints = self.objectives.constraints.iter();
         let bounded = constraints.map(|constraint| constraint.quantity);
         let mut goals = self.objectives.minimize.iter().copied().chain(bounded);
-        goals.any(|goal| matches!(goal, Quantity::P95Hdop | Quantity::P95Vdop))
+        goals.any(kind)
     }
 
     /// The error of a file, among [`Scenario::files`], that cannot be read.
@@ -274,6 +303,7 @@ impl Scenario {
             .file()
             .is_some_and(|of_region| of_region == file);
         let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
+        let of_outages = self.outages.file.iter().any(|known| known == file);
         let named = self.constellations.iter();
         let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
@@ -283,6 +313,9 @@ impl Scenario {
                 _ => "polygon",
             };
             SetupError::RegionFile { key, file, source }
+        } else if of_outages && !is_gnss {
+            let reason = format!("cannot read it: {source}");
+            SetupError::OutageFile { file, reason }
         } else if let Some(named) = named.next().filter(|_| !is_gnss) {
             named.error(&file, source.into())
         } else {

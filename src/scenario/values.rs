@@ -5,7 +5,9 @@ mod accuracy;
 mod constellations;
 mod objectives;
 mod optimizer;
+mod outages;
 mod region;
+mod reliability;
 mod search;
 mod setting;
 mod shell;
@@ -15,10 +17,12 @@ pub use accuracy::{FurtherMetrics, RangeErrors};
 pub use constellations::{ConstellationParts, NamedConstellation};
 pub use objectives::Objectives;
 pub use optimizer::Optimizer;
+pub use outages::SatelliteOutages;
 #[cfg(test)]
 pub(super) use region::points;
 pub use region::{AreaSource, Region};
 pub(super) use region::{RegionKeys, rivals};
+pub use reliability::Reliability;
 pub(super) use search::SHELLS;
 pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
@@ -73,6 +77,10 @@ section! {
         pub visibility: Visibility;
         /// The GNSS to augment.
         pub gnss: GnssSetup;
+        /// The satellites out of service.
+        pub outages: SatelliteOutages;
+        /// How reliable the satellites are.
+        pub reliability: Reliability;
         /// The range errors of the systems.
         pub accuracy: RangeErrors;
         /// Metrics on demand.

@@ -106,6 +106,14 @@ keywords! {
         Error95HM = "error95-h-m",
         /// 95 % error of the height, metres; minimised.
         Error95VM = "error95-v-m",
+        /// Largest maximum PDOP without any one satellite; dimensionless, minimised.
+        N1MaxPdop = "n1-max-pdop",
+        /// Largest CVaR of PDOP without any one satellite; dimensionless, minimised.
+        N1CvarPdop = "n1-cvar-pdop",
+        /// Least availability without any one satellite; maximised.
+        N1Availability = "n1-availability",
+        /// Availability as expected over failures of the satellites by [reliability]; maximised.
+        ExpectedAvailability = "expected-availability",
         /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",
     }
@@ -143,6 +151,8 @@ impl Quantity {
                     | Self::Availability
                     | Self::LeastVisible
                     | Self::MeanTotalVisible
+                    | Self::N1Availability
+                    | Self::ExpectedAvailability
             )
     }
 
@@ -177,6 +187,15 @@ impl Quantity {
         )
     }
 
+    /// Whether it is the worst without any one satellite.
+    #[must_use]
+    pub fn is_of_one_lost(self) -> bool {
+        matches!(
+            self,
+            Self::N1MaxPdop | Self::N1CvarPdop | Self::N1Availability
+        )
+    }
+
     /// Whether it is computed only where the scenario asks for it.
     #[must_use]
     pub fn is_on_demand(self) -> bool {
@@ -187,10 +206,14 @@ impl Quantity {
     /// instants.
     #[must_use]
     pub fn solved_fraction(self, metrics: &Metrics) -> f64 {
-        match (self, metrics.information_pdop) {
-            (Self::InformationPdop, Some(of)) => of.solved_fraction,
-            _ => metrics.solved_fraction,
-        }
+        let of_window = metrics.information_pdop.map(|of| of.solved_fraction);
+        let of_failures = metrics.n1.map(|of| of.solved_fraction);
+        let own = match self {
+            Self::InformationPdop => of_window,
+            one if one.is_of_one_lost() => of_failures,
+            _ => None,
+        };
+        own.unwrap_or(metrics.solved_fraction)
     }
 
     /// The default coordinate of the hypervolume's reference point.
@@ -220,6 +243,7 @@ impl Quantity {
     fn solved_share_needed(self) -> Option<f64> {
         match self {
             Self::JPos | Self::MeanPdop | Self::CvarPdop | Self::MaxPdop => Some(1.0),
+            Self::N1MaxPdop | Self::N1CvarPdop => Some(1.0),
             Self::InformationPdop | Self::Sigma3dM | Self::SigmaHM | Self::SigmaVM => Some(1.0),
             Self::P95Pdop | Self::P95Hdop | Self::P95Vdop => Some(0.95),
             Self::Error953dM | Self::Error95HM | Self::Error95VM => Some(0.95),
@@ -275,6 +299,10 @@ impl Quantity {
             Self::P95Hdop => metrics.p95_hdop,
             Self::P95Vdop => metrics.p95_vdop,
             Self::InformationPdop => metrics.information_pdop?.mean,
+            Self::N1MaxPdop => metrics.n1?.max_pdop,
+            Self::N1CvarPdop => metrics.n1?.cvar_pdop,
+            Self::N1Availability => Some(metrics.n1?.availability),
+            Self::ExpectedAvailability => metrics.expected_availability,
             Self::Sigma3dM => metrics.sigma_3d_m?.map(|of| of.mean),
             Self::SigmaHM => metrics.sigma_h_m?.map(|of| of.mean),
             Self::SigmaVM => metrics.sigma_v_m?.map(|of| of.mean),

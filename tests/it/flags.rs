@@ -109,6 +109,27 @@ const ROWS: &[Row] = &[
     Row("evaluate", "design", "SMALL", "DESIGN", Status),
     Row(
         "evaluate",
+        "failures",
+        "DESIGN SMALL",
+        "--failures 1",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
+        "draws",
+        "--design delta:55:30/5/1@925 --failures 3 SMALL",
+        "--draws 5",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
+        "without",
+        "DESIGN SMALL",
+        "--without NW-P01-S02,GEO-1",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
         "constellation",
         "SMALL",
         "--constellation six.csv",

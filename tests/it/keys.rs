@@ -50,6 +50,8 @@ const EVALUATE_OWN: &str = "evaluate --format json --set constellations.two=delt
 
 const EVALUATE_HYBRID: &str = "evaluate --format json --design delta:55:24/6/1@925+star:90:24/4/1@1000 --set time.step-s=3600 \
      --set region.step-deg=25";
+const EVALUATE_RELIABILITY: &str = "evaluate --format json --design delta:55:12/3/1@925 --set time.step-s=3600 \
+     --set region.step-deg=25 --set reliability.mtbf-h=1000 --set reliability.mttr-h=100";
 /// Every system is in use and has a range error.
 const METRES: &str = "evaluate --format json --design delta:55:60/6/1@925 --set time.step-s=7200 --set region.step-deg=30 \
      --set gnss.constellations=[\"beidou-3\",\"gps\",\"galileo\",\"glonass\",\"qzss\",\"navic\"] --set gnss.files=[\"gnss.alm\"] \
@@ -71,13 +73,43 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 85] = [
+const ROWS: [Row; 90] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
         "{one=\"delta:55:4/2/1@800\"}",
         EVALUATE_OWN,
         "/constellations",
+    ),
+    row(
+        "outages.satellites",
+        "[\"NW-P02\"]",
+        EVALUATE,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "outages.file",
+        "outages.csv",
+        EVALUATE,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "reliability.availability",
+        "0.9",
+        EVALUATE,
+        "/expected/availability",
+    ),
+    row(
+        "reliability.mtbf-h",
+        "900",
+        EVALUATE_RELIABILITY,
+        "/expected/mean_visible",
+    ),
+    row(
+        "reliability.mttr-h",
+        "200",
+        EVALUATE_RELIABILITY,
+        "/expected/mean_visible",
     ),
     row(
         "export.name-prefix",
@@ -482,6 +514,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("area.geojson"),
         r#"{"type": "Polygon", "coordinates": [[[10,-20],[40,-20],[40,10],[10,10],[10,-20]]]}"#,
+    )
+    .unwrap();
+    fs::write(
+        place.join("outages.csv"),
+        "satellite,start_utc,end_utc\nNW-P01,2025-01-01T06:00:00Z,2025-01-01T18:00:00Z\n",
     )
     .unwrap();
     let almanac: Vec<&str> = "export --quiet --as yuma --out almanac --set gnss.constellations=[\"galileo\"] --design delta:55:2/2/1@925"

@@ -9,6 +9,7 @@ mod compared;
 mod ctrl_c;
 mod evidence;
 mod exports;
+mod failures;
 mod fire;
 mod flags;
 mod gallery;

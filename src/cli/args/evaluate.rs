@@ -21,6 +21,11 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["series", "out", "gnss_phases"])]
     pub(crate) designs: Option<PathBuf>,
 
+    /// Take these satellites out of service throughout: satellites (NW-P01-S03), planes (NW-P03) or shells (NW-A) of the
+    /// constellations, or GNSS satellites (gps:A3); the same as adding them to `outages.satellites` of the scenario.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+
     /// Add GDOP, HDOP, VDOP and each system's TDOP: mean and tail.
     #[arg(long)]
     pub(crate) dops: bool,
@@ -31,6 +36,18 @@ pub(crate) struct EvaluateArgs {
     /// A nominal constellation begins at an arbitrary place; the metrics of a scenario are those of one phase.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1000))]
     pub(crate) gnss_phases: Option<u32>,
+
+    /// Add what the failure of any K LEO satellites does (1 to 3): the mean, the worst and without which satellites.
+    ///
+    /// For one satellite all cases are evaluated exactly, by satellite and by plane (a lost launch). For two and three, all
+    /// sets if there are at most 1000, and otherwise draws, with a greedy search with exchanges for the worst set.
+    /// With `--format csv` one row for each satellite and plane is printed in place of the constellation.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3), conflicts_with = "designs")]
+    pub(crate) failures: Option<u8>,
+
+    /// Number of sets that are drawn for `--failures`, from the seed of the scenario.
+    #[arg(long, value_name = "N", default_value = "200", requires = "failures", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) draws: u32,
 
     /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
     /// constellations to a folder each.

@@ -1,6 +1,7 @@
 //! `navwalker evaluate`.
 
 mod designs;
+mod failures;
 mod given_run;
 mod phases;
 mod print;
@@ -27,7 +28,7 @@ use print::Printer;
 use series::SeriesDirectory;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
-    let study = Study::load(&args.study, &[])?;
+    let study = Study::load(&args.study, &[])?.without(&args.study, &args.without)?;
     let sourced = given(args, &study)?;
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
     let run = GivenRun::open(args, &study, &sourced)?;
@@ -51,7 +52,16 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let mut ephemerides = Vec::new();
     for (n, one) in given.iter().enumerate() {
         let ephemeris = constellations::propagate(one, evaluator.setup())?;
-        entries.push(work.entry(one, &ephemeris)?);
+        let mut entry = work.entry(one, &ephemeris)?;
+        if let Some(up) = study.scenario.reliability.satellite_availability() {
+            entry.evaluated.expected = Some(evaluator.expected(&ephemeris, up)?);
+        }
+        if let Some(k) = args.failures {
+            let found =
+                failures::summary(&work, one, &ephemeris, k.into(), &entry.evaluated.metrics)?;
+            entry.evaluated.failures = Some(found);
+        }
+        entries.push(entry);
         if let Some(series) = &series {
             series.write(n, &evaluator, &ephemeris)?;
         }

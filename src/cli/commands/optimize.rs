@@ -110,6 +110,13 @@ pub(super) fn warn_of_space(study: &Study, setup: &Setup) -> Result<()> {
     if let Some(note) = setup.plain_path_note() {
         output::hint(&note);
     }
+    if let Some(outage) = setup.outage_of_constellation() {
+        bail!(
+            "{}: '{}' is no GNSS satellite; the designs of a search have no satellites that can be named",
+            outage.origin,
+            printable(&outage.satellite)
+        );
+    }
     if let Some(fixed) = study.fixed()? {
         constellations::propagate(&fixed, setup)?;
     }

@@ -3,13 +3,14 @@
 use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
+use crate::ephemeris::Ephemeris;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::Constellation;
 use crate::ground::RegionMap;
 use crate::optimize::Pick;
 use crate::report::Compared;
 use crate::report::figures::draw::{Form, png, svg};
-use crate::report::figures::{self, Figure, Measure, NamedProfile, Plate};
+use crate::report::figures::{self, Figure, Measure, NamedLosses, NamedProfile, Plate};
 use crate::report::profile::Profile;
 use crate::scenario::Keyword;
 use anyhow::{Context, Result, bail};
@@ -132,6 +133,7 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
         Figure::Pareto => figures::pareto(&view.run, &view.baselines(), &view.fronts)?,
         Figure::Convergence => figures::convergence(&view.run)?,
         Figure::Budget => figures::budget(view.run.validation.as_ref())?,
+        Figure::Failures => figures::failures(&losses(args, view)?)?,
         Figure::Map => {
             require_one(args, view)?;
             let profiles = profiles(args, view, false)?;
@@ -179,6 +181,41 @@ struct Shown {
 enum FirstShown<'a> {
     Member(Constellation),
     Constellation(&'a Compared),
+}
+
+/// The pick, and those compared with it, without each of their satellites.
+fn losses(args: &PlotArgs, view: &View) -> Result<Vec<NamedLosses>> {
+    let evaluator = view
+        .evaluator
+        .as_ref()
+        .context("this figure needs the scenario of the run, which cannot be set up")?;
+    let of = |name: &str, notation: &str, ephemeris: &Ephemeris| -> Result<NamedLosses> {
+        let places = 0..ephemeris.satellites().len();
+        let sets: Vec<Vec<usize>> = places.map(|place| vec![place]).collect();
+        let lost = evaluator.without_each(ephemeris, &sets)?;
+        let names = ephemeris.satellites().iter().map(|one| one.name.clone());
+        Ok(NamedLosses {
+            name: name.to_owned(),
+            notation: notation.to_owned(),
+            whole: evaluator.evaluate_ephemeris(ephemeris)?,
+            lost: names.zip(lost).collect(),
+        })
+    };
+    let picked = picked(args.pick.as_deref(), view)?;
+    let first = match &picked {
+        FirstShown::Member(one) => of(&one.name, &one.name, &one.in_service(evaluator.setup())?)?,
+        FirstShown::Constellation(one) => {
+            of(&one.baseline.name, &one.baseline.made_of, &one.ephemeris)?
+        }
+    };
+    let mut all = vec![first];
+    for other in &view.compared {
+        if all.iter().all(|known| known.name != other.baseline.name) {
+            let made_of = &other.baseline.made_of;
+            all.push(of(&other.baseline.name, made_of, &other.ephemeris)?);
+        }
+    }
+    Ok(all)
 }
 
 /// The pick, and those compared with it, evaluated.

@@ -269,7 +269,7 @@ fn note(
 
 /// The rank of the quantile of level `q` among values of this weight and number: the least cumulative weight
 /// that reaches q of all, minus 1e-9 of the mean weight ([M-28](crate::models#m-28)).
-fn quantile_rank(q: f64, weight: u64, number: u64) -> u64 {
+pub(in crate::evaluate) fn quantile_rank(q: f64, weight: u64, number: u64) -> u64 {
     let slack = 1e-9 * (weight as f64 / number as f64);
     let rank = (q * weight as f64 - slack).ceil();
     (rank.max(1.0) as u64).min(weight)

@@ -96,11 +96,7 @@ impl<'a> Scene<'a> {
 
     /// The satellites of each system.
     pub(crate) fn systems(&self) -> Vec<(&'a System, Vec<GnssSatellite>)> {
-        let epoch = self.setup().grid.epoch();
-        let systems = self.setup().gnss.iter();
-        systems
-            .map(|system| (system, system.satellites(epoch)))
-            .collect()
+        self.setup().gnss_in_service()
     }
 
     /// The corners of the cell of a point; none if points are a list.

@@ -408,7 +408,7 @@ fn frame(name: &str) -> Option<Frame> {
 }
 
 /// Reads `1 Jan 2025 00:00:00.000`.
-fn calendar_date(text: &str) -> Option<NaiveDateTime> {
+pub(in crate::formats) fn calendar_date(text: &str) -> Option<NaiveDateTime> {
     let [day, month, year, time] = text.split_whitespace().collect::<Vec<_>>()[..] else {
         return None;
     };

@@ -207,6 +207,40 @@ impl Rule for Texts {
     }
 }
 
+/// A text, or a list of different ones.
+pub(in crate::scenario) struct TextOrTexts;
+
+impl Rule for TextOrTexts {
+    type Value = Vec<String>;
+
+    fn read(&self, node: &Node<'_>, reading: &mut Reading<'_>) -> Option<Vec<String>> {
+        if node.get_ref().is_array() {
+            return read_different(&Text::Any, node, reading);
+        }
+        Text::Any.read(node, reading).map(|text| vec![text])
+    }
+
+    fn accepted(&self) -> String {
+        format!("{}, or a list of them", Text::Any.accepted())
+    }
+
+    fn schema(&self) -> Json {
+        let one = Text::Any.schema();
+        json!({ "anyOf": [one, { "type": "array", "items": one, "uniqueItems": true }] })
+    }
+
+    fn is_absent(&self, value: &Vec<String>) -> bool {
+        value.is_empty()
+    }
+
+    fn write(&self, value: &Vec<String>) -> String {
+        match value.as_slice() {
+            [one] => Text::Any.write(one),
+            _ => write_list(&Text::Any, value),
+        }
+    }
+}
+
 /// A list of constraints, each a text such as `max-pdop <= 2.5`.
 pub(in crate::scenario) struct Constraints;
 

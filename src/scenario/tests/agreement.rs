@@ -26,7 +26,8 @@ fn the_canonical_text_has_every_key_and_parses_back() {
         "fixed",
     ];
     for key in describe_keys().iter().filter(|key| {
-        !absent.contains(&key.name) && !["accuracy", "metrics"].contains(&key.section)
+        !absent.contains(&key.name)
+            && !["accuracy", "metrics", "outages", "reliability"].contains(&key.section)
     }) {
         assert!(
             text.contains(&format!("\n{} = ", key.name)) || key.name == "name",
@@ -46,6 +47,28 @@ fn spelling_does_not_move_the_canonical_text() {
     let (one, two) = (parse(one, &[]).unwrap(), parse(two, &[]).unwrap());
     assert_eq!(one.to_toml(), two.to_toml());
     assert_eq!(one.hash(&[]), two.hash(&[]));
+}
+
+/// A key of [accuracy] needs those of the systems in use.
+const RANGE_ERRORS: [&str; 8] = [
+    "accuracy.leo-m=0.5",
+    "accuracy.beidou-3-m=0.6",
+    "accuracy.galileo-m=0.7",
+    "accuracy.gps-m=0.7",
+    "accuracy.glonass-m=0.7",
+    "accuracy.qzss-m=0.7",
+    "accuracy.navic-m=0.7",
+    "accuracy.files-m=0.7",
+];
+
+/// Of the times of [reliability], one needs the other.
+const TIMES: [[&str; 2]; 2] = [
+    ["reliability.mtbf-h=1000", "reliability.mttr-h=100"],
+    ["reliability.mtbf-h=1000", "reliability.mttr-h=50"],
+];
+
+fn hashes_of_times() -> [String; 2] {
+    TIMES.map(|times| with(&times).hash(&[]))
 }
 
 #[test]
@@ -72,6 +95,8 @@ fn the_hash_moves_with_everything_that_is_computed() {
         "gnss.clocks=shared",
         "gnss.leo-clocks=per-part",
         "metrics.window-min=10",
+        "outages.satellites=[\"NW-P01-S03\"]",
+        "reliability.availability=0.9",
         "objectives.minimize=[\"j-cost\", \"j-pos\"]",
         "objectives.cvar-weight=0.6",
         "objectives.cvar-level=0.9",
@@ -113,17 +138,6 @@ fn the_hash_moves_with_everything_that_is_computed() {
         .iter()
         .map(|change| with(&[change]).hash(&[]))
         .collect();
-    // A key of [accuracy] needs those of the systems in use.
-    let base = [
-        "accuracy.leo-m=0.5",
-        "accuracy.beidou-3-m=0.6",
-        "accuracy.galileo-m=0.7",
-        "accuracy.gps-m=0.7",
-        "accuracy.glonass-m=0.7",
-        "accuracy.qzss-m=0.7",
-        "accuracy.navic-m=0.7",
-        "accuracy.files-m=0.7",
-    ];
     let errors: Vec<String> = describe_keys()
         .iter()
         .filter(|key| key.section == "accuracy")
@@ -137,21 +151,22 @@ fn the_hash_moves_with_everything_that_is_computed() {
         })
         .collect();
     for error in &errors {
-        hashes.push(with(&[&base[..], &[error]].concat()).hash(&[]));
+        hashes.push(with(&[&RANGE_ERRORS[..], &[error]].concat()).hash(&[]));
     }
-    hashes.push(with(&base).hash(&[]));
+    hashes.extend(hashes_of_times());
+    hashes.push(with(&RANGE_ERRORS).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files;
+    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files, outages.file;
     // optimizer.generations
-    let (labels, files, budgets) = (6, 3, 1);
+    let (labels, files, budgets) = (6, 4, 1);
     assert_eq!(
-        changes.len() + errors.len() + labels + files + budgets,
+        changes.len() + errors.len() + TIMES.len() + labels + files + budgets,
         describe_keys().len()
     );
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), changes.len() + errors.len() + 2);
+    assert_eq!(hashes.len(), changes.len() + errors.len() + TIMES.len() + 2);
 }
 
 #[test]

@@ -114,7 +114,10 @@ fn regional_is_the_defaults_at_ten_degrees() {
 
 #[test]
 fn every_builtin_has_its_own_name() {
-    assert_eq!(builtin_names(), ["paper", "regional", "global", "europe"]);
+    assert_eq!(
+        builtin_names(),
+        ["paper", "regional", "global", "europe", "robust"]
+    );
     for name in builtin_names() {
         assert_eq!(built_in(name).name, name);
     }
@@ -125,7 +128,7 @@ fn an_unknown_builtin_suggests_the_nearest() {
     let message = builtin("regoinal").unwrap_err().to_string();
     assert_eq!(
         message,
-        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional, global, europe)"
+        "unknown name \"regoinal\", did you mean \"regional\"? (choices: paper, regional, global, europe, robust)"
     );
 }
 
@@ -140,7 +143,8 @@ fn the_template_uncommented_is_still_a_scenario() {
     // exclude the grid, shells the intervals of one, and no constellations, nothing fixed, no
     // orientation, range errors and windows are the default, so these lines stay out.
     let on_demand = describe_keys().into_iter();
-    let on_demand = on_demand.filter(|key| ["accuracy", "metrics"].contains(&key.section));
+    let on_demand = on_demand
+        .filter(|key| ["accuracy", "metrics", "outages", "reliability"].contains(&key.section));
     let mut left_out: Vec<&str> = on_demand.map(|key| key.name).collect();
     left_out.extend([
         "points",

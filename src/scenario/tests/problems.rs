@@ -132,7 +132,7 @@ study.toml:7: gnss.constellations: \"gps\" appears more than once
   7 | constellations = [\"beidou\", \"gps\", \"gps\"]
     |                                    ^^^^^
 --set optimizer.population=2: optimizer.population: found 2, expected an integer >= 4 and <= 10000
---set tme.step-s=5: tme.step-s: unknown key, did you mean `time.step-s`? (choices: time, earth, propagation, region, visibility, gnss, accuracy, metrics, objectives, search, optimizer, export)";
+--set tme.step-s=5: tme.step-s: unknown key, did you mean `time.step-s`? (choices: time, earth, propagation, region, visibility, gnss, outages, reliability, accuracy, metrics, objectives, search, optimizer, export)";
     assert_eq!(problems.to_string(), expected);
 }
 

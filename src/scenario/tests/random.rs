@@ -11,8 +11,8 @@ use crate::ground::{AreaPoints, Country, EqualAreaCells};
 use crate::scenario::{
     Algorithm, AreaSource, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics,
     GnssSetup, Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives,
-    Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Scenario,
-    SearchShells, SearchSpace, TimeSpan, Visibility, template,
+    Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Reliability,
+    SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility, template,
 };
 use crate::search::{ShellSpace, SweepSteps};
 
@@ -404,6 +404,15 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             region,
             visibility,
             gnss,
+            outages: SatelliteOutages {
+                satellites: vec!["NW-P01-S02".to_owned(), "gps:A3".to_owned()],
+                file: vec!["outages.csv".to_owned()],
+            },
+            reliability: Reliability {
+                availability: None,
+                mtbf_h: Some(1000.0),
+                mttr_h: Some(0.0),
+            },
             accuracy: all_range_errors(),
             metrics: FurtherMetrics {
                 // Longer than the longest step, and within the span.

@@ -1,6 +1,6 @@
 //! The range errors of the systems, from which the accuracy in metres follows, and the window of the information.
 
-use super::{Objectives, Scenario, TimeSpan};
+use super::{Objectives, Reliability, Scenario, TimeSpan};
 use crate::evaluate::{Accuracy, RangeError};
 use crate::scenario::keys::{KeyPath, key, section};
 use crate::scenario::problem::Fault;
@@ -295,6 +295,10 @@ fn check_quantities(scenario: &Scenario, reader: &mut Reader<'_>, has_errors: bo
     let lacks = |quantity: Quantity| {
         if quantity.is_in_metres() && !has_errors {
             return Some("the range errors of [accuracy]".to_owned());
+        }
+        let up = scenario.reliability.satellite_availability();
+        if quantity == Quantity::ExpectedAvailability && up.is_none() {
+            return Some(format!("`{}`", key!(Reliability.availability)));
         }
         let window = key!(FurtherMetrics.window_min);
         let needs_window = quantity == Quantity::InformationPdop;

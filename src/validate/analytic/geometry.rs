@@ -1,6 +1,5 @@
 //! Visibility and PDOP of the study recomputed from angles and full matrices.
 
-use crate::constellation::gnss::System;
 use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{Evaluator, Setup};
@@ -46,8 +45,9 @@ impl Again {
                 .collect(),
             ..full.clone()
         };
-        let propagate = |system: &System| Ephemeris::of_gnss(system.satellites(grid.epoch()), grid);
-        let gnss = setup.gnss.iter().map(propagate).collect();
+        let systems = setup.gnss_in_service().into_iter();
+        let gnss = systems.map(|(_, satellites)| Ephemeris::of_gnss(satellites, grid));
+        let gnss = gnss.collect();
         Some(Self { setup, gnss })
     }
 

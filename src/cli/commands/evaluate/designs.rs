@@ -294,7 +294,7 @@ pub(super) fn evaluate(
 fn entry(one: &Constellation, work: &EvaluationContext<'_>) -> Result<ConstellationEntry, String> {
     let setup = work.evaluator.setup();
     let evaluate = || -> Result<ConstellationEntry> {
-        let ephemeris: Ephemeris = one.ephemeris(setup.grid, setup.model)?;
+        let ephemeris: Ephemeris = one.in_service(setup)?;
         work.entry(one, &ephemeris)
     };
     evaluate().map_err(|error| format!("{}: {error}", one.made_of()))

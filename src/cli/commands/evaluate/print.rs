@@ -16,6 +16,10 @@ use serde::Serialize;
 pub(super) struct Printer<'a> {
     work: &'a EvaluationContext<'a>,
     form: PrintForm,
+    /// Whether cases of failures were printed.
+    has_cases: bool,
+    /// What is printed below the table.
+    below: String,
 }
 
 enum PrintForm {
@@ -51,7 +55,12 @@ impl<'a> Printer<'a> {
             OutputFormat::Text => PrintForm::Text(TextTable::new(work, given, list)),
             OutputFormat::Json => PrintForm::Json { is_begun: false },
         };
-        Self { work, form }
+        Self {
+            work,
+            form,
+            has_cases: false,
+            below: String::new(),
+        }
     }
 
     /// Prints the next constellation.
@@ -61,7 +70,16 @@ impl<'a> Printer<'a> {
                 *kept = Some(Box::new(entry));
                 Ok(())
             }
-            PrintForm::Text(table) => table.row(&entry),
+            PrintForm::Text(table) => {
+                if let Some(expected) = &entry.evaluated.expected {
+                    let table = single::expected_table(expected);
+                    self.below += &format!("\n{}:{table}", entry.name);
+                }
+                if let Some(failures) = &entry.evaluated.failures {
+                    self.below += &format!("\n{}:{}", entry.name, failures.to_text());
+                }
+                table.row(&entry)
+            }
             PrintForm::Json { is_begun } => {
                 let before = if *is_begun {
                     ",\n"
@@ -70,6 +88,14 @@ impl<'a> Printer<'a> {
                 };
                 *is_begun = true;
                 output::part(&format!("{before}{}", indented(&entry, 4)?))
+            }
+            PrintForm::Csv { columns: None, .. } if entry.evaluated.failures.is_some() => {
+                let failures = entry.evaluated.failures.iter();
+                for failures in failures {
+                    let with_header = !std::mem::replace(&mut self.has_cases, true);
+                    output::part(&failures.to_csv(&entry.name, with_header)?)?;
+                }
+                Ok(())
             }
             PrintForm::Csv { has_files, columns } => {
                 if let Some(columns) = columns {
@@ -90,7 +116,10 @@ impl<'a> Printer<'a> {
         match self.form {
             PrintForm::Alone(None) => Ok(()),
             PrintForm::Alone(Some(entry)) => single::print(self.work, *entry),
-            PrintForm::Text(table) => table.end(gnss_row.as_ref()),
+            PrintForm::Text(table) => {
+                table.end(gnss_row.as_ref())?;
+                output::part(&self.below)
+            }
             PrintForm::Json { .. } => {
                 let (gnss, stamp) = (indented(&gnss_only, 2)?, &self.work.stamp);
                 output::result(&format!(
