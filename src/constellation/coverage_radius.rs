@@ -34,10 +34,15 @@ pub fn coverage_radius_deg(shell: &Shell) -> Option<f64> {
     // One slot onwards, each plane is as before.
     let period = TAU / shell.satellites_per_plane() as f64;
     let radius = |phase: f64| radius_at(&sub_points(shell, phase));
+    Some(largest(&radius, period).to_degrees())
+}
+
+/// The largest radius over a period of phases, but for the tolerance.
+fn largest(radius: &impl Fn(f64) -> f64, period: f64) -> f64 {
     let coarse = (0..COARSE).map(|n| radius(period * f64::from(n) / f64::from(COARSE)));
     let mut most = coarse.fold(0.0, f64::max);
-    raise(&radius, [0.0, period], &mut most);
-    Some(most.to_degrees())
+    raise(radius, [0.0, period], &mut most);
+    most
 }
 
 /// Raises `most` to the largest radius in an interval of phases, but for the tolerance: as each satellite moves by the
@@ -161,6 +166,19 @@ mod tests {
         let triangle = [around(0.0), around(120.0), around(240.0)];
         assert!((radius_at(&triangle) - (PI - 0.1_f64.asin())).abs() < 1e-12);
         assert_eq!(radius_at(&[Vector3::x(); 3]), PI);
+    }
+
+    /// A peak between the phases that are tried first is found, as steep as a radius can be.
+    #[test]
+    fn a_narrow_peak_is_found() {
+        let radius = |phase: f64| (1.0 - (phase - 1.2345).abs()).max(0.9);
+        let found = largest(&radius, TAU);
+        assert!(
+            found <= 1.0 && found > 1.0 - COVERAGE_RADIUS_TOLERANCE_DEG.to_radians(),
+            "{found}"
+        );
+        let tried = (0..COARSE).map(|n| radius(TAU * f64::from(n) / f64::from(COARSE)));
+        assert!(tried.fold(0.0, f64::max) < 0.999);
     }
 
     /// No place that is tried is farther, and one is nearly as far, at every phase that is tried.
