@@ -190,7 +190,7 @@ impl Weighting for SineWeights {
 
 /// The line from a point to a satellite, km.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<R> {
+pub(super) struct SightLine<R> {
     pub(super) to: [R; 3],
     /// One over the range.
     inverse: R,
@@ -313,7 +313,7 @@ impl<R: Real> Sums<R> {
     #[inline(always)]
     pub(super) fn add_line<W: Weighting>(
         &mut self,
-        line: &Line<R>,
+        line: &SightLine<R>,
         seen: bool,
         possible: bool,
         l: usize,
@@ -354,7 +354,7 @@ impl<R: Real> SiteLanes<R> {
         satellite: [R; 3],
         mask: &MaskTerms<R>,
         l: usize,
-    ) -> (Line<R>, bool, bool) {
+    ) -> (SightLine<R>, bool, bool) {
         let [origin_x, origin_y, origin_z] = &self.origin;
         let [up_x, up_y, up_z] = &self.up;
         let dx = satellite[0] - origin_x.0[l];
@@ -365,7 +365,7 @@ impl<R: Real> SiteLanes<R> {
         let inverse = range2.inverse_root();
         let sine = height * inverse;
         let (seen, possible) = R::above(mask, height, range2, sine);
-        let line = Line {
+        let line = SightLine {
             to: [dx, dy, dz],
             inverse,
             sine,
