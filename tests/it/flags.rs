@@ -35,7 +35,7 @@ const SHORTHANDS: [(&str, &str); 6] = [
     ),
     (
         "FEWEST",
-        "--set region.step-deg=30 --set time.step-s=7200 --set objectives.constraints=[\"availability>=0.6\"] \
+        "--set region.step-deg=30 --set time.step-s=7200 --set objectives.constraints=[\"availability>=0.85\"] \
          --set objectives.availability-pdop=1.6 --set search.planes=[4,6] --set search.satellites-per-plane=[4,8] \
          --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
     ),

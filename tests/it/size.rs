@@ -11,7 +11,7 @@ const SMALL: &str = "--quiet --set region.step-deg=20 --set time.step-s=3600 --s
      --set search.satellites-per-plane=[4,8] --set search.inclination-step-deg=10 --set search.altitude-step-km=300 \
      --set search.phasing=[0,2] --set objectives.availability-pdop=1.6";
 
-const AVAILABILITY: &str = "objectives.constraints=[\"availability >= 0.7\"]";
+const AVAILABILITY: &str = "objectives.constraints=[\"availability >= 0.85\"]";
 
 fn size(further: &[&str]) -> Vec<String> {
     let small = SMALL.split_whitespace();
@@ -45,7 +45,7 @@ fn the_fewest_satellites_are_those_of_a_sweep() {
     assert!(!designs.is_empty());
     for one in designs {
         assert_eq!(one["design"]["satellites"], fewest);
-        assert!(one["metrics"]["availability"].as_f64().unwrap() >= 0.7);
+        assert!(one["metrics"]["availability"].as_f64().unwrap() >= 0.85);
     }
     let rejected = result["rejected"].as_array().unwrap();
     assert!(

@@ -28,7 +28,7 @@ pub struct SizeProblem<'a> {
 
 /// What became of a design.
 pub(super) struct Tried {
-    pub(super) outcome: Outcome,
+    pub(super) outcome: TriedVerdict,
     /// Tiles evaluated one by one.
     pub(super) tiles: usize,
     /// Whether all samples were evaluated at last.
@@ -38,7 +38,7 @@ pub(super) struct Tried {
 }
 
 /// Whether a design keeps the constraints.
-pub(super) enum Outcome {
+pub(super) enum TriedVerdict {
     Kept(Design, Box<Metrics>),
     Rejected(Box<Witness>),
 }
@@ -156,7 +156,7 @@ impl<'a> SizeProblem<'a> {
         is_scout: bool,
     ) -> Tried {
         let mut tried = Tried {
-            outcome: Outcome::Rejected(Box::new(unfit(genome))),
+            outcome: TriedVerdict::Rejected(Box::new(unfit(genome))),
             tiles: 0,
             is_evaluated: false,
             bad_tiles: Vec::new(),
@@ -164,12 +164,12 @@ impl<'a> SizeProblem<'a> {
         let Ok(Some(design)) = self.problem.designs().design(genome) else {
             return tried;
         };
-        tried.outcome = Outcome::Rejected(Box::new(Witness {
+        tried.outcome = TriedVerdict::Rejected(Box::new(Witness {
             constraint: UNFIT.to_owned(),
             ..named(&design, RejectionBasis::Shells)
         }));
         if let Some(witness) = self.by_shells(&design) {
-            tried.outcome = Outcome::Rejected(Box::new(witness));
+            tried.outcome = TriedVerdict::Rejected(Box::new(witness));
             return tried;
         }
         let Some(ephemeris) = self.problem.with_fixed(Some(&design)) else {
@@ -185,7 +185,7 @@ impl<'a> SizeProblem<'a> {
             if let Some(rejection) = trial.rejection() {
                 let of_all = self.samples_share(trial.tiles_at_rejection());
                 let witness = self.by_samples(&design, rejection, of_all);
-                tried.outcome = Outcome::Rejected(Box::new(witness));
+                tried.outcome = TriedVerdict::Rejected(Box::new(witness));
                 return tried;
             }
         }
@@ -270,7 +270,7 @@ impl<'a> SizeProblem<'a> {
     }
 
     /// The verdict of an evaluation of all samples.
-    fn by_evaluation(&self, design: Design, metrics: Metrics) -> Outcome {
+    fn by_evaluation(&self, design: Design, metrics: Metrics) -> TriedVerdict {
         let mut sum = 0.0;
         let mut worst: Option<(f64, &Constraint, Option<f64>)> = None;
         for (constraint, value, violation) in self.violations(&design, &metrics) {
@@ -280,8 +280,8 @@ impl<'a> SizeProblem<'a> {
             }
         }
         match worst {
-            None => Outcome::Kept(design, Box::new(metrics)),
-            Some((_, constraint, value)) => Outcome::Rejected(Box::new(Witness {
+            None => TriedVerdict::Kept(design, Box::new(metrics)),
+            Some((_, constraint, value)) => TriedVerdict::Rejected(Box::new(Witness {
                 constraint: constraint.to_string(),
                 value_at_rejection: value,
                 samples_share: 1.0,

@@ -1,7 +1,7 @@
 //! The walk through the grid, its own checkpoint.
 
 use super::order::Hardness;
-use super::problem::{Outcome, SizeProblem, Tried};
+use super::problem::{SizeProblem, Tried, TriedVerdict};
 use super::witness::{RejectionBasis, Witness};
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
@@ -313,13 +313,13 @@ impl SizeSearch {
         let level = self.levels.last_mut()?;
         level.designs += 1;
         match tried.outcome {
-            Outcome::Kept(design, metrics) => {
+            TriedVerdict::Kept(design, metrics) => {
                 let one = kept(problem, &design, *metrics, objective);
                 let are_all_named = fewest.is_none_or(|fewest| fewest == satellites);
                 level.keep(one, objective, are_all_named);
                 None
             }
-            Outcome::Rejected(witness) => {
+            TriedVerdict::Rejected(witness) => {
                 level.reject(&witness);
                 let evaluated = tried.tiles as u64 + if tried.is_evaluated { all_tiles } else { 0 };
                 self.save(&witness, all_tiles.saturating_sub(evaluated));
