@@ -32,7 +32,7 @@ use crate::constellation::Design;
 use crate::constellation::gnss::System;
 use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
+use crate::frames::EarthRotation;
 use crate::ground::{RegionMap, Site};
 use crate::orbit::Model;
 use crate::time::TimeGrid;
@@ -60,8 +60,6 @@ pub struct Setup {
     pub mask: Mask,
     /// Elevation mask of the GNSS satellites.
     pub gnss_mask: Mask,
-    /// A mask by azimuth that every satellite must clear in addition, the same at all points.
-    pub skyline: Option<MaskTable>,
     /// GNSS in view, each with its own clock if clocks are per system.
     pub gnss: Vec<System>,
     /// Clock states.
@@ -93,7 +91,6 @@ impl Setup {
             map: RegionMap::default(),
             mask: Mask::default(),
             gnss_mask: Mask::default(),
-            skyline: None,
             gnss: Vec::new(),
             clocks: Clocks::PerSystem,
             leo_clocks: LeoClocks::Shared,
@@ -128,13 +125,26 @@ impl Setup {
         Self { gnss_mask, ..self }
     }
 
-    /// A mask by azimuth that every satellite must clear in addition.
+    /// The skyline of all points that have none of their own.
     #[must_use]
-    pub fn with_skyline(self, skyline: MaskTable) -> Self {
-        Self {
-            skyline: Some(skyline),
-            ..self
+    pub fn with_skyline(mut self, skyline: MaskTable) -> Self {
+        let skyline = Arc::new(skyline);
+        for site in &mut self.sites {
+            site.skyline.get_or_insert_with(|| Arc::clone(&skyline));
         }
+        self
+    }
+
+    /// The skyline of a point, by its index: a mask by azimuth that every satellite must clear in addition.
+    #[must_use]
+    pub fn skyline_at(&self, point: usize) -> Option<&MaskTable> {
+        self.sites.get(point)?.skyline.as_deref()
+    }
+
+    /// Whether any point has a skyline.
+    #[must_use]
+    pub fn has_skylines(&self) -> bool {
+        self.sites.iter().any(|site| site.skyline.is_some())
     }
 
     /// The GNSS in view.
@@ -253,28 +263,12 @@ impl Setup {
 
     /// The kernel supports only a mask that does not depend on azimuth (and one LEO clock).
     fn suits_kernel(&self) -> bool {
-        self.skyline.is_none()
-    }
-
-    /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the mask by azimuth.
-    #[must_use]
-    pub fn line_of_sight(
-        &self,
-        mask: Mask,
-        site: &LocalFrame,
-        target_km: Position<EarthFixed>,
-    ) -> Option<Vector3<f64>> {
-        let clears = |unit: &Vector3<f64>| {
-            self.skyline
-                .as_ref()
-                .is_none_or(|skyline| skyline.clears(site, *unit))
-        };
-        mask.line_of_sight(site, target_km).filter(clears)
+        !self.has_skylines()
     }
 
     /// The weight of an observation along a unit vector.
-    fn observation_weight(&self, site: &LocalFrame, unit: Vector3<f64>) -> f64 {
-        self.observation_weights.weight(unit.dot(&site.up))
+    fn observation_weight(&self, site: &Site, unit: Vector3<f64>) -> f64 {
+        self.observation_weights.weight(unit.dot(&site.local.up))
     }
 }
 

@@ -7,19 +7,23 @@ mod countries;
 mod map;
 mod points;
 pub(crate) mod shapes;
+mod skylines;
 
 pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
 pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
 pub use points::{ignored_columns, sites_from_csv};
+pub use skylines::with_inline_skylines;
 
 use crate::earth::Surface;
-use crate::frames::LocalFrame;
+use crate::frames::{EarthFixed, LocalFrame, Position};
 use crate::keyword::keywords;
 use crate::units::{counted, wrap_360};
+use crate::visibility::{Mask, MaskTable};
 use area::FINEST_STEP_DEG;
 use cells::FINEST_SPACING_KM;
+use nalgebra::Vector3;
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -155,6 +159,8 @@ pub struct Site {
     pub weight: f64,
     /// Position and local axes, Earth-fixed.
     pub local: LocalFrame,
+    /// A mask by azimuth that every satellite must clear in addition; points with the same one may share it.
+    pub skyline: Option<Arc<MaskTable>>,
 }
 
 impl Site {
@@ -194,6 +200,7 @@ impl Site {
             height_m: 0.0,
             weight,
             local,
+            skyline: None,
         })
     }
 
@@ -210,6 +217,20 @@ impl Site {
             self.local.origin_km = self.local.origin_km + self.local.up * (height_m / 1000.0);
         }
         Ok(self)
+    }
+
+    /// The unit vector (Earth-fixed axes) to a satellite that clears the mask and the skyline of the point.
+    #[must_use]
+    pub fn line_of_sight(
+        &self,
+        mask: Mask,
+        target_km: Position<EarthFixed>,
+    ) -> Option<Vector3<f64>> {
+        let clears = |unit: &Vector3<f64>| {
+            let mut skyline = self.skyline.iter();
+            skyline.all(|skyline| skyline.clears(&self.local, *unit))
+        };
+        mask.line_of_sight(&self.local, target_km).filter(clears)
     }
 }
 

@@ -1,7 +1,10 @@
 //! The one definition of visibility.
 
+mod skyline;
 mod table;
 
+pub use skyline::SkylineError;
+pub(crate) use skyline::is_pairs;
 pub use table::{MaskTable, MaskTableError};
 
 use crate::frames::{EarthFixed, LocalFrame, Position};

@@ -156,7 +156,9 @@ impl Study {
                 .check(file, &bytes)
                 .with_context(|| format!("{} is damaged", self.directory.display()))?;
         }
-        Ok(bytes)
+        let read = |path: &str| files::read_whole(&self.directory.join(path));
+        let whole = self.scenario.standing_alone(file, bytes, &read);
+        whole.map_err(|error| self.placed(&error))
     }
 
     /// Replaces the scenario's files by the copies in the run in `directory`, since the originals may
@@ -177,7 +179,7 @@ impl Study {
         let taken = if same { paths.len() } else { computed };
         let mut copies = run.contents()?[..taken].to_vec();
         for (file, copy) in self.scenario.files().into_iter().zip(&copies) {
-            let found = files::read_whole(&self.directory.join(file));
+            let found = self.read(file);
             if !found.is_ok_and(|bytes| bytes == *copy) {
                 output::warning(&format!(
                     "{file} is missing or has changed since the run began; using its copy in {}",

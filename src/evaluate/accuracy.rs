@@ -6,6 +6,7 @@ use super::{Evaluator, Setup, leo};
 use crate::dop::{ClockGroup, Clocks, Factor, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::LocalFrame;
+use crate::ground::Site;
 use crate::stats::gaussian::length_exceeded_by;
 use crate::stats::{Level, Weighted, weighted_cvar, weighted_mean, weighted_quantile};
 use nalgebra::{Matrix2, Matrix3, Vector3};
@@ -130,7 +131,7 @@ impl Evaluator {
             leo::positions(setup, ephemeris, elapsed_s, rotation, &mut clocks)?;
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
             for (number, site) in setup.sites.iter().enumerate() {
-                let sky = Sky::new(setup, accuracy, &site.local, &clocks, &gnss);
+                let sky = Sky::new(setup, accuracy, site, &clocks, &gnss);
                 if let Some(factor) = sky.solve(setup) {
                     errors.add(&factor, &site.local, self.weights.of(number) as f64);
                 }
@@ -153,15 +154,15 @@ impl Sky {
     fn new(
         setup: &Setup,
         accuracy: &Accuracy,
-        site: &LocalFrame,
+        site: &Site,
         leo: &[PlainPositions],
         gnss: &[PlainPositions],
     ) -> Self {
         let observe = |mask, error: Option<&RangeError>, positions: &PlainPositions| -> DualGroup {
             let mut pair = DualGroup::default();
             for &position in positions {
-                if let Some(unit) = setup.line_of_sight(mask, site, position) {
-                    let metres = error.map_or(0.0, |error| error.weight(unit.dot(&site.up)));
+                if let Some(unit) = site.line_of_sight(mask, position) {
+                    let metres = error.map_or(0.0, |error| error.weight(unit.dot(&site.local.up)));
                     pair[0].add(unit, setup.observation_weight(site, unit));
                     pair[1].add(unit, metres);
                 }

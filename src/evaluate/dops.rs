@@ -4,7 +4,7 @@ use super::fixed::PlainPositions;
 use super::{Evaluator, Metrics, Setup, fixed, leo, plain};
 use crate::dop::{ClockGroup, Clocks, DopFamily};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::LocalFrame;
+use crate::ground::Site;
 use crate::stats::{Level, Summary, Weighted, summarize_weighted};
 use serde::Serialize;
 
@@ -128,7 +128,7 @@ impl Evaluator {
             leo::positions(setup, ephemeris, elapsed_s, rotation, &mut leo)?;
             let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
             for (number, site) in setup.sites.iter().enumerate() {
-                let groups = groups(setup, &site.local, &leo, &gnss);
+                let groups = groups(setup, site, &leo, &gnss);
                 let dops = DopFamily::of(&groups, &site.local, setup.pdop_cap);
                 collected.add(dops.as_ref(), self.weights.of(number));
             }
@@ -160,7 +160,7 @@ impl Evaluator {
 /// one. The sums are those of [`plain::geometry`], so that the decisions are the same.
 pub(super) fn groups(
     setup: &Setup,
-    site: &LocalFrame,
+    site: &Site,
     leo: &[PlainPositions],
     gnss: &[PlainPositions],
 ) -> Vec<ClockGroup> {

@@ -4,7 +4,7 @@ use super::{Setup, plain};
 use crate::constellation::gnss::System;
 use crate::dop::{ClockGroup, Clocks, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
+use crate::frames::{EarthFixed, EarthRotation, Position};
 use crate::ground::Site;
 
 /// The contribution of the GNSS at one point and instant.
@@ -20,7 +20,7 @@ pub(super) struct PlainGnssSample {
 
 impl PlainGnssSample {
     /// From the positions of the satellites of each system.
-    pub(super) fn new(setup: &Setup, site: &LocalFrame, systems: &[PlainPositions]) -> Self {
+    pub(super) fn new(setup: &Setup, site: &Site, systems: &[PlainPositions]) -> Self {
         let mut sample = Self::default();
         for positions in systems {
             let (visible, group) = plain::observe(setup, setup.gnss_mask, site, positions);
@@ -70,7 +70,7 @@ impl FixedGeometry {
         let mut samples = Vec::with_capacity(setup.sample_count());
         for (elapsed_s, rotation) in setup.grid.iter().zip(rotations) {
             let positions = positions(&systems, elapsed_s, *rotation)?;
-            let sample = |site: &Site| PlainGnssSample::new(setup, &site.local, &positions);
+            let sample = |site: &Site| PlainGnssSample::new(setup, site, &positions);
             samples.extend(setup.sites.iter().map(sample));
         }
         Ok(Self {

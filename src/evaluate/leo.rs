@@ -25,8 +25,8 @@ impl Setup {
                 "several LEO clocks (gnss.leo-clocks)",
             ),
             (
-                self.skyline.is_some(),
-                "the mask by azimuth (visibility.mask-table)",
+                self.has_skylines(),
+                "masks by azimuth (visibility.mask-table)",
             ),
         ];
         let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);

@@ -7,7 +7,8 @@ use super::metrics::Evaluated;
 use super::{Evaluator, Setup, leo};
 use crate::dop::{ClockGroup, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, EarthRotation, LocalFrame, Position};
+use crate::frames::{EarthFixed, EarthRotation, Position};
+use crate::ground::Site;
 use crate::stats::{Summary, Weighted, summarize, summarize_weighted};
 use crate::visibility::Mask;
 
@@ -108,8 +109,7 @@ pub(super) fn visit_geometries(
         let rotation = evaluator.rotations[time];
         leo::positions(setup, ephemeris, elapsed_s, rotation, &mut positions)?;
         for (site, gnss) in fixed.at(time).iter().enumerate() {
-            let local = &setup.sites[site].local;
-            let (visible, geometry) = geometry(setup, local, &positions, gnss);
+            let (visible, geometry) = geometry(setup, &setup.sites[site], &positions, gnss);
             see(time, site, (visible, gnss.visible), geometry);
         }
     }
@@ -120,7 +120,7 @@ pub(super) fn visit_geometries(
 /// whether a sample is solved where rounding could turn the decision makes these sums, in this order.
 pub(super) fn geometry(
     setup: &Setup,
-    site: &LocalFrame,
+    site: &Site,
     clocks: &[impl AsRef<[Position<EarthFixed>]>],
     gnss: &PlainGnssSample,
 ) -> (u32, Geometry) {
@@ -141,13 +141,13 @@ pub(super) fn geometry(
 pub(super) fn observe(
     setup: &Setup,
     mask: Mask,
-    site: &LocalFrame,
+    site: &Site,
     positions: &[Position<EarthFixed>],
 ) -> (u32, ClockGroup) {
     let mut group = ClockGroup::default();
     let mut visible = 0;
     for &position in positions {
-        if let Some(unit) = setup.line_of_sight(mask, site, position) {
+        if let Some(unit) = site.line_of_sight(mask, position) {
             group.add(unit, setup.observation_weight(site, unit));
             visible += 1;
         }

@@ -1,5 +1,6 @@
 //! Ground points from a CSV table.
 
+use super::skylines::{SKYLINE, skyline};
 use super::{GroundError, MAX_POINTS, Site};
 use crate::earth::Surface;
 use crate::printable::printable;
@@ -11,10 +12,10 @@ use std::sync::Arc;
 /// Required columns of a table of points.
 const NEEDED: [&str; 2] = ["latitude_deg", "longitude_deg"];
 /// Optional columns.
-const OPTIONAL: [&str; 3] = ["weight", "name", "height_m"];
+const OPTIONAL: [&str; 4] = ["weight", "name", "height_m", SKYLINE];
 
 /// The mark that spreadsheets write in front of UTF-8 text.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+pub(super) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The positions of the columns in a row.
 struct Columns {
@@ -23,10 +24,12 @@ struct Columns {
     weight: Option<usize>,
     name: Option<usize>,
     height: Option<usize>,
+    skyline: Option<usize>,
 }
 
 /// Points from CSV with the columns `latitude_deg` and `longitude_deg` and optionally `weight` (1
-/// if empty), `name` and `height_m` (over the surface, 0 if empty), in any order; others are ignored.
+/// if empty), `name`, `height_m` (over the surface, 0 if empty) and `skyline` (pairs `azimuth:elevation`, as
+/// [`with_inline_skylines`] writes them), in any order; others are ignored.
 ///
 /// # Errors
 /// If a column is missing, a line cannot be read (the error has its number), two lines are the same site, or there are no
@@ -82,14 +85,14 @@ pub fn ignored_columns(source: impl Read) -> Vec<String> {
 }
 
 /// The line of a record. The reader reports the position of any blank lines before it, so they are added.
-fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
+pub(super) fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     let blank = rest.iter().take_while(|byte| byte.is_ascii_whitespace());
     position.line() + blank.filter(|byte| **byte == b'\n').count() as u64
 }
 
-fn reader<R: Read>(source: R) -> Reader<R> {
+pub(super) fn reader<R: Read>(source: R) -> Reader<R> {
     ReaderBuilder::new()
         .trim(Trim::All)
         .flexible(true)
@@ -130,6 +133,7 @@ impl Columns {
             weight: optional(OPTIONAL[0])?,
             name: optional(OPTIONAL[1])?,
             height: optional(OPTIONAL[2])?,
+            skyline: optional(SKYLINE)?,
         })
     }
 
@@ -161,6 +165,10 @@ impl Columns {
             return Err("name: found a control character, expected printable text".to_owned());
         }
         site.name = name.map(|name| printable(name).into());
+        site.skyline = match self.skyline.map(field).filter(|cell| !cell.is_empty()) {
+            Some(cell) => Some(Arc::new(skyline(cell)?)),
+            None => None,
+        };
         Ok(site)
     }
 }

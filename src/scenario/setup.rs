@@ -9,7 +9,9 @@ use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
-use crate::ground::{Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv};
+use crate::ground::{
+    Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv, with_inline_skylines,
+};
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, Quantity};
 use crate::stats::{Level, LevelError};
@@ -168,6 +170,14 @@ pub enum GnssFileError {
     Fleet(#[from] FleetError),
 }
 
+/// A path relative to the directory of a file.
+fn beside(file: &str, path: &str) -> String {
+    match file.rsplit_once('/') {
+        Some((directory, _)) if !path.starts_with('/') => format!("{directory}/{path}"),
+        _ => path.to_owned(),
+    }
+}
+
 impl Scenario {
     /// The samples in time.
     ///
@@ -275,6 +285,29 @@ impl Scenario {
         }
     }
 
+    /// The contents of a file, among [`Scenario::files`], that stand alone: the sites of a points file with the skylines
+    /// that they name by paths relative to it, which `read` takes relative to the scenario.
+    ///
+    /// # Errors
+    /// If a skyline cannot be read.
+    pub fn standing_alone(
+        &self,
+        file: &str,
+        bytes: Vec<u8>,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Vec<u8>, SetupError> {
+        match &self.region {
+            Region::Points { file: points } if points == file => {}
+            _ => return Ok(bytes),
+        }
+        let inline = with_inline_skylines(&bytes, &|skyline| read(&beside(file, skyline)));
+        let inline = inline.map_err(|source| SetupError::Points {
+            file: file.to_owned(),
+            source,
+        })?;
+        Ok(inline.unwrap_or(bytes))
+    }
+
     /// The presets, and then those of each file: one system named by the file, or, of a file with several, one for
     /// each.
     fn systems(
@@ -357,6 +390,7 @@ impl Scenario {
             }
             Region::Points { file } => {
                 let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
+                let bytes = self.standing_alone(file, bytes, read)?;
                 let sites = sites_from_csv(bytes.as_slice(), surface);
                 let sites = sites.map_err(|source| SetupError::Points {
                     file: file.clone(),

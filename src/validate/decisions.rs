@@ -80,11 +80,7 @@ impl TrajectoryPair<'_> {
                 let a = rotation.to_earth_fixed(self.first.state(a, elapsed_s)?.position_km);
                 let b = rotation.to_earth_fixed(self.second.state(b, elapsed_s)?.position_km);
                 for site in &setup.sites {
-                    let seen = |target| {
-                        setup
-                            .line_of_sight(setup.mask, &site.local, target)
-                            .is_some()
-                    };
+                    let seen = |target| site.line_of_sight(setup.mask, target).is_some();
                     counts.flips += u64::from(seen(a) != seen(b));
                 }
                 counts.decisions += setup.sites.len() as u64;

@@ -48,7 +48,7 @@ pub enum MaskTableError {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaskTable {
     /// (azimuth, mask), degrees; azimuths increase from 0 to 360.
-    vertices: Vec<(f64, f64)>,
+    pub(super) vertices: Vec<(f64, f64)>,
 }
 
 impl MaskTable {

@@ -88,10 +88,9 @@ impl Dilution<'_> {
         plain::earth_fixed(self.leo, elapsed_s, rotation, &mut leo)?;
         let gnss = fixed::positions(&self.fixed.systems, elapsed_s, rotation)?;
         for (tile, lane) in rest {
-            let site = self.scene.tiles.tiles[tile].members[lane] as usize;
-            let local = &self.setup.sites[site].local;
-            let groups = groups(self.setup, local, std::slice::from_ref(&leo), &gnss);
-            let family = DopFamily::of(&groups, local, self.setup.pdop_cap);
+            let site = &self.setup.sites[self.scene.tiles.tiles[tile].members[lane] as usize];
+            let groups = groups(self.setup, site, std::slice::from_ref(&leo), &gnss);
+            let family = DopFamily::of(&groups, &site.local, self.setup.pdop_cap);
             rows.set(tile, lane, family.as_ref());
         }
         Ok(())

@@ -8,7 +8,8 @@ use super::normal::{FixedTile, clear_pivot};
 use super::sample::{Doubt, POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Undecided};
 use crate::dop::{Factor, ObservationWeights, Symmetric3};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::{EarthFixed, LocalFrame, Position, State, Teme};
+use crate::frames::{EarthFixed, Position, State, Teme};
+use crate::ground::Site;
 use nalgebra::Vector3;
 use std::cell::OnceCell;
 
@@ -54,18 +55,17 @@ impl<'a> Settling<'a> {
         let doubts = std::mem::take(&mut outcome.doubts);
         for undecided in &doubts {
             let Undecided { tile, lane, .. } = *undecided;
-            let site = self.scene.tiles.tiles[tile].members[lane];
-            let local = &self.setup.sites[site as usize].local;
+            let site = &self.setup.sites[self.scene.tiles.tiles[tile].members[lane] as usize];
             let positions = self.candidates(leo, undecided)?;
             let by_lanes = match undecided.doubt {
                 Doubt::Mask if self.scene.weights == ObservationWeights::Unit => {
-                    self.with_gnss_of_lanes(local, &positions, undecided)
+                    self.with_gnss_of_lanes(site, &positions, undecided)
                 }
                 Doubt::Mask | Doubt::Geometry => None,
             };
             let settled = match by_lanes {
                 Some(settled) => settled,
-                None => self.by_plain_sums(local, &positions, systems)?,
+                None => self.by_plain_sums(site, &positions, systems)?,
             };
             let stored = |pdop: f64| self.scene.limits.available.stored(pdop);
             outcome.pdop[tile].0[lane] = settled.pdop.map_or(UNSOLVED, stored);
@@ -94,7 +94,7 @@ impl<'a> Settling<'a> {
     /// The sample by the plain path, bit for bit.
     fn by_plain_sums(
         &self,
-        local: &LocalFrame,
+        site: &Site,
         positions: &[Position<EarthFixed>],
         systems: &[Ephemeris],
     ) -> Result<Settled, EphemerisError> {
@@ -110,8 +110,8 @@ impl<'a> Settling<'a> {
                 self.gnss.get_or_init(|| made)
             }
         };
-        let gnss = PlainGnssSample::new(self.setup, local, gnss);
-        let (visible, geometry) = plain::geometry(self.setup, local, &[positions], &gnss);
+        let gnss = PlainGnssSample::new(self.setup, site, gnss);
+        let (visible, geometry) = plain::geometry(self.setup, site, &[positions], &gnss);
         let pdop = geometry.pdop(self.setup.pdop_cap);
         Ok(Settled { visible, pdop })
     }
@@ -120,7 +120,7 @@ impl<'a> Settling<'a> {
     /// that leaves open whether it is solved. For unit weights.
     fn with_gnss_of_lanes(
         &self,
-        local: &LocalFrame,
+        site: &Site,
         positions: &[Position<EarthFixed>],
         undecided: &Undecided,
     ) -> Option<Settled> {
@@ -129,7 +129,7 @@ impl<'a> Settling<'a> {
         let (mut normal, mut sum, mut in_group) = gnss_part(&fixed, undecided.lane);
         let mut visible = 0;
         for &position in positions {
-            if let Some(unit) = self.setup.mask.line_of_sight(local, position) {
+            if let Some(unit) = site.line_of_sight(self.setup.mask, position) {
                 normal += Symmetric3::outer(unit, 1.0);
                 sum += unit;
                 visible += 1;

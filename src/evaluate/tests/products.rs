@@ -235,10 +235,8 @@ fn a_level_skyline_is_a_mask() {
         ..open
     };
     let ephemeris = Ephemeris::of_design(&design, Model::J2, open.grid).unwrap();
-    let walled = Setup {
-        skyline: Some(MaskTable::new(vec![(0.0, 30.0), (360.0, 30.0)]).unwrap()),
-        ..open.clone()
-    };
+    let wall = MaskTable::new(vec![(0.0, 30.0), (360.0, 30.0)]).unwrap();
+    let walled = open.clone().with_skyline(wall);
     let dops = |setup: &Setup| {
         let evaluator = Evaluator::new(setup.clone()).unwrap();
         let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
@@ -250,6 +248,67 @@ fn a_level_skyline_is_a_mask() {
     assert_eq!((behind_wall.clone(), visible_behind_wall), dops(&masked));
     assert!(visible_behind_wall < visible_in_open);
     assert!(behind_wall.gdop.unwrap().mean > in_open.gdop.unwrap().mean);
+}
+
+/// Each point is seen under its own skyline, and the others under that of the setup: in every product, points together
+/// give what each gives alone.
+#[test]
+fn each_point_has_its_own_skyline() {
+    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+    let wall = |to_deg: f64| {
+        let vertices = vec![(0.0, 9.0), (90.0, to_deg), (180.0, 9.0), (360.0, 9.0)];
+        MaskTable::new(vertices).unwrap()
+    };
+    let base = small([1.0; 3]);
+    let mut together = Setup {
+        pdop_cap: 100.0,
+        accuracy: Some(Accuracy {
+            leo: RangeError::constant(1.0),
+            gnss: vec![RangeError::constant(2.0)],
+        }),
+        window_s: Some(600.0),
+        ..base
+    };
+    together.sites[1].skyline = Some(Arc::new(wall(60.0)));
+    let together = together.with_skyline(wall(30.0));
+    let highest = |point| together.skyline_at(point).unwrap().degrees_at(90.0);
+    assert_eq!([0, 1, 2].map(highest), [30.0, 60.0, 30.0]);
+    assert!(together.skyline_at(3).is_none());
+
+    let ephemeris = Ephemeris::of_design(&design, Model::J2, together.grid).unwrap();
+    let of = |setup: Setup| {
+        let evaluator = Evaluator::new(setup).unwrap();
+        let metrics = evaluator.evaluate_plain(&ephemeris).unwrap();
+        let sigma = evaluator.accuracy(&ephemeris).unwrap();
+        let hdop = evaluator.dops_plain(&ephemeris).unwrap().hdop.unwrap();
+        let means = [
+            metrics.mean_visible,
+            metrics.mean_gnss_visible,
+            metrics.mean_pdop.unwrap(),
+            hdop.mean,
+            sigma.unwrap().sigma_3d_m.unwrap().mean,
+            metrics.information_pdop.unwrap().mean.unwrap(),
+        ];
+        assert_eq!(metrics.solved_fraction, 1.0);
+        (means, evaluator.series(&ephemeris).unwrap().points)
+    };
+    let (means, points) = of(together.clone());
+    let mut sums = [0.0; 6];
+    for (site, point) in together.sites.iter().zip(points) {
+        let sites = vec![site.clone()];
+        let (alone, mut series) = of(Setup {
+            sites,
+            ..together.clone()
+        });
+        assert_eq!(series.pop(), Some(point));
+        for (sum, mean) in sums.iter_mut().zip(alone) {
+            *sum += mean / 3.0;
+        }
+    }
+    for (mean, sum) in means.into_iter().zip(sums) {
+        // Sums of 360 values in another order.
+        assert!((mean / sum - 1.0).abs() < 1e-13, "{means:?} {sums:?}");
+    }
 }
 
 /// Down-weighting low satellites can only lose information: every weight is at most one.

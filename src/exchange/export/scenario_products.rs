@@ -74,7 +74,7 @@ impl ExportSource<'_> {
             scenario.write(out)?;
             Ok(noted("STK Connect commands; not tested in STK"))
         })?;
-        let one_mask = setup.mask == setup.gnss_mask && setup.skyline.is_none();
+        let one_mask = setup.mask == setup.gnss_mask && !setup.has_skylines();
         let with_files = items
             .iter()
             .any(|item| matches!(item, ConnectItem::Satellite(_, Setting::File(_))));

@@ -130,7 +130,7 @@ impl<'a> Scene<'a> {
             setup.mask.degrees(),
             self.title_key(),
             setup.gnss_mask.degrees(),
-            if setup.skyline.is_some() {
+            if setup.has_skylines() {
                 ", and a mask by azimuth (visibility.mask-table)"
             } else {
                 ""

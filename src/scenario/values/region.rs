@@ -66,8 +66,8 @@ section! {
         pub polygon: Option<String> = Optional(Text::Any), follows "the limits", example Some("area.geojson".to_owned());
         /// One or more countries of Natural Earth 1:110m by their English names, instead of the limits.
         pub country: Option<Vec<Country>> = Optional(Countries), follows "the limits", example Some(Countries::example());
-        /// CSV file of sites with the columns latitude_deg, longitude_deg and, optionally, name, weight and height_m over the
-        /// surface, instead of all the others; path relative to this file.
+        /// CSV file of sites with the columns latitude_deg, longitude_deg and, optionally, name, weight, height_m over the
+        /// surface and skyline (a file of azimuth_deg and elevation_deg), instead of the limits; path relative to this file.
         pub points: Option<String> = Optional(Text::Any), follows "the grid", example Some("points.csv".to_owned());
     }
 }

@@ -66,9 +66,8 @@ impl Again {
             let state = ephemeris.state(satellite, elapsed_s)?;
             let line = rotation.to_earth_fixed(state.position_km) - site.local.origin_km;
             let zenith_deg = line.angle(&site.local.up).to_degrees();
-            let skyline = self.setup.skyline.as_ref();
-            let clears =
-                skyline.is_none_or(|skyline| skyline.clears(&site.local, line.normalize()));
+            let mut skyline = site.skyline.iter();
+            let clears = skyline.all(|skyline| skyline.clears(&site.local, line.normalize()));
             if 90.0 - zenith_deg >= mask.degrees() && clears {
                 lines.push(line.normalize());
             }

@@ -126,7 +126,7 @@ impl World {
             flattening: scenario.earth.surface.flattening(),
             mask_deg: setup.mask.degrees(),
             gnss_mask_deg: setup.gnss_mask.degrees(),
-            skyline_deg: setup.skyline.as_ref().map_or_else(Vec::new, |skyline| {
+            skyline_deg: setup.skyline_at(0).map_or_else(Vec::new, |skyline| {
                 skyline.vertices().iter().map(|&(a, e)| [a, e]).collect()
             }),
         }
