@@ -213,7 +213,7 @@ impl Kernel {
 }
 
 /// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
-fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
+pub(super) fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
     (pdop_cap * pdop_cap + clocks * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
 }
 

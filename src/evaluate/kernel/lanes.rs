@@ -204,6 +204,42 @@ pub(super) struct Line<R> {
     pub(super) sine: R,
 }
 
+/// The lines from the points of a tile.
+pub(super) struct LineLanes<R> {
+    to: [Lanes<R>; 3],
+    inverse: Lanes<R>,
+    sine: Lanes<R>,
+}
+
+impl<R: Real> LineLanes<R> {
+    #[inline(always)]
+    pub(super) fn nowhere() -> Self {
+        let zero = Lanes([R::ZERO; LANES]);
+        Self {
+            to: [zero; 3],
+            inverse: zero,
+            sine: zero,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, l: usize, line: &Line<R>) {
+        for (lanes, value) in self.to.iter_mut().zip(line.to) {
+            lanes.0[l] = value;
+        }
+        (self.inverse.0[l], self.sine.0[l]) = (line.inverse, line.sine);
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, l: usize) -> Line<R> {
+        Line {
+            to: [self.to[0].0[l], self.to[1].0[l], self.to[2].0[l]],
+            inverse: self.inverse.0[l],
+            sine: self.sine.0[l],
+        }
+    }
+}
+
 /// Sums over the visible satellites of one clock group at each point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sums<R> {

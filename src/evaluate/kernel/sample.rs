@@ -9,8 +9,10 @@ use super::lanes::{
 };
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
+use super::skylines::Skyward;
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tiles};
 use crate::dop::{ObservationWeights, pivot_floor};
+use crate::visibility::Mask;
 
 /// Marks an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
@@ -71,6 +73,7 @@ pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
     pub(super) double: MaskTerms<f64>,
+    pub(super) mask: Mask,
     pub(super) weights: ObservationWeights,
     pub(super) limits: Limits,
 }
@@ -226,6 +229,7 @@ fn evaluate<W: Weighting>(
     let horizon = &scene.tiles.horizon;
     work.all.fill(&work.positions, horizon);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
+    let slack = horizon.single_slack(&work.positions);
     let limits = limits.capped(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
@@ -234,7 +238,19 @@ fn evaluate<W: Weighting>(
         for number in group.tiles.clone() {
             let candidates = work.candidates(number, group);
             let fixed = fixed.tile(number);
-            let sums = candidates.sums::<W>(&scene.tiles.tiles[number].single, &mask);
+            let tile = &scene.tiles.tiles[number];
+            let sums = match &tile.sky {
+                None => candidates.sums::<W>(&tile.single, &mask),
+                Some(sky) => {
+                    let points = Skyward {
+                        sites: &tile.single,
+                        sky,
+                        mask: &mask,
+                        slack,
+                    };
+                    candidates.sums_skyward::<W>(&points, scene.mask, &work.positions)
+                }
+            };
             let verdict = LaneVerdict::new::<W>(&sums, &fixed, &limits);
             out.pdop[number] = verdict.pdop;
             out.visible[number] = sums.count;
@@ -284,12 +300,55 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
+    /// The same under the skylines of the points.
     #[inline(always)]
-    fn double_sums<W: Weighting>(self, scene: &SampleContext, number: usize, positions: &Positions) -> Sums<f64> {
+    fn sums_skyward<W: Weighting>(
+        &self,
+        points: &Skyward<'_, f32>,
+        mask: Mask,
+        positions: &Positions,
+    ) -> Sums<f32> {
+        let mut all = Sums::zero();
+        for (block, &word) in self.blocks.iter().zip(self.words) {
+            let mut sums = Sums::zero();
+            for n in bits(word) {
+                let satellite = || positions.at(block.index(n));
+                let decide = |lane: usize| points.sky.surely_sees(lane, satellite(), mask);
+                points.add::<W>(&mut sums, block.position(n), decide);
+            }
+            all.merge::<W>(&sums);
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn double_sums<W: Weighting>(
+        self,
+        scene: &SampleContext,
+        number: usize,
+        positions: &Positions,
+    ) -> Sums<f64> {
         let mut sums = Sums::zero();
-        let sites = &scene.tiles.tiles[number].double;
-        for n in self.satellites() {
-            sums.add::<W>(sites, positions.at(n), &scene.double);
+        let tile = &scene.tiles.tiles[number];
+        match &tile.sky {
+            None => {
+                for n in self.satellites() {
+                    sums.add::<W>(&tile.double, positions.at(n), &scene.double);
+                }
+            }
+            Some(sky) => {
+                let points = Skyward {
+                    sites: &tile.double,
+                    sky,
+                    mask: &scene.double,
+                    slack: scene.tiles.horizon.double_slack(positions),
+                };
+                for n in self.satellites() {
+                    let satellite = positions.at(n);
+                    let decide = |lane: usize| Some(sky.sees(lane, satellite, scene.mask));
+                    points.add::<W>(&mut sums, satellite, decide);
+                }
+            }
         }
         sums
     }
