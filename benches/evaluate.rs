@@ -155,7 +155,10 @@ const ADDITIONS: [&str; 9] = [
 fn hills() -> MaskTable {
     let hill = |n: u32| {
         let azimuth_deg = f64::from(n) * 10.0;
-        let (a, b) = ((azimuth_deg * 3.0).to_radians(), (azimuth_deg * 5.0).to_radians());
+        let (a, b) = (
+            (azimuth_deg * 3.0).to_radians(),
+            (azimuth_deg * 5.0).to_radians(),
+        );
         (azimuth_deg, 7.5 + 3.5 * a.sin() + 2.0 * b.cos())
     };
     MaskTable::new((0..=36).map(hill).collect()).expect(SOUND)
@@ -210,7 +213,9 @@ fn add(bencher: Bencher, what: &str, is_globe: bool) {
     bencher.bench_local(|| match what {
         "series" => drop(black_box(evaluator.series(&ephemeris).expect(SOUND))),
         "dops" => drop(black_box(evaluator.dops(&ephemeris).expect(SOUND))),
-        _ => drop(black_box(evaluator.evaluate_ephemeris(&ephemeris).expect(SOUND))),
+        _ => drop(black_box(
+            evaluator.evaluate_ephemeris(&ephemeris).expect(SOUND),
+        )),
     });
 }
 

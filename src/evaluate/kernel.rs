@@ -451,7 +451,12 @@ impl Kernel {
         Ok(rechecks)
     }
 
-    fn evaluated(&self, tally: &ViewTally<'_>, counts: &Counts, summary: Option<Summary>) -> Evaluated {
+    fn evaluated(
+        &self,
+        tally: &ViewTally<'_>,
+        counts: &Counts,
+        summary: Option<Summary>,
+    ) -> Evaluated {
         let share = |weight: u64| weight as f64 / self.total as f64;
         let [leo, all] = tally.views();
         Evaluated {

@@ -110,15 +110,20 @@ impl MaskTable {
     pub(crate) fn bounds_deg(&self, from_deg: f64, to_deg: f64) -> (f64, f64) {
         let span_deg = (to_deg - from_deg).min(360.0);
         let from_deg = from_deg.rem_euclid(360.0);
-        let ends = [from_deg, (from_deg + span_deg).rem_euclid(360.0)].map(|end| self.degrees_at(end));
+        let ends =
+            [from_deg, (from_deg + span_deg).rem_euclid(360.0)].map(|end| self.degrees_at(end));
         let between = |from_deg: f64| {
             let first = self.vertices.partition_point(|vertex| vertex.0 < from_deg);
-            let last = self.vertices.partition_point(|vertex| vertex.0 <= from_deg + span_deg);
+            let last = self
+                .vertices
+                .partition_point(|vertex| vertex.0 <= from_deg + span_deg);
             self.vertices[first..last].iter().map(|vertex| vertex.1)
         };
         let inside = between(from_deg).chain(between(from_deg - 360.0));
         let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        inside.fold((low, high), |(low, high), mask| (low.min(mask), high.max(mask)))
+        inside.fold((low, high), |(low, high), mask| {
+            (low.min(mask), high.max(mask))
+        })
     }
 
     /// Whether a direction (Earth-fixed unit vector) is at or above the mask of its azimuth.
@@ -173,7 +178,10 @@ mod tests {
         ] {
             let (found_low, found_high) = street().bounds_deg(from_deg, to_deg);
             let apart = (found_low - low).abs().max((found_high - high).abs());
-            assert!(apart < 1e-12, "{from_deg} {to_deg}: {found_low} {found_high}");
+            assert!(
+                apart < 1e-12,
+                "{from_deg} {to_deg}: {found_low} {found_high}"
+            );
         }
     }
 

@@ -258,7 +258,8 @@ impl Dilute<'_> {
                 sums.push(self.work.double_sums::<W>(self.scene, number, group));
                 if self.clocks == Clocks::Shared {
                     let mut all = Sums::<f64>::zero();
-                    sums.drain(..).for_each(|of_system| all.merge::<W>(&of_system));
+                    sums.drain(..)
+                        .for_each(|of_system| all.merge::<W>(&of_system));
                     sums.push(all);
                 }
                 dilute::<W>(tile, &sums, &self.outcome.pdop[number], number, self.rows);

@@ -1,13 +1,13 @@
 //! What may be stored in memory, and how much is.
 
 use super::super::Setup;
+use super::super::dops::CLOCKS_FROM;
 use super::dilutions::largest_dilution;
 use super::fixed::FixedTiles;
 use super::lanes::LANES;
 use super::order_statistics::{Found, Places};
 use super::skylines::SkyTables;
 use super::tally::TileTally;
-use crate::evaluate::dops::CLOCKS_FROM;
 
 /// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
 /// grow with points times instants.

@@ -4,9 +4,7 @@ use super::super::counts::Threshold;
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{
-    LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting,
-};
+use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
 use super::skylines::Skyward;

@@ -144,8 +144,7 @@ fn azimuth_deg(place: f64) -> f64 {
 fn bounds_of(skyline: &MaskTable, bin: usize) -> Bounds {
     let centre = bin as f64 * BIN;
     let reach = BIN / 2.0 + MARGIN;
-    let (low, high) =
-        skyline.bounds_deg(azimuth_deg(centre - reach), azimuth_deg(centre + reach));
+    let (low, high) = skyline.bounds_deg(azimuth_deg(centre - reach), azimuth_deg(centre + reach));
     let steps = |mask_deg: f64| mask_deg.to_radians().sin() / QUANTUM;
     let low = (steps(low).floor() - 1.0).max(0.0) as u32;
     let high = (steps(high).ceil() + 1.0).min(f64::from(u16::MAX)) as u32;
@@ -170,9 +169,8 @@ impl TileSky {
         // Adding this leaves a whole number in the last bits of the fraction, also of negative numbers.
         const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
         let [dx, dy, dz] = line.to.map(R::single);
-        let along = |axis: &[Lanes<f32>; 3]| {
-            dx * axis[0].0[l] + dy * axis[1].0[l] + dz * axis[2].0[l]
-        };
+        let along =
+            |axis: &[Lanes<f32>; 3]| dx * axis[0].0[l] + dy * axis[1].0[l] + dz * axis[2].0[l];
         let (east, north) = (along(&self.east), along(&self.north));
         let level = east.abs() + north.abs();
         let side = east / level;
@@ -191,12 +189,7 @@ impl TileSky {
 
     /// The same, where it does not depend on how the position was computed.
     #[inline(never)]
-    pub(super) fn surely_sees(
-        &self,
-        lane: usize,
-        satellite: [f64; 3],
-        mask: Mask,
-    ) -> Option<bool> {
+    pub(super) fn surely_sees(&self, lane: usize, satellite: [f64; 3], mask: Mask) -> Option<bool> {
         let Some(site) = self.points.get(lane) else {
             return Some(false);
         };
@@ -255,7 +248,12 @@ impl<R: Real> Skyward<'_, R> {
         let mut bounds: [Bounds; LANES] = [0; LANES];
         for l in 0..LANES {
             // There is such a place.
-            bounds[l] = self.sky.bounds.get(places[l] as usize).copied().unwrap_or(0);
+            bounds[l] = self
+                .sky
+                .bounds
+                .get(places[l] as usize)
+                .copied()
+                .unwrap_or(0);
         }
         let mut open = 0;
         for l in 0..LANES {

@@ -6,7 +6,6 @@ use super::*;
 use crate::constellation::gnss::Preset;
 use crate::constellation::{Design, Orientation, Pattern, Shell, ShellParameters};
 use crate::dop::{Clocks, ObservationWeights};
-use crate::keyword::Keyword;
 use crate::earth::{RADIUS_KM, Surface};
 use crate::ephemeris::EphemerisSatellite;
 use crate::evaluate::tests::setup;
@@ -15,6 +14,7 @@ use crate::evaluate::{
 };
 use crate::frames::{EarthFixed, Position, State, Teme};
 use crate::ground::{Grid, PointWeights, Site};
+use crate::keyword::Keyword;
 use crate::orbit::{Model, PropagationError, Propagator};
 use crate::stats::Level;
 use crate::time::{Epoch, TimeGrid};

@@ -68,7 +68,7 @@ fn decisions_at_the_mask_are_those_of_the_plain_path() {
 }
 
 /// A street between houses, and a wall on one side.
-fn street() -> MaskTable {
+pub(super) fn street() -> MaskTable {
     let vertices = [
         (0.0, 12.0),
         (80.0, 55.0),
@@ -86,7 +86,10 @@ fn decisions_at_a_skyline_are_those_of_the_plain_path() {
     let setup = short_setup().with_skyline(street());
     let direction = |n: usize| {
         let azimuth_deg = (n as f64 * 2.517) % 360.0;
-        (azimuth_deg, street().degrees_at(azimuth_deg) + either_side(n))
+        (
+            azimuth_deg,
+            street().degrees_at(azimuth_deg) + either_side(n),
+        )
     };
     let ephemeris = planted(&setup, direction);
     let evaluator = Evaluator::new(setup).unwrap();
