@@ -131,7 +131,7 @@ pub(super) fn lowest_deg(sites: &[Site]) -> f64 {
         Some(skyline) => skyline.bounds_deg(0.0, 360.0).0,
         None => 0.0,
     };
-    sites.iter().map(lowest).fold(f64::INFINITY, f64::min)
+    sites.iter().map(lowest).reduce(f64::min).unwrap_or(0.0)
 }
 
 /// The azimuth at a place on the square, degrees: 0 in the north, 1 in the east.
