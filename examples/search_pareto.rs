@@ -24,6 +24,7 @@ struct MassProblem<'a> {
 impl MassProblem<'_> {
     fn objectives(&self, genome: &[f64]) -> Option<Vec<f64>> {
         let (design, metrics) = self.designs.evaluated(genome)?;
+        let design = design?;
         let mass_kg = launch_mass_kg(design.satellite_count(), design.highest_altitude_km());
         Some(vec![metrics.mean_pdop?, mass_kg])
     }
@@ -85,7 +86,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         let [pdop, mass_kg] = member.objectives[..] else {
             continue;
         };
-        let design = problem.designs.designs().design(&member.genome)?;
+        let Some(design) = problem.designs.designs().design(&member.genome)? else {
+            continue;
+        };
         writeln!(out, "{pdop:9.4}  {:8.1}  {design}", mass_kg / 1000.0)?;
     }
     Ok(())

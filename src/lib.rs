@@ -29,6 +29,7 @@
 //! let objectives: Vec<_> = front.iter().map(|member| &member.objectives[..]).collect();
 //! let pick = best(&fuzzy(&objectives)?.minimum).expect("the front is not empty");
 //! let (design, _) = problem.evaluated(&front[pick].genome).expect("front members are designs");
+//! let design = design.expect("each has a shell, since none may be empty");
 //!
 //! // Export it as two-line element sets, here into memory.
 //! let (epoch, mut file) = (scenario.time_grid()?.epoch(), Vec::new());

@@ -12,7 +12,7 @@ mod validation;
 
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
-    Missed, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
+    Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]

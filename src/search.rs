@@ -2,17 +2,19 @@
 //! designs.
 
 mod constraint;
+mod counted;
 mod fixed;
 mod quantity;
 mod shell_space;
 mod space;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
+pub use counted::CountedSatellites;
 pub use quantity::{LaunchCost, Quantity};
 pub use shell_space::{ShellSpace, SweepSteps};
 pub use space::DesignSpace;
 
-use crate::constellation::{Design, Shell};
+use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::{Evaluator, Metrics};
 use crate::optimize::{Evaluation, OptimizeError, Problem, Space};
@@ -30,6 +32,8 @@ pub struct Goals {
     pub launch_cost: LaunchCost,
     /// Shells that are there already, so that they are not new and cost no launch.
     pub fixed: Option<Design>,
+    /// Number of satellites from files that are there already.
+    pub fixed_from_files: usize,
 }
 
 impl Goals {
@@ -45,41 +49,16 @@ impl Goals {
         found
     }
 
-    /// The value of a quantity for some satellites, which are those of a design if there is one; `None` if there
-    /// is none.
+    /// The value of a quantity for the satellites of a constellation; `None` if there is none.
     #[must_use]
     pub fn value(
         &self,
         quantity: Quantity,
-        (satellites, design): (usize, Option<&Design>),
+        satellites: CountedSatellites<'_>,
         metrics: &Metrics,
     ) -> Option<f64> {
-        let new = design.map(|design| self.new_shells(design));
-        quantity.value(
-            satellites,
-            design,
-            new.as_deref(),
-            metrics,
-            &self.launch_cost,
-        )
-    }
-
-    /// The shells of a design that are not fixed; all of them if it lacks one that is.
-    fn new_shells<'d>(&self, design: &'d Design) -> Vec<&'d Shell> {
-        let mut fixed: Vec<&Shell> = self.fixed.iter().flat_map(Design::shells).collect();
-        let is_new = |shell: &&Shell| match fixed.iter().position(|one| one == shell) {
-            Some(place) => {
-                fixed.swap_remove(place);
-                false
-            }
-            None => true,
-        };
-        let new = design.shells().iter().filter(is_new).collect();
-        if fixed.is_empty() {
-            new
-        } else {
-            design.shells().iter().collect()
-        }
+        let new = satellites.without_fixed(self);
+        quantity.value(satellites, &new, metrics, &self.launch_cost)
     }
 }
 
@@ -120,9 +99,10 @@ impl<'a> DesignProblem<'a> {
     ///
     /// # Errors
     /// If one of them cannot be propagated.
-    pub fn with_satellites(self, fixed: &Ephemeris) -> Result<Self, EphemerisError> {
-        let fixed = FixedSatellites::new(fixed)?;
-        Ok(Self { fixed, ..self })
+    pub fn with_satellites(mut self, fixed: &Ephemeris) -> Result<Self, EphemerisError> {
+        self.fixed = FixedSatellites::new(fixed)?;
+        self.goals.fixed_from_files = self.fixed.len();
+        Ok(self)
     }
 
     /// The goals of the search.
@@ -143,26 +123,49 @@ impl<'a> DesignProblem<'a> {
         self.fixed.len()
     }
 
-    /// A design and its metrics, for a vector of the space; `None` if it cannot be propagated.
+    /// A design and its metrics, for a vector of the space; `None` if it cannot be propagated or has no satellite.
+    ///
+    /// The design is `None` for a vector whose shells are all empty beside satellites that are fixed.
     #[must_use]
-    pub fn evaluated(&self, genome: &[f64]) -> Option<(Design, Metrics)> {
+    pub fn evaluated(&self, genome: &[f64]) -> Option<(Option<Design>, Metrics)> {
         let design = self.designs.design(genome).ok()?;
-        let metrics = if self.fixed.is_empty() {
-            self.evaluator.evaluate(&design)
-        } else {
-            let setup = self.evaluator.setup();
-            let own = Ephemeris::of_design(&design, setup.model, setup.grid).ok()?;
-            self.evaluator.evaluate_ephemeris(&self.fixed.join_to(own))
+        let metrics = match &design {
+            Some(design) if self.fixed.is_empty() => self.evaluator.evaluate(design),
+            _ => {
+                let all = self.with_fixed(design.as_ref())?;
+                self.evaluator.evaluate_ephemeris(&all)
+            }
         };
         Some((design, metrics.ok()?))
     }
 
+    /// The satellites of a design and those that are fixed beside it; `None` if there are none.
+    fn with_fixed(&self, design: Option<&Design>) -> Option<Ephemeris> {
+        let setup = self.evaluator.setup();
+        let Some(design) = design else {
+            return self.fixed.ephemeris();
+        };
+        let own = Ephemeris::of_design(design, setup.model, setup.grid).ok()?;
+        Some(match self.fixed.ephemeris() {
+            Some(fixed) => own.joined(fixed),
+            None => own,
+        })
+    }
+
     /// The value of a quantity for a design that was evaluated with what is fixed.
     #[must_use]
-    pub fn value(&self, quantity: Quantity, design: &Design, metrics: &Metrics) -> Option<f64> {
-        let satellites = design.satellite_count() + self.fixed.len();
-        self.goals
-            .value(quantity, (satellites, Some(design)), metrics)
+    pub fn value(
+        &self,
+        quantity: Quantity,
+        design: Option<&Design>,
+        metrics: &Metrics,
+    ) -> Option<f64> {
+        let satellites = CountedSatellites {
+            shells: design,
+            from_files: self.fixed.len(),
+            has_fixed_files: true,
+        };
+        self.goals.value(quantity, satellites, metrics)
     }
 
     fn answer(&self, genome: &[f64]) -> Evaluation {
@@ -174,7 +177,7 @@ impl<'a> DesignProblem<'a> {
             };
         };
         self.judge(
-            &|quantity| self.value(quantity, &design, &metrics),
+            &|quantity| self.value(quantity, design.as_ref(), &metrics),
             &metrics,
         )
     }
@@ -184,23 +187,21 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn judged(&self, design: &Design) -> Option<(Metrics, Evaluation)> {
         let metrics = self.evaluator.evaluate(design).ok()?;
-        let satellites = (design.satellite_count(), Some(design));
+        let satellites = CountedSatellites::of_design(design);
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Some((metrics, evaluation))
     }
 
-    /// The metrics of any satellites, which are those of a design if there is one, and their evaluation as for
-    /// an optimiser.
+    /// The metrics of the satellites of any constellation, and their evaluation as for an optimiser.
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
     pub fn judged_ephemeris(
         &self,
         ephemeris: &Ephemeris,
-        design: Option<&Design>,
+        satellites: CountedSatellites<'_>,
     ) -> Result<(Metrics, Evaluation), EphemerisError> {
         let metrics = self.evaluator.evaluate_ephemeris(ephemeris)?;
-        let satellites = (ephemeris.satellites().len(), design);
         let evaluation = self.judge(&|one| self.goals.value(one, satellites, &metrics), &metrics);
         Ok((metrics, evaluation))
     }

@@ -36,10 +36,26 @@ pub(crate) fn front(result: &OptimizeResult) -> Option<String> {
     Some(format!("{} over {}\n{chart}", names[1].0, names[0].0))
 }
 
-/// The smallest and the largest value with a margin; `None` if they are equal.
+/// The smallest and the largest value with a margin, which does not go below 0 where no value does; `None` if they
+/// are equal.
 fn ends(values: &[f32]) -> Option<(f32, f32)> {
     let lo = values.iter().copied().fold(f32::INFINITY, f32::min);
     let hi = values.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let margin = 0.05 * (hi - lo);
-    (hi > lo).then_some((lo - margin, hi + margin))
+    let floor = if lo < 0.0 { f32::NEG_INFINITY } else { 0.0 };
+    (hi > lo).then_some(((lo - margin).max(floor), hi + margin))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No count is negative, so that no axis of counts begins below 0.
+    #[test]
+    fn a_margin_stays_where_values_can_be() {
+        assert_eq!(ends(&[0.0, 20.0]), Some((0.0, 21.0)));
+        assert_eq!(ends(&[10.0, 30.0]), Some((9.0, 31.0)));
+        assert_eq!(ends(&[-10.0, 10.0]), Some((-11.0, 11.0)));
+        assert_eq!(ends(&[5.0, 5.0]), None);
+    }
 }

@@ -122,9 +122,11 @@ fn shown_bytes(bytes: u64) -> String {
     }
 }
 
-fn shown_time(seconds: u64) -> String {
+/// A time in the unit of its order.
+pub(crate) fn shown_time(seconds: u64) -> String {
     match seconds {
-        0..120 => format!("{seconds} s"),
+        0 => "less than 1 s".to_owned(),
+        1..120 => format!("{seconds} s"),
         120..7200 => format!("{} min", seconds / 60),
         _ => format!("{} h", seconds / 3600),
     }

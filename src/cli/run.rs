@@ -460,10 +460,12 @@ pub(crate) fn pick(
         .apply(&found.front)
         .with_context(|| format!("cannot pick from {}", path.display()))?;
     let member = &found.front[picked.place];
-    let one = match (found.search.is_of_given(), member.only_design()) {
-        (false, Some(design)) => study.with_fixed(design)?,
-        _ => constellation_of(member, study)?,
-    };
+    if found.search.is_of_given() {
+        return Ok((constellation_of(member, study)?, picked.reason));
+    }
+    let fixed = study.fixed()?.and_then(|fixed| fixed.files);
+    let one = member.constellation(fixed.as_ref());
+    let one = one.with_context(|| format!("design {} has no valid notation", member.index))?;
     Ok((one, picked.reason))
 }
 

@@ -3,7 +3,6 @@
 use crate::cli::args::{ConstellationArgs, MemberPick, ViewArgs};
 use crate::cli::study::Study;
 use crate::cli::{constellations, files, output, run};
-use crate::constellation::Design;
 use crate::evaluate::Evaluator;
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::report::figures::{Baseline, NamedFront};
@@ -164,14 +163,6 @@ impl View {
         each.map(|one| one.baseline.clone()).collect()
     }
 
-    /// A design of the front with what is fixed beside it.
-    pub(crate) fn with_fixed(&self, design: Design) -> Constellation {
-        Constellation {
-            files: self.fixed.clone(),
-            ..Constellation::of_design(design)
-        }
-    }
-
     /// The picked member.
     pub(crate) fn pick(&self, pick: &MemberPick) -> Result<&FrontMember> {
         let members = &self.run.front;
@@ -207,14 +198,17 @@ fn beside_front(args: &ConstellationArgs, study: &Study) -> Result<Vec<Constella
     Ok(all)
 }
 
-/// Warns that what is compared with a front is taken as it is, without what the search adds to each design from files.
+/// Warns that what is compared with a front is taken as it is, without what the search adds to each design from files:
+/// by its name it has the numbers that `evaluate` prints of it, and a constellation with both can be named.
 fn warn_of_fixed(fixed: Option<&FileSatellites>, beside: &[Constellation]) {
     let Some(fixed) = fixed else { return };
-    let without = beside.iter().filter(|one| one.files.is_none());
+    let has_fixed = |one: &Constellation| one.counted(Some(fixed)).has_fixed_files;
+    let without = beside.iter().filter(|one| !has_fixed(one));
     let names: Vec<&str> = without.map(|one| one.name.as_str()).collect();
     if !names.is_empty() {
         output::warning(&format!(
-            "compared without the satellites of {}, which every design of the search has: {}",
+            "compared as given, without the satellites of {} that every design of the search has: {}; to compare \
+             with them, give `design` and `files` to one constellation in [constellations]",
             fixed.names.join(", "),
             names.join(", ")
         ));
@@ -246,12 +240,15 @@ fn compared(
     study: &Study,
     evaluator: &Evaluator,
 ) -> Result<Vec<Compared>> {
+    let fixed = study.fixed()?;
     let designs = study.scenario.design_space();
-    let problem = DesignProblem::new(evaluator, designs, study.scenario.goals())?;
+    let problem = DesignProblem::new(evaluator, designs, study.goals(fixed.as_ref()))?;
+    let files = fixed.as_ref().and_then(|fixed| fixed.files.as_ref());
     let one = |one: Constellation| {
         let ephemeris = constellations::propagate(&one, evaluator.setup())?;
         let name = one.name.clone();
-        Compared::new(one, ephemeris, &problem).with_context(|| format!("cannot evaluate {name}"))
+        Compared::new(one, ephemeris, &problem, files)
+            .with_context(|| format!("cannot evaluate {name}"))
     };
     all.into_iter().map(one).collect()
 }

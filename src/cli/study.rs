@@ -12,8 +12,8 @@ use crate::run::{INPUTS, MANIFEST, SCENARIO, ScenarioStamp};
 use crate::scenario::{
     Algorithm, KeyDifference, NamedConstellation, Region, Scenario, SetupError, builtin,
 };
-use crate::search::DesignProblem;
-use anyhow::{Context, Result, bail};
+use crate::search::{DesignProblem, Goals};
+use anyhow::{Context, Result};
 use std::cell::OnceCell;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -302,11 +302,6 @@ impl Study {
         let Some(files) = self.fixed()?.and_then(|fixed| fixed.files) else {
             return Ok(problem);
         };
-        if problem.designs().fixed.is_none() && problem.designs().may_be_empty() {
-            bail!(
-                "every shell of the search may be empty, and what is fixed has no shells: let `satellites-per-plane` of one shell begin above 0"
-            );
-        }
         let setup = evaluator.setup();
         let satellites = files.fleet.propagate(setup.grid, setup.model)?;
         Ok(problem.with_satellites(&satellites)?)
@@ -318,13 +313,13 @@ impl Study {
         named.map(|named| self.constellation(&named)).transpose()
     }
 
-    /// A design of the search, which has the fixed shells, with the fixed satellites from files.
-    pub(crate) fn with_fixed(&self, design: Design) -> Result<Constellation> {
-        let files = self.fixed()?.and_then(|fixed| fixed.files);
-        Ok(Constellation {
-            files,
-            ..Constellation::of_design(design)
-        })
+    /// What counts in the search, with the satellites from files that are fixed.
+    pub(crate) fn goals(&self, fixed: Option<&Constellation>) -> Goals {
+        let files = fixed.and_then(|fixed| fixed.files.as_ref());
+        Goals {
+            fixed_from_files: files.map_or(0, |files| files.fleet.len()),
+            ..self.scenario.goals()
+        }
     }
 
     /// The evaluator of the scenario.

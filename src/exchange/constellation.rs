@@ -14,6 +14,7 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::exchange::import::{Fleet, FleetError};
 use crate::exchange::lint::Format;
 use crate::orbit::Model;
+use crate::search::CountedSatellites;
 use crate::time::TimeGrid;
 use thiserror::Error;
 
@@ -77,6 +78,31 @@ impl Constellation {
             name: files.names.join("+"),
             design: None,
             files: Some(files),
+        }
+    }
+
+    /// The shells of a design and satellites from files, named by what there is; `None` if there is neither.
+    #[must_use]
+    pub fn of_parts(design: Option<Design>, files: Option<FileSatellites>) -> Option<Self> {
+        match design {
+            Some(design) => Some(Self {
+                files,
+                ..Self::of_design(design)
+            }),
+            None => files.map(Self::of_files),
+        }
+    }
+
+    /// Its satellites as the quantities of a search count them, beside what is fixed there.
+    #[must_use]
+    pub fn counted(&self, fixed: Option<&FileSatellites>) -> CountedSatellites<'_> {
+        let files = self.files.as_ref();
+        let has_fixed =
+            |fixed: &FileSatellites| files.is_some_and(|files| files.fleet.includes(&fixed.fleet));
+        CountedSatellites {
+            shells: self.design.as_ref(),
+            from_files: files.map_or(0, |files| files.fleet.len()),
+            has_fixed_files: fixed.is_some_and(has_fixed),
         }
     }
 

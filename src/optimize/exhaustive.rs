@@ -172,6 +172,34 @@ impl Exhaustive {
             .min(step.saturating_mul(self.config.batch as u64))
     }
 
+    /// Number of grid points still to be passed; some of them may be left out as equal designs.
+    #[must_use]
+    pub fn remaining(&self) -> u64 {
+        self.points - self.passed(self.step)
+    }
+
+    /// At most `count` of the points still to be passed, evenly spaced, as they are evaluated.
+    ///
+    /// # Errors
+    ///
+    /// A problem whose repair leaves the space.
+    pub fn sample(
+        &self,
+        problem: &dyn Problem,
+        count: u64,
+    ) -> Result<Vec<Vec<f64>>, OptimizeError> {
+        let grid = GridPoints::new(problem, &self.config.steps);
+        let count = count.min(self.remaining());
+        let first = self.passed(self.step);
+        let place = |n: u64| {
+            let share = (n as f64 + 0.5) / count as f64;
+            first + (share * self.remaining() as f64) as u64
+        };
+        (0..count)
+            .map(|n| admit(problem, grid.genome(place(n))))
+            .collect()
+    }
+
     /// The points of the next step. A point that repair turns into another point of
     /// the grid is left out, since that one has its own turn.
     fn batch(&self, problem: &dyn Problem) -> Result<Vec<Vec<f64>>, OptimizeError> {
@@ -267,6 +295,32 @@ mod tests {
         assert_eq!(visited, expected);
         let counts: Vec<u64> = search.history().iter().map(|r| r.evaluations).collect();
         assert_eq!(counts, [3, 6, 8]);
+    }
+
+    /// What is told before a sweep: the points that it has before it, and some of those.
+    #[test]
+    fn what_is_left_of_a_grid_is_known() {
+        let kinds = [
+            VariableKind::Integer { lo: 0, hi: 9 },
+            VariableKind::Integer { lo: 0, hi: 3 },
+        ];
+        let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
+        let mut search = Exhaustive::start(&problem, config(&[1.0, 1.0], 16)).unwrap();
+        assert_eq!(search.remaining(), 40);
+        let sample = search.sample(&problem, 4).unwrap();
+        assert_eq!(sample, [[1.0, 1.0], [3.0, 3.0], [6.0, 1.0], [8.0, 3.0]]);
+        search.step(&problem).unwrap();
+        assert_eq!(search.remaining(), 24);
+        let sample = search.sample(&problem, 100).unwrap();
+        let all: Vec<[f64; 2]> = (16..40)
+            .map(|n: i32| [f64::from(n / 4), f64::from(n % 4)])
+            .collect();
+        assert_eq!(sample, all);
+        while !search.is_done() {
+            search.step(&problem).unwrap();
+        }
+        assert_eq!(search.remaining(), 0);
+        assert!(search.sample(&problem, 4).unwrap().is_empty());
     }
 
     #[test]

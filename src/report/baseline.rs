@@ -4,12 +4,12 @@ use super::shown;
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Metrics;
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::optimize::{Evaluation, dominates};
 use crate::printable::printable;
 use crate::run::{Diagnostic, FrontMember};
 use crate::scenario::{NamedConstellation, Scenario};
-use crate::search::{DesignProblem, Quantity};
+use crate::search::{CountedSatellites, DesignProblem, Goals, Quantity};
 
 /// A constellation that is compared, and its place among the objectives.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,10 +54,11 @@ impl Baseline {
     pub fn evaluate(name: &str, design: &Design, problem: &DesignProblem<'_>) -> Option<Self> {
         let judged = problem.judged(design)?;
         let named = Constellation::of_design(design.clone()).named(name.to_owned());
-        Some(Self::judged(&named, judged, problem))
+        Some(Self::judged(&named, named.counted(None), judged, problem))
     }
 
-    /// Evaluates a constellation by its satellites.
+    /// Evaluates a constellation by its satellites, as it is: without what the search has fixed, unless it is among
+    /// them.
     ///
     /// # Errors
     /// If one of them cannot be propagated.
@@ -65,28 +66,41 @@ impl Baseline {
         one: &Constellation,
         ephemeris: &Ephemeris,
         problem: &DesignProblem<'_>,
+        fixed: Option<&FileSatellites>,
     ) -> Result<Self, EphemerisError> {
-        let judged = problem.judged_ephemeris(ephemeris, one.only_design())?;
-        Ok(Self::judged(one, judged, problem))
+        let satellites = one.counted(fixed);
+        let judged = problem.judged_ephemeris(ephemeris, satellites)?;
+        Ok(Self::judged(one, satellites, judged, problem))
     }
 
     fn judged(
         one: &Constellation,
+        satellites: CountedSatellites<'_>,
         (metrics, evaluation): (Metrics, Evaluation),
         problem: &DesignProblem<'_>,
     ) -> Self {
         let goals = problem.goals();
-        let (satellites, design) = (one.satellite_count(), one.only_design());
-        let value = |quantity: &Quantity| goals.value(*quantity, (satellites, design), &metrics);
+        let value = |quantity: &Quantity| goals.value(*quantity, satellites, &metrics);
         Self {
             name: printable(&one.name).into_owned(),
             made_of: printable(&one.made_of()).into_owned(),
-            satellites,
+            satellites: satellites.count(),
             objectives: goals.objectives.iter().map(value).collect(),
             constraints: goals.constrained().iter().map(value).collect(),
             feasible: (evaluation.violation == 0.0).then_some(evaluation.objectives),
             metrics,
         }
+    }
+
+    /// The value of an objective or of a constrained quantity of the goals that it was evaluated with; `None` for
+    /// another quantity.
+    #[cfg(feature = "figures")]
+    pub(crate) fn sought(&self, quantity: Quantity, goals: &Goals) -> Option<Option<f64>> {
+        let constrained = goals.constrained();
+        let names = goals.objectives.iter().chain(&constrained);
+        let mut pairs = names.zip(self.objectives.iter().chain(&self.constraints));
+        let found = pairs.find(|(name, _)| **name == quantity);
+        found.map(|(_, value)| *value)
     }
 
     /// Name and what it is made of, for use in a sentence; the latter alone if it is also the name.

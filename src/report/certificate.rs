@@ -3,10 +3,11 @@
 //! The sweep is exact only on its grid; a search may find better designs between its points.
 
 use super::shown;
-use crate::constellation::Shell;
+use crate::constellation::shell_letters;
 use crate::optimize::{dominates, hypervolume};
-use crate::run::{Certificate, FrontMember, Missed, OptimizeResult};
+use crate::run::{Certificate, DesignSummary, FrontMember, Missed, MissedShell, OptimizeResult};
 use crate::search::Quantity;
+use crate::units::counted;
 
 /// A design of the sweep counts as found if a front member is worse by at most this fraction of the
 /// range of the sweep's front in every objective: the spacing of thirty members along a front.
@@ -95,19 +96,7 @@ impl Certificate {
         }
         text += &match &self.missed {
             None => "no part of the sweep's front was missed\n".to_owned(),
-            Some(missed) => format!(
-                "missed: {} designs of the sweep's front with planes {} to {}, satellites per plane {} to {}, \
-                 inclination {} to {} deg, altitude {} to {} km\n",
-                missed.members,
-                missed.planes[0],
-                missed.planes[1],
-                missed.satellites_per_plane[0],
-                missed.satellites_per_plane[1],
-                missed.inclination_deg[0],
-                missed.inclination_deg[1],
-                missed.altitude_km[0],
-                missed.altitude_km[1],
-            ),
+            Some(missed) => missed.to_text(),
         };
         text
     }
@@ -115,35 +104,78 @@ impl Certificate {
 
 impl Missed {
     fn of(members: &[&FrontMember]) -> Option<Self> {
-        let shells: Vec<Shell> = members.iter().flat_map(|m| searched_shells(m)).collect();
-        let whole = |value: fn(&Shell) -> usize| {
-            let values = || shells.iter().map(value);
-            Some([values().min()?, values().max()?])
-        };
-        let real = |value: fn(&Shell) -> f64| {
-            let values = || shells.iter().map(value);
-            Some([values().reduce(f64::min)?, values().reduce(f64::max)?])
+        let first = members.first()?;
+        let shells = match first.shells.len() {
+            0 => vec![MissedShell::of(None, members, 0)],
+            count => (0..count)
+                .map(|place| MissedShell::of(Some(shell_letters(place)), members, place))
+                .collect(),
         };
         Some(Self {
             members: members.len(),
-            planes: whole(Shell::planes)?,
-            satellites_per_plane: whole(Shell::satellites_per_plane)?,
-            inclination_deg: real(Shell::inclination_deg)?,
-            altitude_km: real(Shell::altitude_km)?,
+            shells,
         })
+    }
+
+    fn to_text(&self) -> String {
+        let shells = self.shells.iter().map(|shell| shell.to_text(self.members));
+        format!(
+            "missed: {} of the sweep's front {}\n",
+            counted(self.members, "design"),
+            shells.collect::<Vec<_>>().join("; ")
+        )
     }
 }
 
-/// The shells of a member that the search varies.
-fn searched_shells(member: &FrontMember) -> Vec<Shell> {
-    if member.shells.is_empty() {
-        let design = member.only_design();
-        return design.map_or_else(Vec::new, |design| design.shells().to_vec());
+impl MissedShell {
+    /// The ranges of the shell at a place of the search.
+    fn of(letter: Option<String>, members: &[&FrontMember], place: usize) -> Self {
+        let shells = members.iter().filter_map(|member| member.shell(place));
+        let shells: Vec<&DesignSummary> = shells.collect();
+        Self {
+            shell: letter,
+            members: shells.len(),
+            planes: range(shells.iter().map(|shell| shell.planes)),
+            satellites_per_plane: range(shells.iter().filter_map(|one| one.satellites_per_plane)),
+            inclination_deg: range(shells.iter().filter_map(|one| one.inclination_deg)),
+            altitude_km: range(shells.iter().filter_map(|one| one.altitude_km)),
+        }
     }
-    let notations = member.shells.iter().flatten().map(|shell| &shell.notation);
-    notations
-        .filter_map(|notation| notation.parse().ok())
-        .collect()
+
+    fn to_text(&self, of: usize) -> String {
+        let with = match (&self.shell, self.members) {
+            (None, _) => "with".to_owned(),
+            (Some(letter), 0) => return format!("without shell {letter}"),
+            (Some(letter), members) if members == of => format!("with shell {letter} of"),
+            (Some(letter), members) => {
+                format!("with shell {letter} (empty in {}) of", of - members)
+            }
+        };
+        let mut parts = Vec::new();
+        let mut add = |name: &str, range: Option<[f64; 2]>, unit: &str| {
+            let of_range = range.map(|[lo, hi]| format!("{name} {lo} to {hi}{unit}"));
+            parts.extend(of_range);
+        };
+        let whole = |range: Option<[usize; 2]>| range.map(|ends| ends.map(|end| end as f64));
+        add("planes", whole(self.planes), "");
+        add("satellites per plane", whole(self.satellites_per_plane), "");
+        add("inclination", self.inclination_deg, " deg");
+        add("altitude", self.altitude_km, " km");
+        format!("{with} {}", parts.join(", "))
+    }
+}
+
+/// The least and the greatest of some values; `None` of none.
+fn range<T: PartialOrd + Copy>(values: impl Iterator<Item = T>) -> Option<[T; 2]> {
+    let widened = |[lo, hi]: [T; 2], value: T| {
+        [
+            if value < lo { value } else { lo },
+            if value > hi { value } else { hi },
+        ]
+    };
+    values.fold(None, |ends: Option<[T; 2]>, value| {
+        Some(widened(ends.unwrap_or([value; 2]), value))
+    })
 }
 
 fn minimised(member: &FrontMember, objectives: &[Quantity]) -> Vec<f64> {
@@ -227,5 +259,45 @@ mod tests {
             "{text}"
         );
         assert!(!text.contains("exact"), "{text}");
+    }
+
+    /// What was missed is told for each shell of the search, whatever the others are.
+    #[test]
+    fn what_was_missed_is_told_by_shell() {
+        let member = |shells: [Option<&str>; 3]| FrontMember {
+            shells: shells
+                .map(|one| {
+                    let shell: crate::constellation::Shell = one?.parse().unwrap();
+                    Some(DesignSummary::from(&shell))
+                })
+                .to_vec(),
+            ..testing::member(1, "delta:50:8/2/1@800")
+        };
+        let (low, polar) = (Some("delta:50:8/2/1@800"), Some("star:90:12/4/1@1100"));
+        let members = [
+            member([low, polar, None]),
+            member([Some("delta:45:15/5/1@900"), None, None]),
+        ];
+        let missed = Missed::of(&[&members[0], &members[1]]).unwrap();
+        assert_eq!(
+            missed.to_text(),
+            "missed: 2 designs of the sweep's front with shell A of planes 2 to 5, satellites per plane 3 to 4, \
+             inclination 45 to 50 deg, altitude 800 to 900 km; with shell B (empty in 1) of planes 4 to 4, satellites \
+             per plane 3 to 3, inclination 90 to 90 deg, altitude 1100 to 1100 km; without shell C\n"
+        );
+        let [a, b, c] = missed.shells.as_slice() else {
+            panic!("{missed:?}");
+        };
+        assert_eq!((a.members, a.planes), (2, Some([2, 5])));
+        assert_eq!((b.members, b.inclination_deg), (1, Some([90.0, 90.0])));
+        assert_eq!((c.members, c.planes), (0, None));
+        let one = testing::member(1, "delta:50:8/2/1@800");
+        let missed = Missed::of(&[&one]).unwrap();
+        assert_eq!(
+            missed.to_text(),
+            "missed: 1 design of the sweep's front with planes 2 to 2, satellites per plane 4 to 4, inclination 50 to \
+             50 deg, altitude 800 to 800 km\n"
+        );
+        assert_eq!(Missed::of(&[]), None);
     }
 }

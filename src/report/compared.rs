@@ -2,7 +2,7 @@
 
 use super::Baseline;
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::search::DesignProblem;
 
 /// A constellation that is compared with a front or with others.
@@ -16,7 +16,8 @@ pub struct Compared {
 }
 
 impl Compared {
-    /// Evaluates a constellation whose satellites are propagated.
+    /// Evaluates a constellation whose satellites are propagated, beside a search that has satellites from files
+    /// fixed.
     ///
     /// # Errors
     /// If one of them has no state at an instant.
@@ -24,8 +25,9 @@ impl Compared {
         constellation: Constellation,
         ephemeris: Ephemeris,
         problem: &DesignProblem<'_>,
+        fixed: Option<&FileSatellites>,
     ) -> Result<Self, EphemerisError> {
-        let baseline = Baseline::of_constellation(&constellation, &ephemeris, problem)?;
+        let baseline = Baseline::of_constellation(&constellation, &ephemeris, problem, fixed)?;
         Ok(Self {
             constellation,
             ephemeris,

@@ -1,11 +1,10 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
 use super::PhaseSpread;
-use crate::constellation::Design;
 use crate::evaluate::{DopStatistics, Metrics};
-use crate::exchange::constellation::{Constellation, GNSS_ONLY};
+use crate::exchange::constellation::{Constellation, FileSatellites, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
-use crate::search::{Constraint, Goals, Quantity};
+use crate::search::{Constraint, CountedSatellites, Goals, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// What is computed of some satellites.
@@ -36,7 +35,7 @@ pub struct ConstraintCheck {
     pub quantity: String,
     /// Its value; `None` if it has none.
     pub value: Option<f64>,
-    /// Whether it is met; `None` for a quantity that only designs have.
+    /// Whether it is met; `None` for a quantity of planes where they are not known.
     pub met: Option<bool>,
 }
 
@@ -53,25 +52,25 @@ impl ConstraintCheck {
 }
 
 impl Assessment {
-    /// What was computed of `satellites` satellites, which are those of `design` if there is one, under
-    /// the goals of a scenario.
+    /// What was computed of the satellites of a constellation, under the goals of a scenario.
     #[must_use]
     pub fn new(
-        (satellites, design): (usize, Option<&Design>),
+        satellites: CountedSatellites<'_>,
         metrics: Metrics,
         dops: Option<DopStatistics>,
         goals: &Goals,
     ) -> Self {
-        let value = |quantity: Quantity| goals.value(quantity, (satellites, design), &metrics);
+        let value = |quantity: Quantity| goals.value(quantity, satellites, &metrics);
         let check = |constraint: &Constraint| {
             let quantity = constraint.quantity;
             let solved = quantity.solved_fraction(&metrics);
             let is_met = || constraint.violation(value(quantity), solved) == 0.0;
+            let is_defined = value(quantity).is_some() || !quantity.needs_planes();
             ConstraintCheck {
                 constraint: constraint.to_string(),
                 quantity: quantity.to_string(),
                 value: value(quantity),
-                met: (design.is_some() || !quantity.needs_design()).then(is_met),
+                met: is_defined.then(is_met),
             }
         };
         let constraints = goals.constraints.iter().map(check).collect();
@@ -168,16 +167,16 @@ pub struct ConstellationEntry {
 }
 
 impl ConstellationEntry {
-    /// The entry of a constellation.
+    /// The entry of a constellation, under the goals of a search that has these satellites from files fixed.
     #[must_use]
     pub fn new(
         constellation: &Constellation,
         metrics: Metrics,
         dops: Option<DopStatistics>,
-        goals: &Goals,
+        (goals, fixed): (&Goals, Option<&FileSatellites>),
     ) -> Self {
         let satellites = constellation.satellite_count();
-        let subject = (satellites, constellation.only_design());
+        let counted = constellation.counted(fixed);
         let design: Option<DesignSummary> = constellation.design.as_ref().map(Into::into);
         let files = constellation.files.as_ref();
         Self {
@@ -187,7 +186,7 @@ impl ConstellationEntry {
             format_and_content: files.map(|files| (files.format(), files.fleet.content())),
             satellites,
             design,
-            evaluated: Assessment::new(subject, metrics, dops, goals),
+            evaluated: Assessment::new(counted, metrics, dops, goals),
         }
     }
 
@@ -255,6 +254,7 @@ pub enum Alone {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::constellation::Design;
     use crate::run::testing;
     use crate::search::LaunchCost;
 
@@ -270,6 +270,7 @@ mod tests {
                 per_1000_km: 0.2,
             },
             fixed: None,
+            fixed_from_files: 0,
         }
     }
 
@@ -278,12 +279,19 @@ mod tests {
     fn a_constraint_that_only_designs_have_is_not_violated_by_files() {
         let design: Design = "delta:55:30/5/1@925".parse().unwrap();
         let metrics = testing::member(1, "delta:55:30/5/1@925").metrics;
-        let verdicts = |design: Option<&Design>| {
-            let evaluated = Assessment::new((30, design), metrics, None, &goals());
+        let verdicts = |satellites: CountedSatellites<'_>| {
+            let evaluated = Assessment::new(satellites, metrics, None, &goals());
             let checks = evaluated.constraints.iter();
             checks.map(ConstraintCheck::verdict).collect::<Vec<_>>()
         };
-        assert_eq!(verdicts(Some(&design)), ["met", "violated"]);
-        assert_eq!(verdicts(None), ["met", "not defined"]);
+        let of_files = CountedSatellites {
+            from_files: 30,
+            ..CountedSatellites::default()
+        };
+        assert_eq!(
+            verdicts(CountedSatellites::of_design(&design)),
+            ["met", "violated"]
+        );
+        assert_eq!(verdicts(of_files), ["met", "not defined"]);
     }
 }

@@ -59,10 +59,7 @@ fn further(member: &FrontMember) -> Vec<String> {
 
 fn row(label: &str, member: &FrontMember, further: &[String]) -> Vec<String> {
     let (design, metrics) = (member.design.as_ref(), &member.metrics);
-    let of_files = member.files.as_ref();
-    let satellites = of_files.map(|files| files.satellites);
-    let satellites = satellites.or(design.map(|design| design.satellites));
-    let shells = design.filter(|_| of_files.is_none());
+    let shells = design.filter(|_| member.files.is_none());
     let by_shell = |text: fn(&DesignSummary) -> Option<String>| {
         shells.map_or_else(String::new, |design| design.by_shell(text))
     };
@@ -70,7 +67,7 @@ fn row(label: &str, member: &FrontMember, further: &[String]) -> Vec<String> {
         if member.chosen { "*" } else { "" }.to_owned(),
         label.to_owned(),
         member.made_of(),
-        satellites.map_or_else(String::new, |count| count.to_string()),
+        member.satellites().to_string(),
         by_shell(|shell| Some(format!("{:.2}", shell.inclination_deg?))),
         by_shell(|shell| Some(format!("{:.1}", shell.altitude_km?))),
         shown::named("mean-visible", Some(metrics.mean_visible)),

@@ -57,14 +57,6 @@ pub struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// A design of the front with what is fixed beside it.
-    fn with_fixed(&self, design: Design) -> Constellation {
-        Constellation {
-            files: self.fixed.cloned(),
-            ..Constellation::of_design(design)
-        }
-    }
-
     /// Whether two or more compared constellations have places in the plane of the objectives.
     fn has_plane_without_front(&self) -> bool {
         let is_placed = |one: &&Compared| {
@@ -159,7 +151,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
     let members = &page.run.front;
     let constellations: Vec<Constellation> = places
         .iter()
-        .filter_map(|&n| Some(page.with_fixed(members[n].only_design()?)))
+        .filter_map(|&n| members[n].constellation(page.fixed))
         .collect();
     let profiles = match page.evaluator {
         Some(evaluator) => Profile::of_constellations(evaluator, &constellations),
@@ -214,7 +206,7 @@ fn of_compared(page: &Page<'_>) -> Vec<Option<Profile>> {
 fn members_with_cuts(page: &Page<'_>) -> Vec<usize> {
     let members = &page.run.front;
     let propagated: Vec<usize> = (0..members.len())
-        .filter(|&n| members[n].only_design().is_some())
+        .filter(|&n| members[n].constellation(page.fixed).is_some())
         .collect();
     let count = page.most_cuts().min(propagated.len());
     if count == 0 {

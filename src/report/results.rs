@@ -246,16 +246,16 @@ fn front_members(
             .map(|(q, &v)| (q.to_string(), q.minimised(v)))
             .collect()
     };
-    let member = |(n, evaluated): (usize, Option<(Design, Metrics)>)| {
+    let member = |(n, evaluated): (usize, Option<(Option<Design>, Metrics)>)| {
         let (design, metrics) = evaluated?;
         Some(FrontMember {
             index: n + 1,
             name: None,
-            design: Some((&design).into()),
+            design: design.as_ref().map(Into::into),
             files: None,
             shells: shells(problem.designs(), &individuals[n].genome),
             objectives: objectives(&individuals[n]),
-            constraints: constrained(&design, &metrics, problem),
+            constraints: constrained(design.as_ref(), &metrics, problem),
             membership: memberships.minimum[n],
             membership_sum: memberships.share[n],
             chosen: chosen == Some(n),
@@ -293,7 +293,7 @@ fn fixed(problem: &DesignProblem<'_>, scenario: &Scenario) -> Option<FixedSummar
 
 /// The constrained quantities that are not objectives, by name.
 fn constrained(
-    design: &Design,
+    design: Option<&Design>,
     metrics: &Metrics,
     problem: &DesignProblem<'_>,
 ) -> Vec<(String, Option<f64>)> {

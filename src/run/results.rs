@@ -3,6 +3,7 @@
 use super::columns::fields;
 use crate::constellation::{Design, Shell};
 use crate::evaluate::Metrics;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::keyword::Keyword;
 use crate::optimize::Record;
 use crate::search::Quantity;
@@ -117,7 +118,7 @@ pub struct FrontMember {
     /// Its name, in a run of given constellations; `--pick` takes it too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// The shells; `None` if all its satellites are from files.
+    /// The shells; `None` if all its satellites are from files, as where a search adds nothing to what is fixed.
     pub design: Option<DesignSummary>,
     /// Its satellites from files, in a run of given constellations.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -154,9 +155,15 @@ pub struct MemberFiles {
 }
 
 impl FrontMember {
+    /// What a member of a search is made of that adds no satellite to those that are fixed.
+    pub const NOTHING_ADDED: &'static str = "nothing added";
+
     /// What its satellites are: the notation, the files, or both.
     #[must_use]
     pub fn made_of(&self) -> String {
+        if self.design.is_none() && self.files.is_none() {
+            return Self::NOTHING_ADDED.to_owned();
+        }
         let notation = self.design.iter().map(|design| &design.notation);
         let files = self.files.iter().flat_map(|files| &files.names);
         let parts: Vec<&str> = notation.chain(files).map(String::as_str).collect();
@@ -168,6 +175,26 @@ impl FrontMember {
     pub fn only_design(&self) -> Option<Design> {
         let summary = self.design.as_ref().filter(|_| self.files.is_none());
         summary?.design()
+    }
+
+    /// Number of satellites, but for those from files that a search has fixed.
+    #[must_use]
+    pub fn satellites(&self) -> usize {
+        match (&self.files, &self.design) {
+            (Some(files), _) => files.satellites,
+            (None, design) => design.as_ref().map_or(0, |design| design.satellites),
+        }
+    }
+
+    /// The constellation of a member of a search, with the satellites from files that are fixed; `None` if its
+    /// notation is invalid.
+    #[must_use]
+    pub fn constellation(&self, fixed: Option<&FileSatellites>) -> Option<Constellation> {
+        let design = match &self.design {
+            Some(summary) => Some(summary.design()?),
+            None => None,
+        };
+        Constellation::of_parts(design, fixed.cloned())
     }
 
     /// A shell of the search by its place; `None` if it is empty.
@@ -367,14 +394,26 @@ pub struct Certificate {
 pub struct Missed {
     /// Members that were not found.
     pub members: usize,
+    /// The shells of the search, in their order.
+    pub shells: Vec<MissedShell>,
+}
+
+/// The ranges of one shell of a search among the designs that were not found; `None` where none of them has it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MissedShell {
+    /// Its letter in the search; `None` if that is of one shell alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shell: Option<String>,
+    /// Members that were not found and have it.
+    pub members: usize,
     /// Planes, lowest and highest.
-    pub planes: [usize; 2],
+    pub planes: Option<[usize; 2]>,
     /// Satellites per plane, lowest and highest.
-    pub satellites_per_plane: [usize; 2],
+    pub satellites_per_plane: Option<[usize; 2]>,
     /// Inclination, lowest and highest, degrees.
-    pub inclination_deg: [f64; 2],
+    pub inclination_deg: Option<[f64; 2]>,
     /// Altitude, lowest and highest, km.
-    pub altitude_km: [f64; 2],
+    pub altitude_km: Option<[f64; 2]>,
 }
 
 /// A diagnostic message about a result.

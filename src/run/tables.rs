@@ -51,7 +51,8 @@ pub fn front_csv(front: &[FrontMember]) -> io::Result<String> {
         for name in &columns {
             row.extend(match *name {
                 "design" => {
-                    let satellites = member.files.as_ref().map(|files| files.satellites);
+                    let has_others = member.files.is_some() || member.design.is_none();
+                    let satellites = has_others.then(|| member.satellites());
                     design_cells(member.design.as_ref(), satellites)?
                 }
                 "files" => {

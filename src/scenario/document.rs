@@ -164,7 +164,59 @@ impl<'a> Document<'a> {
         if section == key!(Scenario.constellations).name {
             return self.add_constellation(name, value, &source);
         }
+        if let Some((list, place)) = name.split_once('.')
+            && let Some(key) = find(section, list).filter(|key| is_list_of_tables(*key))
+        {
+            return self.set_in_list(key, place, value, &site, report);
+        }
         self.enter(section, name, value, &site, report);
+    }
+
+    /// Sets a table of a list by its number from 1, or a key of it by `number.key`.
+    fn set_in_list(
+        &mut self,
+        key: KeyPath,
+        names: &str,
+        value: Node<'a>,
+        site: &KeySite<'_, 'a>,
+        report: &mut ProblemList,
+    ) {
+        let (number, name) = match names.split_once('.') {
+            Some((number, name)) => (number, Some(name)),
+            None => (names, None),
+        };
+        let not_there = |count| Fault::NoSuchTable {
+            found: number.to_owned(),
+            count,
+        };
+        let Some(Entry {
+            value: list, parts, ..
+        }) = self.entries.get_mut(&key)
+        else {
+            return site.report(report, &key.to_string(), not_there(0));
+        };
+        // Anything else was wrong before, and is reported when it is read.
+        let DeValue::Array(tables) = list.get_mut() else {
+            return;
+        };
+        let count = tables.len();
+        let number = number.parse().unwrap_or(0_usize);
+        let place = number.checked_sub(1);
+        let Some(table) = place.and_then(|place| tables.get_mut(place)) else {
+            return site.report(report, &key.to_string(), not_there(count));
+        };
+        let place = path(&key.to_string(), &number.to_string());
+        let Some(name) = name else {
+            let within = format!("{place}.");
+            parts.retain(|part, _| !part.starts_with(&within));
+            parts.insert(place, Rc::clone(site.source));
+            *table = value;
+            return;
+        };
+        if let DeValue::Table(keys) = table.get_mut() {
+            parts.insert(path(&place, name), Rc::clone(site.source));
+            keys.insert(Spanned::new(0..0, name.to_owned().into()), value);
+        }
     }
 
     /// Checks everything that was written and adds problems to `report`.
@@ -294,6 +346,12 @@ fn value(text: &str) -> Result<Node<'_>, Fault> {
         }
         Err(_) => Ok(Spanned::new(0..text.len(), DeValue::String(text.into()))),
     }
+}
+
+/// Whether the value of a key is a list of tables.
+fn is_list_of_tables(path: KeyPath) -> bool {
+    let key = all().iter().find(|key| key.path == path);
+    key.is_some_and(|key| key.schema["items"]["type"] == "object")
 }
 
 fn find(section: &str, name: &str) -> Option<KeyPath> {

@@ -202,6 +202,14 @@ pub enum Fault {
         /// The bound.
         most: u64,
     },
+    /// The number of a table that a list does not have.
+    #[error("{}", no_such_table(.found, *.count))]
+    NoSuchTable {
+        /// The number as given.
+        found: String,
+        /// Number of tables.
+        count: usize,
+    },
     /// A list that must be as long as another.
     #[error("found {found} numbers for {expected} objectives, expected one for each")]
     Length {
@@ -247,6 +255,13 @@ pub enum Fault {
     /// A grid of poles only, which all have zero weight.
     #[error("every point is a pole and has zero weight with \"cos-latitude\"")]
     Weightless,
+}
+
+fn no_such_table(found: &str, count: usize) -> String {
+    match count {
+        0 => format!("there is no table {found}: the scenario has no such list"),
+        count => format!("there is no table {found}, expected a number from 1 to {count}"),
+    }
 }
 
 fn did_you_mean(nearest: Option<&str>) -> String {

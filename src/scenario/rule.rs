@@ -100,6 +100,11 @@ impl<'r> Reading<'r> {
         }
     }
 
+    /// Whether the value with this name in a table is from elsewhere than the table.
+    pub(super) fn is_set(&self, name: &str) -> bool {
+        self.parts.contains_key(&path(&self.key, name))
+    }
+
     /// The source of the value with this name in a table.
     pub(super) fn source_of(&self, name: &str) -> &'r Source<'r> {
         let part = self.parts.get(&path(&self.key, name));

@@ -401,7 +401,7 @@ impl Scenario {
         }
     }
 
-    /// The goals of the search.
+    /// The goals of the search; satellites from files that are fixed are counted where they are read.
     #[must_use]
     pub fn goals(&self) -> Goals {
         Goals {
@@ -409,6 +409,7 @@ impl Scenario {
             constraints: self.objectives.constraints.clone(),
             launch_cost: self.objectives.launch_cost,
             fixed: self.fixed_shells(),
+            fixed_from_files: 0,
         }
     }
 

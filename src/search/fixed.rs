@@ -60,17 +60,15 @@ impl FixedSatellites {
         self.satellites.len()
     }
 
-    /// The satellites of a design, and these after them.
-    pub(super) fn join_to(&self, own: Ephemeris) -> Ephemeris {
-        let Some(grid) = self.grid else { return own };
+    /// The satellites; `None` if there are none.
+    pub(super) fn ephemeris(&self) -> Option<Ephemeris> {
+        let grid = self.grid?;
         let copy = |(name, samples): &(String, Arc<FixedStates>)| EphemerisSatellite {
             name: name.clone(),
             slot: None,
             propagator: Box::new(FixedTrajectory(Arc::clone(samples))),
         };
-        own.joined(Ephemeris::new(
-            grid,
-            self.satellites.iter().map(copy).collect(),
-        ))
+        let satellites = self.satellites.iter().map(copy).collect();
+        Some(Ephemeris::new(grid, satellites))
     }
 }

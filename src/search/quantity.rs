@@ -1,5 +1,6 @@
 //! The quantities that a search can optimise or bound, by name.
 
+use super::counted::{CountedSatellites, NewSatellites};
 use crate::constellation::{Design, Shell};
 use crate::evaluate::Metrics;
 use crate::keyword::{Keyword, keywords};
@@ -227,27 +228,24 @@ impl Quantity {
         if self.is_maximised() { -value } else { value }
     }
 
-    /// Whether only the satellites of a design have it: others are in no planes.
+    /// Whether satellites from files that are not fixed have none: their planes are not known.
     #[must_use]
-    pub fn needs_design(self) -> bool {
+    pub fn needs_planes(self) -> bool {
         matches!(self, Self::Planes | Self::NewPlanes | Self::LaunchCost)
     }
 
-    /// The value for some satellites, which are those of a design if there is one, with the shells of it that
-    /// are new; `None` if there is none, as for PDOP without solved samples. Satellites of no design are all new.
+    /// The value for the satellites of a constellation, of which some are new; `None` if there is none, as for PDOP
+    /// without solved samples, and for planes where files have satellites that are not fixed.
     pub(super) fn value(
         self,
-        satellites: usize,
-        design: Option<&Design>,
-        new: Option<&[&Shell]>,
+        satellites: CountedSatellites<'_>,
+        new: &NewSatellites<'_>,
         metrics: &Metrics,
         cost: &LaunchCost,
     ) -> Option<f64> {
-        let new_sum = |of: fn(&Shell) -> usize| {
-            let counts = new.map(|shells| shells.iter().map(|shell| of(shell)).sum());
-            counts.map(|sum: usize| sum as f64)
-        };
-        let satellites = satellites as f64;
+        let new_sum = |of: fn(&Shell) -> usize| new.shells.iter().map(|shell| of(shell)).sum();
+        let has_planes = satellites.count() > 0 && new.from_files == 0;
+        let of_planes = |value: usize| has_planes.then_some(value as f64);
         match self {
             Self::JPos => metrics.j_pos,
             Self::JCost => metrics.j_cost,
@@ -256,10 +254,13 @@ impl Quantity {
             Self::P95Pdop => metrics.p95_pdop,
             Self::P99Pdop => metrics.p99_pdop,
             Self::MaxPdop => metrics.max_pdop,
-            Self::Satellites => Some(satellites),
-            Self::Planes => Some(design?.planes() as f64),
-            Self::NewSatellites => new_sum(Shell::satellite_count).or(Some(satellites)),
-            Self::NewPlanes => new_sum(Shell::planes),
+            Self::Satellites => Some(satellites.count() as f64),
+            Self::Planes => of_planes(satellites.shells.map_or(0, Design::planes)),
+            Self::NewSatellites => {
+                let of_shells: usize = new_sum(Shell::satellite_count);
+                Some((of_shells + new.from_files) as f64)
+            }
+            Self::NewPlanes => of_planes(new_sum(Shell::planes)),
             Self::MeanVisible => Some(metrics.mean_visible),
             Self::Availability => Some(metrics.availability),
             Self::LeastVisible => Some(metrics.least_visible.into()),
@@ -275,10 +276,10 @@ impl Quantity {
             Self::Error95HM => metrics.error95_h_m?,
             Self::Error95VM => metrics.error95_v_m?,
             // 0 and not -0 for no shell.
-            Self::LaunchCost => Some(
-                new?.iter()
-                    .fold(0.0, |sum, shell| sum + cost.of_shell(shell)),
-            ),
+            Self::LaunchCost => has_planes.then(|| {
+                let costs = new.shells.iter().map(|shell| cost.of_shell(shell));
+                costs.fold(0.0, |sum, cost| sum + cost)
+            }),
             _ => {
                 let (satellites, is_total) = self.coverage_levels()?;
                 let coverage = if is_total {

@@ -101,14 +101,17 @@ impl DesignSpace {
         pairs.map(|(shell, own)| shell.shell(own)).collect()
     }
 
-    /// The design of a vector, with what is fixed.
+    /// The design of a vector, with the shells that are fixed; `None` if all shells are empty and none is fixed.
     ///
     /// # Errors
-    /// If the vector is not a valid design: a shell that is not valid, or none at all.
-    pub fn design(&self, genome: &[f64]) -> Result<Design, DesignError> {
+    /// If a shell of the vector is not valid.
+    pub fn design(&self, genome: &[f64]) -> Result<Option<Design>, DesignError> {
         let mut shells: Vec<Shell> = self.shells_of(genome)?.into_iter().flatten().collect();
         shells.extend(self.fixed.iter().flat_map(Design::shells));
-        Design::new(shells)
+        match Design::new(shells) {
+            Err(DesignError::NoShell) => Ok(None),
+            design => design.map(Some),
+        }
     }
 
     /// Whether the design of a vector does not depend on a variable because its shell is empty.

@@ -14,6 +14,7 @@ fn goals(fixed: Option<&str>) -> Goals {
             per_1000_km: 0.3,
         },
         fixed: fixed.map(|notation| notation.parse().unwrap()),
+        fixed_from_files: 0,
     }
 }
 
@@ -22,7 +23,7 @@ fn goals(fixed: Option<&str>) -> Goals {
 fn validate_launch_cost_by_hand() {
     let cost = |notation: &str| {
         let design: Design = notation.parse().unwrap();
-        let satellites = (design.satellite_count(), Some(&design));
+        let satellites = CountedSatellites::of_design(&design);
         goals(None).value(Quantity::LaunchCost, satellites, &no_metrics())
     };
     // 2 * 100 * (1 + 0.3 * 0.5) + 7 * 5.
@@ -39,7 +40,7 @@ fn new_is_what_is_not_fixed() {
     const FIXED: &str = "star:86.4:66/6/3@780,node-step=31.6+delta:50:4/2/1@600";
     let values = |goals: &Goals, notation: &str| {
         let design: Design = notation.parse().unwrap();
-        let satellites = (design.satellite_count(), Some(&design));
+        let satellites = CountedSatellites::of_design(&design);
         let value = |quantity| goals.value(quantity, satellites, &no_metrics());
         [
             Quantity::Satellites,
@@ -60,11 +61,57 @@ fn new_is_what_is_not_fixed() {
     let all_new = values(&goals(None), &with_fixed);
     assert_eq!(all_new[..4], [170.0, 13.0, 170.0, 13.0]);
     assert!(all_new[4] > cost);
-    // Satellites of no design are new and in no planes.
-    let of_file = |quantity| fixed.value(quantity, (12, None), &no_metrics());
+    // Satellites of files are new and in no planes.
+    let of_file = CountedSatellites {
+        from_files: 12,
+        ..CountedSatellites::default()
+    };
+    let of_file = |quantity| fixed.value(quantity, of_file, &no_metrics());
     assert_eq!(of_file(Quantity::NewSatellites), Some(12.0));
     assert_eq!(of_file(Quantity::NewPlanes), None);
     assert_eq!(of_file(Quantity::LaunchCost), None);
+}
+
+/// Satellites of files that are fixed are not new, where all that is fixed is there; others are, and have no planes.
+#[test]
+fn new_is_what_is_in_no_fixed_file() {
+    const FIXED: &str = "delta:50:4/2/1@600";
+    let goals = Goals {
+        fixed_from_files: 12,
+        ..goals(Some(FIXED))
+    };
+    let both: Design = format!("delta:50:100/5/1@500+{FIXED}").parse().unwrap();
+    let shell: Design = FIXED.parse().unwrap();
+    let values = |shells, from_files, has_fixed_files| {
+        let satellites = CountedSatellites {
+            shells,
+            from_files,
+            has_fixed_files,
+        };
+        [
+            Quantity::Satellites,
+            Quantity::Planes,
+            Quantity::NewSatellites,
+            Quantity::NewPlanes,
+        ]
+        .map(|quantity| goals.value(quantity, satellites, &no_metrics()))
+    };
+    let some = |values: [f64; 4]| values.map(Some);
+    // What is fixed, by itself.
+    assert_eq!(values(Some(&shell), 12, true), some([16.0, 2.0, 0.0, 0.0]));
+    assert_eq!(
+        values(Some(&both), 12, true),
+        some([116.0, 7.0, 100.0, 5.0])
+    );
+    // Without its files, without its shells, and with further satellites from files.
+    assert_eq!(values(Some(&shell), 0, false), some([4.0, 2.0, 4.0, 2.0]));
+    assert_eq!(values(None, 12, true), [Some(12.0), None, Some(12.0), None]);
+    assert_eq!(
+        values(Some(&shell), 15, true),
+        [Some(19.0), None, Some(3.0), None]
+    );
+    let none = values(None, 0, false);
+    assert_eq!(none, [Some(0.0), None, Some(0.0), None]);
 }
 
 #[test]
@@ -155,6 +202,7 @@ fn what_is_not_solved_is_not_feasible() {
                 per_1000_km: 0.2,
             },
             fixed: None,
+            fixed_from_files: 0,
         };
         let problem = DesignProblem::new(&evaluator, shell().into(), goals).unwrap();
         let genome = vec![5.0, 16.0, 42.8, 933.0, 1.0];

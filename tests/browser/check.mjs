@@ -54,6 +54,20 @@ async function wholePage(page, name) {
 const mapValues = (page, id) => page.evaluate((map) => JSON.stringify(document.getElementById(map).data[0].z), id);
 const place = (page) => page.evaluate(() => window.navwalker.state.place);
 
+test("a search among shells has each variable once, and colours by a shell", async () => {
+  const { page, context, trouble } = await open("shells");
+  await scrollThrough(page);
+  const names = await page.evaluate(() => document.getElementById("parallel").layout.xaxis.ticktext);
+  assert.equal(new Set(names).size, names.length, names.join(", "));
+  assert.ok(names.includes("A planes") && names.includes("cvar-pdop"), names.join(", "));
+  // What is the same in all designs has no column.
+  assert.ok(!names.includes("B inclination (°)"), names.join(", "));
+  assert.deepEqual(await page.locator("#colour option").allTextContents(),
+    ["satellites of shell A", "satellites of shell B", "none"]);
+  assert.deepEqual(trouble, []);
+  await context.close();
+});
+
 test("the paper's report is light, loads fast and follows a click", async () => {
   const bytes = statSync(`${work}/paper/report.html`).size;
   // Times are reported, not judged: they depend on the machine. Other load can only add, so the

@@ -48,6 +48,11 @@ cp "$work/iridium/constellation.tle" "$work/$hostile"
 "$program" optimize "${small[@]}" --set search.planes='[15, 15]' \
   --set search.satellites-per-plane='[20, 20]' --out "$work/many" --report >/dev/null
 
+# A search among two shells, one of which may be empty.
+"$program" optimize "${small[@]}" --set 'objectives.minimize=["satellites", "cvar-pdop"]' \
+  --set 'search.shells=[{planes=[3,6],satellites-per-plane=[4,8]},{planes=2,satellites-per-plane=[0,6],inclination-deg=90}]' \
+  --out "$work/shells" --report >/dev/null
+
 # Three objectives over points, on an ellipse of the Earth.
 printf 'latitude_deg,longitude_deg\n52,5\n48,11\n41,-4\n' > "$work/points.csv"
 printf '[region]\npoints = "%s"\n' "$work/points.csv" > "$work/points.toml"

@@ -14,11 +14,11 @@ use crate::cli::study::Study;
 use crate::cli::{Status, constellations, limits, output};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics};
-use crate::exchange::constellation::Constellation;
+use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::report::{Assessment, ConstellationEntry};
 use crate::run::ScenarioStamp;
 use crate::scenario::Scenario;
-use crate::search::Goals;
+use crate::search::{CountedSatellites, Goals};
 use anyhow::{Result, bail};
 use designs::DesignList;
 use given_run::GivenRun;
@@ -37,12 +37,15 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let evaluator = study.evaluator()?;
     limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
+    let fixed = study.fixed()?;
+    let goals = study.goals(fixed.as_ref());
     let mut work = EvaluationContext {
         args,
         scenario: &study.scenario,
         stamp: study.stamp()?,
-        goals: study.scenario.goals(),
-        gnss_only: gnss_only(args, &study.scenario.goals(), &evaluator)?,
+        gnss_only: gnss_only(args, &goals, &evaluator)?,
+        goals,
+        fixed: fixed.and_then(|fixed| fixed.files),
         evaluator: &evaluator,
     };
     let mut entries = Vec::new();
@@ -116,6 +119,8 @@ struct EvaluationContext<'a> {
     stamp: ScenarioStamp,
     evaluator: &'a Evaluator,
     goals: Goals,
+    /// Satellites from files that are fixed in the search of the scenario, so that they are not new.
+    fixed: Option<FileSatellites>,
     /// The GNSS without LEO satellites; `None` without GNSS.
     gnss_only: Option<Assessment>,
 }
@@ -124,7 +129,8 @@ impl EvaluationContext<'_> {
     /// A constellation with what is asked for.
     fn entry(&self, one: &Constellation, ephemeris: &Ephemeris) -> Result<ConstellationEntry> {
         let (metrics, dops) = evaluated(self.args, self.evaluator, ephemeris)?;
-        Ok(ConstellationEntry::new(one, metrics, dops, &self.goals))
+        let goals = (&self.goals, self.fixed.as_ref());
+        Ok(ConstellationEntry::new(one, metrics, dops, goals))
     }
 }
 
@@ -154,5 +160,10 @@ fn gnss_only(
     }
     let none = Ephemeris::new(setup.grid, Vec::new());
     let (metrics, dops) = evaluated(args, evaluator, &none)?;
-    Ok(Some(Assessment::new((0, None), metrics, dops, goals)))
+    Ok(Some(Assessment::new(
+        CountedSatellites::default(),
+        metrics,
+        dops,
+        goals,
+    )))
 }

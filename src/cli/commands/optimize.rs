@@ -4,12 +4,13 @@ mod seeds;
 
 use crate::cli::args::{OptimizeArgs, OutputFormat, quoted};
 use crate::cli::interrupt::Stoppable;
+use crate::cli::limits::shown_time;
 use crate::cli::progress::SearchBar;
 use crate::cli::run::{Placed, RunDirectory};
 use crate::cli::study::{Study, read_manifest};
 use crate::cli::{Status, chart, coincidence, constellations, output};
 use crate::evaluate::{Evaluator, Setup};
-use crate::optimize::{Pick, Search, Strategy};
+use crate::optimize::{Exhaustive, Pick, Problem, Search, Strategy};
 use crate::printable::printable;
 use crate::report::front_table::front_table;
 use crate::report::shown;
@@ -20,6 +21,7 @@ use crate::search::DesignProblem;
 use crate::units::counted;
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
     match args.seeds {
@@ -189,6 +191,9 @@ pub(super) fn search(
     let scenario = &study.scenario;
     let problem = study.problem(evaluator)?;
     let mut search = start(args, directory, study, &problem)?;
+    if let Search::Exhaustive(sweep) = &search {
+        tell_time(sweep, &problem)?;
+    }
     let progress = SearchBar::new(&search);
     let stoppable = Stoppable::begin();
     while !search.is_done() && !stoppable.is_asked_to_stop() {
@@ -208,6 +213,26 @@ pub(super) fn search(
         is_interrupted: stoppable.end(),
     })
 }
+
+/// Says how many designs a sweep has before it, and how long they take by the time of a few of them.
+fn tell_time(sweep: &Exhaustive, problem: &DesignProblem<'_>) -> Result<()> {
+    let remaining = sweep.remaining();
+    if remaining == 0 {
+        return Ok(());
+    }
+    let some = sweep.sample(problem, SAMPLE_FOR_TIME)?;
+    let begin = Instant::now();
+    problem.evaluate(&some);
+    let each_s = begin.elapsed().as_secs_f64() / some.len() as f64;
+    let expected = shown_time((each_s * remaining as f64).round() as u64);
+    let designs = counted(usize::try_from(remaining).unwrap_or(usize::MAX), "design");
+    output::hint(&format!("sweep of {designs}, expected time {expected}"));
+    Ok(())
+}
+
+/// Designs by whose time that of a sweep is estimated: enough for the threads of a desktop, and a fraction of a
+/// second even over a large region.
+const SAMPLE_FOR_TIME: u64 = 16;
 
 /// The exit status of a search that used its full budget.
 pub(super) fn status(result: &OptimizeResult) -> Status {

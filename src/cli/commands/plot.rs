@@ -3,8 +3,8 @@
 use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
-use crate::constellation::Design;
 use crate::evaluate::Evaluator;
+use crate::exchange::constellation::Constellation;
 use crate::ground::RegionMap;
 use crate::optimize::Pick;
 use crate::report::Compared;
@@ -177,7 +177,7 @@ struct Shown {
 
 /// What was picked: a member of the front, or a constellation.
 enum FirstShown<'a> {
-    Member(Design),
+    Member(Constellation),
     Constellation(&'a Compared),
 }
 
@@ -196,15 +196,15 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
     };
     let picked = picked(args.pick.as_deref(), view)?;
     let first = match &picked {
-        FirstShown::Member(design) => Shown {
-            name: design.to_string(),
-            notation: design.to_string(),
-            profile: Profile::of_constellation(evaluator, &view.with_fixed(design.clone()))?,
+        FirstShown::Member(one) => Shown {
+            name: one.name.clone(),
+            notation: one.name.clone(),
+            profile: Profile::of_constellation(evaluator, one)?,
         },
         FirstShown::Constellation(one) => of_constellation(one)?,
     };
     let is_first = |other: &&Compared| match &picked {
-        FirstShown::Member(design) => other.constellation.only_design() == Some(design),
+        FirstShown::Member(one) => other.constellation.name == one.name,
         FirstShown::Constellation(one) => std::ptr::eq(*one, *other),
     };
     let mut shown = vec![first];
@@ -233,9 +233,9 @@ fn picked<'a>(pick: Option<&str>, view: &'a View) -> Result<FirstShown<'a>> {
             );
         }
         let member = view.pick(&MemberPick::Pick(method.unwrap_or(Pick::Fuzzy)))?;
-        let design = member.only_design();
-        let design = design.with_context(|| format!("design {} has no notation", member.index))?;
-        return Ok(FirstShown::Member(design));
+        let one = member.constellation(view.fixed.as_ref());
+        let one = one.with_context(|| format!("design {} has no notation", member.index))?;
+        return Ok(FirstShown::Member(one));
     }
     let place = match (pick, method) {
         (None, _) => Some(0),

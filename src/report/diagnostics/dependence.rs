@@ -177,7 +177,7 @@ fn quantities(
     let evaluated = problem.evaluated(genome);
     let value = |quantity: &Quantity| {
         let (design, metrics) = evaluated.as_ref()?;
-        problem.value(*quantity, design, metrics)
+        problem.value(*quantity, design.as_ref(), metrics)
     };
     watched.iter().map(value).collect()
 }

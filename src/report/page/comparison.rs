@@ -6,7 +6,7 @@ use crate::evaluate::Metrics;
 use crate::report::dominance::dominance;
 use crate::report::{Baseline, ComparisonColumn, comparison_columns};
 use crate::scenario::Quantity;
-use crate::search::Goals;
+use crate::search::{CountedSatellites, Goals};
 
 /// The compared constellations, one row each, and the GNSS alone.
 pub(super) struct Comparison {
@@ -48,9 +48,12 @@ impl Comparison {
             .compared
             .iter()
             .map(|one| {
-                let (design, metrics) = (one.constellation.only_design(), &one.baseline.metrics);
-                let satellites = (one.baseline.satellites, design);
-                let value = |q: Quantity| goals.value(q, satellites, metrics);
+                let metrics = &one.baseline.metrics;
+                let satellites = one.constellation.counted(None);
+                let value = |q: Quantity| match one.baseline.sought(q, &goals) {
+                    Some(value) => value,
+                    None => goals.value(q, satellites, metrics),
+                };
                 let columns = columns.iter();
                 columns.map(|column| column.value(metrics, value)).collect()
             })
@@ -131,7 +134,7 @@ fn gnss_alone(page: &Page<'_>) -> Option<Metrics> {
 }
 
 fn without_leo(columns: &[ComparisonColumn], metrics: &Metrics, goals: &Goals) -> Row {
-    let value = |quantity: Quantity| goals.value(quantity, (0, None), metrics);
+    let value = |quantity: Quantity| goals.value(quantity, CountedSatellites::default(), metrics);
     let values = columns.iter().map(|column| column.value(metrics, value));
     Row {
         place: None,

@@ -276,12 +276,14 @@
       yaxis: { title: { text: volume ? "hypervolume" + at : "designs on the front" } } }) };
   }
 
-  /** The columns of the parallel coordinates that have values. */
-  const columns = [...front.variables, ...objectives.map((o, n) => [o.name, front.objectives[n]])]
+  /** The columns of the parallel coordinates: the variables, and the objectives that are none, that differ between designs. */
+  const isVariable = (name) => front.variables.some(([variable]) => variable === name);
+  const columns = [...front.variables,
+    ...objectives.map((o, n) => [o.name, front.objectives[n]]).filter(([name]) => !isVariable(name))]
     .map(([name, values]) => {
       const present = values.filter((v) => v !== null);
       return { name, values, lo: Math.min(...present), hi: Math.max(...present) };
-    }).filter((column) => column.lo <= column.hi);
+    }).filter((column) => (count > 1 ? column.lo < column.hi : column.lo <= column.hi));
   const MOST_LINES = 300;
 
   function parallel(colours) {

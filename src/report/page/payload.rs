@@ -169,8 +169,11 @@ impl Payload {
         let setup = page.evaluator.map(|evaluator| evaluator.setup());
         let of_members = places.iter().zip(members).filter_map(|(&n, profile)| {
             let cuts = Cuts::new(profile.as_ref()?);
-            let design = run.front[n].only_design()?;
-            Some((n, cuts.with_orbits(&design, setup?.model)))
+            let cuts = match run.front[n].only_design() {
+                Some(design) => cuts.with_orbits(&design, setup?.model),
+                None => cuts,
+            };
+            Some((n, cuts))
         });
         let generations = earlier(run, &names).into_iter();
         Self {

@@ -58,7 +58,7 @@ fn compared(one: Constellation, scenario: &Scenario, evaluator: &Evaluator) -> C
     let problem = DesignProblem::new(evaluator, scenario.design_space(), scenario.goals()).unwrap();
     let setup = evaluator.setup();
     let ephemeris = one.ephemeris(setup.grid, setup.model).unwrap();
-    Compared::new(one, ephemeris, &problem).unwrap()
+    Compared::new(one, ephemeris, &problem, None).unwrap()
 }
 
 fn design(name: &str, notation: &str) -> Constellation {

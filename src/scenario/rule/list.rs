@@ -394,8 +394,16 @@ fn read_each<R: Rule>(
         reading.refuse(node);
         return None;
     };
-    let read = |element| rule.read(element, reading);
-    Some(elements.iter().map(read).collect())
+    let read = |(place, element): (usize, &Node<'_>)| {
+        // Tables are told apart by their numbers, as `--set` has them.
+        let number = (place + 1).to_string();
+        if element.get_ref().is_table() || reading.is_set(&number) {
+            rule.read(element, &mut reading.within(&number, rule.accepted()))
+        } else {
+            rule.read(element, reading)
+        }
+    };
+    Some(elements.iter().enumerate().map(read).collect())
 }
 
 fn read_list<R: Rule>(

@@ -182,8 +182,8 @@ fn nested_problems_are_reported_all_at_once_where_they_are() {
     assert_eq!(
         lines,
         [
-            "nested.toml:4: search.shells.planes: found 0, expected an integer >= 1 and <= 40",
-            "nested.toml:5: search.shells.altitude: unknown key, did you mean `altitude-km`? \
+            "nested.toml:4: search.shells.1.planes: found 0, expected an integer >= 1 and <= 40",
+            "nested.toml:5: search.shells.1.altitude: unknown key, did you mean `altitude-km`? \
              (choices: planes, altitude-km)",
             "nested.toml:9: search.constellations.planes: 40040 planes times kilometres, expected at most 40000",
         ]

@@ -77,6 +77,96 @@ fn an_argument_replaces_the_intervals_of_a_file() {
     assert_eq!(shells[1].steps.altitude_step_km, 20.0);
 }
 
+/// One shell, or one key of it, by its number from 1.
+#[test]
+fn an_argument_sets_a_key_of_one_shell() {
+    let set = |arguments: &[&str]| parse(TWO, arguments);
+    let scenario = set(&[
+        "search.shells.1.planes=[3,6]",
+        "search.shells.2.altitude-step-km=40",
+        "search.shells.2.raan-deg=5",
+    ])
+    .unwrap();
+    let [first, second] = shells(&scenario) else {
+        panic!("{scenario:?}");
+    };
+    let before = parse(TWO, &[]).unwrap();
+    let expected = ShellSpace {
+        planes: [3, 6],
+        ..shells(&before)[0].clone()
+    };
+    assert_eq!(*first, expected);
+    assert_eq!(second.steps.altitude_step_km, 40.0);
+    assert_eq!(second.raan_deg, Some([5.0, 5.0]));
+    assert_eq!(second.planes, [3, 3]);
+    // A whole table, of which a later argument sets a key.
+    let scenario = set(&[
+        "search.shells.2={ planes = 7, phasing = 2 }",
+        "search.shells.2.phasing=3",
+    ])
+    .unwrap();
+    let second = &shells(&scenario)[1];
+    assert_eq!((second.planes, second.phasing), ([7, 7], [3, 3]));
+    assert_eq!(second.raan_deg, None);
+    // Tables of an argument have numbers too.
+    let listed = parse("", &["search.shells=[{}, {}]", "search.shells.2.planes=4"]).unwrap();
+    assert_eq!(shells(&listed)[1].planes, [4, 4]);
+}
+
+#[test]
+fn problems_of_a_number_are_told() {
+    let told = |text: &str, argument: &str| {
+        let problems = parse(text, &[argument]).unwrap_err();
+        let told: Vec<String> = problems
+            .as_slice()
+            .iter()
+            .map(ToString::to_string)
+            .collect();
+        told.join("\n")
+    };
+    for number in ["0", "3", "-1", "first", ""] {
+        let argument = format!("search.shells.{number}.planes=3");
+        assert_eq!(
+            told(TWO, &argument),
+            format!(
+                "--set {argument}: search.shells: there is no table {number}, expected a number from 1 to 2"
+            )
+        );
+    }
+    assert_eq!(
+        told("", "search.shells.1.planes=3"),
+        "--set search.shells.1.planes=3: search.shells: there is no table 1: the scenario has no such list"
+    );
+    let value = told(TWO, "search.shells.2.planes=0");
+    assert!(
+        value.starts_with(
+            "--set search.shells.2.planes=0: search.shells.2.planes: found 0, expected"
+        ),
+        "{value}"
+    );
+    let unknown = told(TWO, "search.shells.1.plains=3");
+    assert!(
+        unknown.starts_with(
+            "--set search.shells.1.plains=3: search.shells.1.plains: unknown key, did you mean `planes`?"
+        ),
+        "{unknown}"
+    );
+    let deeper = told(TWO, "search.shells.1.planes.low=3");
+    assert!(
+        deeper.contains("search.shells.1.planes.low: unknown key"),
+        "{deeper}"
+    );
+    let table = told(TWO, "search.shells.2=3");
+    assert!(
+        table
+            .starts_with("--set search.shells.2=3: search.shells.2: found 3, expected a table of "),
+        "{table}"
+    );
+    // A problem of the file stays where it is.
+    let file = "[[search.shells]]\nplanes = 0\n";
+    assert!(told(file, "search.shells.1.phasing=0").starts_with("study.toml:2: "));
+}
+
 #[test]
 fn intervals_of_one_shell_are_refused_beside_a_list() {
     let text = "[search]\nplanes = [4, 8]\npattern = \"star\"\n[[search.shells]]\nplanes = 3\n";
@@ -105,27 +195,27 @@ fn problems_of_a_shell_are_told_where_they_are() {
     };
     assert_eq!(
         told("planes = 0"),
-        "study.toml:3: search.shells.planes: found 0, expected [low, high], each an integer >= 1 and <= 100000, or \
+        "study.toml:3: search.shells.2.planes: found 0, expected [low, high], each an integer >= 1 and <= 100000, or \
          one for both"
     );
     assert!(
-        told("plains = 3").contains("search.shells.plains: unknown key, did you mean `planes`?"),
+        told("plains = 3").contains("search.shells.2.plains: unknown key, did you mean `planes`?"),
         "{}",
         told("plains = 3")
     );
     assert!(
         told("phasing = 20").contains(
-            "search.shells.phasing: the lowest phasing is 20, but with at most 15 planes"
+            "search.shells.2.phasing: the lowest phasing is 20, but with at most 15 planes"
         )
     );
     assert!(
         told("satellites-per-plane = 0")
-            .contains("search.shells.satellites-per-plane: the shell never has a satellite")
+            .contains("search.shells.2.satellites-per-plane: the shell never has a satellite")
     );
     let lattice = told("pattern = [\"delta\", \"lattice\"]\nnode-step-deg = 30");
     assert!(
         lattice.starts_with(
-            "study.toml:4: search.shells.node-step-deg: node-step-deg does not apply to lattice"
+            "study.toml:4: search.shells.2.node-step-deg: node-step-deg does not apply to lattice"
         ),
         "{lattice}"
     );

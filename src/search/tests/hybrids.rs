@@ -84,7 +84,7 @@ fn validate_a_search_among_hybrids_finds_the_front_of_the_sweep() {
     // The front has designs of one shell and of two, and both patterns, so that all of them must be found.
     let shells = exact
         .iter()
-        .map(|a| problem.designs().design(&a.genome).unwrap());
+        .map(|a| problem.designs().design(&a.genome).unwrap().unwrap());
     let shells: Vec<Design> = shells.collect();
     assert!(shells.iter().any(|design| design.only_shell().is_some()));
     assert!(shells.iter().any(|design| design.only_shell().is_none()));
@@ -122,7 +122,14 @@ fn a_population_has_no_design_twice() {
         search.step(&problem).unwrap();
         let genomes = search.population().iter().map(|a| &a.genome);
         let mut designs: Vec<String> = genomes
-            .map(|genome| problem.designs().design(genome).unwrap().to_string())
+            .map(|genome| {
+                problem
+                    .designs()
+                    .design(genome)
+                    .unwrap()
+                    .unwrap()
+                    .to_string()
+            })
             .collect();
         let count = designs.len();
         designs.sort();
@@ -145,6 +152,7 @@ fn fixed_satellites_are_in_every_evaluation() {
         3.0, 4.0, 50.0, 1000.0, 1.0, 0.0, 2.0, 3.0, 88.0, 1000.0, 1.0, 0.0,
     ];
     let (design, metrics) = problem.evaluated(&genome).unwrap();
+    let design = design.unwrap();
     assert_eq!(
         design.to_string(),
         "delta:50:12/3/1@1000+star:88:6/2/1@1000"
@@ -155,9 +163,68 @@ fn fixed_satellites_are_in_every_evaluation() {
     let (found, expected) = (metrics.mean_pdop.unwrap(), expected.mean_pdop.unwrap());
     // Two ways to the same positions.
     assert!((found - expected).abs() < 1e-9, "{found} {expected}");
-    let value = |quantity| problem.value(quantity, &design, &metrics);
+    let value = |quantity| problem.value(quantity, Some(&design), &metrics);
     assert_eq!(value(Quantity::Satellites), Some(30.0));
     assert_eq!(value(Quantity::NewSatellites), Some(18.0));
     assert_eq!(value(Quantity::NewPlanes), Some(5.0));
     assert!(problem.answer(&genome).objectives[0] == 30.0);
+}
+
+/// Where all shells are empty, what is evaluated is what is fixed; without anything there is nothing to evaluate.
+#[test]
+fn nothing_may_be_added_to_satellites_of_files() {
+    let evaluator = evaluator();
+    let setup = evaluator.setup();
+    let fixed: Design = "star:86.4:12/3/1@780".parse().unwrap();
+    let of_design = Ephemeris::of_design(&fixed, setup.model, setup.grid).unwrap();
+    let of_file = Ephemeris::new(setup.grid, of_design.into_satellites());
+    let space = || {
+        let mut space = two_shells();
+        space.shells[0].satellites_per_plane = [0, 7];
+        space
+    };
+    let goals = || Goals {
+        objectives: vec![Quantity::NewSatellites, Quantity::MeanPdop],
+        ..super::goals(None)
+    };
+    let nothing = [
+        3.0, 0.0, 50.0, 1000.0, 0.0, 0.0, 2.0, 0.0, 88.0, 1000.0, 1.0, 0.0,
+    ];
+    let alone = DesignProblem::new(&evaluator, space(), goals()).unwrap();
+    assert!(alone.evaluated(&nothing).is_none());
+    assert!(alone.answer(&nothing).violation > 0.0);
+    let beside = alone.with_satellites(&of_file).unwrap();
+    let (design, metrics) = beside.evaluated(&nothing).unwrap();
+    assert_eq!(design, None);
+    let expected = evaluator.evaluate(&fixed).unwrap();
+    let (found, expected) = (metrics.mean_pdop.unwrap(), expected.mean_pdop.unwrap());
+    // Two ways to the same positions.
+    assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    assert_eq!(beside.answer(&nothing).objectives, [0.0, found]);
+}
+
+/// A vector lists the shells in the order of the search, each with its own limits: what is cut, empty or idle in one
+/// is not in another.
+#[test]
+fn each_shell_has_its_own_part_of_a_vector() {
+    let mut space = two_shells();
+    space.shells[0].phasing = [0, 6];
+    space.shells[1].phasing = [0, 3];
+    let mut genome = vec![
+        5.0, 4.0, 50.0, 1000.0, 6.0, 0.0, 3.0, 2.0, 88.0, 1000.0, 9.0, 1.0,
+    ];
+    space.repair(&mut genome);
+    // P - 1 of each.
+    assert_eq!((genome[4], genome[10]), (4.0, 2.0));
+    let design = space.design(&genome).unwrap().unwrap();
+    assert_eq!(
+        design.to_string(),
+        "delta:50:20/5/4@1000+delta:88:6/3/2@1000"
+    );
+    genome[7] = 0.0;
+    let shells = space.shells_of(&genome).unwrap();
+    assert_eq!(shells[0].unwrap().satellite_count(), 20);
+    assert_eq!(shells[1], None);
+    let idle: Vec<usize> = (0..12).filter(|k| space.is_idle(&genome, *k)).collect();
+    assert_eq!(idle, [6, 8, 9, 10, 11]);
 }

@@ -4,7 +4,7 @@
 use super::{PaperError, PaperStudy};
 use crate::constellation::{Design, Pattern};
 use crate::evaluate::{Evaluator, Metrics};
-use crate::optimize::{Method, MopsoConfig, Nsga2Config, Strategy, best, fuzzy};
+use crate::optimize::{Individual, Method, MopsoConfig, Nsga2Config, Strategy, best, fuzzy};
 use crate::search::{DesignProblem, Goals, LaunchCost, Quantity, ShellSpace};
 use serde::Serialize;
 
@@ -131,6 +131,7 @@ fn run(evaluator: &Evaluator, study: &PaperStudy, plan: Plan) -> Result<FoundSet
             per_1000_km: 0.0,
         },
         fixed: None,
+        fixed_from_files: 0,
     };
     let what = described(&plan.space, &goals.objectives, plan.swarm);
     let problem = DesignProblem::new(evaluator, plan.space.into(), goals)?;
@@ -144,14 +145,16 @@ fn run(evaluator: &Evaluator, study: &PaperStudy, plan: Plan) -> Result<FoundSet
         true => None,
         false => best(&fuzzy(&points)?.minimum),
     };
-    let members = front.iter().filter_map(|a| problem.evaluated(&a.genome));
+    let member = |one: &Individual| {
+        let (design, metrics) = problem.evaluated(&one.genome)?;
+        let design = design?;
+        Some(FoundMember { design, metrics })
+    };
     Ok(FoundSet {
         name: plan.name,
         what,
         evaluations: search.progress().evaluations,
-        members: members
-            .map(|(design, metrics)| FoundMember { design, metrics })
-            .collect(),
+        members: front.iter().filter_map(member).collect(),
         chosen,
     })
 }

@@ -8,7 +8,7 @@ use crate::exchange::constellation::Constellation;
 use crate::report::{
     Align, ComparisonColumn, ConstellationEntry, Table, comparison_columns, shown,
 };
-use crate::search::{Goals, Quantity};
+use crate::search::{CountedSatellites, Goals, Quantity};
 use crate::units::counted;
 use anyhow::Result;
 
@@ -125,7 +125,11 @@ impl TextTable {
             cells.push(entry.made_of());
         }
         let quantity = |one: Quantity| {
-            let of_metrics = || self.goals.value(one, (entry.satellites, None), metrics);
+            let satellites = CountedSatellites {
+                from_files: entry.satellites,
+                ..CountedSatellites::default()
+            };
+            let of_metrics = || self.goals.value(one, satellites, metrics);
             evaluated.value(one).or_else(of_metrics)
         };
         let numbers = self.numbers.iter();
