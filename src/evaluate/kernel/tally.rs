@@ -35,12 +35,12 @@ impl ViewLanes {
     fn add(&mut self, visible: &Lanes<u32>) {
         const LEVELS: u8 = COVERAGE_LEVELS as u8;
         let (mut few, mut any_few) = ([0; LANES], 0);
-        for l in 0..LANES {
+        for (l, few) in few.iter_mut().enumerate() {
             let visible = visible.0[l];
             self.sum.0[l] += visible;
             self.least.0[l] = self.least.0[l].min(visible);
-            few[l] = visible.min(LEVELS.into()) as u8;
-            any_few |= u8::from(few[l] < LEVELS);
+            *few = visible.min(LEVELS.into()) as u8;
+            any_few |= u8::from(*few < LEVELS);
         }
         if any_few == 0 {
             return;
@@ -303,8 +303,8 @@ impl Work for TallySample<'_, '_> {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
             let gnss = self.fixed.tile(number).visible;
             let (mut all, mut out) = (*leo, Lanes([0; LANES]));
-            for l in 0..LANES {
-                all.0[l] += u32::from(gnss[l]);
+            for (l, &gnss) in gnss.iter().enumerate() {
+                all.0[l] += u32::from(gnss);
                 let good = pdop.0[l] <= self.available;
                 out.0[l] = if good { 0 } else { tile.weights.member.0[l] };
             }
