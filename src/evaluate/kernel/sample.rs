@@ -40,9 +40,9 @@ impl Limits {
     const DOUBLE_BAND: f64 = 1e-6;
 
     #[inline(always)]
-    fn capped(self, single_below: f32) -> Self {
+    fn capped<W: Weighting>(self, single_below: f32) -> Self {
         Self {
-            single_below: self.single_below.min(single_below),
+            single_below: self.single_below.min(single_below) * W::SINGLE_SHARE,
             ..self
         }
     }
@@ -228,7 +228,7 @@ fn evaluate<W: Weighting>(
     work.all.fill(&work.positions, horizon);
     let mask = scene.single.with_slack(horizon.sine_slack(&work.positions));
     let slack = horizon.single_slack(&work.positions);
-    let limits = limits.capped(horizon.single_below(&work.positions));
+    let limits = limits.capped::<W>(horizon.single_below(&work.positions));
     out.doubled = 0;
     out.doubts.clear();
     for group in &scene.tiles.groups {
