@@ -13,6 +13,7 @@ pub mod metadata;
 pub mod sem;
 pub mod sp3;
 pub mod stk;
+pub mod terrain;
 pub mod text;
 pub mod tle;
 pub mod trajectory;

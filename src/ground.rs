@@ -8,6 +8,7 @@ mod map;
 mod points;
 pub(crate) mod shapes;
 mod skylines;
+mod terrain;
 
 pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
@@ -15,6 +16,7 @@ pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
 pub use points::{ignored_columns, sites_from_csv};
 pub use skylines::with_inline_skylines;
+pub use terrain::{Terrain, TerrainError};
 
 use crate::earth::Surface;
 use crate::frames::{EarthFixed, LocalFrame, Position};
@@ -79,7 +81,7 @@ pub enum GroundError {
     #[error("height {0} m is outside {least} to {most} m", least = HEIGHTS_M[0], most = HEIGHTS_M[1])]
     Height(f64),
     /// A weight that is not a positive number.
-    #[error("weight {0} is not a positive number")]
+    #[error("weight {0} is not a positive number; leave out a point that is not to count")]
     Weight(f64),
     /// A line of a point list that cannot be read.
     #[error("line {line}: {reason}")]

@@ -23,6 +23,7 @@ mod document;
 mod gnss_file;
 mod keys;
 mod number;
+mod places;
 mod problem;
 mod reader;
 mod rule;
@@ -53,8 +54,8 @@ pub use source::{Excerpt, Place};
 pub use template::{json_schema, reference_markdown, template};
 pub use values::{
     AreaSource, ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
-    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, Scenario,
-    SearchShells, SearchSpace, TimeSpan, Visibility,
+    NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, RegionTerrain,
+    Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
 };
 
 use document::Document;

@@ -10,13 +10,12 @@ use thiserror::Error;
 const WORLD: &str = include_str!("../../data/countries/world-110m.txt");
 
 /// Other names of countries: alias, name.
-const ALIASES: [(&str, &str); 62] = [
+const ALIASES: [(&str, &str); 60] = [
     ("America", "United States of America"),
     ("Bosnia", "Bosnia and Herzegovina"),
     ("Britain", "United Kingdom"),
     ("Burma", "Myanmar"),
     ("CAR", "Central African Republic"),
-    ("Congo", "Republic of the Congo"),
     ("Congo-Brazzaville", "Republic of the Congo"),
     ("Congo-Kinshasa", "Democratic Republic of the Congo"),
     ("Cote d'Ivoire", "Côte d'Ivoire"),
@@ -40,7 +39,6 @@ const ALIASES: [(&str, &str); 62] = [
     ("Holland", "Netherlands"),
     ("Islamic Republic of Iran", "Iran"),
     ("Ivory Coast", "Côte d'Ivoire"),
-    ("Korea", "South Korea"),
     ("Kyrgyz Republic", "Kyrgyzstan"),
     ("Lao PDR", "Laos"),
     ("Macedonia", "North Macedonia"),
@@ -73,6 +71,15 @@ const ALIASES: [(&str, &str); 62] = [
     ("W. Sahara", "Western Sahara"),
     ("Brunei Darussalam", "Brunei"),
     ("Zaire", "Democratic Republic of the Congo"),
+];
+
+/// Names that two countries share; which of them is meant is asked.
+const SHARED: [(&str, [&str; 2]); 2] = [
+    ("Korea", ["North Korea", "South Korea"]),
+    (
+        "Congo",
+        ["Democratic Republic of the Congo", "Republic of the Congo"],
+    ),
 ];
 
 /// Below this Jaro-Winkler similarity (0 to 1) a country is not worth suggesting.
@@ -194,7 +201,10 @@ impl Country {
         };
         named(&wanted).or_else(alias).ok_or_else(|| UnknownCountry {
             found: name.to_owned(),
-            nearest: nearest(&wanted),
+            nearest: match SHARED.iter().find(|(shared, _)| key(shared) == wanted) {
+                Some((_, both)) => both.to_vec(),
+                None => nearest(&wanted),
+            },
         })
     }
 
@@ -302,6 +312,15 @@ mod tests {
             error,
             "unknown country \"Germny\", did you mean \"Germany\"? (the 177 countries of Natural Earth 1:110m, which leaves out \
              small states; give other areas as region.polygon)"
+        );
+        let both = Country::find("korea").unwrap_err();
+        assert_eq!(both.nearest, ["North Korea", "South Korea"]);
+        assert_eq!(Country::find("Congo").unwrap_err().nearest.len(), 2);
+        assert!(
+            SHARED
+                .iter()
+                .flat_map(|(_, both)| both)
+                .all(|name| Country::find(name).is_ok())
         );
         let several = Country::find("Korea North").unwrap_err();
         assert!(

@@ -8,7 +8,8 @@ use sha2::{Digest, Sha256};
 use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::{Rule, parts_without_paths};
 use super::values::{
-    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys, Scenario,
+    AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys,
+    RegionTerrain, Scenario,
 };
 use crate::constellation::Design;
 
@@ -39,7 +40,7 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: that of the region, the GNSS files in their
+    /// The paths of the files that the scenario refers to, as written: that of the region, the terrain, the GNSS files in their
     /// order, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
@@ -51,6 +52,7 @@ impl Scenario {
         self.region
             .file()
             .into_iter()
+            .chain(&self.terrain.terrain)
             .chain(&self.gnss.files)
             .chain(named.into_iter().flatten().flat_map(|one| &one.parts.files))
             .map(String::as_str)
@@ -87,6 +89,7 @@ impl Scenario {
             .region
             .file_mut()
             .into_iter()
+            .chain(&mut scenario.terrain.terrain)
             .chain(&mut scenario.gnss.files)
             .chain(constellations.flat_map(|one| &mut one.parts.files));
         for (file, path) in named.zip(&mut paths) {
@@ -186,6 +189,7 @@ fn is_computed(path: KeyPath) -> bool {
         key!(Scenario.constellations),
         key!(RegionKeys.points),
         key!(RegionKeys.polygon),
+        key!(RegionTerrain.terrain),
         key!(GnssSetup.files),
         key!(Optimizer.generations),
     ];

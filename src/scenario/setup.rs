@@ -4,14 +4,15 @@ use super::constellations::{ConstellationFileError, NoDesign};
 use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::RegionKeys;
-use super::{Algorithm, AreaSource, GnssSetup, Objectives, Region, Scenario, TimeSpan, Visibility};
+use super::{
+    Algorithm, GnssSetup, Objectives, Region, RegionTerrain, Scenario, TimeSpan, Visibility,
+};
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
-use crate::ground::{
-    Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv, with_inline_skylines,
-};
+use crate::formats::terrain::TerrainFileError;
+use crate::ground::GroundError;
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, Quantity};
 use crate::stats::{Level, LevelError};
@@ -39,7 +40,7 @@ pub enum SetupError {
     /// The points file or the polygons cannot be read.
     #[error("region.{key}: cannot read {file}: {source}")]
     RegionFile {
-        /// The key: `points` or `polygon`.
+        /// The key: `points`, `polygon` or `terrain`.
         key: &'static str,
         /// The path as written.
         file: String,
@@ -61,6 +62,14 @@ pub enum SetupError {
         file: String,
         /// What is wrong with it.
         source: GroundError,
+    },
+    /// The file is not a terrain, or the points do not stand on it.
+    #[error("region.terrain: {file}: {source}")]
+    Terrain {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: TerrainFileError,
     },
     /// The grid or the countries have no points.
     #[error("region: {0}")]
@@ -97,6 +106,9 @@ impl SetupError {
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
+            Self::RegionFile { key: "terrain", .. } | Self::Terrain { .. } => {
+                vec![key!(RegionTerrain.terrain)]
+            }
             Self::RegionFile { key: "points", .. } | Self::Points { .. } => {
                 vec![key!(RegionKeys.points)]
             }
@@ -136,6 +148,7 @@ impl SetupError {
             Self::Points { file, source } | Self::Polygon { file, source } => {
                 format!("{file}: {source}")
             }
+            Self::Terrain { file, source } => format!("{file}: {source}"),
             Self::Region(source) => source.to_string(),
             Self::Time(source) => source.to_string(),
             Self::Mask(source) => source.to_string(),
@@ -168,14 +181,6 @@ pub enum GnssFileError {
     /// Its satellites do not cover the study.
     #[error(transparent)]
     Fleet(#[from] FleetError),
-}
-
-/// A path relative to the directory of a file.
-fn beside(file: &str, path: &str) -> String {
-    match file.rsplit_once('/') {
-        Some((directory, _)) if !path.starts_with('/') => format!("{directory}/{path}"),
-        _ => path.to_owned(),
-    }
 }
 
 impl Scenario {
@@ -218,7 +223,8 @@ impl Scenario {
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<(Setup, Vec<String>), SetupError> {
         let visibility = &self.visibility;
-        let (sites, map) = self.region(read)?;
+        let (mut sites, map) = self.region(read)?;
+        let terrain_note = self.stand_on_terrain(&mut sites, read)?;
         let setup = Setup::new(self.time_grid()?, sites)
             .with_map(map)
             .with_mask(Mask::from_degrees(visibility.mask_deg)?)
@@ -227,7 +233,8 @@ impl Scenario {
             Some(skyline) => setup.with_skyline(skyline),
             None => setup,
         };
-        let (systems, notes) = self.systems(setup.grid, read)?;
+        let (systems, mut notes) = self.systems(setup.grid, read)?;
+        notes.extend(terrain_note);
         let presets = &self.gnss.constellations;
         let setup = Setup {
             accuracy: self
@@ -267,12 +274,15 @@ impl Scenario {
             .region
             .file()
             .is_some_and(|of_region| of_region == file);
+        // A file that is both is told as that of the points.
+        let is_terrain = !is_region && self.terrain.terrain.as_deref() == Some(file);
         let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
         let named = self.constellations.iter();
         let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
-        if is_region {
+        if is_region || is_terrain {
             let key = match self.region {
+                _ if is_terrain => "terrain",
                 Region::Points { .. } => "points",
                 _ => "polygon",
             };
@@ -283,29 +293,6 @@ impl Scenario {
             let source = Box::new(GnssFileError::Io(source));
             SetupError::GnssFile { file, source }
         }
-    }
-
-    /// The contents of a file, among [`Scenario::files`], that stand alone: the sites of a points file with the skylines
-    /// that they name by paths relative to it, which `read` takes relative to the scenario.
-    ///
-    /// # Errors
-    /// If a skyline cannot be read.
-    pub fn standing_alone(
-        &self,
-        file: &str,
-        bytes: Vec<u8>,
-        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
-    ) -> Result<Vec<u8>, SetupError> {
-        match &self.region {
-            Region::Points { file: points } if points == file => {}
-            _ => return Ok(bytes),
-        }
-        let inline = with_inline_skylines(&bytes, &|skyline| read(&beside(file, skyline)));
-        let inline = inline.map_err(|source| SetupError::Points {
-            file: file.to_owned(),
-            source,
-        })?;
-        Ok(inline.unwrap_or(bytes))
     }
 
     /// The presets, and then those of each file: one system named by the file, or, of a file with several, one for
@@ -350,54 +337,6 @@ impl Scenario {
             Ok(None)
         } else {
             MaskTable::new(vertices).map(Some)
-        }
-    }
-
-    /// The ground points, and what they look like on a map.
-    fn region(
-        &self,
-        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
-    ) -> Result<(Vec<Site>, RegionMap), SetupError> {
-        let surface = self.earth.surface;
-        match &self.region {
-            Region::Grid(grid) => Ok((grid.sites(surface)?, RegionMap::of_grid(grid))),
-            Region::Cells(cells) => {
-                Ok((cells.sites(surface)?, RegionMap::of_cells(cells, surface)?))
-            }
-            Region::Area {
-                source: AreaSource::Countries(countries),
-                points,
-            } => {
-                let area = Country::area(countries);
-                let map = RegionMap::of_area(&self.region.told(), &area, points, surface)?;
-                Ok((points.sites(&area, surface)?, map))
-            }
-            Region::Area {
-                source: AreaSource::Polygon { file },
-                points,
-            } => {
-                let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
-                let within = || -> Result<_, GroundError> {
-                    let area = ServiceArea::from_geojson(&bytes)?;
-                    // No result contains a path.
-                    let map = RegionMap::of_area("polygons", &area, points, surface)?;
-                    Ok((points.sites(&area, surface)?, map))
-                };
-                within().map_err(|source| SetupError::Polygon {
-                    file: file.clone(),
-                    source,
-                })
-            }
-            Region::Points { file } => {
-                let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
-                let bytes = self.standing_alone(file, bytes, read)?;
-                let sites = sites_from_csv(bytes.as_slice(), surface);
-                let sites = sites.map_err(|source| SetupError::Points {
-                    file: file.clone(),
-                    source,
-                })?;
-                Ok((sites, RegionMap::default()))
-            }
         }
     }
 

@@ -9,6 +9,7 @@ mod region;
 mod search;
 mod setting;
 mod shell;
+mod terrain;
 
 pub use crate::ground::Grid;
 pub use accuracy::{FurtherMetrics, RangeErrors};
@@ -23,6 +24,7 @@ pub(super) use search::SHELLS;
 pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
 pub(super) use shell::INTERVALS;
+pub use terrain::RegionTerrain;
 
 use chrono::{DateTime, Utc};
 
@@ -69,6 +71,8 @@ section! {
         pub propagation: Propagation;
         /// The points where the receivers are.
         pub region: Region;
+        /// The terrain on which they stand.
+        pub terrain: RegionTerrain;
         /// Visibility.
         pub visibility: Visibility;
         /// The GNSS to augment.
@@ -115,6 +119,10 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
         scenario.constellations = Vec::new();
     }
     check_fixed(scenario, reader);
+    if scenario.terrain.terrain.is_some() && !scenario.visibility.mask_table.is_empty() {
+        let other = key!(RegionTerrain.terrain).to_string();
+        reader.refuse(&[key!(Visibility.mask_table)], Fault::Excluded { other });
+    }
     if reader.is_sound() {
         check_point_samples(scenario, reader);
         check_designs(scenario, reader);

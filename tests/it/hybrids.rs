@@ -258,10 +258,7 @@ fn a_search_may_add_nothing_to_files() {
             .count(),
         12
     );
-    for command in [
-        "report run",
-        "plot run --figure map --pick 1 --out map.svg",
-    ] {
+    for command in ["report run", "plot run --figure map --pick 1 --out map.svg"] {
         let arguments: Vec<&str> = command.split(' ').collect();
         let ran = ran(place, &arguments);
         assert_eq!(ran.status, 0, "{command}: {}", ran.stderr);

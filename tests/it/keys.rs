@@ -20,6 +20,7 @@ const EVALUATE: &str = "evaluate --format json --design delta:55:60/6/1@925 --se
 /// The region is another.
 const EVALUATE_POINTS: &str =
     "evaluate --format json --design delta:55:60/6/1@925 --set time.step-s=1200";
+const EVALUATE_TERRAIN: &str = "evaluate --format json --design delta:55:60/6/1@925 --set time.step-s=1200 --set region.terrain=terrain.csv";
 const VALIDATE: &str = "validate --format json --against sgp4 --set time.duration-h=2 --set region.step-deg=20 \
      --set reference-design=delta:55:4/2/1@925";
 const OPTIMIZE: &str = "optimize --quiet --format json --out run --set region.step-deg=20 --set time.step-s=1200 \
@@ -71,7 +72,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 85] = [
+const ROWS: [Row; 87] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
@@ -153,6 +154,18 @@ const ROWS: [Row; 85] = [
         "region.points",
         "points.csv",
         EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.terrain",
+        "terrain.csv",
+        EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.antenna-height-m",
+        "500",
+        EVALUATE_TERRAIN,
         "/metrics/mean_visible",
     ),
     row(
@@ -477,6 +490,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("points.csv"),
         "latitude_deg,longitude_deg\n-50,10\n60,170\n",
+    )
+    .unwrap();
+    fs::write(
+        place.join("terrain.csv"),
+        "latitude_deg,longitude_deg,height_m\n0,70,0\n0,140,3000\n60,70,3000\n60,140,0\n",
     )
     .unwrap();
     fs::write(

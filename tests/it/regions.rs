@@ -333,3 +333,171 @@ fn sites_have_names_and_heights() {
     let message = "region.points: sites.csv: line 3: the site Zurich is in line 2 already";
     assert!(twice.stderr.contains(message), "{}", twice.stderr);
 }
+
+/// A street from north to south between houses: every 10 degrees an azimuth and the elevation of the roofs.
+fn street() -> String {
+    let line = |n: u32| {
+        let across = f64::from(10 * n).to_radians().sin().abs();
+        format!(
+            "{},{}\n",
+            10 * n,
+            (30.0 * across / 11.0).atan().to_degrees()
+        )
+    };
+    "azimuth_deg,elevation_deg\n".to_owned() + &(0..36).map(line).collect::<String>()
+}
+
+/// Each site under its own skyline, by a file of it; a run keeps what it was made from, and another skyline is another study.
+#[test]
+fn sites_have_their_own_skylines() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    fs::create_dir_all(place.join("sites/skylines")).unwrap();
+    fs::write(place.join("sites/skylines/street.csv"), street()).unwrap();
+    let write = |cells: [&str; 2]| {
+        let text = format!(
+            "name,latitude_deg,longitude_deg,skyline\nStreet,35.7,139.7,{}\nSquare,35.7,139.8,{}\n",
+            cells[0], cells[1]
+        );
+        fs::write(place.join("sites/two.csv"), text).unwrap();
+    };
+    let points = ["--set", "region.points=sites/two.csv"];
+    let visible = |series: &str| -> Vec<f64> {
+        let all = [&points[..], &["--series", series]].concat();
+        evaluated(place, &all);
+        let text = fs::read_to_string(place.join(series).join("points.csv")).unwrap();
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let column = reader
+            .headers()
+            .unwrap()
+            .iter()
+            .position(|name| name == "mean_visible");
+        let rows = reader
+            .records()
+            .map(|row| row.unwrap()[column.unwrap()].parse().unwrap());
+        rows.collect()
+    };
+    write(["", ""]);
+    let open = visible("open");
+    write(["skylines/street.csv", ""]);
+    let behind = visible("behind");
+    assert!(behind[0] < 0.5 * open[0], "{behind:?} {open:?}");
+    assert_eq!(behind[1], open[1]);
+
+    let evaluated_in = |run: &str| evaluated(place, &[&points[..], &["--out", run]].concat());
+    let first = evaluated_in("run");
+    let flat = street()
+        .replace(",", ",0")
+        .replace("azimuth_deg,0", "azimuth_deg,");
+    fs::write(place.join("sites/skylines/street.csv"), &flat).unwrap();
+    let second = evaluated_in("other");
+    assert_ne!(first["scenario"]["hash"], second["scenario"]["hash"]);
+    fs::remove_dir_all(place.join("sites")).unwrap();
+    let report = ran(place, &["report", "run"]);
+    assert_eq!(report.status, 0, "{}", report.stderr);
+    let again = [
+        "evaluate",
+        "run/scenario.toml",
+        "--design",
+        "delta:55:60/6/1@925",
+        "--format=json",
+    ];
+    let again = ran(place, &again);
+    assert_eq!(again.status, 0, "{}", again.stderr);
+    let again: Value = serde_json::from_str(&again.stdout).unwrap();
+    assert_eq!(again["metrics"], first["metrics"]);
+    assert_eq!(again["scenario"]["hash"], first["scenario"]["hash"]);
+}
+
+/// What is wrong with a skyline or a terrain is told with its file and line, and nothing is left behind.
+#[test]
+fn wrong_skylines_and_terrains_are_refused() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let gap = street()
+        .replace("90,69.86369657175186\n", "")
+        .replace("100,", "115,");
+    fs::write(place.join("gap.csv"), gap).unwrap();
+    let grid = "ncols 3\nnrows 3\nxllcenter 10\nyllcenter 50\ncellsize 0.01\nNODATA_value -1\n5 5 5\n5 5 5\n5 5 -1\n";
+    fs::write(place.join("t.asc"), grid).unwrap();
+    fs::write(place.join("m.asc"), grid.replace("10", "399960")).unwrap();
+    let refused = |sites: &str, further: &[&str]| {
+        fs::write(place.join("sites.csv"), sites).unwrap();
+        let all = [
+            &EVALUATE[..],
+            &["--set", "region.points=sites.csv"],
+            further,
+        ]
+        .concat();
+        let ran = ran(place, &all);
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
+        ran.stderr
+    };
+    let header = "name,latitude_deg,longitude_deg,height_m,skyline\n";
+    for (site, terrain, expected) in [
+        (
+            "A,50,10,,none.csv",
+            None,
+            "region.points: sites.csv: line 2: skyline: none.csv: cannot read it: ",
+        ),
+        (
+            "A,50,10,,gap.csv",
+            None,
+            "line 2: skyline: gap.csv: line 12: azimuth 110 degrees follows 115",
+        ),
+        (
+            "A,50,10,,",
+            Some("none.asc"),
+            "region.terrain: cannot read none.asc",
+        ),
+        (
+            "A,50,11,,",
+            Some("t.asc"),
+            "region.terrain: t.asc: the site A is outside the terrain",
+        ),
+        (
+            "A,50.01,10.01,1,",
+            Some("t.asc"),
+            "region.terrain: t.asc: the site A is at 1 m, 4.00 m below the terrain",
+        ),
+        (
+            "A,50.015,10.005,,",
+            Some("t.asc"),
+            "region.terrain: t.asc: the terrain has a hole (NODATA)",
+        ),
+        (
+            "A,50,10,,",
+            Some("m.asc"),
+            "region.terrain: m.asc: latitudes 50 to 50.02 and longitudes 399960 to",
+        ),
+        (
+            "A,50,10,,",
+            Some("sites.csv"),
+            "region.terrain: sites.csv: ",
+        ),
+    ] {
+        let terrain = terrain.map(|file| format!("region.terrain={file}"));
+        let set: Vec<&str> = terrain.iter().flat_map(|key| ["--set", key]).collect();
+        let message = refused(&format!("{header}{site}\n"), &set);
+        // The lines are broken to the width of the terminal.
+        let message = message.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(message.contains(expected), "{message}");
+    }
+    let both = [
+        "--set",
+        "region.terrain=t.asc",
+        "--set",
+        "visibility.mask-table=[[0,5],[360,5]]",
+    ];
+    let message = refused(&format!("{header}A,50,10,,\n"), &both);
+    assert!(
+        message.contains("visibility.mask-table: excluded by `region.terrain`"),
+        "{message}"
+    );
+    let antenna = ["--set", "region.antenna-height-m=5"];
+    let message = refused(&format!("{header}A,50,10,,\n"), &antenna);
+    assert!(
+        message.contains("a height over the terrain needs `region.terrain`"),
+        "{message}"
+    );
+}

@@ -131,7 +131,7 @@ impl<'a> Scene<'a> {
             self.title_key(),
             setup.gnss_mask.degrees(),
             if setup.has_skylines() {
-                ", and a mask by azimuth (visibility.mask-table)"
+                ", and the skylines of points (visibility.mask-table, region.terrain, or of sites)"
             } else {
                 ""
             }

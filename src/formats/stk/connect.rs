@@ -150,7 +150,7 @@ pub fn by_hand(one_mask: bool, files: bool, items: &[ConnectItem]) -> Vec<String
     if !one_mask {
         told.push(
             "the mask is that of the design for all satellites: visibility.gnss-mask-deg and \
-             mask-table cannot be expressed in a coverage grid; set constraints by asset"
+             skylines cannot be expressed in a coverage grid; set constraints by asset"
                 .to_owned(),
         );
     }

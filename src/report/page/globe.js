@@ -19,7 +19,7 @@ const Globe = (() => {
 
   const view = { longitude: 0, latitude: 20 * RAD };
   const time = { elapsed: 0, playing: !matchMedia("(prefers-reduced-motion: reduce)").matches, speed: SPEEDS[2] };
-  const place = { latitude: 0, longitude: 0, name: "" };
+  const place = { latitude: 0, longitude: 0, name: "", site: -1 };
   const frames = [];
   let colours = theme();
   let visibleNow = false;
@@ -69,6 +69,7 @@ const Globe = (() => {
       place.latitude = r.latitude_deg[0] * RAD;
       place.longitude = r.longitude_deg[0] * RAD;
       place.name = r.name[0];
+      place.site = 0;
     }
     view.longitude = place.longitude;
     view.latitude = Math.max(-1.2, Math.min(1.2, place.latitude));
@@ -164,9 +165,12 @@ const Globe = (() => {
       north: [-Math.sin(b) * Math.cos(l), -Math.sin(b) * Math.sin(l), Math.cos(b)] };
   }
 
+  /** The skyline of the place: that of all points, or that of the site; empty if none is known. */
+  const skylineHere = () => (world.skyline_of.length === 0 ? world.skylines_deg[0] : world.skylines_deg[world.skyline_of[place.site]]) || [];
+
   /** Elevation of the skyline at an azimuth, linear between its points, degrees; 0 without one. */
   function skyline(azimuth) {
-    const points = world.skyline_deg;
+    const points = skylineHere();
     const n = points.findIndex((point) => point[0] > azimuth);
     if (points.length === 0) return 0;
     if (n < 0) return points[points.length - 1][1];
@@ -314,7 +318,7 @@ const Globe = (() => {
     for (const elevation of [0, 30, 60]) ring(elevation, [], colours.line);
     const outline = (mask, dash, color) => {
       // Every degree and the corners of the skyline.
-      const azimuths = [...Array(361).keys(), ...world.skyline_deg.map((point) => point[0])].sort((a, b) => a - b);
+      const azimuths = [...Array(361).keys(), ...skylineHere().map((point) => point[0])].sort((a, b) => a - b);
       c.setLineDash(dash); c.strokeStyle = color;
       c.beginPath();
       for (const azimuth of azimuths) {
@@ -338,8 +342,8 @@ const Globe = (() => {
   }
 
   const caption = document.getElementById("sky-caption");
-  const highest = Math.max(...world.skyline_deg.map((point) => point[1]));
-  const beyond = (world.skyline_deg.length > 0 ? " and the skyline of up to " + highest + "° (dashed)" : " (dashed)")
+  const beyond = () => (skylineHere().length > 0
+    ? " and the skyline of up to " + Math.max(...skylineHere().map((point) => point[1])) + "° (dashed)" : " (dashed)")
     + (world.gnss_mask_deg !== world.mask_deg ? "; the mask of GNSS satellites, which are not drawn, is "
       + world.gnss_mask_deg + "° (dotted)" : "") + ".";
   const clock = document.getElementById("clock");
@@ -351,7 +355,7 @@ const Globe = (() => {
     const latitude = place.latitude / RAD, longitude = place.longitude / RAD;
     const side = (value, plus, minus) => digits(Math.abs(value), 4) + "° " + (value < 0 ? minus : plus);
     const text = "Sky at " + (place.name ? place.name + ", " : "") + side(latitude, "N", "S") + ", " + side(longitude, "E", "W") + ": "
-      + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond;
+      + seen.filter((s) => s.visible).length + " LEO satellites above the mask of " + world.mask_deg + "°" + beyond();
     if (caption.textContent !== text) caption.textContent = text;
     const now = new Date(epoch + 1000 * ofBrowser(elapsed)).toISOString().slice(0, 16).replace("T", " ") + " UTC";
     if (clock.textContent !== now) clock.textContent = now;
@@ -459,6 +463,7 @@ const Globe = (() => {
     place.latitude = Math.asin(Math.max(-1, Math.min(1, v[2])));
     place.longitude = Math.atan2(v[1], v[0]);
     place.name = "";
+    place.site = -1;
     draw();
   });
   globe.addEventListener("keydown", (event) => {
@@ -475,6 +480,7 @@ const Globe = (() => {
     place.latitude = data.region.latitude_deg[n] * RAD;
     place.longitude = data.region.longitude_deg[n] * RAD;
     place.name = data.region.name[n];
+    place.site = n;
     view.longitude = place.longitude;
     view.latitude = Math.max(-1.2, Math.min(1.2, place.latitude));
     draw();

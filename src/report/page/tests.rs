@@ -234,7 +234,8 @@ fn skyline_and_masks_are_shown() {
     let world = &data(&html)["world"];
     assert_eq!(world["mask_deg"], 7.0);
     assert_eq!(world["gnss_mask_deg"], 12.0);
-    assert_eq!(world["skyline_deg"][1], serde_json::json!([90.0, 40.0]));
+    assert_eq!(world["skylines_deg"][0][1], serde_json::json!([90.0, 40.0]));
+    assert_eq!(world["skyline_of"], serde_json::json!([]));
     for told in [
         "elevation masks 7\u{b0} (LEO) and 12\u{b0} (GNSS), with a skyline of up to 40\u{b0}",
         "LEO 7\u{b0}, GNSS 12\u{b0}; a skyline at every point",
@@ -242,6 +243,36 @@ fn skyline_and_masks_are_shown() {
     ] {
         assert!(html.contains(told), "{told}");
     }
+}
+
+/// Each site has its own skyline in the sky plot, and one without has none.
+#[test]
+fn skylines_of_sites_are_shown() {
+    let pairs = |elevation_deg: f64| {
+        let pair = |n: u32| format!("{}:{elevation_deg} ", 30 * n);
+        (0..12).map(pair).collect::<String>()
+    };
+    let sites = format!(
+        "name,latitude_deg,longitude_deg,skyline\nA,0,0,{0}\nB,0,10,{0}\nC,0,20,\nD,0,30,{1}\n",
+        pairs(12.125),
+        pairs(30.0)
+    );
+    let keys = ["region.points=sites.csv", "time.step-s=7200"];
+    let scenario = Scenario::parse("paper", SCENARIO.as_bytes(), &keys).unwrap();
+    let setup = scenario.setup(&|_| Ok(sites.clone().into())).unwrap();
+    let evaluator = Evaluator::new(setup).unwrap();
+    let html = written(&page(&run(Some(scenario), 1), Some(&evaluator)));
+    let world = &data(&html)["world"];
+    assert_eq!(world["skyline_of"], serde_json::json!([0, 0, null, 1]));
+    assert_eq!(
+        world["skylines_deg"][0][1],
+        serde_json::json!([30.0, 12.13])
+    );
+    assert_eq!(
+        world["skylines_deg"][1][12],
+        serde_json::json!([360.0, 30.0])
+    );
+    assert!(html.contains("each site under the skyline that its list gives, if any"));
 }
 
 /// Rounded first to six digits (1.23445) and then to five, it would be 1.2345.

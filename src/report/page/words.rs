@@ -13,7 +13,7 @@ use crate::report::figures::quantity_label;
 use crate::report::validation::digits;
 use crate::report::{Baseline, shown};
 use crate::run::{FixedSummary, FrontMember, Run};
-use crate::scenario::{Quantity, Scenario, Visibility};
+use crate::scenario::{Quantity, Scenario};
 use crate::units::counted;
 use crate::validate::Tally;
 
@@ -128,7 +128,7 @@ fn setting(scenario: &Scenario) -> String {
         scenario.time.step_s,
         scenario.time.duration_h,
         scenario.time.epoch.format("%Y-%m-%d %H:%M:%S UTC"),
-        mask_clause(&scenario.visibility)
+        mask_clause(scenario)
     )
 }
 
@@ -329,7 +329,8 @@ pub(super) fn checks(run: &Run) -> Vec<CheckRow> {
 }
 
 /// The masks in a sentence; only one if both are the same.
-fn mask_clause(visibility: &Visibility) -> String {
+fn mask_clause(scenario: &Scenario) -> String {
+    let visibility = &scenario.visibility;
     let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
     let mut text = if leo == gnss {
         format!("elevation mask {leo}\u{b0}")
@@ -339,6 +340,9 @@ fn mask_clause(visibility: &Visibility) -> String {
     let heights = visibility.mask_table.iter().map(|point| point.mask_deg);
     if let Some(highest) = heights.reduce(f64::max) {
         text += &format!(", with a skyline of up to {highest}\u{b0}");
+    }
+    if scenario.terrain.terrain.is_some() {
+        text += ", over the skyline of the terrain";
     }
     text
 }

@@ -139,19 +139,22 @@ fn the_hash_moves_with_everything_that_is_computed() {
     for error in &errors {
         hashes.push(with(&[&base[..], &[error]].concat()).hash(&[]));
     }
+    // The antenna needs a terrain.
+    let antenna = ["region.terrain=t.asc", "region.antenna-height-m=3"];
+    hashes.push(with(&antenna).hash(&[]));
     hashes.push(with(&base).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, region.polygon, gnss.files;
+    // name, constellations and the keys of [export]; region.points, region.polygon, region.terrain, gnss.files;
     // optimizer.generations
-    let (labels, files, budgets) = (6, 3, 1);
+    let (labels, files, budgets) = (6, 4, 1);
     assert_eq!(
-        changes.len() + errors.len() + labels + files + budgets,
+        changes.len() + errors.len() + antenna[1..].len() + labels + files + budgets,
         describe_keys().len()
     );
     hashes.sort();
     hashes.dedup();
-    assert_eq!(hashes.len(), changes.len() + errors.len() + 2);
+    assert_eq!(hashes.len(), changes.len() + errors.len() + 3);
 }
 
 #[test]

@@ -11,8 +11,8 @@ use crate::ground::{AreaPoints, Country, EqualAreaCells};
 use crate::scenario::{
     Algorithm, AreaSource, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics,
     GnssSetup, Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives,
-    Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, Relation, Scenario,
-    SearchShells, SearchSpace, TimeSpan, Visibility, template,
+    Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, RegionTerrain,
+    Relation, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility, template,
 };
 use crate::search::{ShellSpace, SweepSteps};
 
@@ -175,7 +175,7 @@ fn constellations() -> impl Strategy<Value = Vec<NamedConstellation>> {
         "lattice:63.4:182/13/5@950,e=0.01,w=270",
     ]);
     let design = design.prop_map(|notation| notation.parse().unwrap());
-    let files = (texts(1), proptest::option::of(word()), texts(0), texts(0));
+    let files = (texts(1), option::of(word()), texts(0), texts(0));
     let parts = (design, 0..3_u8, files).prop_map(|(design, kind, files)| {
         let (files, input_format, only, exclude) = files;
         if kind == 0 {
@@ -380,7 +380,7 @@ fn scenario() -> impl Strategy<Value = Scenario> {
     let setting = (
         word(),
         word(),
-        region(),
+        (region(), proptest::option::of((file(), 0.0..=1000.0))),
         visibility(),
         gnss(),
         constellations(),
@@ -389,7 +389,11 @@ fn scenario() -> impl Strategy<Value = Scenario> {
     (texts, time, setting, purpose).prop_map(|(texts, time, setting, purpose)| {
         let (name, reference_design, originator, identities) = texts;
         let (name_prefix, first_catalog_number) = identities;
-        let (surface, model, region, visibility, gnss, constellations) = setting;
+        let (surface, model, (region, terrain), mut visibility, gnss, constellations) = setting;
+        if terrain.is_some() {
+            visibility.mask_table.clear();
+        }
+        let (terrain, antenna_height_m) = terrain.unzip();
         let (objectives, search, optimizer, creation_date) = purpose;
         Scenario {
             name,
@@ -399,6 +403,10 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             earth: Earth { surface },
             propagation: Propagation { model },
             region,
+            terrain: RegionTerrain {
+                terrain,
+                antenna_height_m,
+            },
             visibility,
             gnss,
             accuracy: all_range_errors(),

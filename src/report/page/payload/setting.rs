@@ -7,8 +7,12 @@ use crate::ground::{CellRow, Site, Tiling};
 use crate::report::coastline::{self, Bounds};
 use crate::report::page::pack::{Packed, short};
 use crate::scenario::Scenario;
+use crate::visibility::MaskTable;
 use chrono::{DateTime, Timelike, Utc};
 use serde::Serialize;
+
+/// Most skylines that a page holds.
+const MOST_SKYLINES: usize = 500;
 
 #[derive(Serialize)]
 pub(super) struct RegionData {
@@ -45,8 +49,10 @@ pub(super) struct World {
     flattening: f64,
     mask_deg: f64,
     gnss_mask_deg: f64,
-    /// Azimuth and elevation of the skyline, degrees, over a full turn; empty without one.
-    skyline_deg: Vec<[f64; 2]>,
+    /// Skylines: azimuth and elevation, degrees, over a full turn.
+    skylines_deg: Vec<Vec<[f64; 2]>>,
+    /// The skyline of each point, an index; empty if all have the same, or there are none.
+    skyline_of: Vec<Option<usize>>,
 }
 
 /// Polylines as longitudes and latitudes in hundredths of a degree.
@@ -103,6 +109,36 @@ impl RegionData {
     }
 }
 
+/// The skylines of the points, each once, and that of each point.
+fn skylines(setup: &Setup) -> (Vec<Vec<[f64; 2]>>, Vec<Option<usize>>) {
+    let mut known: Vec<&MaskTable> = Vec::new();
+    let mut of_points = Vec::with_capacity(setup.sites.len());
+    for point in 0..setup.sites.len() {
+        let Some(skyline) = setup.skyline_at(point) else {
+            of_points.push(None);
+            continue;
+        };
+        // Points one after the other have the same, or each its own.
+        let same = known.last().is_some_and(|last| *last == skyline);
+        if !same && known.len() < MOST_SKYLINES {
+            known.push(skyline);
+        }
+        let is_known = same || known.last().is_some_and(|last| *last == skyline);
+        of_points.push(is_known.then(|| known.len() - 1));
+    }
+    if known.len() < 2 && of_points.iter().all(Option::is_some) {
+        of_points.clear();
+    }
+    let hundredth = |degrees: f64| (100.0 * degrees).round() / 100.0;
+    let vertices = |skyline: &MaskTable| {
+        let vertices = skyline.vertices().iter();
+        vertices
+            .map(|&(a, e)| [hundredth(a), hundredth(e)])
+            .collect()
+    };
+    (known.into_iter().map(vertices).collect(), of_points)
+}
+
 /// A UTC date and time with seconds up to 59, since browsers cannot read second 60, which chrono writes as
 /// second 59 with 1e9 nanoseconds or more.
 fn readable_by_browsers(utc: DateTime<Utc>) -> String {
@@ -114,6 +150,7 @@ fn readable_by_browsers(utc: DateTime<Utc>) -> String {
 impl World {
     pub(super) fn new(setup: &Setup, scenario: &Scenario) -> Self {
         let grid = setup.grid;
+        let (skylines_deg, skyline_of) = skylines(setup);
         Self {
             coast: hundredths(coastline::world()),
             epoch: readable_by_browsers(scenario.time.epoch),
@@ -126,9 +163,8 @@ impl World {
             flattening: scenario.earth.surface.flattening(),
             mask_deg: setup.mask.degrees(),
             gnss_mask_deg: setup.gnss_mask.degrees(),
-            skyline_deg: setup.skyline_at(0).map_or_else(Vec::new, |skyline| {
-                skyline.vertices().iter().map(|&(a, e)| [a, e]).collect()
-            }),
+            skylines_deg,
+            skyline_of,
         }
     }
 }

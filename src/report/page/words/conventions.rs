@@ -4,7 +4,7 @@ use crate::earth;
 use crate::keyword::Keyword;
 use crate::report::page::Page;
 use crate::run::VERSION;
-use crate::scenario::{LeoClocks, ObservationWeights, Scenario, Visibility};
+use crate::scenario::{LeoClocks, ObservationWeights, Region, Scenario};
 use crate::time::leap_seconds_note;
 
 /// The conventions behind the numbers.
@@ -80,7 +80,7 @@ fn of_scenario(scenario: &Scenario) -> Vec<(&'static str, String)> {
         ("Surface", scenario.earth.surface.to_string()),
         ("LEO propagation", scenario.propagation.model.to_string()),
         ("Receiver clocks", clocks(scenario)),
-        ("Masks", masks(&scenario.visibility)),
+        ("Masks", masks(scenario)),
         (
             "Unsolved",
             format!(
@@ -152,7 +152,8 @@ fn window(scenario: &Scenario) -> Option<String> {
 }
 
 /// The lowest elevations at which satellites are visible, by system and azimuth.
-fn masks(visibility: &Visibility) -> String {
+fn masks(scenario: &Scenario) -> String {
+    let visibility = &scenario.visibility;
     let (leo, gnss) = (visibility.mask_deg, visibility.gnss_mask_deg);
     let mut text = format!("LEO {leo}\u{b0}, GNSS {gnss}\u{b0}");
     let table = &visibility.mask_table;
@@ -165,6 +166,15 @@ fn masks(visibility: &Visibility) -> String {
             "; a skyline at every point, which applies where it is higher: elevation by azimuth \
              (clockwise from north), linear between {}",
             points.join(", ")
+        );
+    }
+    if matches!(scenario.region, Region::Points { .. }) {
+        text += "; each site under the skyline that its list gives, if any";
+    }
+    if let Some(antenna_m) = scenario.terrain.antenna_height_m {
+        text += &format!(
+            "; every point without a skyline of its own under that of a terrain, with the curvature of the Earth and \
+             without refraction; points without a height {antenna_m} m over it"
         );
     }
     text
