@@ -133,8 +133,7 @@ impl Kernel {
     }
 
     fn dilution_places(&self) -> Places {
-        let clocks = f64::from(self.scene.limits.clocks);
-        Places::new(largest_dilution(self.setup.pdop_cap, clocks))
+        Places::new(largest_dilution(&self.setup))
     }
 
     /// One pass over the samples and two over the stored values.
@@ -212,9 +211,14 @@ impl Kernel {
     }
 }
 
-/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP².
-pub(super) fn largest_dilution(pdop_cap: f64, clocks: f64) -> f64 {
-    (pdop_cap * pdop_cap + clocks * (1.0 + pdop_cap * pdop_cap)).sqrt() * 1.001
+/// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP² for unit weights.
+/// For others there is none, because a satellite near the horizon has next to no weight.
+pub(super) fn largest_dilution(setup: &Setup) -> f64 {
+    let (cap2, clocks) = (setup.pdop_cap * setup.pdop_cap, setup.clock_states() as f64);
+    match setup.observation_weights {
+        ObservationWeights::Unit => (cap2 + clocks * (1.0 + cap2)).sqrt() * 1.001,
+        ObservationWeights::SineElevation => f64::from(f32::MAX),
+    }
 }
 
 /// The dilutions at all points of one instant, after its evaluation.

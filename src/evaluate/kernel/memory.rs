@@ -49,9 +49,8 @@ pub(in super::super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
 
 /// Memory of all dilutions of one evaluation, bytes.
 pub(in super::super) fn dops_bytes(setup: &Setup, threads: usize) -> usize {
-    let clocks = setup.clock_states();
-    let rows = CLOCKS_FROM + clocks;
-    let places = Places::new(largest_dilution(setup.pdop_cap, clocks as f64));
+    let rows = CLOCKS_FROM + setup.clock_states();
+    let places = Places::new(largest_dilution(setup));
     let counts = rows * (places.bytes() + Found::BYTES);
     match tiles(setup) * LANES {
         values if values <= Keep::default().values => rows * values * size_of::<f32>() + counts,

@@ -235,10 +235,18 @@ fn evaluate<W: Weighting>(
         work.select(scene, group);
         for number in group.tiles.clone() {
             let candidates = work.candidates(number, group);
-            let fixed = fixed.tile(number);
             let tile = &scene.tiles.tiles[number];
-            let sums = match &tile.sky {
-                None => candidates.sums::<W>(&tile.single, &mask),
+            let judging = Judging {
+                scene,
+                limits: &limits,
+                number,
+                fixed: fixed.tile(number),
+                positions: &work.positions,
+                candidates,
+            };
+            // Each arm goes to the end, so that tiles without a skyline keep their sums in registers.
+            match &tile.sky {
+                None => judging.judge::<W>(&candidates.sums::<W>(&tile.single, &mask), out),
                 Some(sky) => {
                     let points = Skyward {
                         sites: &tile.single,
@@ -246,26 +254,65 @@ fn evaluate<W: Weighting>(
                         mask: &mask,
                         slack,
                     };
-                    candidates.sums_skyward::<W>(&points, scene.mask, &work.positions)
+                    let sums = candidates.sums_skyward::<W>(&points, scene.mask, &work.positions);
+                    judging.judge::<W>(&sums, out);
                 }
-            };
-            let verdict = LaneVerdict::new::<W>(&sums, &fixed, &limits);
-            out.pdop[number] = verdict.pdop;
-            out.visible[number] = sums.count;
-            if any(&verdict.doubtful) {
-                doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
             }
-            if any(&verdict.coarse) {
-                compute_again::<W>(
-                    scene,
-                    number,
-                    &fixed,
-                    &verdict,
-                    &work.positions,
-                    candidates,
-                    out,
-                );
+        }
+    }
+}
+
+/// A tile whose sums are known.
+struct Judging<'a> {
+    scene: &'a SampleContext,
+    limits: &'a Limits,
+    number: usize,
+    fixed: FixedTile<'a>,
+    positions: &'a Positions,
+    candidates: TileCandidates<'a>,
+}
+
+impl Judging<'_> {
+    #[inline(always)]
+    fn judge<W: Weighting>(&self, sums: &Sums<f32>, out: &mut SampleOutcome) {
+        let (number, candidates) = (self.number, self.candidates);
+        let verdict = LaneVerdict::new::<W>(sums, &self.fixed, self.limits);
+        out.pdop[number] = verdict.pdop;
+        out.visible[number] = sums.count;
+        if any(&verdict.doubtful) {
+            doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
+        }
+        if any(&verdict.coarse) {
+            self.compute_again::<W>(&verdict, out);
+        }
+    }
+
+    /// Recomputes the tile in f64 for the points for which f32 is too coarse.
+    #[inline(always)]
+    fn compute_again<W: Weighting>(&self, verdict: &LaneVerdict, out: &mut SampleOutcome) {
+        let (number, candidates) = (self.number, self.candidates);
+        let sums = candidates.double_sums::<W>(self.scene, number, self.positions);
+        let limits = &self.scene.limits;
+        let system = NormalLanes::new::<W>(&sums, &self.fixed);
+        let double = system.pdop(limits.clocks);
+        let mut undecided = Lanes([0; LANES]);
+        for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
+            let pdop = double.0[lane];
+            let satellites = system.surplus.0[lane] + limits.clocks;
+            if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
+                let solved = pdop <= limits.cap;
+                out.pdop[number].0[lane] = if solved {
+                    limits.available.stored(pdop)
+                } else {
+                    UNSOLVED
+                };
+            } else {
+                undecided.0[lane] = 1;
             }
+            out.doubled += 1;
+        }
+        if any(&undecided) {
+            doubt(number, Doubt::Geometry, &undecided, candidates, out);
         }
     }
 }
@@ -410,41 +457,5 @@ fn doubt(
             lane,
             satellites: satellites.clone(),
         });
-    }
-}
-
-/// Recomputes a tile in f64 for the points for which f32 is too coarse.
-#[inline(always)]
-fn compute_again<W: Weighting>(
-    scene: &SampleContext,
-    number: usize,
-    fixed: &FixedTile<'_>,
-    verdict: &LaneVerdict,
-    positions: &Positions,
-    candidates: TileCandidates<'_>,
-    out: &mut SampleOutcome,
-) {
-    let sums = candidates.double_sums::<W>(scene, number, positions);
-    let limits = &scene.limits;
-    let system = NormalLanes::new::<W>(&sums, fixed);
-    let double = system.pdop(limits.clocks);
-    let mut undecided = Lanes([0; LANES]);
-    for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
-        let pdop = double.0[lane];
-        let satellites = system.surplus.0[lane] + limits.clocks;
-        if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
-            let solved = pdop <= limits.cap;
-            out.pdop[number].0[lane] = if solved {
-                limits.available.stored(pdop)
-            } else {
-                UNSOLVED
-            };
-        } else {
-            undecided.0[lane] = 1;
-        }
-        out.doubled += 1;
-    }
-    if any(&undecided) {
-        doubt(number, Doubt::Geometry, &undecided, candidates, out);
     }
 }

@@ -45,9 +45,9 @@ impl ViewLanes {
         if any_few == 0 {
             return;
         }
-        for (level, fewer) in (1..=LEVELS).zip(&mut self.fewer) {
+        for (below, fewer) in self.fewer.iter_mut().enumerate() {
             for l in 0..LANES {
-                fewer[l] += u8::from(few[l] < level);
+                fewer[l] += u8::from(few[l] <= below as u8);
             }
         }
     }
