@@ -202,7 +202,7 @@ impl Weighting for SineWeights {
 
 /// The line from a point to a satellite, km.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<R> {
+pub(super) struct SightLine<R> {
     pub(super) to: [R; 3],
     /// One over the range.
     inverse: R,
@@ -229,7 +229,7 @@ impl<R: Real> LineLanes<R> {
     }
 
     #[inline(always)]
-    pub(super) fn set(&mut self, l: usize, line: &Line<R>) {
+    pub(super) fn set(&mut self, l: usize, line: &SightLine<R>) {
         for (lanes, value) in self.to.iter_mut().zip(line.to) {
             lanes.0[l] = value;
         }
@@ -237,8 +237,8 @@ impl<R: Real> LineLanes<R> {
     }
 
     #[inline(always)]
-    pub(super) fn get(&self, l: usize) -> Line<R> {
-        Line {
+    pub(super) fn get(&self, l: usize) -> SightLine<R> {
+        SightLine {
             to: [self.to[0].0[l], self.to[1].0[l], self.to[2].0[l]],
             inverse: self.inverse.0[l],
             sine: self.sine.0[l],
@@ -361,7 +361,7 @@ impl<R: Real> Sums<R> {
     #[inline(always)]
     pub(super) fn add_line<W: Weighting>(
         &mut self,
-        line: &Line<R>,
+        line: &SightLine<R>,
         seen: bool,
         possible: bool,
         l: usize,
@@ -402,7 +402,7 @@ impl<R: Real> SiteLanes<R> {
         satellite: [R; 3],
         mask: &MaskTerms<R>,
         l: usize,
-    ) -> (Line<R>, bool, bool) {
+    ) -> (SightLine<R>, bool, bool) {
         let [origin_x, origin_y, origin_z] = &self.origin;
         let [up_x, up_y, up_z] = &self.up;
         let dx = satellite[0] - origin_x.0[l];
@@ -413,7 +413,7 @@ impl<R: Real> SiteLanes<R> {
         let inverse = range2.inverse_root();
         let sine = height * inverse;
         let (seen, possible) = R::above(mask, height, range2, sine);
-        let line = Line {
+        let line = SightLine {
             to: [dx, dy, dz],
             inverse,
             sine,

@@ -5,7 +5,9 @@
 //! Bins are equal parts not of the azimuth but of the position on the square |e| + |n| = 1, which needs no
 //! trigonometric function.
 
-use super::lanes::{LANES, Lanes, Line, LineLanes, MaskTerms, Real, SiteLanes, Sums, Weighting};
+use super::lanes::{
+    LANES, Lanes, LineLanes, MaskTerms, Real, SightLine, SiteLanes, Sums, Weighting,
+};
 use super::propagation::Positions;
 use crate::frames::Position;
 use crate::ground::Site;
@@ -23,11 +25,11 @@ const BIN: f64 = 4.0 / BINS as f64;
 /// How far a satellite may be beyond the ends of its bin, on the square.
 const MARGIN: f64 = BIN / 4.0;
 
-/// Bounds are stored in units of this sine.
+/// SineBounds are stored in units of this sine.
 const QUANTUM: f64 = 1.0 / u16::MAX as f64;
 
-/// Bounds of the sine of the elevation in a bin: 16 bits each.
-type Bounds = u32;
+/// SineBounds of the sine of the elevation in a bin: 16 bits each.
+type SineBounds = u32;
 
 /// How far positions computed in two ways may be apart, km.
 const APART_KM: f64 = 1e-6;
@@ -64,7 +66,7 @@ impl SightSlack {
 /// The tables of all skylines, one after the other; the first is that of points without one.
 #[derive(Debug)]
 pub(super) struct SkyTables {
-    bounds: Arc<[Bounds]>,
+    bounds: Arc<[SineBounds]>,
     /// The first bin of each skyline, by its address.
     first: BTreeMap<usize, u32>,
 }
@@ -97,7 +99,7 @@ impl SkyTables {
         let points = known.len();
         known.sort_unstable();
         known.dedup();
-        let tables = known.len() * BINS * size_of::<Bounds>();
+        let tables = known.len() * BINS * size_of::<SineBounds>();
         tables + points * (size_of::<Site>() + size_of::<TileSky>() / LANES)
     }
 
@@ -141,7 +143,7 @@ fn azimuth_deg(place: f64) -> f64 {
     90.0 * corner + along.atan2(1.0 - along).to_degrees()
 }
 
-fn bounds_of(skyline: &MaskTable, bin: usize) -> Bounds {
+fn bounds_of(skyline: &MaskTable, bin: usize) -> SineBounds {
     let centre = bin as f64 * BIN;
     let reach = BIN / 2.0 + MARGIN;
     let (low, high) = skyline.bounds_deg(azimuth_deg(centre - reach), azimuth_deg(centre + reach));
@@ -158,14 +160,14 @@ pub(super) struct TileSky {
     north: [Lanes<f32>; 3],
     /// The first bin of each point.
     first: Lanes<u32>,
-    bounds: Arc<[Bounds]>,
+    bounds: Arc<[SineBounds]>,
     points: Vec<Site>,
 }
 
 impl TileSky {
     /// The bin of a line of sight, and whether its azimuth is good enough for that.
     #[inline(always)]
-    fn bin<R: Real>(&self, line: &Line<R>, slack: SightSlack, l: usize) -> (u32, bool) {
+    fn bin<R: Real>(&self, line: &SightLine<R>, slack: SightSlack, l: usize) -> (u32, bool) {
         // Adding this leaves a whole number in the last bits of the fraction, also of negative numbers.
         const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
         let [dx, dy, dz] = line.to.map(R::single);
@@ -245,7 +247,7 @@ impl<R: Real> Skyward<'_, R> {
             firm[l] = u32::from(is_firm);
             sines[l] = line.sine.single();
         }
-        let mut bounds: [Bounds; LANES] = [0; LANES];
+        let mut bounds: [SineBounds; LANES] = [0; LANES];
         for l in 0..LANES {
             // There is such a place.
             bounds[l] = self
