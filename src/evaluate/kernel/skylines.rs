@@ -25,10 +25,10 @@ const BIN: f64 = 4.0 / BINS as f64;
 /// How far a satellite may be beyond the ends of its bin, on the square.
 const MARGIN: f64 = BIN / 4.0;
 
-/// SineBounds are stored in units of this sine.
+/// Bounds are stored in units of this sine.
 const QUANTUM: f64 = 1.0 / u16::MAX as f64;
 
-/// SineBounds of the sine of the elevation in a bin: 16 bits each.
+/// Bounds of the sine of the elevation in a bin: 16 bits each.
 type SineBounds = u32;
 
 /// How far positions computed in two ways may be apart, km.
