@@ -138,13 +138,59 @@ fn design_kernel(bencher: Bencher, instructions: InstructionSet) {
     bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
 }
 
-/// The same with what users add to it: equal weights, weights by area, points 9 km high.
-#[divan::bench(sample_count = 100, args = ["equal", "cos-latitude", "heights"])]
-fn points(bencher: Bencher, what: &str) {
+/// What users add to a study.
+const ADDITIONS: [&str; 9] = [
+    "equal",
+    "cos-latitude",
+    "column",
+    "heights",
+    "hills",
+    "street",
+    "sine-elevation",
+    "dops",
+    "series",
+];
+
+/// A skyline of hills: 2° to 13°.
+fn hills() -> MaskTable {
+    let hill = |n: u32| {
+        let azimuth_deg = f64::from(n) * 10.0;
+        let (a, b) = (
+            (azimuth_deg * 3.0).to_radians(),
+            (azimuth_deg * 5.0).to_radians(),
+        );
+        (azimuth_deg, 7.5 + 3.5 * a.sin() + 2.0 * b.cos())
+    };
+    MaskTable::new((0..=36).map(hill).collect()).expect(SOUND)
+}
+
+/// A skyline of a street from north to south: up to 50°.
+fn street() -> MaskTable {
+    let street = [
+        (0.0, 10.0),
+        (90.0, 50.0),
+        (180.0, 10.0),
+        (270.0, 50.0),
+        (360.0, 10.0),
+    ];
+    MaskTable::new(street.to_vec()).expect(SOUND)
+}
+
+fn study(what: &str, is_globe: bool) -> Setup {
     let mut setup = paper();
-    for site in &mut setup.sites {
+    if is_globe {
+        let globe = Grid {
+            latitude_deg: [-90.0, 90.0],
+            longitude_deg: [-180.0, 180.0],
+            step_deg: [5.0, 5.0],
+            weights: PointWeights::Equal,
+        };
+        setup.sites = globe.sites(Surface::Sphere).expect(SOUND);
+    }
+    for (n, site) in setup.sites.iter_mut().enumerate() {
         match what {
-            "cos-latitude" => site.weight = site.latitude_deg.to_radians().cos(),
+            "cos-latitude" => site.weight = site.latitude_deg.to_radians().cos().max(0.02),
+            "column" => site.weight = 1.0 + (n % 7) as f64,
             "heights" => {
                 let origin_km = site.local.origin_km.km() + site.local.up * 9.0;
                 site.local.origin_km = Position::new(origin_km);
@@ -152,42 +198,37 @@ fn points(bencher: Bencher, what: &str) {
             _ => {}
         }
     }
-    let evaluator = Evaluator::new(setup).expect(SOUND);
-    let design = design();
-    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
+    match what {
+        "hills" => setup.with_skyline(hills()),
+        "street" => setup.with_skyline(street()),
+        "sine-elevation" => setup.with_observation_weights(ObservationWeights::SineElevation),
+        _ => setup,
+    }
 }
 
-/// Skylines and the weighting of observations by elevation, by the plain path.
-#[divan::bench(sample_count = 5, args = ["skyline", "sine-elevation"])]
-fn observations(bencher: Bencher, what: &str) {
-    let setup = match what {
-        "skyline" => {
-            let street = [
-                (0.0, 10.0),
-                (90.0, 50.0),
-                (180.0, 10.0),
-                (270.0, 50.0),
-                (360.0, 10.0),
-            ];
-            paper().with_skyline(MaskTable::new(street.to_vec()).expect(SOUND))
-        }
-        _ => paper().with_observation_weights(ObservationWeights::SineElevation),
-    };
-    let evaluator = Evaluator::new(setup).expect(SOUND);
-    let design = design();
-    bencher.bench_local(|| evaluator.evaluate(&design).expect(SOUND));
-}
-
-/// The cuts of `--series`, and all dilutions of `--dops`.
-#[divan::bench(sample_count = 20, args = ["series", "dops"])]
-fn tables(bencher: Bencher, what: &str) {
-    let setup = paper();
+fn add(bencher: Bencher, what: &str, is_globe: bool) {
+    let setup = study(what, is_globe);
     let ephemeris = Ephemeris::of_design(&design(), Model::J2, setup.grid).expect(SOUND);
     let evaluator = Evaluator::new(setup).expect(SOUND);
     bencher.bench_local(|| match what {
         "series" => drop(black_box(evaluator.series(&ephemeris).expect(SOUND))),
-        _ => drop(black_box(evaluator.dops(&ephemeris).expect(SOUND))),
+        "dops" => drop(black_box(evaluator.dops(&ephemeris).expect(SOUND))),
+        _ => drop(black_box(
+            evaluator.evaluate_ephemeris(&ephemeris).expect(SOUND),
+        )),
     });
+}
+
+/// A design in the region of the paper with what users add.
+#[divan::bench(sample_count = 30, args = ADDITIONS)]
+fn paper_with(bencher: Bencher, what: &str) {
+    add(bencher, what, false);
+}
+
+/// The same on the globe in steps of 5°.
+#[divan::bench(sample_count = 10, args = ADDITIONS)]
+fn globe_with(bencher: Bencher, what: &str) {
+    add(bencher, what, true);
 }
 
 /// A hybrid of 182 satellites, its two shells, and no satellites at all: what the hybrid costs beyond the last is

@@ -239,12 +239,8 @@ impl Setup {
     /// Maximum memory of an [`Evaluator`] and `threads` concurrent evaluations, bytes.
     #[must_use]
     pub fn memory_bytes(&self, threads: usize) -> u64 {
-        let lanes = match self.suits_kernel() {
-            true => kernel::memory_bytes(self, threads) as u64,
-            false => 0,
-        };
-        let needs_plain =
-            !self.suits_kernel() || self.window_s.is_some() || self.may_have_several_leo_clocks();
+        let lanes = kernel::memory_bytes(self, threads) as u64;
+        let needs_plain = self.window_s.is_some() || self.may_have_several_leo_clocks();
         let plain = if needs_plain {
             self.plain_bytes(threads)
         } else {
@@ -254,7 +250,20 @@ impl Setup {
         metrics.saturating_add(self.on_demand_bytes(threads))
     }
 
-    /// Of that, what is computed on demand.
+    /// Memory of [`Evaluator::dops`] of one constellation in addition, bytes.
+    #[must_use]
+    pub fn dops_bytes(&self, threads: usize) -> u64 {
+        kernel::dops_bytes(self, threads) as u64
+    }
+
+    /// Memory of [`Evaluator::series`] of one constellation in addition, bytes.
+    #[must_use]
+    pub fn series_bytes(&self) -> u64 {
+        let samples = self.sample_count() as u64;
+        samples * size_of::<f32>() as u64 + (self.grid.len() * size_of::<EpochMetrics>()) as u64
+    }
+
+    /// Of [`Setup::memory_bytes`], what is computed on demand.
     fn on_demand_bytes(&self, threads: usize) -> u64 {
         let samples = self.sample_count();
         let errors = self.accuracy.as_ref().map_or(0, |_| accuracy::SAMPLE_BYTES);
@@ -263,7 +272,11 @@ impl Setup {
             sums.saturating_mul(self.sites.len())
         });
         let each = samples.saturating_mul(errors).saturating_add(windows);
-        each.saturating_mul(threads) as u64
+        let dops = match self.metrics.asks_for_hdop {
+            true => self.dops_bytes(1).saturating_mul(threads as u64),
+            false => 0,
+        };
+        dops.saturating_add(each.saturating_mul(threads) as u64)
     }
 
     /// Maximum number of clock states, with one LEO clock.
@@ -282,11 +295,6 @@ impl Setup {
         fixed + per_thread * threads as u64
     }
 
-    /// The kernel supports only a mask that does not depend on azimuth (and one LEO clock).
-    fn suits_kernel(&self) -> bool {
-        !self.has_skylines()
-    }
-
     /// The weight of an observation along a unit vector.
     fn observation_weight(&self, site: &Site, unit: Vector3<f64>) -> f64 {
         self.observation_weights.weight(unit.dot(&site.local.up))
@@ -298,8 +306,7 @@ pub struct Evaluator {
     setup: Arc<Setup>,
     rotations: Arc<[EarthRotation]>,
     weights: WholeWeights,
-    /// For the setups that it supports.
-    kernel: Option<Kernel>,
+    kernel: Kernel,
     /// For the plain path, created on first use, by one thread while others wait.
     fixed: OnceLock<Result<FixedGeometry, EphemerisError>>,
     /// The metrics of the GNSS alone, created on first use.
@@ -334,15 +341,12 @@ impl Evaluator {
             .map(|elapsed_s| EarthRotation::from_gmst(epoch.gmst_rad(elapsed_s)))
             .collect();
         let weights = WholeWeights::new(&setup);
-        let new = || {
-            Kernel::new(
-                Arc::clone(&setup),
-                &weights,
-                Arc::clone(&rotations),
-                instructions,
-            )
-        };
-        let kernel = setup.suits_kernel().then(new).transpose()?;
+        let kernel = Kernel::new(
+            Arc::clone(&setup),
+            &weights,
+            Arc::clone(&rotations),
+            instructions,
+        )?;
         Ok(Self {
             setup,
             rotations,
@@ -425,7 +429,7 @@ impl Evaluator {
     /// The fast path, where it suits the satellites: its lanes have one LEO clock.
     fn kernel_for(&self, ephemeris: &Ephemeris) -> Option<&Kernel> {
         let is_suited = !self.setup.has_several_leo_clocks(ephemeris);
-        self.kernel.as_ref().filter(|_| is_suited)
+        is_suited.then_some(&self.kernel)
     }
 
     /// The metrics of some satellites by the plain path, the reference for the kernel: sample by sample in

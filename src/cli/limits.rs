@@ -53,6 +53,18 @@ pub(crate) fn check_threads(threads: NonZeroUsize) -> Result<()> {
 /// Fails before starting if a scenario needs more memory than is available.
 pub(crate) fn check_memory(setup: &Setup) -> Result<()> {
     let needed = setup.memory_bytes(rayon::current_num_threads());
+    check_fits(setup, needed)
+}
+
+/// The same for one constellation at a time with all dilutions or the series.
+pub(crate) fn check_memory_of_tables(setup: &Setup, dops: bool, series: bool) -> Result<()> {
+    let threads = rayon::current_num_threads();
+    let dops = if dops { setup.dops_bytes(threads) } else { 0 };
+    let series = if series { setup.series_bytes() } else { 0 };
+    check_fits(setup, setup.memory_bytes(threads) + dops + series)
+}
+
+fn check_fits(setup: &Setup, needed: u64) -> Result<()> {
     let available = available_memory().unwrap_or(ASSUMED_MEMORY_BYTES);
     if needed > available && !allows_large() {
         let gib = |bytes: u64| bytes as f64 / f64::from(1 << 30);

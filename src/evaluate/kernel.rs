@@ -42,6 +42,7 @@ mod dilutions;
 mod fixed;
 mod instructions;
 mod lanes;
+mod memory;
 mod normal;
 mod order_statistics;
 mod probe;
@@ -49,10 +50,12 @@ mod propagation;
 mod refine;
 mod sample;
 mod settle;
+mod skylines;
 mod tally;
 mod tiles;
 
 pub use instructions::InstructionSet;
+pub(super) use memory::{dops_bytes, memory_bytes};
 pub(super) use order_statistics::quantile_rank;
 pub use probe::{SampleTile, SampleTiles};
 
@@ -65,7 +68,8 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
 use crate::stats::Summary;
 use fixed::{Fixed, FixedSample, FixedTiles, SampleInstant};
-use lanes::{LANES, Lanes, MaskTerms};
+use lanes::{Lanes, MaskTerms};
+use memory::Keep;
 use order_statistics::{Count, Counts, Find, Found, Merge, Places, RankSearch};
 use propagation::Propagation;
 use rayon::prelude::*;
@@ -74,46 +78,14 @@ use sample::{Doubt, Limits, Sample, SampleContext, SampleOutcome, UNSOLVED, Work
 use settle::Settling;
 use std::ops::Range;
 use std::sync::Arc;
-use tally::{TileTally, ViewTally};
+use tally::ViewTally;
 use tiles::Tiles;
-
-/// What may be stored in memory. Beyond this, values are recomputed when needed, so memory does not
-/// grow with points times instants.
-#[derive(Debug, Clone, Copy)]
-struct Keep {
-    /// Values of PDOP between the two passes of the statistics of one design.
-    values: usize,
-    /// Bytes of the GNSS sums between designs.
-    fixed_bytes: usize,
-}
-
-impl Default for Keep {
-    fn default() -> Self {
-        Self {
-            values: 4 << 20,
-            fixed_bytes: 256 << 20,
-        }
-    }
-}
 
 /// Values of PDOP computed in one piece of work.
 const CHUNK_VALUES: usize = 1 << 18;
 
 /// Upper limit on the PDOP up to which f32 is trusted.
 const SINGLE_BELOW: f32 = 2.0;
-
-/// Memory of a kernel and of `threads` evaluations at a time, bytes.
-pub(super) fn memory_bytes(setup: &Setup, threads: usize) -> usize {
-    let keep = Keep::default();
-    let tiles = setup.sites.len().div_ceil(LANES) * setup.grid.len();
-    let values = (tiles * LANES).min(keep.values) * size_of::<f32>();
-    let fixed = match tiles * FixedTiles::bytes(setup.clocks) {
-        bytes if setup.gnss.is_empty() || bytes > keep.fixed_bytes => 0,
-        bytes => bytes,
-    };
-    let tallies = setup.sites.len().div_ceil(LANES) * size_of::<TileTally>();
-    fixed + threads * (values + Places::new(setup.pdop_cap).bytes() + Found::BYTES + tallies)
-}
 
 /// Samples recomputed in f64.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -189,6 +161,7 @@ impl Kernel {
             tiles,
             single: MaskTerms::new(setup.mask),
             double: MaskTerms::new(setup.mask),
+            mask: setup.mask,
             weights: setup.observation_weights,
             limits: Limits {
                 single_below: SINGLE_BELOW.min(setup.pdop_cap as f32 * 0.999),

@@ -24,10 +24,6 @@ impl Setup {
                 self.may_have_several_leo_clocks(),
                 "several LEO clocks (gnss.leo-clocks)",
             ),
-            (
-                self.has_skylines(),
-                "skylines (visibility.mask-table, region.terrain, or of sites)",
-            ),
         ];
         let slow = parts.into_iter().filter(|(is_asked, _)| *is_asked);
         let slow: Vec<&str> = slow.map(|(_, what)| what).collect();

@@ -1,6 +1,5 @@
 //! A part of the samples of a constellation, for a search that ends an evaluation as soon as it knows enough.
 
-use super::kernel::Kernel;
 use super::{Evaluator, SampleTile, SampleTiles, fixed};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::ControlFlow;
@@ -10,7 +9,7 @@ impl Evaluator {
     /// tiles.
     #[must_use]
     pub fn sample_tiles(&self) -> Option<SampleTiles> {
-        self.kernel.as_ref().map(Kernel::sample_tiles)
+        Some(self.kernel.sample_tiles())
     }
 
     /// Passes the samples of some tiles (in ascending order) at each of some instants to `see` until it breaks.

@@ -105,6 +105,27 @@ impl MaskTable {
         from + (to - from) * (azimuth_deg - from_deg) / (to_deg - from_deg)
     }
 
+    /// The least and the greatest mask from one azimuth eastwards to another, degrees, which may be beyond 0 and 360.
+    #[must_use]
+    pub(crate) fn bounds_deg(&self, from_deg: f64, to_deg: f64) -> (f64, f64) {
+        let span_deg = (to_deg - from_deg).min(360.0);
+        let from_deg = from_deg.rem_euclid(360.0);
+        let ends =
+            [from_deg, (from_deg + span_deg).rem_euclid(360.0)].map(|end| self.degrees_at(end));
+        let between = |from_deg: f64| {
+            let first = self.vertices.partition_point(|vertex| vertex.0 < from_deg);
+            let last = self
+                .vertices
+                .partition_point(|vertex| vertex.0 <= from_deg + span_deg);
+            self.vertices[first..last].iter().map(|vertex| vertex.1)
+        };
+        let inside = between(from_deg).chain(between(from_deg - 360.0));
+        let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+        inside.fold((low, high), |(low, high), mask| {
+            (low.min(mask), high.max(mask))
+        })
+    }
+
     /// Whether a direction (Earth-fixed unit vector) is at or above the mask of its azimuth.
     #[must_use]
     pub fn clears(&self, site: &LocalFrame, unit: Vector3<f64>) -> bool {
@@ -140,6 +161,27 @@ mod tests {
             (360.0, 10.0),
         ] {
             assert_eq!(street().degrees_at(azimuth_deg), mask_deg, "{azimuth_deg}");
+        }
+    }
+
+    /// Within a segment, across a vertex, across north, and all around.
+    #[test]
+    fn bounds_are_over_all_azimuths_between() {
+        for (from_deg, to_deg, low, high) in [
+            (0.0, 45.0, 10.0, 30.0),
+            (81.0, 108.0, 42.0, 50.0),
+            (-90.0, 9.0, 10.0, 14.0),
+            (351.0, 369.0, 10.0, 14.0),
+            (200.0, 560.0, 10.0, 50.0),
+            (100.0, 2000.0, 10.0, 50.0),
+            (250.0, 250.0, 10.0, 10.0),
+        ] {
+            let (found_low, found_high) = street().bounds_deg(from_deg, to_deg);
+            let apart = (found_low - low).abs().max((found_high - high).abs());
+            assert!(
+                apart < 1e-12,
+                "{from_deg} {to_deg}: {found_low} {found_high}"
+            );
         }
     }
 

@@ -12,7 +12,7 @@ mod table;
 use crate::cli::args::EvaluateArgs;
 use crate::cli::constellations::GivenConstellation;
 use crate::cli::study::Study;
-use crate::cli::{Status, constellations, output};
+use crate::cli::{Status, constellations, limits, output};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::{DopStatistics, Evaluator, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, FileSatellites};
@@ -36,6 +36,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let given: Vec<Constellation> = given.collect();
     let series = SeriesDirectory::new(args, &study, &given)?;
     let evaluator = study.evaluator()?;
+    limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
     let fixed = study.fixed()?;
     let goals = study.goals(fixed.as_ref());

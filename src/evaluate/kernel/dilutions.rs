@@ -213,7 +213,7 @@ impl Kernel {
 
 /// Upper limit on every dilution of a solved sample: the variance of a clock is at most 1 + PDOP² for unit weights.
 /// For others there is none, because a satellite near the horizon has next to no weight.
-fn largest_dilution(setup: &Setup) -> f64 {
+pub(super) fn largest_dilution(setup: &Setup) -> f64 {
     let (cap2, clocks) = (setup.pdop_cap * setup.pdop_cap, setup.clock_states() as f64);
     match setup.observation_weights {
         ObservationWeights::Unit => (cap2 + clocks * (1.0 + cap2)).sqrt() * 1.001,

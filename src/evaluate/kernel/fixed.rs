@@ -7,16 +7,19 @@ use super::instructions::{InstructionSet, Work};
 use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, Normal, SharedClock, nearest, remainder};
 use super::propagation::Positions;
+use super::skylines::{SightSlack, Skyward};
 use super::tiles::{Horizon, Tile, Tiles};
 use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::frames::EarthRotation;
+use crate::visibility::Mask;
 
 /// The GNSS part of all samples.
 pub(super) struct Fixed {
     pub(super) systems: Vec<Ephemeris>,
     clocks: Clocks,
     pub(super) mask: MaskTerms<f64>,
+    elevation_mask: Mask,
     weights: ObservationWeights,
     pub(super) instructions: InstructionSet,
     /// Empty if there is no GNSS, or too much to store.
@@ -109,6 +112,7 @@ impl Fixed {
             systems: systems(setup),
             clocks: setup.clocks,
             mask: MaskTerms::new(setup.gnss_mask),
+            elevation_mask: setup.gnss_mask,
             weights: setup.observation_weights,
             instructions,
             kept: FixedTiles::default(),
@@ -172,7 +176,11 @@ impl Fixed {
         let at_instant = |system: &Ephemeris| {
             let mut positions = Positions::new(system.satellites().len());
             positions.propagate(system, instant.elapsed_s, instant.rotation)?;
-            Ok(FixedSystem::new(positions, &tiles.fixed_horizon))
+            Ok(FixedSystem::new(
+                positions,
+                &tiles.fixed_horizon,
+                self.elevation_mask,
+            ))
         };
         self.systems.iter().map(at_instant).collect()
     }
@@ -223,14 +231,18 @@ pub(super) struct FixedSystem {
     positions: Positions,
     candidates: Candidates,
     slack_km: f32,
+    sight: SightSlack,
+    mask: Mask,
 }
 
 impl FixedSystem {
-    fn new(positions: Positions, horizon: &Horizon) -> Self {
+    fn new(positions: Positions, horizon: &Horizon, mask: Mask) -> Self {
         let mut candidates = Candidates::with_capacity(positions.count);
         candidates.fill(&positions, horizon);
         Self {
             slack_km: Horizon::cap_slack_km(&positions),
+            sight: horizon.double_slack(&positions),
+            mask,
             positions,
             candidates,
         }
@@ -244,10 +256,25 @@ impl FixedSystem {
         tile: &Tile,
         mask: &MaskTerms<f64>,
     ) {
-        for block in self.candidates.blocks() {
-            for n in bits(block.inside(&tile.fixed_cap, self.slack_km)) {
-                sums.add::<W>(&tile.double, self.positions.at(block.index(n)), mask);
+        let seen = self.candidates.blocks().iter().flat_map(|block| {
+            bits(block.inside(&tile.fixed_cap, self.slack_km)).map(|n| block.index(n))
+        });
+        let Some(sky) = &tile.sky else {
+            for n in seen {
+                sums.add::<W>(&tile.double, self.positions.at(n), mask);
             }
+            return;
+        };
+        let points = Skyward {
+            sites: &tile.double,
+            sky,
+            mask,
+            slack: self.sight,
+        };
+        for n in seen {
+            let satellite = self.positions.at(n);
+            let decide = |lane: usize| Some(sky.sees(lane, satellite, self.mask));
+            points.add::<W>(sums, satellite, decide);
         }
     }
 }

@@ -38,6 +38,8 @@ pub(super) trait Real:
     /// A number from the nearest f32 and the remainder.
     fn joined(high: f32, low: f32) -> Self;
     fn root(self) -> Self;
+    /// The nearest f32.
+    fn single(self) -> f32;
     /// One over the root of a squared range.
     fn inverse_root(self) -> Self;
     /// Whether a satellite at this height over the horizon plane and this squared range is at or
@@ -69,6 +71,11 @@ impl Real for f32 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn single(self) -> f32 {
+        self
     }
 
     #[inline(always)]
@@ -109,6 +116,11 @@ impl Real for f64 {
     #[inline(always)]
     fn root(self) -> Self {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn single(self) -> f32 {
+        self as f32
     }
 
     /// That of f32 with one Newton step, which squares its error of 1e-7: 2e-14, in a third of the
@@ -196,6 +208,42 @@ pub(super) struct SightLine<R> {
     inverse: R,
     /// Of the elevation.
     pub(super) sine: R,
+}
+
+/// The lines from the points of a tile.
+pub(super) struct LineLanes<R> {
+    to: [Lanes<R>; 3],
+    inverse: Lanes<R>,
+    sine: Lanes<R>,
+}
+
+impl<R: Real> LineLanes<R> {
+    #[inline(always)]
+    pub(super) fn nowhere() -> Self {
+        let zero = Lanes([R::ZERO; LANES]);
+        Self {
+            to: [zero; 3],
+            inverse: zero,
+            sine: zero,
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, l: usize, line: &SightLine<R>) {
+        for (lanes, value) in self.to.iter_mut().zip(line.to) {
+            lanes.0[l] = value;
+        }
+        (self.inverse.0[l], self.sine.0[l]) = (line.inverse, line.sine);
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, l: usize) -> SightLine<R> {
+        SightLine {
+            to: [self.to[0].0[l], self.to[1].0[l], self.to[2].0[l]],
+            inverse: self.inverse.0[l],
+            sine: self.sine.0[l],
+        }
+    }
 }
 
 /// Sums over the visible satellites of one clock group at each point.

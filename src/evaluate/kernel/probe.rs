@@ -189,7 +189,7 @@ mod tests {
         let evaluator = Evaluator::new(setup(grid, sites, 35.0)).unwrap();
         let design = "delta:55:40/5/1@925".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, Model::J2, grid).unwrap();
-        let kernel = evaluator.kernel.as_ref().unwrap();
+        let kernel = &evaluator.kernel;
         let mut whole: Vec<Instant> = Vec::new();
         kernel
             .visit(&ephemeris, |instant| whole.push(instant.clone()))

@@ -7,8 +7,10 @@ use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
+use super::skylines::{SightSlack, Skyward};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
 use crate::dop::{ObservationWeights, pivot_floor};
+use crate::visibility::Mask;
 
 /// Marks an unsolved sample among the values of PDOP.
 pub(super) const UNSOLVED: f32 = f32::INFINITY;
@@ -69,6 +71,7 @@ pub(super) struct SampleContext {
     pub(super) tiles: Tiles,
     pub(super) single: MaskTerms<f32>,
     pub(super) double: MaskTerms<f64>,
+    pub(super) mask: Mask,
     pub(super) weights: ObservationWeights,
     pub(super) limits: Limits,
 }
@@ -250,6 +253,7 @@ fn evaluate<W: Weighting>(
 pub(super) struct Begun<'a> {
     scene: &'a SampleContext,
     mask: MaskTerms<f32>,
+    slack: SightSlack,
     limits: Limits,
 }
 
@@ -268,6 +272,7 @@ impl<'a> Begun<'a> {
         Self {
             scene,
             mask: scene.single.with_slack(horizon.sine_slack(&work.positions)),
+            slack: horizon.single_slack(&work.positions),
             limits: limits.capped::<W>(horizon.single_below(&work.positions)),
         }
     }
@@ -283,23 +288,83 @@ impl<'a> Begun<'a> {
     ) {
         let scene = self.scene;
         let candidates = work.candidates(number, group);
-        let sums = candidates.sums::<W>(&scene.tiles.tiles[number].single, &self.mask);
-        let verdict = LaneVerdict::new::<W>(&sums, fixed, &self.limits);
+        let tile = &scene.tiles.tiles[number];
+        let judging = Judging {
+            scene,
+            limits: &self.limits,
+            number,
+            fixed,
+            positions: &work.positions,
+            candidates,
+        };
+        // Each arm goes to the end, so that tiles without a skyline keep their sums in registers.
+        match &tile.sky {
+            None => judging.judge::<W>(&candidates.sums::<W>(&tile.single, &self.mask), out),
+            Some(sky) => {
+                let points = Skyward {
+                    sites: &tile.single,
+                    sky,
+                    mask: &self.mask,
+                    slack: self.slack,
+                };
+                let sums = candidates.sums_skyward::<W>(&points, scene.mask, &work.positions);
+                judging.judge::<W>(&sums, out);
+            }
+        }
+    }
+}
+
+/// A tile whose sums are known.
+struct Judging<'a> {
+    scene: &'a SampleContext,
+    limits: &'a Limits,
+    number: usize,
+    fixed: &'a FixedTile<'a>,
+    positions: &'a Positions,
+    candidates: TileCandidates<'a>,
+}
+
+impl Judging<'_> {
+    #[inline(always)]
+    fn judge<W: Weighting>(&self, sums: &Sums<f32>, out: &mut SampleOutcome) {
+        let (number, candidates) = (self.number, self.candidates);
+        let verdict = LaneVerdict::new::<W>(sums, self.fixed, self.limits);
         out.pdop[number] = verdict.pdop;
         out.visible[number] = sums.count;
         if any(&verdict.doubtful) {
             doubt(number, Doubt::Mask, &verdict.doubtful, candidates, out);
         }
         if any(&verdict.coarse) {
-            compute_again::<W>(
-                scene,
-                number,
-                fixed,
-                &verdict,
-                &work.positions,
-                candidates,
-                out,
-            );
+            self.compute_again::<W>(&verdict, out);
+        }
+    }
+
+    /// Recomputes the tile in f64 for the points for which f32 is too coarse.
+    #[inline(always)]
+    fn compute_again<W: Weighting>(&self, verdict: &LaneVerdict, out: &mut SampleOutcome) {
+        let (number, candidates) = (self.number, self.candidates);
+        let sums = candidates.double_sums::<W>(self.scene, number, self.positions);
+        let limits = &self.scene.limits;
+        let system = NormalLanes::new::<W>(&sums, self.fixed);
+        let double = system.pdop(limits.clocks);
+        let mut undecided = Lanes([0; LANES]);
+        for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
+            let pdop = double.0[lane];
+            let satellites = system.surplus.0[lane] + limits.clocks;
+            if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
+                let solved = pdop <= limits.cap;
+                out.pdop[number].0[lane] = if solved {
+                    limits.available.stored(pdop)
+                } else {
+                    UNSOLVED
+                };
+            } else {
+                undecided.0[lane] = 1;
+            }
+            out.doubled += 1;
+        }
+        if any(&undecided) {
+            doubt(number, Doubt::Geometry, &undecided, candidates, out);
         }
     }
 }
@@ -332,6 +397,27 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
+    /// The same under the skylines of the points.
+    #[inline(always)]
+    fn sums_skyward<W: Weighting>(
+        &self,
+        points: &Skyward<'_, f32>,
+        mask: Mask,
+        positions: &Positions,
+    ) -> Sums<f32> {
+        let mut all = Sums::zero();
+        for (block, &word) in self.blocks.iter().zip(self.words) {
+            let mut sums = Sums::zero();
+            for n in bits(word) {
+                let satellite = || positions.at(block.index(n));
+                let decide = |lane: usize| points.sky.surely_sees(lane, satellite(), mask);
+                points.add::<W>(&mut sums, block.position(n), decide);
+            }
+            all.merge::<W>(&sums);
+        }
+        all
+    }
+
     #[inline(always)]
     fn double_sums<W: Weighting>(
         self,
@@ -340,9 +426,26 @@ impl<'a> TileCandidates<'a> {
         positions: &Positions,
     ) -> Sums<f64> {
         let mut sums = Sums::zero();
-        let sites = &scene.tiles.tiles[number].double;
-        for n in self.satellites() {
-            sums.add::<W>(sites, positions.at(n), &scene.double);
+        let tile = &scene.tiles.tiles[number];
+        match &tile.sky {
+            None => {
+                for n in self.satellites() {
+                    sums.add::<W>(&tile.double, positions.at(n), &scene.double);
+                }
+            }
+            Some(sky) => {
+                let points = Skyward {
+                    sites: &tile.double,
+                    sky,
+                    mask: &scene.double,
+                    slack: scene.tiles.horizon.double_slack(positions),
+                };
+                for n in self.satellites() {
+                    let satellite = positions.at(n);
+                    let decide = |lane: usize| Some(sky.sees(lane, satellite, scene.mask));
+                    points.add::<W>(&mut sums, satellite, decide);
+                }
+            }
         }
         sums
     }
@@ -406,41 +509,5 @@ fn doubt(
             lane,
             satellites: satellites.clone(),
         });
-    }
-}
-
-/// Recomputes a tile in f64 for the points for which f32 is too coarse.
-#[inline(always)]
-fn compute_again<W: Weighting>(
-    scene: &SampleContext,
-    number: usize,
-    fixed: &FixedTile<'_>,
-    verdict: &LaneVerdict,
-    positions: &Positions,
-    candidates: TileCandidates<'_>,
-    out: &mut SampleOutcome,
-) {
-    let sums = candidates.double_sums::<W>(scene, number, positions);
-    let limits = &scene.limits;
-    let system = NormalLanes::new::<W>(&sums, fixed);
-    let double = system.pdop(limits.clocks);
-    let mut undecided = Lanes([0; LANES]);
-    for lane in (0..LANES).filter(|&lane| verdict.coarse.0[lane] != 0) {
-        let pdop = double.0[lane];
-        let satellites = system.surplus.0[lane] + limits.clocks;
-        if pdop < f64::INFINITY && limits.decides(pdop, satellites) {
-            let solved = pdop <= limits.cap;
-            out.pdop[number].0[lane] = if solved {
-                limits.available.stored(pdop)
-            } else {
-                UNSOLVED
-            };
-        } else {
-            undecided.0[lane] = 1;
-        }
-        out.doubled += 1;
-    }
-    if any(&undecided) {
-        doubt(number, Doubt::Geometry, &undecided, candidates, out);
     }
 }

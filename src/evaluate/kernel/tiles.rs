@@ -20,6 +20,7 @@
 use super::super::weights::WholeWeights;
 use super::lanes::{LANES, Lanes, SiteLanes};
 use super::propagation::Positions;
+use super::skylines::{SightSlack, SkyTables, TileSky, lowest_deg};
 use crate::ground::Site;
 use crate::visibility::Mask;
 use nalgebra::Vector3;
@@ -47,6 +48,8 @@ pub(super) struct Tile {
     /// The same for the GNSS, which may have its own mask.
     pub(super) fixed_cap: Cap,
     pub(super) weights: TileWeights,
+    /// The skylines of the points, if one has any.
+    pub(super) sky: Option<TileSky>,
 }
 
 /// The weights of the points of a tile; a lane without a point weighs nothing.
@@ -102,7 +105,8 @@ pub(super) struct Horizon {
 }
 
 impl Horizon {
-    fn new(sites: &[Site], mask: Mask) -> Self {
+    /// For satellites above a mask that are above `lowest_deg` from all points.
+    fn new(sites: &[Site], mask: Mask, lowest_deg: f64) -> Self {
         let mut tilt: f64 = 0.0;
         let (mut nearest_km, mut farthest_km) = (f64::INFINITY, 0.0_f64);
         for site in sites {
@@ -111,7 +115,8 @@ impl Horizon {
             farthest_km = farthest_km.max(radius);
             tilt = tilt.max(site.local.origin_km.km().cross(&site.local.up).norm() / radius);
         }
-        let (mask_rad, tilt_rad) = (mask.degrees().to_radians(), tilt.min(1.0).asin());
+        let mask_deg = mask.degrees().max(lowest_deg);
+        let (mask_rad, tilt_rad) = (mask_deg.to_radians(), tilt.min(1.0).asin());
         let (sin_most, cos_most) = (mask_rad + tilt_rad).min(FRAC_PI_2).sin_cos();
         Self {
             farthest_km,
@@ -137,6 +142,17 @@ impl Horizon {
         let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
         // For satellites on the ground f32 cannot decide anything.
         slack.min(2.0) as f32
+    }
+
+    /// Error bounds of lines of sight to positions in f32.
+    #[inline(always)]
+    pub(super) fn single_slack(&self, positions: &Positions) -> SightSlack {
+        SightSlack::new(positions, self.farthest_km, rounding_km(positions))
+    }
+
+    /// The same of positions in f64.
+    pub(super) fn double_slack(&self, positions: &Positions) -> SightSlack {
+        SightSlack::new(positions, self.farthest_km, 0.0)
     }
 
     /// PDOP up to which f32 gives six digits. A line of sight is rotated by the rounding of the positions
@@ -231,13 +247,18 @@ impl Tiles {
         fixed_mask: Mask,
     ) -> Self {
         let mut members: Vec<u32> = (0..sites.len() as u32).collect();
+        let lowest_deg = lowest_deg(sites);
         let mut tiles = Self {
             tiles: Vec::with_capacity(sites.len().div_ceil(LANES)),
             groups: Vec::new(),
-            horizon: Horizon::new(sites, mask),
-            fixed_horizon: Horizon::new(sites, fixed_mask),
+            horizon: Horizon::new(sites, mask, lowest_deg),
+            fixed_horizon: Horizon::new(sites, fixed_mask, lowest_deg),
         };
         tiles.split(sites, weights, &mut members);
+        let tables = SkyTables::new(sites);
+        for tile in &mut tiles.tiles {
+            tile.sky = tables.tile(sites, &tile.members);
+        }
         tiles
     }
 
@@ -278,6 +299,7 @@ impl Tiles {
             fixed_cap: self.fixed_horizon.cap(circle),
             weights: TileWeights::new(weights, members),
             members: members.to_vec(),
+            sky: None,
         });
     }
 }

@@ -18,37 +18,98 @@ impl Propagator for Hovering {
     }
 }
 
-/// Satellites at the mask itself and a nanodegree to either side, a tenth of a millimetre at 1500 km,
-/// which f32 cannot distinguish.
-#[test]
-fn decisions_at_the_mask_are_those_of_the_plain_path() {
-    let base = setup([3.0, 54.0], Surface::Wgs84);
-    let setup = Setup {
-        grid: TimeGrid::new(base.grid.epoch(), 600.0, 60.0).unwrap(),
-        ..base
-    };
-    let mut satellites = Vec::new();
-    for (n, site) in setup.sites.iter().enumerate() {
-        let azimuth = n as f64;
-        let elevation = (7.0 + if n % 2 == 0 { 1e-9 } else { -1e-9_f64 }).to_radians();
-        let level = site.local.east * azimuth.sin() + site.local.north * azimuth.cos();
-        let line = site.local.up * elevation.sin() + level * elevation.cos();
-        satellites.push(EphemerisSatellite {
+/// Satellites at rest in the sight of one point each, at 1500 km, in these directions: azimuth and elevation, degrees.
+fn planted(setup: &Setup, direction: impl Fn(usize) -> (f64, f64)) -> Ephemeris {
+    let satellite = |(n, site): (usize, &Site)| {
+        let (azimuth_deg, elevation_deg) = direction(n);
+        let (sin_a, cos_a) = azimuth_deg.to_radians().sin_cos();
+        let (sin_e, cos_e) = elevation_deg.to_radians().sin_cos();
+        let level = site.local.east * sin_a + site.local.north * cos_a;
+        let line = site.local.up * sin_e + level * cos_e;
+        EphemerisSatellite {
             name: n.to_string(),
             slot: None,
             propagator: Box::new(Hovering {
                 position_km: site.local.origin_km + line * 1500.0,
                 epoch: setup.grid.epoch(),
             }),
-        });
+        }
+    };
+    Ephemeris::new(
+        setup.grid,
+        setup.sites.iter().enumerate().map(satellite).collect(),
+    )
+}
+
+/// Ten instants of the region.
+fn short_setup() -> Setup {
+    let base = setup([3.0, 54.0], Surface::Wgs84);
+    Setup {
+        grid: TimeGrid::new(base.grid.epoch(), 600.0, 60.0).unwrap(),
+        ..base
     }
-    let ephemeris = Ephemeris::new(setup.grid, satellites);
+}
+
+/// A nanodegree to either side, a tenth of a millimetre at 1500 km, which f32 cannot distinguish.
+fn either_side(n: usize) -> f64 {
+    if n.is_multiple_of(2) { 1e-9 } else { -1e-9 }
+}
+
+/// Satellites a nanodegree to either side of the mask.
+#[test]
+fn decisions_at_the_mask_are_those_of_the_plain_path() {
+    let setup = short_setup();
+    let ephemeris = planted(&setup, |n| (57.0 * n as f64, 7.0 + either_side(n)));
     let evaluator = Evaluator::new(setup).unwrap();
-    let kernel = evaluator.kernel.as_ref().unwrap();
-    let (_, rechecks) = kernel.evaluate(&ephemeris, false).unwrap();
+    let (_, rechecks) = evaluator.kernel.evaluate(&ephemeris, false).unwrap();
     assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
     let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
     compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+}
+
+/// A street between houses, and a wall on one side.
+pub(super) fn street() -> MaskTable {
+    let vertices = [
+        (0.0, 12.0),
+        (80.0, 55.0),
+        (100.0, 50.0),
+        (100.000_001, 11.0),
+        (200.0, 40.0),
+        (360.0, 12.0),
+    ];
+    MaskTable::new(vertices.to_vec()).unwrap()
+}
+
+/// Satellites a nanodegree to either side of a skyline, at all azimuths.
+#[test]
+fn decisions_at_a_skyline_are_those_of_the_plain_path() {
+    let setup = short_setup().with_skyline(street());
+    let direction = |n: usize| {
+        let azimuth_deg = (n as f64 * 2.517) % 360.0;
+        (
+            azimuth_deg,
+            street().degrees_at(azimuth_deg) + either_side(n),
+        )
+    };
+    let ephemeris = planted(&setup, direction);
+    let evaluator = Evaluator::new(setup).unwrap();
+    let (_, rechecks) = evaluator.kernel.evaluate(&ephemeris, false).unwrap();
+    assert!(rechecks.near_mask >= 143 * 10, "{rechecks:?}");
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    compare(&evaluator.evaluate_ephemeris(&ephemeris).unwrap(), &plain).unwrap();
+}
+
+/// A day under a skyline: at most one sample in ten thousand is left to the plain path.
+#[test]
+fn a_day_under_a_skyline_equals_the_plain_path() {
+    let design: Design = "delta:55:182/13/1@925".parse().unwrap();
+    let setup = setup([3.0, 54.0], Surface::Sphere).with_skyline(street());
+    let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+    let evaluator = Evaluator::new(setup).unwrap();
+    let plain = evaluator.evaluate_plain(&ephemeris).unwrap();
+    let (fast, rechecks) = evaluator.evaluate_counted(&design).unwrap();
+    compare(&fast, &plain).unwrap();
+    assert!(rechecks.near_mask < 21, "{rechecks:?}");
 }
 
 /// A satellite exactly at the mask is visible in the lanes too, and one a rounding below is not; what f32 cannot tell is
@@ -136,7 +197,7 @@ fn single_values_hold_six_digits() {
         };
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
         let evaluator = Evaluator::new(setup).unwrap();
-        let kernel = evaluator.kernel.as_ref().unwrap();
+        let kernel = &evaluator.kernel;
         let values = |single_below: f32| {
             let limits = Limits {
                 single_below,

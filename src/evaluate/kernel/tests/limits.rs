@@ -1,7 +1,8 @@
 //! Where the lanes may decide, and where the plain path does.
 
 use super::super::sample::Limits;
-use super::Threshold;
+use super::decisions::street;
+use super::{Surface, Threshold, setup};
 
 /// The band about a threshold is a relative 1e-6, and what one pivot floor changes: 8 ε n PDOP², for 100 satellites and
 /// a cap of 10⁵ a relative 1.78e-3.
@@ -20,4 +21,22 @@ fn lanes_decide_outside_the_band_of_each_threshold() {
             assert!(decides(beyond), "{threshold}: {beyond} on side {side}");
         }
     }
+}
+
+/// Dilutions asked for by a search count on every thread, those of `--dops` once, and skylines by their tables.
+#[test]
+fn memory_of_what_is_asked_for_is_counted() {
+    let setup = setup([3.0, 54.0], Surface::Sphere);
+    // GDOP, PDOP, HDOP, VDOP and two clocks, on nine tiles.
+    let rows = (6 * 9 * 16 * 1440 * size_of::<f32>()) as u64;
+    let dops = setup.dops_bytes(1);
+    assert!((rows..rows + (8 << 20)).contains(&dops), "{dops}");
+    let mut asking = setup.clone();
+    asking.metrics.asks_for_hdop = true;
+    assert_eq!(asking.memory_bytes(2), setup.memory_bytes(2) + 2 * dops);
+    assert!(setup.series_bytes() >= (143 * 1440 * size_of::<f32>()) as u64);
+    let under_skyline = setup.clone().with_skyline(street());
+    let table = (2048 * size_of::<u32>()) as u64;
+    let more = under_skyline.memory_bytes(1) - setup.memory_bytes(1);
+    assert!((table..table + 143 * 1024).contains(&more), "{more}");
 }

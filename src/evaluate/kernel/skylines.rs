@@ -1,0 +1,282 @@
+//! Skylines in lanes.
+//!
+//! A table gives, for each bin of azimuth, bounds of the sine of the elevation: a satellite above the upper one clears the
+//! skyline, one below the lower one does not. What is between them, one satellite in a hundred, is decided alone in f64.
+//! Bins are equal parts not of the azimuth but of the position on the square |e| + |n| = 1, which needs no
+//! trigonometric function.
+
+use super::lanes::{
+    LANES, Lanes, LineLanes, MaskTerms, Real, SightLine, SiteLanes, Sums, Weighting,
+};
+use super::propagation::Positions;
+use crate::frames::Position;
+use crate::ground::Site;
+use crate::visibility::{Mask, MaskTable};
+use nalgebra::Vector3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Bins of a table.
+const BINS: usize = 2048;
+
+/// Length of a bin on the square, whose four sides have the length 1 each.
+const BIN: f64 = 4.0 / BINS as f64;
+
+/// How far a satellite may be beyond the ends of its bin, on the square.
+const MARGIN: f64 = BIN / 4.0;
+
+/// Bounds are stored in units of this sine.
+const QUANTUM: f64 = 1.0 / u16::MAX as f64;
+
+/// Bounds of the sine of the elevation in a bin: 16 bits each.
+type SineBounds = u32;
+
+/// How far positions computed in two ways may be apart, km.
+const APART_KM: f64 = 1e-6;
+
+/// The same for angles computed in two ways, radians.
+const APART_RAD: f64 = 1e-11;
+
+/// Error bounds of what lanes compute of a line of sight.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SightSlack {
+    /// Of the sine of an elevation.
+    sine: f32,
+    /// |e| + |n| below which the azimuth is not good enough, km.
+    least_level_km: f32,
+}
+
+impl SightSlack {
+    /// For lines of sight to some satellites from points up to `farthest_km` from the centre of the Earth, which may be
+    /// displaced by `rounding_km`.
+    pub(super) fn new(positions: &Positions, farthest_km: f64, rounding_km: f64) -> Self {
+        let epsilon = f64::from(f32::EPSILON);
+        let range_km = (positions.nearest_km - farthest_km).max(0.0);
+        let sine = rounding_km / range_km + 4.0 * epsilon;
+        // Two rounded positions, and six roundings of a component along the horizon.
+        let longest_km = positions.farthest_km + farthest_km;
+        let level_km = 2.0 * rounding_km + 6.0 * epsilon * longest_km;
+        Self {
+            sine: sine.min(2.0) as f32,
+            least_level_km: (level_km / (MARGIN / 2.0)) as f32,
+        }
+    }
+}
+
+/// The tables of all skylines, one after the other; the first is that of points without one.
+#[derive(Debug)]
+pub(super) struct SkyTables {
+    bounds: Arc<[SineBounds]>,
+    /// The first bin of each skyline, by its address.
+    first: BTreeMap<usize, u32>,
+}
+
+fn address(skyline: &Arc<MaskTable>) -> usize {
+    Arc::as_ptr(skyline).addr()
+}
+
+impl SkyTables {
+    pub(super) fn new(sites: &[Site]) -> Self {
+        let mut bounds = vec![0; BINS];
+        let mut first = BTreeMap::new();
+        for skyline in sites.iter().filter_map(|site| site.skyline.as_ref()) {
+            first.entry(address(skyline)).or_insert_with(|| {
+                let place = bounds.len() as u32;
+                bounds.extend((0..BINS).map(|bin| bounds_of(skyline, bin)));
+                place
+            });
+        }
+        Self {
+            bounds: bounds.into(),
+            first,
+        }
+    }
+
+    /// Memory of the tables and skylines of all points, bytes.
+    pub(super) fn bytes(sites: &[Site]) -> usize {
+        let with = sites.iter().filter_map(|site| site.skyline.as_ref());
+        let mut known: Vec<_> = with.map(address).collect();
+        let points = known.len();
+        known.sort_unstable();
+        known.dedup();
+        let tables = known.len() * BINS * size_of::<SineBounds>();
+        tables + points * (size_of::<Site>() + size_of::<TileSky>() / LANES)
+    }
+
+    /// The skylines of the points of a tile; `None` if none has one.
+    pub(super) fn tile(&self, sites: &[Site], members: &[u32]) -> Option<TileSky> {
+        let points: Vec<Site> = members.iter().map(|&m| sites[m as usize].clone()).collect();
+        points.iter().find(|site| site.skyline.is_some())?;
+        let first = |l: usize| {
+            let skyline = points.get(l).and_then(|site| site.skyline.as_ref());
+            skyline.and_then(|skyline| self.first.get(&address(skyline)))
+        };
+        let lanes = |axis: fn(&Site) -> Vector3<f64>| {
+            [0, 1, 2].map(|n| {
+                let component = |l: usize| points.get(l).map_or(0.0, |site| axis(site)[n] as f32);
+                Lanes(std::array::from_fn(component))
+            })
+        };
+        Some(TileSky {
+            east: lanes(|site| site.local.east),
+            north: lanes(|site| site.local.north),
+            first: Lanes(std::array::from_fn(|l| first(l).copied().unwrap_or(0))),
+            bounds: Arc::clone(&self.bounds),
+            points,
+        })
+    }
+}
+
+/// The smallest mask of a skyline at any azimuth and point, degrees; 0 if a point has none.
+pub(super) fn lowest_deg(sites: &[Site]) -> f64 {
+    let lowest = |site: &Site| match &site.skyline {
+        Some(skyline) => skyline.bounds_deg(0.0, 360.0).0,
+        None => 0.0,
+    };
+    sites.iter().map(lowest).reduce(f64::min).unwrap_or(0.0)
+}
+
+/// The azimuth at a place on the square, degrees: 0 in the north, 1 in the east.
+fn azimuth_deg(place: f64) -> f64 {
+    let corner = place.floor();
+    let along = place - corner;
+    90.0 * corner + along.atan2(1.0 - along).to_degrees()
+}
+
+fn bounds_of(skyline: &MaskTable, bin: usize) -> SineBounds {
+    let centre = bin as f64 * BIN;
+    let reach = BIN / 2.0 + MARGIN;
+    let (low, high) = skyline.bounds_deg(azimuth_deg(centre - reach), azimuth_deg(centre + reach));
+    let steps = |mask_deg: f64| mask_deg.to_radians().sin() / QUANTUM;
+    let low = (steps(low).floor() - 1.0).max(0.0) as u32;
+    let high = (steps(high).ceil() + 1.0).min(f64::from(u16::MAX)) as u32;
+    low << 16 | high
+}
+
+/// The skylines of the points of a tile.
+#[derive(Debug, Clone)]
+pub(super) struct TileSky {
+    east: [Lanes<f32>; 3],
+    north: [Lanes<f32>; 3],
+    /// The first bin of each point.
+    first: Lanes<u32>,
+    bounds: Arc<[SineBounds]>,
+    points: Vec<Site>,
+}
+
+impl TileSky {
+    /// The bin of a line of sight, and whether its azimuth is good enough for that.
+    #[inline(always)]
+    fn bin<R: Real>(&self, line: &SightLine<R>, slack: SightSlack, l: usize) -> (u32, bool) {
+        // Adding this leaves a whole number in the last bits of the fraction, also of negative numbers.
+        const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
+        let [dx, dy, dz] = line.to.map(R::single);
+        let along =
+            |axis: &[Lanes<f32>; 3]| dx * axis[0].0[l] + dy * axis[1].0[l] + dz * axis[2].0[l];
+        let (east, north) = (along(&self.east), along(&self.north));
+        let level = east.abs() + north.abs();
+        let side = east / level;
+        let place = if north >= 0.0 { side } else { 2.0 - side };
+        let bin = (place * (BINS as f32 / 4.0) + WHOLE).to_bits() % BINS as u32;
+        (bin, level >= slack.least_level_km)
+    }
+
+    /// Visibility from the point in a lane by the definition.
+    #[inline(never)]
+    pub(super) fn sees(&self, lane: usize, satellite: [f64; 3], mask: Mask) -> bool {
+        let target = Position::new(satellite.into());
+        let site = self.points.get(lane);
+        site.is_some_and(|site| site.line_of_sight(mask, target).is_some())
+    }
+
+    /// The same, where it does not depend on how the position was computed.
+    #[inline(never)]
+    pub(super) fn surely_sees(&self, lane: usize, satellite: [f64; 3], mask: Mask) -> Option<bool> {
+        let Some(site) = self.points.get(lane) else {
+            return Some(false);
+        };
+        let target = Position::new(satellite.into());
+        let (elevation_rad, azimuth_rad) = site.local.look_angles(target);
+        let apart_rad = APART_KM / (target - site.local.origin_km).norm() + APART_RAD;
+        let apart_deg = apart_rad.to_degrees();
+        let turned_deg = (apart_deg / elevation_rad.cos()).min(180.0);
+        let azimuth_deg = azimuth_rad.to_degrees();
+        let bounds = |skyline: &Arc<MaskTable>| {
+            skyline.bounds_deg(azimuth_deg - turned_deg, azimuth_deg + turned_deg)
+        };
+        let (low, high) = site.skyline.as_ref().map_or((0.0, 0.0), bounds);
+        let above = |bound: f64| elevation_rad.to_degrees() - bound.max(mask.degrees());
+        if above(high) > apart_deg {
+            Some(true)
+        } else if above(low) < -apart_deg {
+            Some(false)
+        } else {
+            None
+        }
+    }
+}
+
+/// The points of a tile under their skylines.
+#[derive(Clone, Copy)]
+pub(super) struct Skyward<'a, R> {
+    pub(super) sites: &'a SiteLanes<R>,
+    pub(super) sky: &'a TileSky,
+    pub(super) mask: &'a MaskTerms<R>,
+    pub(super) slack: SightSlack,
+}
+
+impl<R: Real> Skyward<'_, R> {
+    /// Adds a satellite where it is visible. `decide` decides for a lane, if it can.
+    #[inline(always)]
+    pub(super) fn add<W: Weighting>(
+        &self,
+        sums: &mut Sums<R>,
+        satellite: [R; 3],
+        decide: impl Fn(usize) -> Option<bool>,
+    ) {
+        let (mut seen, mut possible) = ([0_u32; LANES], [0_u32; LANES]);
+        let (mut places, mut sines) = ([0_u32; LANES], [0.0_f32; LANES]);
+        let mut firm = [0_u32; LANES];
+        let mut lines = LineLanes::nowhere();
+        for l in 0..LANES {
+            let (line, is_seen, is_possible) = self.sites.line(satellite, self.mask, l);
+            lines.set(l, &line);
+            (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_possible));
+            let (bin, is_firm) = self.sky.bin(&line, self.slack, l);
+            places[l] = self.sky.first.0[l] + bin;
+            firm[l] = u32::from(is_firm);
+            sines[l] = line.sine.single();
+        }
+        let mut bounds: [SineBounds; LANES] = [0; LANES];
+        for l in 0..LANES {
+            // There is such a place.
+            bounds[l] = self
+                .sky
+                .bounds
+                .get(places[l] as usize)
+                .copied()
+                .unwrap_or(0);
+        }
+        let mut open = 0;
+        for l in 0..LANES {
+            let low = (bounds[l] >> 16) as i32 as f32 * QUANTUM as f32;
+            let high = (bounds[l] % (1 << 16)) as i32 as f32 * QUANTUM as f32;
+            let clear = u32::from(sines[l] >= high + self.slack.sine) & firm[l];
+            let blocked = u32::from(sines[l] < low - self.slack.sine) & firm[l];
+            seen[l] &= clear;
+            possible[l] &= 1 - blocked;
+            open |= possible[l] & (1 - seen[l]);
+        }
+        if open != 0 {
+            for l in 0..LANES {
+                let is_open = possible[l] > seen[l];
+                if let Some(is_seen) = is_open.then(|| decide(l)).flatten() {
+                    (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_seen));
+                }
+            }
+        }
+        for l in 0..LANES {
+            sums.add_line::<W>(&lines.get(l), seen[l] != 0, possible[l] != 0, l);
+        }
+    }
+}
