@@ -63,7 +63,16 @@ pub(crate) fn membership(value: f64) -> String {
 }
 
 fn decimals(value: Option<f64>, digits: usize) -> String {
-    value.map_or_else(|| NONE.to_owned(), |value| format!("{value:.digits$}"))
+    value.map_or_else(|| NONE.to_owned(), |value| rounded(value, digits))
+}
+
+/// With so many decimals; what rounds to zero has no sign.
+fn rounded(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| c == '0' || c == '.') => zero.to_owned(),
+        _ => text,
+    }
 }
 
 /// Five significant digits, and all digits of the integer part: `0.61097`, `12.346`, `146`, `123457`.

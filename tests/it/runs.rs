@@ -393,7 +393,10 @@ fn points_keep_their_names() {
     );
     let table = fs::read_to_string(place.join("series/points.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
-    assert!(lines[0].ends_with(",outage_cut,name"), "{table}");
+    assert!(
+        lines[0].contains(",outage_cut,gain_mean_pdop,coverage_1,") && lines[0].ends_with(",name"),
+        "{table}"
+    );
     assert!(
         lines[1].ends_with(",Brest") && lines[2].ends_with(','),
         "{table}"

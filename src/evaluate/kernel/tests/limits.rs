@@ -1,6 +1,6 @@
 //! Where the lanes may decide, and where the plain path does.
 
-use super::super::sample::Limits;
+use super::super::limits::Limits;
 use super::decisions::street;
 use super::{Surface, Threshold, setup};
 
