@@ -165,13 +165,17 @@ pub(crate) fn require_files(args: &ConstellationArgs) -> Result<()> {
 /// The satellites of a constellation on the grid of a setup, with warnings of what is old, interpolated, in one
 /// place or about to collide.
 pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
-    let ephemeris = one
-        .in_service(setup)
-        .with_context(|| format!("cannot propagate {}", one.name))?;
+    let ephemeris = propagate_member(one, setup)?;
     warn_of_files(one, setup.grid);
     coincidence::warn(&setup.gnss, setup.grid, Some(&ephemeris));
     coincidence::warn_of_meetings(&one.name, &ephemeris);
     Ok(ephemeris)
+}
+
+/// The same for a member of a run, of which the command that made the run has warned.
+pub(crate) fn propagate_member(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
+    one.in_service(setup)
+        .with_context(|| format!("cannot propagate {}", one.name))
 }
 
 /// Warns of old element sets and of interpolated states.

@@ -77,6 +77,10 @@ impl StagedFile {
             if found.as_ref().is_some_and(fs::Metadata::is_dir) {
                 bail!("it is a directory, and a file is needed");
             }
+            if let (None, Some(parent)) = (&found, place.parent().filter(|parent| !parent.is_dir()))
+            {
+                bail!("there is no directory {}", parent.display());
+            }
             let is_stream = found.is_some_and(|found| !found.is_file());
             let staged = (!is_stream).then(|| staging::file(&place)).transpose()?;
             Ok(Self { place, staged })

@@ -86,7 +86,7 @@ impl View {
                     warn_of_fixed(fixed.as_ref(), &beside);
                     beside
                 };
-                let compared = compared(shown, &study, &evaluator)?;
+                let compared = compared(shown, given.len(), &study, &evaluator)?;
                 (Some(evaluator), compared)
             }
             None if !args.constellations.is_empty() => {
@@ -132,7 +132,7 @@ impl View {
             );
         }
         let evaluator = study.evaluator()?;
-        let compared = compared(given, &study, &evaluator)?;
+        let compared = compared(given, 0, &study, &evaluator)?;
         Ok(Self {
             stamp: Some(study.stamp()?),
             given: Vec::new(),
@@ -234,9 +234,10 @@ fn beside_given(
     Ok(all)
 }
 
-/// The constellations, propagated and evaluated.
+/// The constellations, propagated and evaluated; the first `members` are of the run that is shown.
 fn compared(
     all: impl IntoIterator<Item = Constellation>,
+    members: usize,
     study: &Study,
     evaluator: &Evaluator,
 ) -> Result<Vec<Compared>> {
@@ -244,13 +245,17 @@ fn compared(
     let designs = study.scenario.design_space();
     let problem = DesignProblem::new(evaluator, designs, study.goals(fixed.as_ref()))?;
     let files = fixed.as_ref().and_then(|fixed| fixed.files.as_ref());
-    let one = |one: Constellation| {
-        let ephemeris = constellations::propagate(&one, evaluator.setup())?;
+    let one = |(place, one): (usize, Constellation)| {
+        let setup = evaluator.setup();
+        let ephemeris = match place < members {
+            true => constellations::propagate_member(&one, setup)?,
+            false => constellations::propagate(&one, setup)?,
+        };
         let name = one.name.clone();
         Compared::new(one, ephemeris, &problem, files)
             .with_context(|| format!("cannot evaluate {name}"))
     };
-    all.into_iter().map(one).collect()
+    all.into_iter().enumerate().map(one).collect()
 }
 
 fn read(directory: &Path, args: &ViewArgs) -> Result<RunFiles> {

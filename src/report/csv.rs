@@ -14,7 +14,7 @@ use serde::Serialize;
 use std::io;
 
 /// The columns of a table of constellations: name, design, files, metrics, further objectives and constrained
-/// quantities, and dilutions of precision.
+/// quantities, dilutions of precision, and the verdict on each constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ConstellationColumns {
     /// Whether a constellation has satellites from files.
@@ -27,6 +27,8 @@ pub struct ConstellationColumns {
     dops: Vec<String>,
     /// The metrics whose range over phases of the GNSS is given.
     phases: Vec<String>,
+    /// The constraints, as they are written.
+    constraints: Vec<String>,
 }
 
 impl ConstellationColumns {
@@ -40,6 +42,7 @@ impl ConstellationColumns {
         let on_demand = entry.evaluated.metrics.on_demand().into_iter();
         let on_demand: Vec<String> = on_demand.map(|(name, _)| name).collect();
         let is_new = |one: &Quantity| !on_demand.contains(&column(&one.to_string()));
+        let constraints = entry.evaluated.constraints.iter();
         Self {
             has_files,
             quantities: quantities
@@ -49,6 +52,7 @@ impl ConstellationColumns {
             on_demand,
             dops: dops.map(|(name, _)| column(&name.to_lowercase())).collect(),
             phases: ranges(entry).into_iter().map(|(name, _)| name).collect(),
+            constraints: constraints.map(|one| one.constraint.clone()).collect(),
         }
     }
 
@@ -77,6 +81,7 @@ impl ConstellationColumns {
         for name in &self.phases {
             names.extend(["min", "mean", "max"].map(|part| format!("{name}_phases_{part}")));
         }
+        names.extend(self.constraints.iter().cloned());
         line(&names)
     }
 
@@ -116,6 +121,8 @@ impl ConstellationColumns {
             ];
             row.extend(parts.map(optional));
         }
+        let checks = evaluated.constraints.iter();
+        row.extend(checks.map(|check| check.verdict().to_owned()));
         line(&row)
     }
 }

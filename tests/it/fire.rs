@@ -532,6 +532,33 @@ fn a_checkpoint_of_other_lengths_is_refused() {
     assert!(refused.stderr.contains(message), "{}", refused.stderr);
 }
 
+/// A file in a directory that is not there is refused by the name of the directory, not by that of a staging file.
+#[test]
+fn a_missing_directory_is_named() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let of = "--set region.step-deg=20 --set time.duration-h=1 --design delta:55:6/3/1@925";
+    for command in [
+        format!("plot --figure cdf {of} --out none/cdf.svg"),
+        format!("report {of} --out none/report.html"),
+    ] {
+        let refused = ran(place, &line(&command));
+        assert_eq!(refused.status, 2);
+        assert!(
+            refused.stderr.contains("there is no directory"),
+            "{}",
+            refused.stderr
+        );
+        assert!(refused.stderr.contains("none"), "{}", refused.stderr);
+        assert!(
+            !refused.stderr.contains(".navwalker-"),
+            "{}",
+            refused.stderr
+        );
+    }
+    assert!(names(place).is_empty());
+}
+
 /// The manifest of an export that is compared with leads nowhere else.
 #[test]
 fn a_manifest_stays_in_its_directory() {

@@ -48,7 +48,7 @@ pub(super) fn file(place: &Path) -> io::Result<(NamedTempFile, Removed)> {
     let prefix = prefix(place);
     builder.prefix(&prefix).rand_bytes(RANDOM);
     permit(&mut builder, 0o666);
-    let file = builder.tempfile_in(parent)?;
+    let file = builder.tempfile_in(parent).map_err(unnamed)?;
     // Without locks, nothing is considered stale either.
     let _ = file.as_file().lock();
     let removed = Removed::new(file.path());
@@ -63,11 +63,22 @@ pub(super) fn directory(place: &Path) -> io::Result<(TempDir, Option<File>, Remo
     let prefix = prefix(place);
     builder.prefix(&prefix).rand_bytes(RANDOM);
     permit(&mut builder, 0o777);
-    let directory = builder.tempdir_in(parent)?;
+    let directory = builder.tempdir_in(parent).map_err(unnamed)?;
     let lock = File::open(directory.path()).ok();
     let lock = lock.filter(|lock| lock.lock().is_ok());
     let removed = Removed::new(directory.path());
     Ok((directory, lock, removed))
+}
+
+/// An error without the staging name that `tempfile` puts around it, which means nothing to a user.
+fn unnamed(error: io::Error) -> io::Error {
+    let own = error.get_ref().and_then(|named| named.source());
+    match own.and_then(|own| own.downcast_ref::<io::Error>()) {
+        Some(own) => own
+            .raw_os_error()
+            .map_or_else(|| own.kind().into(), io::Error::from_raw_os_error),
+        None => error,
+    }
 }
 
 /// The usual permissions, before the umask is applied.

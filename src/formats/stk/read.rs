@@ -17,6 +17,9 @@ use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
 
+/// Shortest time between rows, s: instants are held, and written, to a nanosecond.
+const LEAST_STEP_S: f64 = 1e-9;
+
 /// Keywords that do not change what the states mean here.
 const PASSED_OVER: [&str; 9] = [
     "CovarianceFormat",
@@ -263,7 +266,8 @@ impl StkParser {
         let [elapsed_s, x, y, z, vx, vy, vz, ..] = values;
         let before_s = self.states.last().map(|(last, _)| *last);
         if before_s.is_some_and(|before_s| {
-            elapsed_s < before_s || (elapsed_s == before_s && !self.may_repeat(elapsed_s))
+            let later_s = elapsed_s - before_s;
+            later_s < LEAST_STEP_S && !(later_s == 0.0 && self.may_repeat(elapsed_s))
         }) {
             let message = "the time is not after that of the row before";
             findings.error((line.number, 1), "stk-time-order", message);

@@ -120,6 +120,8 @@ fn broken_rules_are_named_with_their_place() {
             (12, 1, "implausible-state"),
         ),
         ("\n60 ", "\n0 ", (12, 1, "stk-time-order")),
+        // Nearer than two instants can be.
+        ("\n60 ", "\n1e-320 ", (12, 1, "stk-time-order")),
         ("\n60 ", "\nNaN ", (12, 1, "stk-number")),
         ("\n60 ", "\n", (12, 1, "stk-fields")),
         ("END Ephemeris\n", "", (12, 1, "stk-truncated")),
