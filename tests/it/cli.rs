@@ -249,7 +249,7 @@ fn a_scenario_too_large_for_memory_is_refused_before_it_starts() {
         "--set",
         "time.step-s=86.4",
         "--set",
-        "visibility.weighting=sine-elevation",
+        "metrics.window-min=5",
     ]);
     assert!(stderr.contains("GiB"), "{stderr}");
 }

@@ -119,7 +119,7 @@ const ROWS: &[Row] = &[
         "verify",
         "size --out out FEWEST |",
         "--verify out",
-        Stdout,
+        Status,
     ),
     Row(
         "size",

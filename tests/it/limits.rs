@@ -35,7 +35,7 @@ fn what_is_very_large_is_not_started() {
         (
             "evaluate --design delta:55:4/2/1@925 --set time.step-s=86.4 --set region.step-deg=0.5 \
              --set region.latitude-deg=[-90,90] --set region.longitude-deg=[0,360] \
-             --set visibility.weighting=sine-elevation",
+             --set metrics.window-min=5",
             "or start it anyway with --allow-large",
         ),
     ] {

@@ -381,8 +381,8 @@ fn figures_that_are_not_there_say_why() {
             "it shows mean-visible, mean-pdop",
         ),
         (
-            &["--figure", "series", "--measure", "availability"],
-            "figure series cannot show availability",
+            &["--figure", "series", "--measure", "longest-outage-s"],
+            "figure series cannot show longest-outage-s",
         ),
         (&["--figure", "maps"], "did you mean \"map\"?"),
         (
