@@ -219,14 +219,19 @@ fn statements_table(study: &StudyResult) -> Table {
     table
 }
 
-/// The published number, as it was given.
+/// The published number, and three digits of its tolerance.
 fn expected(one: &StatementRecord) -> String {
-    let value = one.expected;
+    let value = crate::units::round_decimal(one.expected, 8);
     match (one.tolerance, one.relation) {
-        (Some(tolerance), _) => format!("{value} ± {tolerance}"),
+        (Some(tolerance), _) => format!("{value} ± {}", three_digits(tolerance)),
         (None, MORE_THAN) => format!("> {value}"),
         (None, _) => format!(">= {value}"),
     }
+}
+
+fn three_digits(value: f64) -> f64 {
+    let text = format!("{value:.2e}");
+    text.parse().unwrap_or(value)
 }
 
 /// The relation of a number that must be above a bound.
