@@ -206,6 +206,12 @@ impl<'a> DesignProblem<'a> {
         self.evaluator.with_gain(metrics)
     }
 
+    /// The metrics of some satellites with their gain; `None` if they cannot be propagated.
+    fn metrics_of(&self, ephemeris: &Ephemeris) -> Option<Metrics> {
+        let metrics = self.evaluator.evaluate_ephemeris(ephemeris).ok()?;
+        self.with_gain(metrics).ok()
+    }
+
     /// The metrics of a design, which need not be in the space, and their evaluation for an
     /// optimiser; `None` if it cannot be propagated.
     #[must_use]

@@ -29,7 +29,7 @@ struct Columns {
 
 /// Points from CSV with the columns `latitude_deg` and `longitude_deg` and optionally `weight` (1
 /// if empty), `name`, `height_m` (over the surface, 0 if empty) and `skyline` (pairs `azimuth:elevation`, as
-/// [`with_inline_skylines`] writes them), in any order; others are ignored.
+/// [`with_inline_skylines`](crate::ground::with_inline_skylines) writes them), in any order; others are ignored.
 ///
 /// # Errors
 /// If a column is missing, a line cannot be read (the error has its number), two lines are the same site, or there are no

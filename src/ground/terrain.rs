@@ -28,7 +28,7 @@ const ROUNDING_DEG: f64 = 1e-6;
 /// Why a terrain is rejected, or a point has no skyline on it.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TerrainError {
-    /// Fewer than two rows or columns, or more than [`MAX_CELLS`] in all.
+    /// Fewer than two rows or columns, or more than `MAX_CELLS` in all.
     #[error(
         "{rows} rows and {columns} columns: expected at least 2 of each and at most {MAX_CELLS} cells"
     )]
@@ -53,7 +53,7 @@ pub enum TerrainError {
         /// Eastern end.
         east_deg: f64,
     },
-    /// A height outside [`HEIGHTS_M`].
+    /// A height outside `HEIGHTS_M`.
     #[error(
         "height {height_m} m at latitude {latitude_deg}, longitude {longitude_deg} is outside {least} to {most} m: a value for \
          missing heights must be declared as NODATA, and the sea is at 0",
@@ -67,7 +67,7 @@ pub enum TerrainError {
         /// Its longitude.
         longitude_deg: f64,
     },
-    /// More points than [`MAX_POINTS`].
+    /// More points than `MAX_POINTS`.
     #[error("the skylines of {0} points are too many; at most {MAX_POINTS} can stand on a terrain")]
     TooManyPoints(usize),
     /// A point that is not on the terrain.

@@ -9,7 +9,9 @@ use crate::optimize::{Evaluation, dominates};
 use crate::printable::printable;
 use crate::run::{Diagnostic, FrontMember};
 use crate::scenario::{NamedConstellation, Scenario};
-use crate::search::{CountedSatellites, DesignProblem, Goals, Quantity};
+#[cfg(feature = "figures")]
+use crate::search::Goals;
+use crate::search::{CountedSatellites, DesignProblem, Quantity};
 
 /// A constellation that is compared, and its place among the objectives.
 #[derive(Debug, Clone, PartialEq)]

@@ -112,7 +112,7 @@ keywords! {
         N1CvarPdop = "n1-cvar-pdop",
         /// Least availability without any one satellite; maximised.
         N1Availability = "n1-availability",
-        /// Availability as expected over failures of the satellites by [reliability]; maximised.
+        /// Availability as expected over failures of the satellites by `[reliability]`; maximised.
         ExpectedAvailability = "expected-availability",
         /// Cost of launching the satellites that are not fixed, in the unit of its parameters; minimised.
         LaunchCost = "launch-cost",

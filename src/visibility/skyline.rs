@@ -50,7 +50,7 @@ pub enum SkylineError {
     /// No azimuth.
     #[error("there are no azimuths; a skyline covers the whole horizon")]
     Empty,
-    /// More azimuths than [`MAX_AZIMUTHS`].
+    /// More azimuths than `MAX_AZIMUTHS`.
     #[error("more than {MAX_AZIMUTHS} azimuths")]
     TooMany,
     /// Azimuths too far apart.

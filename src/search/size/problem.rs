@@ -190,7 +190,7 @@ impl<'a> SizeProblem<'a> {
             }
         }
         tried.is_evaluated = true;
-        if let Ok(metrics) = self.problem.evaluator.evaluate_ephemeris(&ephemeris) {
+        if let Some(metrics) = self.problem.metrics_of(&ephemeris) {
             tried.outcome = self.by_evaluation(design, metrics);
         }
         tried
@@ -333,7 +333,7 @@ impl<'a> SizeProblem<'a> {
     #[must_use]
     pub fn assessed(&self, design: &Design) -> Option<Metrics> {
         let ephemeris = self.problem.with_fixed(Some(design))?;
-        self.problem.evaluator.evaluate_ephemeris(&ephemeris).ok()
+        self.problem.metrics_of(&ephemeris)
     }
 
     /// Each constraint with the value of its quantity, and how far the value is from keeping it.

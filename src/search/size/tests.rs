@@ -241,6 +241,17 @@ fn every_rule_saves_samples() {
     assert!(search.savings()[0].tiles_saved > 0 && search.fewest().is_none());
 }
 
+/// A gain is that over the GNSS alone, here as in a sweep.
+#[test]
+fn a_gain_over_the_gnss_is_counted() {
+    let evaluator = Evaluator::new(setup(30, 48, true, 1.6)).unwrap();
+    let bound = reached(&evaluator, "gain-mean-pdop", 0.1);
+    let constraint = format!("gain-mean-pdop >= {bound}");
+    let goals = goals(&[constraint.as_str()]);
+    let problem = DesignProblem::new(&evaluator, space(false), goals).unwrap();
+    assert!(compare(&problem).fewest().is_some(), "{constraint}");
+}
+
 /// A step at a time, written and read in between, on one thread or several: the same witnesses.
 #[test]
 fn a_resumed_search_equals_an_unbroken_one_on_any_threads() {

@@ -81,6 +81,8 @@ pub struct UnknownMetric {
 impl UnknownMetric {
     fn new(found: &str) -> Self {
         let mut known = Quantity::choices();
+        let is_offered = |name: &&str| Quantity::from_keyword(name).is_ok_and(is_always_computed);
+        known.retain(is_offered);
         known.extend(OrbitQuantity::choices());
         known.push(MEAN_GNSS_VISIBLE);
         let dilutions: Vec<String> = DilutionKind::choices()
@@ -93,6 +95,11 @@ impl UnknownMetric {
             nearest: nearest(found, &known).map(str::to_owned),
         }
     }
+}
+
+fn is_always_computed(quantity: Quantity) -> bool {
+    let is_of_failures = quantity.is_of_one_lost() || quantity == Quantity::ExpectedAvailability;
+    !quantity.is_on_demand() && !is_of_failures
 }
 
 impl FromStr for StudyMetric {
@@ -113,8 +120,8 @@ impl FromStr for StudyMetric {
         }
         let quantity: Result<Quantity, UnknownKeyword> = Quantity::from_keyword(text);
         match quantity {
-            // What depends on a search has no meaning here.
-            Ok(quantity) if !quantity.is_on_demand() => Ok(Self::Quantity(quantity)),
+            // What is computed only where a scenario asks for it is not computed here.
+            Ok(quantity) if is_always_computed(quantity) => Ok(Self::Quantity(quantity)),
             _ => Err(UnknownMetric::new(text)),
         }
     }

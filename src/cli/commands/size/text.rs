@@ -238,10 +238,8 @@ fn worst<'a>(all: impl Iterator<Item = &'a KeptConstraint>) -> Option<&'a KeptCo
 fn skipped_text(skipped: usize) -> String {
     match skipped {
         0 => String::new(),
-        _ => format!(
-            " ({} before these in size.json)",
-            counted(skipped, "number of satellites")
-        ),
+        1 => " (one more before these in size.json)".to_owned(),
+        _ => format!(" ({skipped} more before these in size.json)"),
     }
 }
 
