@@ -27,7 +27,7 @@ pub(crate) fn install() {
         let (order, otherwise) = (Ordering::SeqCst, Ordering::SeqCst);
         let asks = STATE.compare_exchange(ASKS, ASKED, order, otherwise);
         if asks.is_ok() {
-            output::hint("stopping after this generation; Ctrl-C again stops at once");
+            output::hint("stopping and keeping what is done; Ctrl-C again stops at once");
             return;
         }
         let staged = held();

@@ -287,6 +287,7 @@ const SHOWN: [(&str, &str); 9] = [
     ("longest_outage_s", "longest outage (s)"),
 ];
 
+/// A mean, a tail or a maximum has no value where samples are unsolved, which count as infinite.
 fn planes_text(planes: &[LostPart]) -> String {
     let right = Align::Right;
     let mut table = Table::new(&[
@@ -295,16 +296,19 @@ fn planes_text(planes: &[LostPart]) -> String {
         ("mean PDOP", right),
         ("CVaR of PDOP", right),
         ("maximum PDOP", right),
+        ("solved fraction", right),
         ("availability", right),
     ]);
     for plane in planes {
         let metrics = &plane.metrics;
+        let of_all = |pdop: Option<f64>| pdop.filter(|_| metrics.solved_fraction >= 1.0);
         table.row([
             plane.name.clone(),
             plane.satellites.unwrap_or_default().to_string(),
-            shown::pdop(metrics.mean_pdop),
-            shown::pdop(metrics.cvar_pdop),
-            shown::pdop(metrics.max_pdop),
+            shown::pdop(of_all(metrics.mean_pdop)),
+            shown::pdop(of_all(metrics.cvar_pdop)),
+            shown::pdop(of_all(metrics.max_pdop)),
+            shown::share(Some(metrics.solved_fraction)),
             shown::share(Some(metrics.availability)),
         ]);
     }
@@ -477,5 +481,15 @@ mod tests {
         assert_eq!((worst.without[0].as_str(), worst.value), ("B", None));
         assert!(of.mean["max_pdop"].is_null() && of.spread["max_pdop"].is_none());
         assert_eq!(of.mean["mean_visible"].as_f64(), Some(46.0));
+        let plane = |solved| {
+            let metrics = case("A", 2.0, solved).metrics;
+            let (name, satellites) = ("NW-P01".to_owned(), Some(4));
+            planes_text(&[LostPart {
+                name,
+                satellites,
+                metrics,
+            }])
+        };
+        assert!(plane(1.0).contains("2.0000") && !plane(0.999).contains("2.0000"));
     }
 }

@@ -119,7 +119,7 @@ fn a_changed_certificate_is_noticed() {
     let changes = [
         (
             original.replacen(&format!("{line}\n"), "", 1),
-            "but the grid goes on with",
+            "but the next design of the grid is",
         ),
         (
             original.replacen(&design, &kept, 1),

@@ -90,7 +90,7 @@ fn verified(
         if !is_next {
             let next = next.map_or_else(|| "the end".to_owned(), |(_, design)| design.to_string());
             findings.push(format!(
-                "found {notation}, but the grid goes on with {next}"
+                "found {notation}, but the next design of the grid is {next}"
             ));
         }
         rejected.extend(design);
