@@ -14,7 +14,7 @@ use crate::scenario::{
 };
 use crate::search::{DesignProblem, Goals};
 use anyhow::{Context, Result};
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +29,8 @@ pub(crate) struct Study {
     manifest: Option<RunManifest>,
     /// Contents of the files that the scenario names, once they are read.
     contents: OnceCell<Vec<Vec<u8>>>,
+    /// The files that these name in turn: the skylines of sites.
+    named_in_files: RefCell<Vec<PathBuf>>,
 }
 
 /// A scenario as written, to locate errors in it.
@@ -89,6 +91,7 @@ impl Study {
             directory,
             manifest,
             contents: OnceCell::new(),
+            named_in_files: RefCell::default(),
         })
     }
 
@@ -171,7 +174,11 @@ impl Study {
                 .check(file, &bytes)
                 .with_context(|| format!("{} is damaged", self.directory.display()))?;
         }
-        let read = |path: &str| files::read_whole(&self.directory.join(path));
+        let read = |path: &str| {
+            let place = self.directory.join(path);
+            self.named_in_files.borrow_mut().push(place.clone());
+            files::read_whole(&place)
+        };
         let whole = self.scenario.standing_alone(file, bytes, &read);
         whole.map_err(|error| self.placed(&error))
     }
@@ -282,7 +289,7 @@ impl Study {
     }
 
     /// What the study is read from: its scenario or the run directory, and every file that it names, which
-    /// with --set may be outside the run.
+    /// with --set may be outside the run, and that those name.
     pub(crate) fn inputs(&self) -> Vec<PathBuf> {
         let own = if self.manifest.is_some() {
             Some(self.directory.clone())
@@ -291,7 +298,10 @@ impl Study {
         };
         let named = self.scenario.files().into_iter();
         let named = named.map(|file| self.directory.join(file));
-        own.into_iter().chain(named).collect()
+        // An error is told by what needs the contents.
+        let _ = self.contents();
+        let in_files = self.named_in_files.borrow().clone();
+        own.into_iter().chain(named).chain(in_files).collect()
     }
 
     /// The default design.

@@ -383,6 +383,15 @@ fn sites_have_their_own_skylines() {
     let behind = visible("behind");
     assert!(behind[0] < 0.5 * open[0], "{behind:?} {open:?}");
     assert_eq!(behind[1], open[1]);
+    // A skyline is an input, which is no output.
+    let plot = "plot --design delta:55:24/6/1@925 --figure map --as csv --out sites/skylines/street.csv --force";
+    let words: Vec<&str> = plot.split(' ').chain(points).collect();
+    let refused = ran(place, &words);
+    assert_eq!(refused.status, 2, "{}", refused.stderr);
+    assert_eq!(
+        fs::read_to_string(place.join("sites/skylines/street.csv")).unwrap(),
+        street()
+    );
 
     let evaluated_in = |run: &str| evaluated(place, &[&points[..], &["--out", run]].concat());
     let first = evaluated_in("run");
