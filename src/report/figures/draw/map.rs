@@ -103,11 +103,10 @@ fn region(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> Dr
     if chart.names.len() <= MOST_NAMES {
         let named = chart.cells.iter().zip(&chart.names);
         let label = |(&(x, y, _), name): (&(f64, f64, Option<f64>), &String)| {
-            // To the left of a mark in the east of the map, so that the name stays inside.
-            let is_east = x > 0.5 * (west + east);
-            let at = if is_east { HPos::Right } else { HPos::Left };
+            let is_left = is_name_left((x, y), &chart.cells, [west, east]);
+            let at = if is_left { HPos::Right } else { HPos::Left };
             let style = font(11).color(&BLACK).pos(Pos::new(at, VPos::Center));
-            let aside = if is_east { -signed(8) } else { signed(8) };
+            let aside = if is_left { -signed(8) } else { signed(8) };
             EmptyElement::at((x, y)) + Text::new(name.clone(), (aside, 0), style)
         };
         context.draw_series(named.map(label))?;
@@ -155,4 +154,37 @@ fn colours(area: &Area<'_>, chart: &MapChart, range: &std::ops::Range<f64>) -> D
         .label_style(font(12))
         .axis_desc_style(font(13))
         .draw()
+}
+
+/// Whether the name of a mark is to its left: away from the nearest mark if that is close, or else where the mark is
+/// in the east of the map, so that the name stays inside.
+fn is_name_left(
+    (x, y): (f64, f64),
+    marks: &[(f64, f64, Option<f64>)],
+    [west, east]: [f64; 2],
+) -> bool {
+    const CLOSE: f64 = 0.15;
+    let distance = |mark: &&(f64, f64, Option<f64>)| (mark.0 - x).hypot(mark.1 - y);
+    let others = marks.iter().filter(|mark| (mark.0, mark.1) != (x, y));
+    match others.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+        Some(near) if distance(&near) < CLOSE * (east - west) && near.0 != x => near.0 > x,
+        _ => x > 0.5 * (west + east),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of two marks that are close, each has its name on the far side; one alone in the east has it on the left.
+    #[test]
+    fn names_keep_away_from_the_nearest_mark() {
+        let marks = [
+            (116.4, 39.9, None),
+            (116.5, 39.9, None),
+            (119.0, 42.0, None),
+        ];
+        let left = marks.map(|(x, y, _)| is_name_left((x, y), &marks, [113.0, 120.0]));
+        assert_eq!(left, [true, false, true]);
+    }
 }
