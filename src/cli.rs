@@ -13,6 +13,7 @@ mod chart;
 mod coincidence;
 mod commands;
 mod constellations;
+mod evaluations;
 mod files;
 mod interrupt;
 mod limits;

@@ -13,6 +13,7 @@ mod evaluated;
 pub mod failures;
 #[cfg(feature = "figures")]
 pub mod figures;
+mod from_evaluations;
 pub(crate) mod front_table;
 mod labels;
 #[cfg(feature = "figures")]
@@ -37,6 +38,7 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use from_evaluations::NotEvaluated;
 pub use labels::quantity_label;
 pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{

@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub(crate) mod columns;
+pub mod evaluations;
 pub mod inputs;
 mod results;
 pub mod size;

@@ -93,6 +93,20 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "optimize",
+        "evaluations",
+        "--out out SMALL SEARCH",
+        "--evaluations",
+        Out,
+    ),
+    Row(
+        "optimize",
+        "from",
+        "optimize --out old SMALL SEARCH --evaluations | ",
+        "--from old",
+        Stdout,
+    ),
+    Row(
+        "optimize",
         "report",
         "--out out SMALL SEARCH",
         "--report",
