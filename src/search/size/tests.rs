@@ -1,5 +1,7 @@
 //! Against a sweep of the same grid that evaluates everything.
 
+mod closest;
+
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::earth::Surface;
