@@ -8,6 +8,7 @@ pub mod ccsds;
 pub mod csv;
 mod element_set;
 pub mod gmat;
+pub mod kept_states;
 pub mod maps;
 pub mod metadata;
 pub mod outages;

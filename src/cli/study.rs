@@ -269,8 +269,10 @@ impl Study {
     /// A constellation of the scenario, with warnings of the parts of its files that are not read.
     pub(crate) fn constellation(&self, named: &NamedConstellation) -> Result<Constellation> {
         let contents = self.contents()?;
+        let grid = self.scenario.time_grid();
+        let grid = grid.map_err(|error| self.placed(&error.into()))?;
         let (constellation, notes) = named
-            .read(&|file| self.content(file, contents))
+            .read(&|file| self.content(file, contents), grid)
             .map_err(|error| self.placed(&error))?;
         for note in &notes {
             output::warning(note);
