@@ -213,6 +213,7 @@ fn cells(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn skies_are_read_in_their_order() {
@@ -226,6 +227,26 @@ mod tests {
         let one = read_skies("one.csv", b"azimuth_deg,elevation_deg\n1,2").unwrap();
         assert_eq!(one.skies[0].name, None);
         assert_eq!(one.skies[0].satellites[0].system, ONE_SYSTEM);
+    }
+
+    proptest! {
+        /// No bytes make it panic, and what it takes is in range.
+        #[test]
+        fn any_bytes_are_read_or_refused(
+            bytes in prop::collection::vec(any::<u8>(), 0..60),
+            angles in prop::collection::vec((-400.0..400.0_f64, -100.0..100.0_f64), 1..5),
+        ) {
+            let _ = read_skies("any.csv", &bytes);
+            let mut text = b"azimuth_deg,elevation_deg\n".to_vec();
+            let _ = read_skies("any.csv", &[&text[..], &bytes].concat());
+            for (azimuth_deg, elevation_deg) in &angles {
+                text.extend(format!("{azimuth_deg},{elevation_deg}\n").bytes());
+            }
+            let is_fine = angles.iter().all(|(azimuth_deg, elevation_deg)| {
+                azimuth_deg.abs() <= 360.0 && elevation_deg.abs() <= 90.0
+            });
+            prop_assert_eq!(read_skies("any.csv", &text).is_ok(), is_fine);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::reproduction::{ReproduceResult, round};
 use super::{Align, Table};
 use crate::keyword::Keyword;
-use crate::printable::printable;
+use crate::printable::{markdown, printable};
 use crate::run::VERSION;
 use crate::run::columns::optional;
 use crate::run::tables::text;
@@ -87,6 +87,11 @@ pub struct StatementRecord {
     pub disagreement: Option<String>,
 }
 
+/// A text of a study as it is shown everywhere.
+fn shown(text: &str) -> String {
+    printable(text).into_owned()
+}
+
 impl From<&Statement> for StatementRecord {
     fn from(statement: &Statement) -> Self {
         let (expected, relation, tolerance) = match statement.expected {
@@ -96,7 +101,7 @@ impl From<&Statement> for StatementRecord {
         };
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         Self {
-            name: statement.statement.clone(),
+            name: shown(&statement.statement),
             of: None,
             metric: None,
             expected,
@@ -104,9 +109,9 @@ impl From<&Statement> for StatementRecord {
             tolerance,
             computed: finite(statement.ours),
             unit: statement.unit.clone(),
-            source: statement.place.clone(),
+            source: shown(&statement.place),
             verdict: statement.verdict,
-            assumption: statement.assumption.clone(),
+            assumption: statement.assumption.as_deref().map(shown),
             computed_there: finite(statement.ours_there),
             disagreement: None,
         }
@@ -127,16 +132,15 @@ impl StatementRecord {
             self.assumption.clone().unwrap_or_default(),
             self.computed_there.map_or_else(String::new, shown),
         ]
-        .map(|cell| printable(&cell).into_owned())
     }
 }
 
 impl From<&JudgedStatement> for StatementRecord {
     fn from(judged: &JudgedStatement) -> Self {
         Self {
-            of: Some(judged.of.clone()),
+            of: Some(shown(&judged.of)),
             metric: Some(judged.metric.to_string()),
-            disagreement: judged.disagreement.clone(),
+            disagreement: judged.disagreement.as_deref().map(shown),
             ..Self::from(&judged.statement)
         }
     }
@@ -148,9 +152,9 @@ impl PublishedResult {
     pub fn new(study: &JudgedStudy, sha256: String) -> Self {
         Self {
             name: study.name.clone(),
-            title: study.title.clone(),
-            source: study.source.clone(),
-            notes: study.notes.clone(),
+            title: shown(&study.title),
+            source: shown(&study.source),
+            notes: study.notes.iter().map(|note| shown(note)).collect(),
             sha256,
             statements: study.statements.iter().map(Into::into).collect(),
         }
@@ -325,14 +329,15 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
         summary_table(result).to_markdown()
     );
     for study in &result.studies {
-        let _ = write!(text, "\n## {}\n\n{}.\n", study.name(), study.title());
+        let title = markdown(study.title());
+        let _ = write!(text, "\n## {}\n\n{title}.\n", study.name());
         let (source, notes) = study.source_and_notes();
         if let Some(source) = source {
-            let _ = writeln!(text, "\nSource: {source}.");
+            let _ = writeln!(text, "\nSource: {}.", markdown(source));
         }
         let _ = write!(text, "\n{}\n", statements_table(study).to_markdown());
         for note in notes.iter().chain(&study.disagreements()) {
-            let _ = writeln!(text, "- {note}");
+            let _ = writeln!(text, "- {}", markdown(note));
         }
     }
     text

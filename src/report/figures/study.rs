@@ -63,7 +63,7 @@ fn colour(verdict: Verdict) -> usize {
 fn deviations(study: &StudyResult) -> Option<Chart> {
     let row = |one: &StatementRecord| {
         Some(DeviationRow {
-            name: format!("{}  ({})", one.name, one.verdict),
+            name: format!("{}  ({})", shortened(&one.name), one.verdict),
             tolerances: (one.computed? - one.expected) / one.tolerance?,
             colour: colour(one.verdict),
         })
@@ -76,6 +76,15 @@ fn deviations(study: &StudyResult) -> Option<Chart> {
             rows,
         })
     })
+}
+
+/// A name that leaves room for its verdict.
+fn shortened(name: &str) -> String {
+    const MOST: usize = 38;
+    if name.chars().count() <= MOST {
+        return name.to_owned();
+    }
+    name.chars().take(MOST - 1).chain(['…']).collect()
 }
 
 fn plane(title: &str, [x, y]: [&str; 2], layers: Vec<Layer>) -> Chart {
@@ -106,7 +115,8 @@ fn places(figures: &Figures) -> Chart {
                     .count();
                 let style = match is_row {
                     true => Style::Marks(before + 1),
-                    false => Style::Dots(before),
+                    // The colour of the marks of the same scheme.
+                    false => Style::Dots(before + 2),
                 };
                 let points = vec![point];
                 layers.push((

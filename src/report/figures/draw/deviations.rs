@@ -13,9 +13,6 @@ const AROUND: u32 = 110;
 /// Width of the names of the rows.
 const NAMES: u32 = 300;
 
-/// Most characters of a name.
-const NAME_CHARACTERS: usize = 52;
-
 /// Half of the axis, in tolerances.
 const REACH: f64 = 3.0;
 
@@ -72,8 +69,7 @@ pub(super) fn draw(root: &Area<'_>, chart: &DeviationChart) -> Drawn {
     for (n, row) in chart.rows.iter().enumerate() {
         let (_, y) = area.map_coordinate(&(-REACH, middle(n)));
         let style = font(12).pos(Pos::new(HPos::Right, VPos::Center));
-        let name: String = row.name.chars().take(NAME_CHARACTERS).collect();
-        root.draw(&Text::new(name, (left - signed(8), y), style))?;
+        root.draw(&Text::new(row.name.clone(), (left - signed(8), y), style))?;
     }
     Ok(())
 }
