@@ -96,6 +96,8 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
         Command::Size(args) => commands::size::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
+        Command::Dop(args) => commands::dop::run(&args),
+        Command::Orbit(args) => commands::orbit::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),

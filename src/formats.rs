@@ -13,6 +13,7 @@ pub mod maps;
 pub mod metadata;
 pub mod outages;
 pub mod sem;
+pub mod skies;
 pub mod sp3;
 pub mod stk;
 pub mod terrain;

@@ -9,6 +9,7 @@ mod run_view;
 mod satellites;
 mod scenario;
 mod size;
+mod sky;
 
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
@@ -18,6 +19,7 @@ pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 pub(crate) use size::SizeArgs;
+pub(crate) use sky::{DopArgs, OrbitArgs};
 
 use crate::cli::constellations::Named;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -104,12 +106,30 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
+    /// Compute the dilution of precision of skies: satellites by azimuth and elevation.
+    ///
+    /// GDOP, PDOP, HDOP, VDOP and TDOP by least squares, with a clock for each system. A sky that cannot be
+    /// solved has none, and the reason is told.
+    ///
+    /// Example: navwalker dop sky.csv --mask-deg 5
+    #[command(verbatim_doc_comment)]
+    Dop(DopArgs),
+
+    /// Show periods, rates and the ground track of orbits, and the sun-synchronous inclination at their altitude.
+    ///
+    /// By secular J2, from mean elements. The repeats of the ground track are those within 70 nodal days that
+    /// come closer to the first ascending node than all before, each with the altitude at which it is exact.
+    ///
+    /// Example: navwalker orbit delta:97.4018:1/1/0@500
+    #[command(verbatim_doc_comment)]
+    Orbit(OrbitArgs),
+
     /// Reproduce published numbers: those of the paper that this program implements, or of other studies.
     ///
     /// Every statement gets a computed verdict: met, met-under-assumption (one is changed at a time),
     /// fitted (the assumption was found from it), input (copied), not-met, or unconfirmed (nothing to
-    /// compare with, or a number from memory). DIR gets the report, and for the paper its tables and the
-    /// data of each figure. The exit status is 1 if a number is not met and its study does not say why.
+    /// compare with, or a number from memory). DIR gets the report as JSON, Markdown and an HTML page, the
+    /// figures as SVG and PNG, and for the paper its tables and the data of each figure. The exit status is 1 if a number is not met and its study does not say why.
     ///
     /// Examples: navwalker reproduce --set visibility.mask-deg=10
     ///           navwalker reproduce gps-sps iridium
@@ -321,9 +341,10 @@ pub(crate) struct ReproduceArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
 
-    /// Directory for the report and the data of the figures.
-    #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
-    pub(crate) out: PathBuf,
+    /// Directory for the report, its page and the figures [default: runs/reproduce/STUDY; of several studies their names
+    /// joined by +, or all].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 
     /// Seed of the paper's searches; the same as `--set optimizer.seed=N`.
     #[arg(long, value_name = "N")]

@@ -30,6 +30,7 @@ mod scenes;
 mod shells;
 mod singular;
 mod size;
+mod skies;
 mod study;
 mod tidy;
 mod trust;
