@@ -188,17 +188,19 @@ impl<'a> DesignProblem<'a> {
     }
 
     fn answer(&self, genome: &[f64]) -> Evaluation {
-        let Some((design, metrics)) = self.evaluated(genome) else {
-            let objectives = vec![f64::INFINITY; self.goals.objectives.len()];
-            return Evaluation {
-                objectives,
+        match self.evaluated(genome) {
+            Some((design, metrics)) => self.judged_member(design.as_ref(), &metrics),
+            None => Evaluation {
+                objectives: vec![f64::INFINITY; self.goals.objectives.len()],
                 violation: 2.0,
-            };
-        };
-        self.judge(
-            &|quantity| self.value(quantity, design.as_ref(), &metrics),
-            &metrics,
-        )
+            },
+        }
+    }
+
+    /// What [`DesignProblem::evaluated`] found, as for an optimiser.
+    #[must_use]
+    pub fn judged_member(&self, design: Option<&Design>, metrics: &Metrics) -> Evaluation {
+        self.judge(&|quantity| self.value(quantity, design, metrics), metrics)
     }
 
     /// Metrics with the gain over the GNSS alone, which is the same in the whole search.

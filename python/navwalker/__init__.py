@@ -4,11 +4,12 @@
 >>> scenario = nw.Scenario("paper", time_step_s=900, region_step_deg=20)
 >>> metrics = scenario.evaluate("delta:55:182/13/1@925")
 >>> round(metrics.mean_visible, 2)
-5.9
+7.52
 """
 
 from navwalker._commands import Finding, ValidationReport, lint, validate
 from navwalker._constellation import Constellation, read
+from navwalker._custom import CustomRun
 from navwalker._native import (
     DesignError,
     FileError,
@@ -24,6 +25,7 @@ from navwalker._sky import Dops, dop
 
 __all__ = [
     "Constellation",
+    "CustomRun",
     "DesignError",
     "Dops",
     "FileError",

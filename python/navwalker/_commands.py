@@ -102,7 +102,7 @@ def validate(
 ) -> ValidationReport:
     """Checks the propagation of a constellation against independent standards (``sgp4``, ``geographiclib``,
     ``numerical``, ``analytic``, ``paper``, ``all``) or the files of other programs."""
-    targets = against if isinstance(against, str) else ",".join(map(os.fspath, against))
+    targets = against if isinstance(against, str) else ",".join(os.fspath(one) for one in against)
     _, result = run(["validate", *arguments_of(constellation, scenario), "--against", targets, "--format", "json"])
     whole = json.loads(result)
     return ValidationReport(whole["passed"], whole["checks"], whole)
@@ -124,7 +124,7 @@ class Finding:
 def lint(*files: Path, format: str | None = None) -> list[Finding]:
     """Checks files against the standards of their formats; an empty list if all is well."""
     form = [] if format is None else ["--as", format]
-    arguments = ["lint", "--format", "json", *form, *map(os.fspath, files)]
+    arguments = ["lint", "--format", "json", *form, *(os.fspath(file) for file in files)]
     _, result = run(arguments, _native.FileError)
     fields = Finding.__dataclass_fields__
     return [Finding(**{name: one.get(name) for name in fields}) for one in json.loads(result)]

@@ -37,7 +37,7 @@ def _attributes(name: str) -> dict[str, str]:
     return {"long_name": _NAMES.get(name, name.replace("_", " ")), "units": units}
 
 
-def dataset(points: Table) -> xarray.Dataset:
+def dataset_of(points: Table) -> xarray.Dataset:
     """The columns of a table of points, over latitude and longitude where the points fill a lattice."""
     xr = needed("xarray", "maps")
     latitudes, longitudes = points["latitude_deg"], points["longitude_deg"]
@@ -61,4 +61,5 @@ def dataset(points: Table) -> xarray.Dataset:
     coordinates = {
         name: (name if is_lattice else "point", values, _attributes(name)) for name, values in places.items()
     }
-    return xr.Dataset(variables, coords=coordinates)
+    dataset: xarray.Dataset = xr.Dataset(variables, coords=coordinates)
+    return dataset

@@ -1,4 +1,4 @@
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -100,3 +100,8 @@ def answers(
     engine: Engine, vectors: npt.NDArray[np.float64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float64], list[str | None]]: ...
 def picked(front: str, how: str) -> int: ...
+def search_custom(
+    engine: Engine,
+    seed: int | None,
+    objectives: Sequence[int | Callable[[Columns], npt.NDArray[np.float64]]],
+) -> tuple[Columns, npt.NDArray[np.float64], Columns]: ...

@@ -83,7 +83,13 @@ class Plots:
         axes.legend()
         return axes
 
-    def compare(self, constellations: Iterable[Given], measures: Iterable[str] = ("mean_pdop", "cvar_pdop"), *, ax: Axes | None = None) -> Axes:
+    def compare(
+        self,
+        constellations: Iterable[Given],
+        measures: Iterable[str] = ("mean_pdop", "cvar_pdop"),
+        *,
+        ax: Axes | None = None,
+    ) -> Axes:
         """Bars of some metrics for several constellations."""
         axes = _axes(ax)
         given = list(constellations)
@@ -116,8 +122,11 @@ def _pyplot() -> Any:
     return needed("matplotlib.pyplot", "plot")
 
 
-def _axes(ax: Axes | None) -> Any:
-    return ax if ax is not None else _pyplot().subplots()[1]
+def _axes(ax: Axes | None) -> Axes:
+    if ax is not None:
+        return ax
+    made: Axes = _pyplot().subplots()[1]
+    return made
 
 
 def _name(one: Given) -> str:

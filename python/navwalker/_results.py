@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -132,15 +133,18 @@ class Table:
 
     def to_pandas(self) -> pandas.DataFrame:
         """A pandas DataFrame."""
-        return needed("pandas", "to_pandas").DataFrame(self.to_dict())
+        frame: pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.to_dict())
+        return frame
 
     def to_polars(self) -> polars.DataFrame:
         """A Polars DataFrame."""
-        return needed("polars", "to_polars").DataFrame(self)
+        frame: polars.DataFrame = needed("polars", "to_polars").DataFrame(self)
+        return frame
 
     def to_arrow(self) -> pyarrow.Table:
         """An Arrow table."""
-        return needed("pyarrow", "to_arrow").table(self)
+        table: pyarrow.Table = needed("pyarrow", "to_arrow").table(self)
+        return table
 
     def _cells(self) -> list[list[str]]:
         shown = (self[name][:_SHOWN] for name in self.columns)
@@ -184,7 +188,7 @@ class Samples:
             name: ("point", self.points[name], {"units": units})
             for name, units in [("latitude_deg", "degrees_north"), ("longitude_deg", "degrees_east"), ("weight", "1")]
         }
-        return xr.Dataset(
+        dataset: xarray.Dataset = xr.Dataset(
             {
                 "pdop": (dims, self.pdop, {"long_name": "PDOP", "units": "1"}),
                 "visible": (dims, self.visible, {"long_name": "LEO satellites in view", "units": "1"}),
@@ -195,11 +199,10 @@ class Samples:
                 **over_points,
             },
         )
+        return dataset
 
 
 def _no_such(kind: str, name: str, known: Sequence[str]) -> str:
-    import difflib
-
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     return f"there is no {kind} '{name}'{hint}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
@@ -18,10 +18,14 @@ from navwalker._results import Metrics, Samples, Table
 if TYPE_CHECKING:
     import xarray
 
+    from navwalker._custom import CustomRun
     from navwalker._plots import Plots
     from navwalker._run import Run
 
 Given = str | Constellation
+Objective = Callable[[Table], npt.ArrayLike]
+Whole = npt.NDArray[np.int64]
+Real = npt.NDArray[np.float64]
 Errors = Literal["raise", "column"]
 
 _COLUMNS = ("planes", "satellites_per_plane", "inclination_deg", "altitude_km", "phasing")
@@ -100,12 +104,19 @@ class Scenario:
 
         return Plots(self)
 
+    def replace(self, *, set: Mapping[str, Any] | None = None, **keys: Any) -> Scenario:
+        """The same scenario with further keys overridden."""
+        further = [*self._overrides, *overrides(set, keys)]
+        return _again(self._source, further, self._threads, self._directory, self._text is not None)
+
     def to_toml(self) -> str:
         """The scenario with every key."""
         return self._engine.to_toml()
 
     @overload
-    def evaluate(self, constellations: Given, *, errors: Errors = "raise") -> Metrics: ...
+    def evaluate(  # type: ignore[overload-overlap]  # a text is a notation, although it is an iterable of texts too
+        self, constellations: Given, *, errors: Errors = "raise"
+    ) -> Metrics: ...
     @overload
     def evaluate(self, constellations: Iterable[Given], *, errors: Errors = "raise") -> Table: ...
     @overload
@@ -172,17 +183,19 @@ class Scenario:
     def maps(self, constellation: Given) -> xarray.Dataset:
         """The metrics by ground point as a Dataset: over ``latitude_deg`` and ``longitude_deg`` where the points fill a
         lattice, or else over ``point``. Needs xarray."""
-        from navwalker._maps import dataset
+        from navwalker._maps import dataset_of
 
         needed("xarray", "maps")
-        return dataset(self.by_point(constellation))
+        return dataset_of(self.by_point(constellation))
 
     def samples(self, constellation: Given) -> Samples:
         """PDOP and satellites in view of every sample, as arrays of (time, point)."""
         found = self._engine.samples(self._native_of(constellation))
         shape = (len(self.elapsed_s), len(self.points))
-        pdop, visible, gnss_visible = (one.reshape(shape) for one in found)
-        return Samples(self.elapsed_s, pdop, visible, gnss_visible, self.points)
+        pdop, visible, gnss_visible = found
+        return Samples(
+            self.elapsed_s, pdop.reshape(shape), visible.reshape(shape), gnss_visible.reshape(shape), self.points
+        )
 
     def positions(self, constellation: Given, *, frame: str = "ITRF") -> npt.NDArray[np.float64]:
         """Positions of (satellite, time, 3), km, in ITRF, TEME, EME2000 or GCRF; NaN where a satellite has no state."""
@@ -201,12 +214,34 @@ class Scenario:
             raise _native.NavwalkerError(f"point is {point}, expected 0 to {count - 1}")
         return self._engine.look_angles(self._native_of(constellation), point)
 
-    def optimize(self, *, seed: int | None = None, out: Path | None = None, force: bool = False) -> Run:
+    @overload
+    def optimize(self, *, seed: int | None = None, out: Path | None = None, force: bool = False) -> Run: ...
+    @overload
+    def optimize(self, *, seed: int | None = None, objectives: Sequence[str | Objective]) -> CustomRun: ...
+
+    def optimize(
+        self,
+        *,
+        seed: int | None = None,
+        out: Path | None = None,
+        force: bool = False,
+        objectives: Sequence[str | Objective] | None = None,
+    ) -> Run | CustomRun:
         """Searches for the Pareto set as the scenario says.
 
         The run is kept in the directory ``out`` (with ``force`` in place of one that is there), or else in a temporary
         one that goes with the object.
+
+        ``objectives`` replace those of the scenario: names of quantities (``"satellites"``), and functions that take the
+        :class:`Table` of a generation's designs and return an array with one number to minimise for each. Such a search
+        is a :class:`CustomRun`, which is not kept in files.
         """
+        if objectives is not None:
+            from navwalker._custom import search as custom
+
+            if out is not None:
+                raise _native.NavwalkerError("a search with objectives of your own is not kept in files; omit out")
+            return custom(self, seed, objectives)
         from navwalker._run import search
 
         return search(self, seed, out, force)
@@ -284,7 +319,7 @@ def _again(
     return made
 
 
-def _columns(given: Mapping[str, Any]) -> Sequence[npt.NDArray[Any]]:
+def _columns(given: Mapping[str, Any]) -> tuple[Whole, Whole, Whole, Real, Real]:
     """The columns of shells, in the order in which the native part takes them, of one length."""
     missing = [name for name in _COLUMNS if name not in given]
     unknown = [name for name in given if name not in _COLUMNS]
@@ -315,4 +350,4 @@ def _columns(given: Mapping[str, Any]) -> Sequence[npt.NDArray[Any]]:
             raise _native.NavwalkerError(f"{name} is {array[row]} in row {row}, expected a whole number")
         whole.append(np.ascontiguousarray(rounded, dtype=np.int64))
     real = [np.ascontiguousarray(one, dtype=np.float64) for one in (inclination, altitude)]
-    return [*whole, *real]
+    return whole[0], whole[1], whole[2], real[0], real[1]

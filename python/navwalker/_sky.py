@@ -34,7 +34,7 @@ def dop(azimuth_deg: npt.ArrayLike, elevation_deg: npt.ArrayLike, system: npt.Ar
     >>> import navwalker as nw
     >>> sky = nw.dop([0, 120, 240, 0], [20, 20, 20, 90])
     >>> round(float(sky.pdop), 3)
-    1.826
+    2.142
     """
     azimuth = np.asarray(azimuth_deg, dtype=np.float64)
     elevation = np.asarray(elevation_deg, dtype=np.float64)
@@ -54,8 +54,12 @@ def dop(azimuth_deg: npt.ArrayLike, elevation_deg: npt.ArrayLike, system: npt.Ar
     systems, numbers = np.unique(labels, return_inverse=True)
     skies, satellites = azimuth.shape[:-1], azimuth.shape[-1]
     rows = (int(np.prod(skies, dtype=np.int64)), satellites)
-    flat = [np.ascontiguousarray(one.reshape(rows)) for one in (azimuth, elevation, numbers.astype(np.int64))]
-    found = _native.dilutions(flat[0], flat[1], flat[2], len(systems))
+    found = _native.dilutions(
+        np.ascontiguousarray(azimuth.reshape(rows)),
+        np.ascontiguousarray(elevation.reshape(rows)),
+        np.ascontiguousarray(numbers.astype(np.int64).reshape(rows)),
+        len(systems),
+    )
     gdop, pdop, hdop, vdop = (found[:, place].reshape(skies) for place in range(4))
     tdop = found[:, 4:].reshape((*skies, len(systems)))
     return Dops(gdop, pdop, hdop, vdop, tdop, systems.tolist() if system is not None else ["all"])

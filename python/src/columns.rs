@@ -30,8 +30,42 @@ pub(crate) enum Kind {
     Text,
 }
 
-/// Cells as whole numbers, numbers or truth values if all of them are, or else as texts.
-fn typed(cells: Vec<Option<String>>) -> Values {
+/// Columns of whole numbers, by their names in the tables of the program.
+const INTEGERS: [&str; 12] = [
+    "evaluations",
+    "feasible",
+    "front_size",
+    "generation",
+    "index",
+    "least_visible",
+    "outages",
+    "phasing",
+    "planes",
+    "satellites",
+    "satellites_per_plane",
+    "seed",
+];
+
+/// Columns of truth values.
+const TRUTHS: [&str; 3] = ["chosen", "longest_outage_cut", "outage_cut"];
+
+/// Columns of texts.
+const TEXTS: [&str; 6] = ["design", "error", "files", "name", "notation", "pattern"];
+
+impl Kind {
+    /// The kind of a column of the program's tables, by its name.
+    pub(crate) fn of(name: &str) -> Self {
+        match name {
+            _ if INTEGERS.contains(&name) => Self::Integer,
+            _ if TRUTHS.contains(&name) => Self::Truth,
+            _ if TEXTS.contains(&name) => Self::Text,
+            _ => Self::Real,
+        }
+    }
+}
+
+/// Cells of a kind; numbers that cannot be read as such make a column of texts.
+fn typed(kind: Kind, cells: Vec<Option<String>>) -> Values {
     fn all<T: std::str::FromStr>(cells: &[Option<String>]) -> Option<Vec<Option<T>>> {
         let parsed = |cell: &Option<String>| match cell {
             Some(text) => text.parse().map(Some).ok(),
@@ -39,16 +73,13 @@ fn typed(cells: Vec<Option<String>>) -> Values {
         };
         cells.iter().map(parsed).collect()
     }
-    if let Some(integers) = all(&cells) {
-        return Values::Integer(integers);
-    }
-    if let Some(reals) = all(&cells) {
-        return Values::Real(reals);
-    }
-    match all(&cells) {
-        Some(truths) => Values::Truth(truths),
-        None => Values::Text(cells),
-    }
+    let found = match kind {
+        Kind::Integer => all(&cells).map(Values::Integer),
+        Kind::Real => all(&cells).map(Values::Real),
+        Kind::Truth => all(&cells).map(Values::Truth),
+        Kind::Text => None,
+    };
+    found.unwrap_or(Values::Text(cells))
 }
 
 /// Named columns of one length.
@@ -64,7 +95,9 @@ impl Columns {
     /// Columns of these names and kinds; a row has a value for each, null where it is missing.
     pub(crate) fn new(columns: Vec<(String, Kind)>, rows: &[Vec<Value>]) -> Self {
         let column = |(place, (_, kind)): (usize, &(String, Kind))| {
-            let cells = rows.iter().map(|row| row.get(place).unwrap_or(&Value::Null));
+            let cells = rows
+                .iter()
+                .map(|row| row.get(place).unwrap_or(&Value::Null));
             match kind {
                 Kind::Real => Values::Real(cells.map(Value::as_f64).collect()),
                 Kind::Integer => Values::Integer(cells.map(Value::as_i64).collect()),
@@ -82,39 +115,34 @@ impl Columns {
         }
     }
 
-    /// Columns of records that serialise to the same fields; the kind of each column is that of its first value.
-    pub(crate) fn of_records(records: Vec<Value>) -> Self {
-        let mut columns: Vec<(String, Kind)> = Vec::new();
-        for (name, _) in records.first().and_then(Value::as_object).into_iter().flatten() {
-            let mut values = records.iter().map(|record| &record[name]);
-            let kind = match values.find(|value| !value.is_null()) {
-                Some(Value::String(_)) => Kind::Text,
-                Some(Value::Bool(_)) => Kind::Truth,
-                Some(value) if value.is_i64() || value.is_u64() => Kind::Integer,
-                _ => Kind::Real,
-            };
-            columns.push((name.clone(), kind));
-        }
-        let row = |record: Value| {
-            let cells = columns.iter().map(|(name, _)| record[name].clone());
-            cells.collect()
+    /// The columns of a CSV that the program writes.
+    pub(crate) fn read(text: &str) -> Result<Self, csv::Error> {
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let names: Vec<String> = reader.headers()?.iter().map(str::to_owned).collect();
+        let records = reader.records().collect::<Result<Vec<_>, _>>()?;
+        let cell = |record: &csv::StringRecord, place: usize| -> Option<String> {
+            record
+                .get(place)
+                .filter(|cell| !cell.is_empty())
+                .map(str::to_owned)
         };
-        let rows: Vec<Vec<Value>> = records.into_iter().map(row).collect();
-        Self::new(columns, &rows)
+        let column = |(place, name): (usize, &String)| {
+            let cells = records.iter().map(|record| cell(record, place));
+            typed(Kind::of(name), cells.collect())
+        };
+        Ok(Self {
+            values: names.iter().enumerate().map(column).collect(),
+            names,
+            rows: records.len(),
+        })
     }
 
     fn batch(&self) -> Result<RecordBatch, ArrowError> {
         let array = |values: &Values| -> (ArrayRef, DataType) {
             match values {
-                Values::Real(of) => (
-                    Arc::new(Float64Array::from(of.clone())),
-                    DataType::Float64,
-                ),
+                Values::Real(of) => (Arc::new(Float64Array::from(of.clone())), DataType::Float64),
                 Values::Integer(of) => (Arc::new(Int64Array::from(of.clone())), DataType::Int64),
-                Values::Truth(of) => (
-                    Arc::new(BooleanArray::from(of.clone())),
-                    DataType::Boolean,
-                ),
+                Values::Truth(of) => (Arc::new(BooleanArray::from(of.clone())), DataType::Boolean),
                 Values::Text(of) => (Arc::new(StringArray::from(of.clone())), DataType::Utf8),
             }
         };
@@ -128,25 +156,10 @@ impl Columns {
 
 #[pymethods]
 impl Columns {
-    /// The columns of a CSV that the program wrote; a column is of numbers or truth values if all its cells are.
+    /// The columns of a CSV that the program wrote.
     #[staticmethod]
     fn of_csv(text: &str) -> PyResult<Self> {
-        let wrong = |error: csv::Error| PyRuntimeError::new_err(error.to_string());
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let names: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
-        let records = reader.records().collect::<Result<Vec<_>, _>>().map_err(wrong)?;
-        let cell = |record: &csv::StringRecord, place: usize| -> Option<String> {
-            record.get(place).filter(|cell| !cell.is_empty()).map(str::to_owned)
-        };
-        let column = |place: usize| {
-            let cells = records.iter().map(|record| cell(record, place));
-            typed(cells.collect())
-        };
-        Ok(Self {
-            values: (0..names.len()).map(column).collect(),
-            names,
-            rows: records.len(),
-        })
+        Self::read(text).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
     #[getter]
@@ -172,7 +185,9 @@ impl Columns {
                 PyArray1::from_iter(py, of.iter().flatten().copied()).into_any()
             }
             Values::Integer(of) => {
-                let all = of.iter().map(|value| value.map_or(f64::NAN, |one| one as f64));
+                let all = of
+                    .iter()
+                    .map(|value| value.map_or(f64::NAN, |one| one as f64));
                 PyArray1::from_iter(py, all).into_any()
             }
             Values::Truth(of) => {

@@ -6,19 +6,8 @@ use navwalker::evaluate::Metrics;
 use navwalker::run::{DesignSummary, metric_values};
 use serde_json::Value;
 
-/// Columns of whole numbers.
-const INTEGERS: [&str; 5] = [
-    "planes",
-    "satellites_per_plane",
-    "satellites",
-    "phasing",
-    "least_visible",
-];
-
-/// Columns of texts.
-const TEXTS: [&str; 5] = ["name", "notation", "pattern", "error", "design"];
-
 /// A constellation, and its metrics or why it has none.
+#[derive(Clone)]
 pub(crate) struct Evaluated {
     pub(crate) name: String,
     pub(crate) design: Option<Design>,
@@ -26,27 +15,24 @@ pub(crate) struct Evaluated {
     pub(crate) metrics: Result<Metrics, String>,
 }
 
-/// The kind of a column by its name.
-fn kind(name: &str) -> Kind {
-    match name {
-        _ if INTEGERS.contains(&name) => Kind::Integer,
-        _ if TEXTS.contains(&name) => Kind::Text,
-        "longest_outage_cut" => Kind::Truth,
-        _ => Kind::Real,
-    }
-}
-
 /// The table of evaluated constellations; with `errors` it has a column of them, null where there is none.
 pub(crate) fn table(all: &[Evaluated], errors: bool) -> serde_json::Result<Columns> {
     let first = all.iter().find_map(|one| one.metrics.as_ref().ok());
     let metrics = first.map(metric_values).transpose()?.unwrap_or_default();
     let mut names = vec!["name".to_owned()];
-    names.extend(DesignSummary::columns().iter().map(|name| (*name).to_owned()));
+    names.extend(
+        DesignSummary::columns()
+            .iter()
+            .map(|name| (*name).to_owned()),
+    );
     names.extend(metrics.into_iter().map(|(name, _)| name));
     if errors {
         names.push("error".to_owned());
     }
-    let columns: Vec<(String, Kind)> = names.into_iter().map(|name| (name.clone(), kind(&name))).collect();
+    let kinds = names
+        .into_iter()
+        .map(|name| (name.clone(), Kind::of(&name)));
+    let columns: Vec<(String, Kind)> = kinds.collect();
     let mut rows = Vec::with_capacity(all.len());
     for one in all {
         rows.push(row(one, &columns, errors)?);
@@ -54,7 +40,11 @@ pub(crate) fn table(all: &[Evaluated], errors: bool) -> serde_json::Result<Colum
     Ok(Columns::new(columns, &rows))
 }
 
-fn row(one: &Evaluated, columns: &[(String, Kind)], errors: bool) -> serde_json::Result<Vec<Value>> {
+fn row(
+    one: &Evaluated,
+    columns: &[(String, Kind)],
+    errors: bool,
+) -> serde_json::Result<Vec<Value>> {
     let mut cells = vec![Value::from(one.name.as_str())];
     let summary = one.design.as_ref().map(DesignSummary::from);
     let summary = serde_json::to_value(summary)?;
@@ -69,7 +59,12 @@ fn row(one: &Evaluated, columns: &[(String, Kind)], errors: bool) -> serde_json:
     }
     cells.resize(columns.len() - usize::from(errors), Value::Null);
     if errors {
-        cells.push(one.metrics.as_ref().err().map_or(Value::Null, |why| Value::from(why.as_str())));
+        cells.push(
+            one.metrics
+                .as_ref()
+                .err()
+                .map_or(Value::Null, |why| Value::from(why.as_str())),
+        );
     }
     Ok(cells)
 }

@@ -1,6 +1,6 @@
 //! A scenario, ready to evaluate constellations.
 
-use crate::columns::Columns;
+use crate::columns::{Columns, Kind};
 use crate::constellation::NativeConstellation;
 use crate::design_columns::{self, Evaluated};
 use crate::errors::{self, DesignError, NavwalkerError};
@@ -12,6 +12,8 @@ use navwalker::ephemeris::sampled::Sampled;
 use navwalker::evaluate::{Evaluator, Metrics, Setup};
 use navwalker::exchange::constellation::Constellation;
 use navwalker::frames::{EarthFixed, Frame};
+use navwalker::ground::Site;
+use navwalker::report::records_csv;
 use navwalker::run::metric_values;
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -68,8 +70,7 @@ impl Engine {
             all.into_par_iter().map(one).collect::<Vec<_>>()
         };
         let found = interruptible(py, self.threads, || {}, work)?;
-        if !keeps_errors
-            && let Some(why) = found.iter().find_map(|one| one.metrics.as_ref().err())
+        if !keeps_errors && let Some(why) = found.iter().find_map(|one| one.metrics.as_ref().err())
         {
             return Err(DesignError::new_err(why.clone()));
         }
@@ -153,7 +154,9 @@ impl Engine {
     #[getter]
     fn reference_design(&self) -> PyResult<String> {
         let design = self.study().reference_design();
-        Ok(design.map_err(|error| errors::scenario(&error))?.to_string())
+        Ok(design
+            .map_err(|error| errors::scenario(&error))?
+            .to_string())
     }
 
     /// Seconds since the epoch of each instant.
@@ -174,16 +177,26 @@ impl Engine {
     /// The ground points: latitude_deg, longitude_deg, height_m, weight and name.
     fn points(&self, py: Python<'_>) -> PyResult<Columns> {
         let evaluator = self.evaluator(py)?;
-        let record = |site: &navwalker::ground::Site| {
-            serde_json::json!({
-                "latitude_deg": site.latitude_deg,
-                "longitude_deg": site.longitude_deg,
-                "height_m": site.height_m,
-                "weight": site.weight,
-                "name": site.name.as_deref(),
-            })
+        let names = [
+            "latitude_deg",
+            "longitude_deg",
+            "height_m",
+            "weight",
+            "name",
+        ];
+        let columns = names.map(|name| (name.to_owned(), Kind::of(name)));
+        let row = |site: &Site| {
+            let numbers = [
+                site.latitude_deg,
+                site.longitude_deg,
+                site.height_m,
+                site.weight,
+            ];
+            let name = Value::from(site.name.as_deref());
+            numbers.map(Value::from).into_iter().chain([name]).collect()
         };
-        Ok(Columns::of_records(evaluator.setup().sites.iter().map(record).collect()))
+        let rows: Vec<Vec<Value>> = evaluator.setup().sites.iter().map(row).collect();
+        Ok(Columns::new(columns.to_vec(), &rows))
     }
 
     /// The borders of the region, as closed lines of longitudes and latitudes, degrees.
@@ -227,9 +240,12 @@ impl Engine {
     /// The metrics of the GNSS alone; None without GNSS.
     fn gnss_only<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let evaluator = self.evaluator(py)?;
-        let found = interruptible(py, self.threads, || {}, move |_: &Stop| {
-            evaluator.gnss_only().map(Option::<&Metrics>::copied)
-        })?;
+        let found = interruptible(
+            py,
+            self.threads,
+            || {},
+            move |_: &Stop| evaluator.gnss_only().map(Option::<&Metrics>::copied),
+        )?;
         let found = found.map_err(|error| errors::scenario(&error.into()))?;
         found.map(|metrics| dictionary(py, &metrics)).transpose()
     }
@@ -302,7 +318,8 @@ impl Engine {
                 };
                 Shell::new(parameters).map_err(|error| error.to_string())
             };
-            let made = shell().map(|shell| NativeConstellation::new(Constellation::of_design(shell.into())));
+            let made = shell()
+                .map(|shell| NativeConstellation::new(Constellation::of_design(shell.into())));
             made.map_err(|why| {
                 let text = format!("row {row}");
                 (text.clone(), format!("{text}: {why}"))
@@ -319,11 +336,11 @@ impl Engine {
         let work = move |_: &Stop| {
             embedded::noting(|| -> anyhow::Result<_> {
                 let series = evaluator.series(&one.propagate(evaluator.setup())?)?;
-                let epochs = series.epochs.iter().map(serde_json::to_value);
-                let points = series.points.iter().map(serde_json::to_value);
-                let epochs: Vec<Value> = epochs.collect::<Result<_, _>>()?;
-                let points: Vec<Value> = points.collect::<Result<_, _>>()?;
-                Ok((Columns::of_records(epochs), Columns::of_records(points)))
+                let table = |csv: std::io::Result<String>| -> anyhow::Result<Columns> {
+                    Ok(Columns::read(&csv?)?)
+                };
+                let epochs = table(records_csv(&series.epochs))?;
+                Ok((epochs, table(records_csv(&series.points))?))
             })
         };
         let (found, printed) = interruptible(py, self.threads, || {}, work)?;
@@ -332,14 +349,22 @@ impl Engine {
     }
 
     /// Every sample by itself.
-    fn samples<'py>(&self, py: Python<'py>, one: &NativeConstellation) -> PyResult<SampleArrays<'py>> {
+    fn samples<'py>(
+        &self,
+        py: Python<'py>,
+        one: &NativeConstellation,
+    ) -> PyResult<SampleArrays<'py>> {
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
         let work = move |_: &Stop| {
             embedded::noting(|| -> anyhow::Result<_> {
                 let samples = evaluator.samples(&one.propagate(evaluator.setup())?)?;
                 let pdop = samples.pdop.iter().map(|one| one.unwrap_or(f32::NAN));
-                Ok((pdop.collect::<Vec<_>>(), samples.visible, samples.gnss_visible))
+                Ok((
+                    pdop.collect::<Vec<_>>(),
+                    samples.visible,
+                    samples.gnss_visible,
+                ))
             })
         };
         let (found, printed) = interruptible(py, self.threads, || {}, work)?;
@@ -437,8 +462,18 @@ fn look_angles(
             let seen = state.map(|teme| site.local.look_angles(fixed.rotated(k, teme).position_km));
             angles.push(seen.unwrap_or((f64::NAN, f64::NAN)));
         }
-        azimuths.push(angles.iter().map(|(_, azimuth)| azimuth.to_degrees()).collect());
-        elevations.push(angles.iter().map(|(elevation, _)| elevation.to_degrees()).collect());
+        azimuths.push(
+            angles
+                .iter()
+                .map(|(_, azimuth)| azimuth.to_degrees())
+                .collect(),
+        );
+        elevations.push(
+            angles
+                .iter()
+                .map(|(elevation, _)| elevation.to_degrees())
+                .collect(),
+        );
     }
     Ok((azimuths, elevations))
 }
@@ -446,7 +481,8 @@ fn look_angles(
 /// Metrics as a dictionary; a metric without a value is None.
 fn dictionary<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
     let dictionary = PyDict::new(py);
-    let values = metric_values(metrics).map_err(|error| NavwalkerError::new_err(error.to_string()))?;
+    let values =
+        metric_values(metrics).map_err(|error| NavwalkerError::new_err(error.to_string()))?;
     for (name, value) in values {
         match value {
             Value::Bool(truth) => dictionary.set_item(name, truth)?,

@@ -5,6 +5,7 @@
 mod columns;
 mod command;
 mod constellation;
+mod custom;
 mod design_columns;
 mod engine;
 mod errors;
@@ -24,11 +25,11 @@ mod _native {
     #[pymodule_export]
     use super::constellation::NativeConstellation;
     #[pymodule_export]
+    use super::custom::search_custom;
+    #[pymodule_export]
     use super::engine::Engine;
     #[pymodule_export]
-    use super::errors::{
-        DesignError, FileError, NavwalkerError, NavwalkerWarning, ScenarioError,
-    };
+    use super::errors::{DesignError, FileError, NavwalkerError, NavwalkerWarning, ScenarioError};
     #[pymodule_export]
     use super::search::{answers, picked, search_space};
     #[pymodule_export]

@@ -22,10 +22,15 @@ type Answers<'py> = (
 
 /// The variables of the search and the names of its objectives.
 #[pyfunction]
-pub(crate) fn search_space(py: Python<'_>, engine: &Engine) -> PyResult<(Vec<Variable>, Vec<String>)> {
+pub(crate) fn search_space(
+    py: Python<'_>,
+    engine: &Engine,
+) -> PyResult<(Vec<Variable>, Vec<String>)> {
     let evaluator = engine.evaluator(py)?;
     let study = engine.study();
-    let problem = study.problem(&evaluator).map_err(|error| errors::scenario(&error))?;
+    let problem = study
+        .problem(&evaluator)
+        .map_err(|error| errors::scenario(&error))?;
     let variable = |one: &navwalker::optimize::Variable| {
         let kind = match one.kind {
             VariableKind::Integer { .. } => "integer",
@@ -49,7 +54,12 @@ pub(crate) fn answers<'py>(
 ) -> PyResult<Answers<'py>> {
     let evaluator = engine.evaluator(py)?;
     let study = engine.study().clone();
-    let rows: Vec<Vec<f64>> = vectors.as_array().rows().into_iter().map(|row| row.to_vec()).collect();
+    let rows: Vec<Vec<f64>> = vectors
+        .as_array()
+        .rows()
+        .into_iter()
+        .map(|row| row.to_vec())
+        .collect();
     let work = move |stop: &Stop| -> anyhow::Result<_> {
         let problem = study.problem(&evaluator)?;
         let nearest = |mut genome: Vec<f64>| {
@@ -103,7 +113,10 @@ pub(crate) fn picked(front: &str, how: &str) -> PyResult<usize> {
     let minimised: Vec<Vec<f64>> = members.iter().map(FrontMember::minimised).collect();
     let found = pick.apply(&minimised);
     let found = found.ok_or_else(|| {
-        wrong(format!("there is no pick '{how}' among {} designs", members.len()))
+        wrong(format!(
+            "there is no pick '{how}' among {} designs",
+            members.len()
+        ))
     })?;
     Ok(found.place)
 }

@@ -2,8 +2,8 @@
 
 use crate::errors::NavwalkerError;
 use navwalker::dop::{ClockGroup, DopFamily, MOST_PDOP_CAP, ObservationWeights};
-use navwalker::frames::LocalFrame;
 use navwalker::earth::Surface;
+use navwalker::frames::LocalFrame;
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 
@@ -43,7 +43,10 @@ pub(crate) fn dilutions<'py>(
         rows.push(match found {
             Some(of) => {
                 let clocks = of.tdop.iter().map(|one| one.unwrap_or(f64::NAN));
-                [of.gdop, of.pdop, of.hdop, of.vdop].into_iter().chain(clocks).collect()
+                [of.gdop, of.pdop, of.hdop, of.vdop]
+                    .into_iter()
+                    .chain(clocks)
+                    .collect()
             }
             None => vec![f64::NAN; 4 + systems],
         });

@@ -66,7 +66,7 @@ def test_constellations_without_satellites(small):
     assert len(small.positions(less)) == len(small.positions(whole)) - 1
     assert small.evaluate(less).mean_visible < small.evaluate(whole).mean_visible
     with pytest.raises(nw.DesignError, match="did you mean 'NW-A-P01-S01'"):
-        small.evaluate(whole.without("NW-A-P01-S0"))
+        small.evaluate(whole.without("NW-A-P01-S001"))
 
 
 def test_samples_and_series_agree(small, design):
@@ -98,7 +98,7 @@ def test_positions_are_where_satellites_are_seen(small, design):
 def test_errors_name_what_and_where(small, design):
     with pytest.raises(nw.ScenarioError, match="visibility.mask-deg"):
         nw.Scenario("paper", visibility_mask_dgr=10)
-    with pytest.raises(nw.ScenarioError, match="did you mean 'paper'"):
+    with pytest.raises(nw.ScenarioError, match='did you mean "paper"'):
         nw.Scenario("papr")
     with pytest.raises(nw.DesignError, match="row 1"):
         small.evaluate(planes=[13, 12], satellites_per_plane=14, inclination_deg=55, altitude_km=925, phasing=[1, 12])

@@ -56,3 +56,30 @@ def test_pymoo(scenario):
     result = minimize(problem, NSGA2(pop_size=8), ("n_gen", 2), seed=1)
     again = scenario.batch(result.X)
     np.testing.assert_array_equal(again["objectives"], result.F)
+
+
+def test_objectives_of_the_caller(scenario):
+    """The scenario's own objectives as a name and as a function give the scenario's own front."""
+    calls = []
+
+    def cost(table):
+        calls.append(len(table))
+        return table["j_cost"]
+
+    run = scenario.optimize(seed=3, objectives=["j-pos", cost])
+    same = scenario.optimize(seed=3)
+    np.testing.assert_array_equal(run.objectives[:, 0], same.front["j_pos"])
+    np.testing.assert_array_equal(run.front["notation"], same.front["notation"])
+    assert run.names == ["j-pos", "cost"] and len(calls) == 3
+    assert run.pick(1).notation == run.front["notation"][0]
+
+
+def test_objectives_that_fail(scenario):
+    with pytest.raises(ZeroDivisionError):
+        scenario.optimize(objectives=["satellites", lambda table: 1 / 0])
+    with pytest.raises(nw.NavwalkerError, match="1 values for 8 designs"):
+        scenario.optimize(objectives=[lambda table: [1.0]])
+    with pytest.raises(nw.NavwalkerError, match="gave NaN"):
+        scenario.optimize(objectives=[lambda table: table["j_cost"] * np.nan])
+    with pytest.raises(nw.ScenarioError, match="satelites"):
+        scenario.optimize(objectives=["satelites"])
