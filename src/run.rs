@@ -16,6 +16,7 @@ pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
+pub use columns::metric_values;
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]
 pub use validation::{Basis, ValidateResult};
