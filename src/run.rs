@@ -12,11 +12,11 @@ pub(crate) mod tables;
 #[cfg(feature = "validate")]
 mod validation;
 
+pub use columns::metric_values;
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,
 };
-pub use columns::metric_values;
 pub use tables::{front_csv, history_csv};
 #[cfg(feature = "validate")]
 pub use validation::{Basis, ValidateResult};

@@ -94,6 +94,7 @@ def dilutions(
     elevation_deg: npt.NDArray[np.float64],
     system: npt.NDArray[np.int64],
     systems: int,
+    mask_deg: float,
 ) -> npt.NDArray[np.float64]: ...
 def search_space(engine: Engine) -> tuple[list[tuple[str, str, float, float]], list[str]]: ...
 def answers(

@@ -25,10 +25,17 @@ class Dops:
     systems: list[object]
 
 
-def dop(azimuth_deg: npt.ArrayLike, elevation_deg: npt.ArrayLike, system: npt.ArrayLike | None = None) -> Dops:
+def dop(
+    azimuth_deg: npt.ArrayLike,
+    elevation_deg: npt.ArrayLike,
+    system: npt.ArrayLike | None = None,
+    *,
+    mask_deg: float = 0.0,
+) -> Dops:
     """The dilutions of precision of satellites at some azimuths (from north by east) and elevations, degrees.
 
-    Satellites are along the last axis, and every other axis is one of skies; a satellite that is NaN is not there.
+    Satellites are along the last axis, and every other axis is one of skies; a satellite that is NaN, or below
+    ``mask_deg``, is not there.
     Each ``system`` has a clock state of its own; without systems all satellites share one.
 
     >>> import navwalker as nw
@@ -59,6 +66,7 @@ def dop(azimuth_deg: npt.ArrayLike, elevation_deg: npt.ArrayLike, system: npt.Ar
         np.ascontiguousarray(elevation.reshape(rows)),
         np.ascontiguousarray(numbers.astype(np.int64).reshape(rows)),
         len(systems),
+        mask_deg,
     )
     gdop, pdop, hdop, vdop = (found[:, place].reshape(skies) for place in range(4))
     tdop = found[:, 4:].reshape((*skies, len(systems)))

@@ -42,6 +42,7 @@ def test_axes_and_unsolved():
     assert one.pdop.shape == () and one.pdop == found.pdop[0]
     absent = nw.dop([*azimuth[0], np.nan], [*elevation[0], 45])
     assert absent.pdop == one.pdop
+    assert np.isnan(nw.dop(azimuth[0], elevation[0], mask_deg=15).pdop)
 
 
 def test_bad_skies():

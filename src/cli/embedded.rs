@@ -9,7 +9,7 @@ use super::{Status, coincidence, constellations, interrupt, limits, output, read
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{Constellation, FileSatellites};
-use crate::exchange::import::SatelliteFilter;
+use crate::exchange::import::{SatelliteFilter, StateChoice};
 use crate::exchange::lint::Format;
 use anyhow::{Context, Result};
 use clap::Parser;
@@ -31,9 +31,7 @@ pub struct Outcome {
 /// `--threads` is taken for this command alone.
 pub fn run(args: impl IntoIterator<Item = OsString>) -> Outcome {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-    let _guard = ONE_AT_A_TIME
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner);
+    let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (status, printed) = output::kept(|| parsed(args));
     Outcome { status, printed }
 }
@@ -120,7 +118,7 @@ pub fn read(
     format: Option<Format>,
     filter: &SatelliteFilter,
 ) -> Result<Constellation> {
-    let merged = read_constellation::read(paths, format)?;
+    let merged = read_constellation::read(paths, format, &StateChoice::default())?;
     let name = |path: &PathBuf| {
         let name = path.file_name().unwrap_or(path.as_os_str());
         output::shown_path(name.as_ref())

@@ -59,7 +59,8 @@ mod tests {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
         let grid = TimeGrid::new(epoch, 7200.0, 600.0).unwrap();
         let site = |latitude| Site::new(Surface::Sphere, latitude, 110.0, 1.0).unwrap();
-        let evaluator = Evaluator::new(testing::setup(grid, vec![site(5.0), site(40.0)], 7.0)).unwrap();
+        let evaluator =
+            Evaluator::new(testing::setup(grid, vec![site(5.0), site(40.0)], 7.0)).unwrap();
         let setup = evaluator.setup();
         let design = "delta:55:24/6/1@925".parse().unwrap();
         let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
