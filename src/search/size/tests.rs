@@ -1,6 +1,7 @@
 //! Against a sweep of the same grid that evaluates everything.
 
 mod closest;
+mod rules;
 
 use super::*;
 use crate::constellation::gnss::Preset;
