@@ -9,12 +9,14 @@ mod quantity;
 mod shell_space;
 pub mod size;
 mod space;
+mod spares;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
 pub use counted::CountedSatellites;
 pub use quantity::{LaunchCost, Quantity};
 pub use shell_space::{ShellSpace, SweepSteps};
 pub use space::DesignSpace;
+pub use spares::SparedPlanes;
 
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
