@@ -6,6 +6,7 @@
 
 pub mod ccsds;
 pub mod csv;
+pub mod deployment;
 mod element_set;
 pub mod gmat;
 pub mod kept_states;

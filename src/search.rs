@@ -10,6 +10,7 @@ mod recording;
 mod shell_space;
 pub mod size;
 mod space;
+mod spares;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
 pub use counted::CountedSatellites;
@@ -17,6 +18,7 @@ pub use quantity::{LaunchCost, Quantity};
 pub use recording::{RecordedEvaluation, RecordingProblem};
 pub use shell_space::{ShellSpace, SweepSteps};
 pub use space::DesignSpace;
+pub use spares::SparedPlanes;
 
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};

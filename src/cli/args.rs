@@ -382,6 +382,10 @@ pub(crate) struct ValidateArgs {
     #[command(flatten)]
     pub(crate) chosen: ChosenArgs,
 
+    /// Refused: of evaluate, report and plot.
+    #[arg(long, hide = true, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+
     /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
     /// all, or files and directories written by another program (OEM, OMM, TLE, SP3, STK .e; any
     /// target with a `.` or `/` in it is a path).

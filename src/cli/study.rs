@@ -387,6 +387,9 @@ impl Study {
         if let Some(note) = setup.plain_path_note() {
             output::hint(&note);
         }
+        for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
+            output::warning(&note);
+        }
         Ok(Evaluator::new(setup)?)
     }
 }
