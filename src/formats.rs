@@ -6,8 +6,10 @@
 
 pub mod ccsds;
 pub mod csv;
+pub mod deployment;
 mod element_set;
 pub mod gmat;
+pub mod kept_states;
 pub mod maps;
 pub mod metadata;
 pub mod outages;

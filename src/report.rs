@@ -6,13 +6,16 @@ pub mod coastline;
 mod compared;
 mod comparison_columns;
 mod csv;
+mod deployment;
 mod diagnostics;
 #[cfg(feature = "figures")]
 mod dominance;
 mod evaluated;
+mod expected;
 pub mod failures;
 #[cfg(feature = "figures")]
 pub mod figures;
+mod from_evaluations;
 pub(crate) mod front_table;
 mod labels;
 mod orbits;
@@ -36,11 +39,14 @@ pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
 pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_quantities};
 pub use csv::{ConstellationColumns, outages_csv, records_csv};
+pub use deployment::{DeploymentSummary, PhaseService};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use from_evaluations::NotEvaluated;
+pub use expected::{ExpectedService, SpareService};
 pub use labels::quantity_label;
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 pub use phases::{PhaseRange, PhaseSpread};

@@ -7,8 +7,9 @@ use crate::cli::{coincidence, output, read_constellation, run};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{
-    Constellation, FileSatellites, GNSS_ONLY, accepted_name, is_name,
+    Constellation, ConstellationError, FileSatellites, GNSS_ONLY, accepted_name, is_name,
 };
+use crate::exchange::import::StateChoice;
 use crate::time::TimeGrid;
 use anyhow::{Context, Result, anyhow, bail};
 use std::collections::BTreeSet;
@@ -136,8 +137,13 @@ pub(crate) fn resolve_given(
     for given in &args.design {
         found.push(of_notation(given, study)?.named_as(given));
     }
+    // A span of time that is none is reported with its place.
+    let choice = match study.scenario.time_grid() {
+        Ok(grid) => StateChoice::new(args.satellites.filter(), grid),
+        Err(_) => StateChoice::default(),
+    };
     for given in &args.constellation {
-        found.push(of_files(args, given, with_contents)?.named_as(given));
+        found.push(of_files(args, given, &choice, with_contents)?.named_as(given));
     }
     require_different_names(found.iter().map(|one| &one.constellation))?;
     Ok(found)
@@ -174,8 +180,22 @@ pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris>
 
 /// The same for a member of a run, of which the command that made the run has warned.
 pub(crate) fn propagate_member(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
-    one.in_service(setup)
-        .with_context(|| format!("cannot propagate {}", one.name))
+    match one.in_service(setup) {
+        // It says of what, and where it is written.
+        Err(ConstellationError::Outage(error)) => Err(error.into()),
+        found => found.with_context(|| format!("cannot propagate {}", one.name)),
+    }
+}
+
+/// Refuses `--without` where all satellites count, in service or not.
+pub(crate) fn refuse_without(names: &[String], what: &str) -> Result<()> {
+    match names.first() {
+        None => Ok(()),
+        Some(name) => bail!(
+            "--without {name}: {what} every satellite, in service or not; --without is of evaluate, report and plot, and \
+             --exclude leaves satellites of files (--constellation) out"
+        ),
+    }
 }
 
 /// Warns of old element sets and of interpolated states.
@@ -251,6 +271,7 @@ pub(crate) fn given_by_scenario(study: &Study) -> Result<Vec<GivenConstellation>
 fn of_files(
     args: &ConstellationArgs,
     given: &Named,
+    choice: &StateChoice,
     with_contents: bool,
 ) -> Result<GivenConstellation> {
     let path = PathBuf::from(&given.text);
@@ -265,15 +286,21 @@ fn of_files(
         );
     }
     let paths = std::slice::from_ref(&path);
-    let (merged, contents) = if with_contents {
-        read_constellation::read_with_contents(paths, args.input_format)?
-    } else {
-        let merged = read_constellation::read(paths, args.input_format)?;
-        (merged, Vec::new())
+    let read = |choice: &StateChoice| match with_contents {
+        true => read_constellation::read_with_contents(paths, args.input_format, choice),
+        false => {
+            let merged = read_constellation::read(paths, args.input_format, choice)?;
+            Ok((merged, Vec::new()))
+        }
     };
+    let filter = args.satellites.filter();
+    let (mut merged, mut contents) = read(choice)?;
+    if merged.fleet.lacks_states(&filter) {
+        (merged, contents) = read(&choice.of_all())?;
+    }
     let name = path.file_name().unwrap_or(path.as_os_str());
     let names = vec![output::shown_path(Path::new(name))];
-    let files = FileSatellites::new(names, merged, &args.satellites.filter())?;
+    let files = FileSatellites::new(names, merged, &filter)?;
     Ok(GivenConstellation {
         constellation: Constellation::of_files(files),
         source: ConstellationSource::Files(contents),

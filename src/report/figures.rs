@@ -99,6 +99,10 @@ keywords! {
         Coverage11 = "coverage-11",
         /// Fraction with at least 12 visible LEO satellites: of the time at a point, or of the points at an instant.
         Coverage12 = "coverage-12",
+        /// Maximum PDOP of a point without any one of the satellites; of a map alone.
+        OneLostMaxPdop = "n1-max-pdop",
+        /// Fraction of the time that a point is available without any one of the satellites; of a map alone.
+        OneLostAvailability = "n1-availability",
         /// PDOP of every point and instant, with its tail.
         Pdop = "pdop",
     }
@@ -119,9 +123,19 @@ impl Measure {
             Self::P95Pdop => "95 % quantile of PDOP",
             Self::MaxPdop => "maximum PDOP",
             Self::Availability => "availability (fraction of the time)",
+            Self::OneLostMaxPdop => "maximum PDOP without the worst one satellite",
+            Self::OneLostAvailability => {
+                "availability without the worst one satellite (fraction of the time)"
+            }
             _ => "PDOP",
         };
         label.to_owned()
+    }
+
+    /// Whether it is of what is left when any one satellite is lost.
+    #[must_use]
+    pub fn is_of_one_lost(self) -> bool {
+        matches!(self, Self::OneLostMaxPdop | Self::OneLostAvailability)
     }
 
     /// For a coverage: the least number of satellites.

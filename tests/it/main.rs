@@ -7,6 +7,7 @@ mod common;
 mod compared;
 #[cfg(unix)]
 mod ctrl_c;
+mod evaluations;
 mod evidence;
 mod exports;
 mod failures;

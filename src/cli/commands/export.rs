@@ -10,6 +10,7 @@ use crate::exchange::constellation::Constellation;
 use crate::exchange::export::{
     Choices, ExportSource, ExportSubject, Naming, Product, ShownScenario, export_size,
 };
+use crate::exchange::import::StateChoice;
 use crate::exchange::lint::Format as LintFormat;
 use crate::exchange::manifest::{ChangedIdentity, ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
@@ -30,6 +31,7 @@ const TOLD_IDENTITIES: usize = 3;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
+    constellations::refuse_without(&args.without, "export writes")?;
     files::require_replaceable(&args.out, args.force, &own(&args.out))?;
     let mut asked = args.study.clone();
     if let Some(date) = &args.creation_date {
@@ -202,7 +204,7 @@ fn check(
         read_back,
     } in groups(args, manifest, has_elements)
     {
-        let mut merged = read_constellation::read(&paths, None)?;
+        let mut merged = read_constellation::read(&paths, None, &StateChoice::default())?;
         let fleet = &mut merged.fleet;
         if merged.formats == [LintFormat::Sp3] {
             fleet.name_by_place();

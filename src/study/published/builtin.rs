@@ -3,7 +3,7 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in study of published numbers.
-const STUDIES: [(&str, &str); 11] = [
+const STUDIES: [(&str, &str); 12] = [
     (
         "gps-sps",
         include_str!("../../../data/studies/gps-sps.toml"),
@@ -23,6 +23,10 @@ const STUDIES: [(&str, &str); 11] = [
     (
         "iridium",
         include_str!("../../../data/studies/iridium.toml"),
+    ),
+    (
+        "kaplan-hegarty",
+        include_str!("../../../data/studies/kaplan-hegarty.toml"),
     ),
     (
         "sun-synchronous",

@@ -360,7 +360,8 @@ impl StudyRun<'_> {
     ) -> Result<Constellation, StudyRunError> {
         let scenario = &self.worlds[place].scenario;
         if let Some(named) = scenario.constellation(of) {
-            let read = named.read(self.read);
+            let grid = scenario.time_grid().map_err(SetupError::from);
+            let read = grid.and_then(|grid| named.read(self.read, grid));
             let (one, _) = read.map_err(|source| StudyRunError::Setup {
                 place: self.study.at(statement.line),
                 source: Box::new(source),
