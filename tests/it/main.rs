@@ -26,6 +26,7 @@ mod reference;
 mod regions;
 mod runs;
 mod scenes;
+mod series;
 mod shells;
 mod singular;
 mod size;
