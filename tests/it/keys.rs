@@ -195,6 +195,12 @@ const ROWS: [Row; 93] = [
         "/metrics/mean_visible",
     ),
     row(
+        "region.weight-grid",
+        "people.csv",
+        EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
         "region.terrain",
         "terrain.csv",
         EVALUATE_POINTS,
@@ -533,6 +539,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("terrain.csv"),
         "latitude_deg,longitude_deg,height_m\n0,70,0\n0,140,3000\n60,70,3000\n60,140,0\n",
+    )
+    .unwrap();
+    fs::write(
+        place.join("people.csv"),
+        "latitude_deg,longitude_deg,weight\n0,70,1\n0,140,0\n60,70,9\n60,140,0\n",
     )
     .unwrap();
     fs::write(
