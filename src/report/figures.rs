@@ -11,6 +11,7 @@ mod front;
 mod histogram;
 mod map;
 mod outages;
+mod phases;
 mod table;
 
 pub use super::Baseline;
@@ -22,6 +23,7 @@ pub use front::{NamedFront, pareto};
 pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
+pub use phases::{NamedPhases, phases};
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
@@ -53,6 +55,8 @@ keywords! {
         Budget = "budget",
         /// What the loss of each satellite does.
         Failures = "failures",
+        /// A measure in each phase of a build-up or a drawdown.
+        Phases = "phases",
     }
 }
 
