@@ -80,12 +80,12 @@ impl ExpectedService {
             return format!(" (states left out: at most {neglected:.1e} of a sample)");
         };
         format!(
-            " and {} in each of {} ({} draws, seed {}; availability within {:.1e}, one standard error)",
+            " and {} in each of {} ({} draws, seed {}; standard error of the availability {})",
             counted(spares.spares_per_plane as usize, "spare"),
             counted(spares.planes, "plane"),
             draws.draws,
             spares.seed,
-            draws.availability_standard_error
+            crate::units::round_decimal(draws.availability_standard_error, 6)
         )
     }
 }

@@ -11,6 +11,7 @@ mod front;
 mod histogram;
 mod map;
 mod outages;
+mod phases;
 mod study;
 mod table;
 
@@ -23,6 +24,7 @@ pub use front::{NamedFront, pareto};
 pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
+pub use phases::{NamedPhases, phases};
 pub use study::{NamedChart, PAPER_FIGURES, deviations_name, study_figures};
 
 pub(in crate::report) use curves::at_epoch;
@@ -55,6 +57,8 @@ keywords! {
         Budget = "budget",
         /// What the loss of each satellite does.
         Failures = "failures",
+        /// A measure in each phase of a build-up or a drawdown.
+        Phases = "phases",
     }
 }
 

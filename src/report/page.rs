@@ -6,6 +6,7 @@
 //! orbit. If there are too many for that, only some have them and the page says so.
 
 mod comparison;
+mod failures;
 mod pack;
 mod payload;
 mod words;
@@ -20,6 +21,7 @@ use crate::printable::printable_json;
 use crate::run::{Run, ScenarioStamp};
 use askama::Template;
 use comparison::Comparison;
+pub use failures::{FailureSection, FailureSectionError};
 use payload::Payload;
 use rayon::prelude::*;
 use std::io::Write;
@@ -54,6 +56,8 @@ pub struct Page<'a> {
     pub fronts: &'a [NamedFront],
     /// Satellites from files that every member of the front has beside its design.
     pub fixed: Option<&'a FileSatellites>,
+    /// What failures of satellites do, where asked for.
+    pub failures: Option<&'a FailureSection>,
 }
 
 impl Page<'_> {
@@ -135,6 +139,7 @@ struct Html<'a> {
     members_left_out: usize,
     objectives: Vec<String>,
     constraints: Vec<String>,
+    failures: Option<&'a FailureSection>,
     checks: Vec<CheckRow>,
     validated: Option<String>,
     conventions: Vec<(&'static str, String)>,
@@ -181,6 +186,7 @@ pub fn write(page: &Page<'_>, mut to: impl Write) -> Result<(), PageError> {
         members_left_out: members.len().saturating_sub(MOST_ROWS),
         objectives: page.run.objective_names(),
         constraints: words::further(page.run),
+        failures: page.failures,
         checks: words::checks(page.run),
         validated: words::validated(page.run),
         conventions: words::conventions(page),

@@ -597,3 +597,74 @@ fn the_figure_of_failures_is_over_sets_too() {
         told.stderr
     );
 }
+
+/// The section of the page has the worst case of `evaluate --failures` first, and both figures; without the flag there is none.
+#[test]
+fn the_report_has_the_losses() {
+    let place = TempDir::new().unwrap();
+    let design = ["--design", "delta:55:30/5/1@925"];
+    let page = |more: &[&str]| {
+        let arguments = [&["report", "--out", "page.html"], &design[..], more].concat();
+        let ran = ran(place.path(), &with(&arguments));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        fs::read_to_string(place.path().join("page.html")).unwrap()
+    };
+    assert!(!page(&[]).contains("id=\"failures\""));
+    let html = page(&["--failures", "1"]);
+    let section = html.split("<section id=\"failures\">").nth(1).unwrap();
+    let section = section.split("</section>").next().unwrap();
+    assert_eq!(section.matches("data:image/svg+xml;base64,").count(), 2);
+    assert_eq!(section.matches("<tr><td>NW-").count(), 20);
+    assert!(
+        section.contains("1 satellite, all 30 cases") && section.contains("10 more are left out"),
+        "{section}"
+    );
+    let evaluated = evaluated(&place, &[&design[..], &["--failures", "1"]].concat());
+    let worst = evaluated["failures"]["worst"]["cvar_pdop"]["without"][0]
+        .as_str()
+        .unwrap();
+    let first = section.find("<tr><td>NW-").unwrap();
+    assert!(
+        section[first..].starts_with(&format!("<tr><td>{worst}</td>")),
+        "{worst}"
+    );
+}
+
+/// The figure of phases has the rows of `evaluate --phases`.
+#[test]
+fn the_figure_of_phases_has_a_row_each() {
+    let place = TempDir::new().unwrap();
+    fs::write(
+        place.path().join("phases.csv"),
+        "phase,add\na,NW-P01\nb,NW-P02 NW-P03\n",
+    )
+    .unwrap();
+    let design = ["--design", "delta:55:12/3/1@925", "--phases", "phases.csv"];
+    let plot = with(&[&["plot", "--figure", "phases", "--as", "csv"], &design[..]].concat());
+    let plot = ran(place.path(), &plot);
+    assert_eq!(plot.status, 0, "{}", plot.stderr);
+    let rows: Vec<Vec<&str>> = plot
+        .stdout
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    let evaluated = evaluated(&place, &design);
+    let phases = evaluated["phases"]["phases"].as_array().unwrap();
+    assert_eq!(rows.len(), 1 + phases.len());
+    for (row, phase) in rows[1..].iter().zip(phases) {
+        assert_eq!(row[2], phase["phase"].as_str().unwrap());
+        assert_eq!(row[3].parse::<u64>().ok(), phase["satellites"].as_u64());
+        assert_eq!(
+            row[5].parse::<f64>().ok(),
+            phase["metrics"]["mean_pdop"].as_f64()
+        );
+    }
+    let of = [
+        "plot",
+        "--figure",
+        "phases",
+        "--design",
+        "delta:55:12/3/1@925",
+    ];
+    assert!(refused(&with(&of)).contains("figure phases needs its table: give --phases FILE"));
+}

@@ -518,6 +518,13 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "plot",
+        "phases",
+        "SMALL --figure phases DESIGN",
+        "--phases phases.csv",
+        Status,
+    ),
+    Row(
+        "plot",
         "failures",
         "SMALL --figure failures --as csv DESIGN",
         "--failures 2",
@@ -648,6 +655,20 @@ const ROWS: &[Row] = &[
         "exclude",
         "SMALL --out out --constellation six.csv",
         "--exclude NW-P01-S01",
+        Out,
+    ),
+    Row(
+        "report",
+        "failures",
+        "SMALL --out out DESIGN",
+        "--failures 1",
+        Out,
+    ),
+    Row(
+        "report",
+        "draws",
+        "SMALL --out out --failures 3 --design delta:55:30/5/1@925",
+        "--draws 5",
         Out,
     ),
     Row(

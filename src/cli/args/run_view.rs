@@ -57,6 +57,15 @@ pub(crate) struct ReportArgs {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
 
+    /// Add what the failure of any K satellites does (1 to 3), as for `evaluate --failures`: the distribution, the worst cases and
+    /// the map of the worst loss.
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub(crate) failures: Option<u8>,
+
+    /// Number of draws of --failures [default: 200].
+    #[arg(long, value_name = "N", requires = "failures", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) draws: Option<u32>,
+
     /// Page to write [default: RUN/report.html, or report.html].
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
@@ -67,7 +76,7 @@ pub(crate) struct PlotArgs {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
 
-    /// Figure to draw: pareto, map, cdf, series, histogram, timeline, failures, convergence or budget.
+    /// Figure to draw: pareto, map, cdf, series, histogram, timeline, failures, phases, convergence or budget.
     #[arg(long)]
     pub(crate) figure: Figure,
 
@@ -84,6 +93,10 @@ pub(crate) struct PlotArgs {
     /// Satellites that fail together in the figure failures: 1 to 3, all sets or draws as for `evaluate --failures` [default: 1].
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3))]
     pub(crate) failures: Option<u8>,
+
+    /// The table of the figure phases, as for `evaluate --phases`.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) phases: Option<PathBuf>,
 
     /// Number of draws of the figure failures [default: 200].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]

@@ -1,6 +1,6 @@
 //! `navwalker evaluate`.
 
-mod deployment;
+pub(super) mod deployment;
 mod designs;
 pub(super) mod failures;
 mod given_run;

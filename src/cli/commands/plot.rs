@@ -1,5 +1,6 @@
 //! `navwalker plot`.
 
+use super::evaluate::deployment::DeploymentTable;
 use super::evaluate::failures::{self, FailureSets};
 use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
@@ -11,7 +12,9 @@ use crate::ground::RegionMap;
 use crate::optimize::Pick;
 use crate::report::Compared;
 use crate::report::figures::draw::{Form, png, svg};
-use crate::report::figures::{self, Figure, Measure, NamedLosses, NamedProfile, Plate};
+use crate::report::figures::{
+    self, Figure, Measure, NamedLosses, NamedPhases, NamedProfile, Plate,
+};
 use crate::report::profile::Profile;
 use crate::scenario::Keyword;
 use anyhow::{Context, Result, bail};
@@ -59,6 +62,9 @@ fn refuse_figure_of_search(args: &PlotArgs) -> Result<()> {
             "--failures and --draws are of the figure failures, not of {}",
             args.figure
         );
+    }
+    if args.figure != Figure::Phases && args.phases.is_some() {
+        bail!("--phases is of the figure phases, not of {}", args.figure);
     }
     let of_run = matches!(args.figure, Figure::Convergence | Figure::Budget);
     if of_run && args.view.run().is_none() {
@@ -140,7 +146,11 @@ fn plate(args: &PlotArgs, view: &View) -> Result<Plate> {
         Figure::Pareto => figures::pareto(&view.run, &view.baselines(), &view.fronts)?,
         Figure::Convergence => figures::convergence(&view.run)?,
         Figure::Budget => figures::budget(view.run.validation.as_ref())?,
-        Figure::Failures => figures::failures(&losses(args, view)?)?,
+        Figure::Failures => {
+            let failing = (args.failures.unwrap_or(1), args.draws);
+            figures::failures(&losses(args.pick.as_deref(), failing, view)?)?
+        }
+        Figure::Phases => figures::phases(&phases(args, view)?, measure(Measure::Availability))?,
         Figure::Map => {
             require_one(args, view)?;
             let profiles = profiles(args, view, false)?;
@@ -197,17 +207,21 @@ enum FirstShown<'a> {
 }
 
 /// The pick, and those compared with it, without each of their satellites.
-fn losses(args: &PlotArgs, view: &View) -> Result<Vec<NamedLosses>> {
+pub(super) fn losses(
+    pick: Option<&str>,
+    (k, draws): (u8, Option<u32>),
+    view: &View,
+) -> Result<Vec<NamedLosses>> {
     let evaluator = view
         .evaluator
         .as_ref()
         .context("this figure needs the scenario of the run, which cannot be set up")?;
-    let k = usize::from(args.failures.unwrap_or(1));
+    let k = usize::from(k);
     let seed = view.run.scenario.as_ref().map_or(1, |of| of.optimizer.seed);
     let of = |name: &str, notation: &str, ephemeris: &Ephemeris| -> Result<NamedLosses> {
         let satellites = ephemeris.satellites();
         failures::require_one_left(name, satellites.len(), k)?;
-        let sets = FailureSets::new(satellites.len(), k, (args.draws, seed));
+        let sets = FailureSets::new(satellites.len(), k, (draws, seed));
         let lost = evaluator.without_each(ephemeris, &sets.sets)?;
         let names = |set: &Vec<usize>| {
             let names = set.iter().map(|place| satellites[*place].name.as_str());
@@ -222,7 +236,7 @@ fn losses(args: &PlotArgs, view: &View) -> Result<Vec<NamedLosses>> {
             is_drawn: sets.drawn.is_some(),
         })
     };
-    let picked = picked(args.pick.as_deref(), view)?;
+    let picked = picked(pick, view)?;
     let first = match &picked {
         FirstShown::Member(one) => of(&one.name, &one.name, &one.in_service(evaluator.setup())?)?,
         FirstShown::Constellation(one) => {
@@ -237,6 +251,61 @@ fn losses(args: &PlotArgs, view: &View) -> Result<Vec<NamedLosses>> {
         }
     }
     Ok(all)
+}
+
+/// The map of the maximum PDOP without any one satellite: of the pick, or the first constellation.
+pub(super) fn map_of_one_lost(view: &View) -> Result<Plate> {
+    let evaluator = evaluator_of(view)?;
+    let (name, profile) = match &picked(None, view)? {
+        FirstShown::Member(one) => {
+            let ephemeris = one.in_service(evaluator.setup())?;
+            let profile = Profile::new(evaluator, &ephemeris)?;
+            let profile = profile.with_one_lost(evaluator, &ephemeris)?;
+            (one.name.clone(), profile)
+        }
+        FirstShown::Constellation(one) => {
+            let profile = Profile::new(evaluator, &one.ephemeris)?;
+            let profile = profile.with_one_lost(evaluator, &one.ephemeris)?;
+            (one.baseline.name.clone(), profile)
+        }
+    };
+    let named = NamedProfile {
+        notation: name.clone(),
+        name,
+        profile: &profile,
+    };
+    Ok(figures::map(
+        &named,
+        Measure::OneLostMaxPdop,
+        &region_map(view),
+    )?)
+}
+
+/// The phases of the constellations, or of the pick of a search.
+fn phases(args: &PlotArgs, view: &View) -> Result<Vec<NamedPhases>> {
+    let evaluator = evaluator_of(view)?;
+    let table = DeploymentTable::read(args.phases.as_deref())?;
+    let table = table.context("figure phases needs its table: give --phases FILE")?;
+    let of = |one: &Constellation, notation: &str| -> Result<NamedPhases> {
+        let ephemeris = one.in_service(evaluator.setup())?;
+        Ok(NamedPhases {
+            name: one.name.clone(),
+            notation: notation.to_owned(),
+            phases: table.phases(evaluator, one, &ephemeris)?,
+        })
+    };
+    if let FirstShown::Member(one) = &picked(args.pick.as_deref(), view)? {
+        return Ok(vec![of(one, &one.name)?]);
+    }
+    let compared = view.compared.iter();
+    compared
+        .map(|one| of(&one.constellation, &one.baseline.made_of))
+        .collect()
+}
+
+fn evaluator_of(view: &View) -> Result<&Evaluator> {
+    let evaluator = view.evaluator.as_ref();
+    evaluator.context("this needs the scenario of the run, which cannot be set up")
 }
 
 /// The pick, and those compared with it, evaluated.

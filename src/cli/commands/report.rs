@@ -1,9 +1,10 @@
 //! `navwalker report`.
 
+use super::plot;
 use crate::cli::args::{ReportArgs, ViewArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
-use crate::report::page::{self, Page};
+use crate::report::page::{self, FailureSection, Page};
 use anyhow::Result;
 use std::path::{Path, PathBuf};
 
@@ -13,7 +14,7 @@ const PAGE: &str = "report.html";
 pub(crate) fn run(args: &ReportArgs) -> Result<Status> {
     let usual = || args.view.run().unwrap_or_default().join(PAGE);
     let out = args.out.clone().unwrap_or_else(usual);
-    write(&args.view, &out)?;
+    write(&args.view, &out, args.failures.map(|k| (k, args.draws)))?;
     output::result(&out.display().to_string())?;
     Ok(Status::Done)
 }
@@ -27,15 +28,18 @@ pub(crate) fn of_run(directory: &Path, validation: Option<&Path>) -> Result<Path
         ..ViewArgs::default()
     };
     let out = directory.join(PAGE);
-    write(&args, &out)?;
+    write(&args, &out, None)?;
     Ok(out)
 }
 
-fn write(args: &ViewArgs, out: &Path) -> Result<()> {
+/// Writes the page, with failures of so many satellites if asked for.
+fn write(args: &ViewArgs, out: &Path, failing: Option<(u8, Option<u32>)>) -> Result<()> {
     let view = View::new(args)?;
     files::refuse_inputs(out, view.inputs.iter().map(PathBuf::as_path))?;
     let staged = files::StagedFile::new(out)?;
     let mut html = Vec::new();
+    let failures = failing.map(|failing| failure_section(&view, failing));
+    let failures = failures.transpose()?;
     let page = Page {
         run: &view.run,
         stamp: view.stamp.as_ref(),
@@ -44,7 +48,15 @@ fn write(args: &ViewArgs, out: &Path) -> Result<()> {
         compared: &view.compared,
         fronts: &view.fronts,
         fixed: view.fixed.as_ref(),
+        failures: failures.as_ref(),
     };
     page::write(&page, &mut html)?;
     staged.commit(&html)
+}
+
+/// What failures do: of the pick of a search and of the compared constellations.
+fn failure_section(view: &View, failing: (u8, Option<u32>)) -> Result<FailureSection> {
+    let losses = plot::losses(None, failing, view)?;
+    let map = plot::map_of_one_lost(view)?;
+    Ok(FailureSection::new(&losses, Some(&map))?)
 }

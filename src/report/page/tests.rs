@@ -51,6 +51,7 @@ fn page<'a>(run: &'a Run, evaluator: Option<&'a Evaluator>) -> Page<'a> {
         compared: &[],
         fronts: &[],
         fixed: None,
+        failures: None,
     }
 }
 

@@ -13,14 +13,14 @@ use anyhow::{Context, Result, bail};
 use std::path::Path;
 
 /// The table of `--phases`.
-pub(super) struct DeploymentTable {
+pub(crate) struct DeploymentTable {
     name: String,
     steps: Vec<DeploymentStep>,
 }
 
 impl DeploymentTable {
     /// Reads the table, if one is given.
-    pub(super) fn read(path: Option<&Path>) -> Result<Option<Self>> {
+    pub(crate) fn read(path: Option<&Path>) -> Result<Option<Self>> {
         let Some(path) = path else { return Ok(None) };
         let name = path.display().to_string();
         let bytes = files::read_whole(path).with_context(|| format!("cannot read {name}"))?;
@@ -29,7 +29,7 @@ impl DeploymentTable {
     }
 
     /// Name, satellites in service and metrics of each phase of a constellation.
-    fn phases(
+    pub(crate) fn phases(
         &self,
         evaluator: &Evaluator,
         one: &Constellation,
