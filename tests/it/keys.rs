@@ -74,7 +74,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 93] = [
+const ROWS: [Row; 94] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
