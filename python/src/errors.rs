@@ -1,6 +1,6 @@
 //! The exceptions, with the messages of the program.
 
-use navwalker::cli::embedded::{MessageKind, Printed, error_text};
+use navwalker::cli::embedded::{MessageKind, Transcript, error_text};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -39,7 +39,7 @@ create_exception!(
 );
 
 /// Gives the warnings among what was printed as warnings of Python; hints are of the terminal.
-pub(crate) fn warn(py: Python<'_>, printed: &Printed) -> PyResult<()> {
+pub(crate) fn warn(py: Python<'_>, printed: &Transcript) -> PyResult<()> {
     let category = py.get_type::<NavwalkerWarning>();
     for message in &printed.messages {
         if message.kind == MessageKind::Warning {

@@ -1,7 +1,7 @@
 //! The program inside another one, such as the Python module: its commands and the way it reads scenarios and
 //! constellations, with what they print kept instead of printed.
 
-pub use super::output::{Message, MessageKind, Printed};
+pub use super::output::{Message, MessageKind, Transcript};
 pub use super::study::Study;
 
 use super::args::Cli;
@@ -23,7 +23,7 @@ pub struct Outcome {
     /// Its exit status.
     pub status: u8,
     /// What it printed.
-    pub printed: Printed,
+    pub printed: Transcript,
 }
 
 /// Runs a command line, which begins with the program name, and keeps what it prints. One runs at a time.
@@ -79,7 +79,7 @@ pub fn ask_to_stop() {
 }
 
 /// Does some work and gives what it printed beside what it found.
-pub fn noting<T>(work: impl FnOnce() -> T) -> (T, Printed) {
+pub fn noting<T>(work: impl FnOnce() -> T) -> (T, Transcript) {
     output::kept(work)
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn set_quiet(quiet: bool) {
 
 /// What was printed, where another program runs a command.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Printed {
+pub struct Transcript {
     /// The result, as stdout would have it.
     pub result: String,
     /// Everything else, in its order.
@@ -45,18 +45,18 @@ pub enum MessageKind {
 
 thread_local! {
     /// Where this thread prints to, if not to stdout and stderr.
-    static KEPT: RefCell<Option<Printed>> = const { RefCell::new(None) };
+    static KEPT: RefCell<Option<Transcript>> = const { RefCell::new(None) };
 }
 
 /// Does some work of this thread and keeps what it prints.
-pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Printed) {
-    let outer = KEPT.replace(Some(Printed::default()));
+pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Transcript) {
+    let outer = KEPT.replace(Some(Transcript::default()));
     let done = work();
     (done, KEPT.replace(outer).unwrap_or_default())
 }
 
 /// Adds to what is kept; `false` if nothing is.
-fn keep(add: impl FnOnce(&mut Printed)) -> bool {
+fn keep(add: impl FnOnce(&mut Transcript)) -> bool {
     KEPT.with_borrow_mut(|kept| kept.as_mut().map(add).is_some())
 }
 
@@ -152,7 +152,7 @@ fn say(kind: MessageKind, text: &str) {
 }
 
 /// Keeps or prints what was kept.
-pub(crate) fn say_again(printed: Printed) {
+pub(crate) fn say_again(printed: Transcript) {
     // Printing into what is kept cannot fail, and a result of this size is kept.
     let _ = part(&printed.result);
     for message in printed.messages {

@@ -4,7 +4,7 @@ mod records;
 mod samples;
 
 pub use records::{EpochMetrics, Outage, PointMetrics};
-pub use samples::Samples;
+pub use samples::SampleGrid;
 
 use super::Evaluator;
 use super::counts::{COVERAGE_LEVELS, Coverage, OutageRun, Outages, Threshold};

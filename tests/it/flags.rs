@@ -101,7 +101,7 @@ const ROWS: &[Row] = &[
     Row(
         "optimize",
         "from",
-        "optimize --out old SMALL SEARCH --evaluations | ",
+        "optimize --out old SMALL SEARCH --evaluations | SMALL SEARCH",
         "--from old",
         Stdout,
     ),

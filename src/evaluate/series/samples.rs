@@ -6,7 +6,7 @@ use crate::evaluate::Evaluator;
 
 /// All samples of an evaluation, instant by instant and in it point by point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Samples {
+pub struct SampleGrid {
     /// Visible LEO satellites.
     pub visible: Vec<u32>,
     /// Visible GNSS satellites.
@@ -15,7 +15,7 @@ pub struct Samples {
     pub pdop: Vec<Option<f32>>,
 }
 
-impl Samples {
+impl SampleGrid {
     fn with_capacity(samples: usize) -> Self {
         Self {
             visible: Vec::with_capacity(samples),
@@ -38,8 +38,8 @@ impl Evaluator {
     ///
     /// # Errors
     /// If a satellite cannot be propagated.
-    pub fn samples(&self, ephemeris: &Ephemeris) -> Result<Samples, EphemerisError> {
-        let mut samples = Samples::with_capacity(self.setup().sample_count());
+    pub fn samples(&self, ephemeris: &Ephemeris) -> Result<SampleGrid, EphemerisError> {
+        let mut samples = SampleGrid::with_capacity(self.setup().sample_count());
         self.visit(ephemeris, |instant| samples.add(instant))?;
         Ok(samples)
     }
