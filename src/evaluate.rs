@@ -33,7 +33,7 @@ pub use kernel::{InstructionSet, Rechecks, SampleTile, SampleTiles};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
-pub use series::{EpochMetrics, Outage, PointMetrics, Series};
+pub use series::{EpochMetrics, Outage, PointMetrics, Samples, Series};
 pub use window::InformationPdop;
 
 use crate::constellation::Design;

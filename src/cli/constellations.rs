@@ -9,6 +9,7 @@ use crate::evaluate::Setup;
 use crate::exchange::constellation::{
     Constellation, ConstellationError, FileSatellites, GNSS_ONLY, accepted_name, is_name,
 };
+use crate::exchange::import::StateChoice;
 use crate::time::TimeGrid;
 use anyhow::{Context, Result, anyhow, bail};
 use std::collections::BTreeSet;
@@ -136,8 +137,13 @@ pub(crate) fn resolve_given(
     for given in &args.design {
         found.push(of_notation(given, study)?.named_as(given));
     }
+    // A span of time that is none is reported with its place.
+    let choice = match study.scenario.time_grid() {
+        Ok(grid) => StateChoice::new(args.satellites.filter(), grid),
+        Err(_) => StateChoice::default(),
+    };
     for given in &args.constellation {
-        found.push(of_files(args, given, with_contents)?.named_as(given));
+        found.push(of_files(args, given, &choice, with_contents)?.named_as(given));
     }
     require_different_names(found.iter().map(|one| &one.constellation))?;
     Ok(found)
@@ -265,6 +271,7 @@ pub(crate) fn given_by_scenario(study: &Study) -> Result<Vec<GivenConstellation>
 fn of_files(
     args: &ConstellationArgs,
     given: &Named,
+    choice: &StateChoice,
     with_contents: bool,
 ) -> Result<GivenConstellation> {
     let path = PathBuf::from(&given.text);
@@ -279,15 +286,21 @@ fn of_files(
         );
     }
     let paths = std::slice::from_ref(&path);
-    let (merged, contents) = if with_contents {
-        read_constellation::read_with_contents(paths, args.input_format)?
-    } else {
-        let merged = read_constellation::read(paths, args.input_format)?;
-        (merged, Vec::new())
+    let read = |choice: &StateChoice| match with_contents {
+        true => read_constellation::read_with_contents(paths, args.input_format, choice),
+        false => {
+            let merged = read_constellation::read(paths, args.input_format, choice)?;
+            Ok((merged, Vec::new()))
+        }
     };
+    let filter = args.satellites.filter();
+    let (mut merged, mut contents) = read(choice)?;
+    if merged.fleet.lacks_states(&filter) {
+        (merged, contents) = read(&choice.of_all())?;
+    }
     let name = path.file_name().unwrap_or(path.as_os_str());
     let names = vec![output::shown_path(Path::new(name))];
-    let files = FileSatellites::new(names, merged, &args.satellites.filter())?;
+    let files = FileSatellites::new(names, merged, &filter)?;
     Ok(GivenConstellation {
         constellation: Constellation::of_files(files),
         source: ConstellationSource::Files(contents),

@@ -2,7 +2,7 @@
 
 use crate::cli::files;
 use crate::cli::output::{self, shown_path};
-use crate::exchange::import::{Fleet, Imported, Merged, MergedFiles};
+use crate::exchange::import::{Fleet, Imported, Merged, MergedFiles, StateChoice};
 use crate::exchange::lint::Format;
 use crate::exchange::recognise::recognise;
 use crate::formats::text::finding::LeftOut;
@@ -21,14 +21,19 @@ type Opener<'a> = &'a mut dyn FnMut(&Path) -> io::Result<Box<dyn BufRead>>;
 pub(crate) type FileContents = (PathBuf, Vec<u8>);
 
 /// The satellites of files and directories, in the order of the names, and the formats found.
-pub(crate) fn read(paths: &[PathBuf], format: Option<Format>) -> Result<Merged> {
-    read_by(&mut open, paths, format)
+pub(crate) fn read(
+    paths: &[PathBuf],
+    format: Option<Format>,
+    choice: &StateChoice,
+) -> Result<Merged> {
+    read_by(&mut open, paths, format, choice)
 }
 
 /// The same, with the contents of the files that were read.
 pub(crate) fn read_with_contents(
     paths: &[PathBuf],
     format: Option<Format>,
+    choice: &StateChoice,
 ) -> Result<(Merged, Vec<FileContents>)> {
     let mut contents: Vec<FileContents> = Vec::new();
     let mut keep = |file: &Path| {
@@ -36,7 +41,7 @@ pub(crate) fn read_with_contents(
         contents.push((file.to_owned(), bytes.clone()));
         Ok(Box::new(Cursor::new(bytes)) as Box<dyn BufRead>)
     };
-    let merged = read_by(&mut keep, paths, format)?;
+    let merged = read_by(&mut keep, paths, format, choice)?;
     Ok((merged, contents))
 }
 
@@ -44,12 +49,16 @@ fn open(file: &Path) -> io::Result<Box<dyn BufRead>> {
     Ok(Box::new(BufReader::new(File::open(file)?)))
 }
 
-fn read_by(open: Opener<'_>, paths: &[PathBuf], format: Option<Format>) -> Result<Merged> {
+fn read_by(
+    open: Opener<'_>,
+    paths: &[PathBuf],
+    format: Option<Format>,
+    choice: &StateChoice,
+) -> Result<Merged> {
     let mut merged = MergedFiles::default();
     for path in paths {
-        for (_, imported) in read_each_by(open, path, format)? {
-            merged.add(imported);
-        }
+        let mut add = |_, imported| merged.add(imported);
+        each_by(open, path, (format, choice), &mut add)?;
     }
     merged.finish().context("no file to read")
 }
@@ -57,36 +66,46 @@ fn read_by(open: Opener<'_>, paths: &[PathBuf], format: Option<Format>) -> Resul
 /// Imports each file of a path: the file itself, or the constellation files in a directory. A warning lists the
 /// other files in the directory.
 pub(crate) fn read_each(path: &Path, format: Option<Format>) -> Result<Vec<(PathBuf, Imported)>> {
-    read_each_by(&mut open, path, format)
+    let mut found = Vec::new();
+    let mut add = |file, imported| found.push((file, imported));
+    each_by(&mut open, path, (format, &StateChoice::default()), &mut add)?;
+    Ok(found)
 }
 
-fn read_each_by(
+/// Passes each file of a path to `take` as soon as it has been read.
+fn each_by(
     open: Opener<'_>,
     path: &Path,
-    format: Option<Format>,
-) -> Result<Vec<(PathBuf, Imported)>> {
+    (format, choice): (Option<Format>, &StateChoice),
+    take: &mut dyn FnMut(PathBuf, Imported),
+) -> Result<()> {
     if !path.is_dir() {
-        return Ok(vec![(path.to_owned(), read_one(open, path, format)?)]);
+        take(path.to_owned(), read_one(open, path, (format, choice))?);
+        return Ok(());
     }
     let (files, mut others) = entries(path)?;
-    let mut found = Vec::new();
+    let mut any = false;
     for file in files {
         let format = match format {
             Some(format) => Some(format),
             None => format_of(&file)?,
         };
         match format {
-            Some(format) => found.push((file.clone(), read_one(open, &file, Some(format))?)),
+            Some(format) => {
+                let imported = read_one(open, &file, (Some(format), choice))?;
+                take(file, imported);
+                any = true;
+            }
             None => others.push(file),
         }
     }
     if !others.is_empty() {
         output::warning(&format!("{}: {}", shown_path(path), left_out(&others)));
     }
-    if found.is_empty() {
+    if !any {
         bail!("{} contains no constellation file", shown_path(path));
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Warns of the parts of a file that are not read.
@@ -96,11 +115,15 @@ pub(crate) fn warn_left_out(file: &Path, left_out: &LeftOut) {
     }
 }
 
-fn read_one(open: Opener<'_>, file: &Path, format: Option<Format>) -> Result<Imported> {
+fn read_one(
+    open: Opener<'_>,
+    file: &Path,
+    (format, choice): (Option<Format>, &StateChoice),
+) -> Result<Imported> {
     let mut read = || -> Result<Imported> {
         let input = open(file)?;
         let name = file.file_name().map(|name| name.to_string_lossy());
-        Ok(Fleet::read(input, format, name.as_deref())?)
+        Ok(Fleet::read_chosen(input, format, name.as_deref(), choice)?)
     };
     let imported = read().with_context(|| format!("cannot read {}", shown_path(file)))?;
     warn_left_out(file, &imported.left_out);

@@ -111,6 +111,22 @@ impl Arc {
         })
     }
 
+    /// An arc whose samples are not kept: it only tells when it is valid.
+    #[must_use]
+    pub fn without_states(
+        frame: Frame,
+        interpolation: Interpolation,
+        useable: (Epoch, Epoch),
+    ) -> Self {
+        Self {
+            frame,
+            interpolation,
+            useable,
+            is_open: false,
+            nodes: Vec::new(),
+        }
+    }
+
     /// The part within an interval, with its nodes; `None` if there is none.
     #[must_use]
     pub fn within(mut self, (first, last): (Epoch, Epoch)) -> Option<Self> {

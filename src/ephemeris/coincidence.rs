@@ -58,25 +58,50 @@ fn track(
 /// A satellite and its positions at the three instants, km.
 type Located = (SatellitePlace, [Vector3<f64>; 3]);
 
+/// The places that have not been taken, so that those of a large group are passed over at once.
+struct FreePlaces {
+    /// The place itself if it is free, or else one that is not after the next free one.
+    next: Vec<usize>,
+}
+
+impl FreePlaces {
+    fn new(count: usize) -> Self {
+        let next = (0..=count).collect();
+        Self { next }
+    }
+
+    /// The first free place from one on; their number if there is none.
+    fn from(&mut self, place: usize) -> usize {
+        let mut at = place;
+        while self.next[at] != at {
+            // Every second step is saved for the next time.
+            self.next[at] = self.next[self.next[at]];
+            at = self.next[at];
+        }
+        at
+    }
+
+    fn take(&mut self, place: usize) {
+        self.next[place] = place + 1;
+    }
+}
+
 /// Groups of coincident tracks; the tracks are sorted by x at the first instant.
 fn groups(tracks: &[Located]) -> Vec<Vec<SatellitePlace>> {
     // The group of each track, identified by its first track.
     let mut leaders: Vec<usize> = (0..tracks.len()).collect();
+    let mut free = FreePlaces::new(tracks.len());
     for (n, (_, track)) in tracks.iter().enumerate() {
-        let near = |(_, other): &&Located| other[0].x - track[0].x <= COINCIDENT_WITHIN_KM;
-        for (m, (_, other)) in tracks
-            .iter()
-            .enumerate()
-            .skip(n + 1)
-            .take_while(|(_, t)| near(t))
+        let mut m = free.from(n + 1);
+        while let Some((_, other)) = tracks.get(m)
+            && other[0].x - track[0].x <= COINCIDENT_WITHIN_KM
         {
-            let together = track
-                .iter()
-                .zip(other)
-                .all(|(a, b)| (a - b).norm() <= COINCIDENT_WITHIN_KM);
-            if together && leaders[m] == m {
+            let mut pairs = track.iter().zip(other);
+            if pairs.all(|(a, b)| (a - b).norm() <= COINCIDENT_WITHIN_KM) {
                 leaders[m] = leaders[n];
+                free.take(m);
             }
+            m = free.from(m + 1);
         }
     }
     let mut groups: Vec<Vec<SatellitePlace>> = vec![Vec::new(); tracks.len()];
@@ -128,6 +153,25 @@ mod tests {
         ] {
             assert_eq!(coincident(&[&ephemeris(text)]), Ok(vec![]), "{text}");
         }
+    }
+
+    /// 100 000 satellites in each of two places, and 100 000 on a line through them: a comparison of all pairs of a place
+    /// would not end here.
+    #[test]
+    fn large_groups_take_no_longer_than_their_satellites() {
+        let at = |x_km: f64| [Vector3::new(x_km, 0.0, 0.0); 3];
+        let count = 100_000;
+        let place = |n: usize| match n % 3 {
+            0 => at(7000.0),
+            1 => at(7000.02),
+            _ => at(7001.0 + n as f64),
+        };
+        let mut tracks: Vec<Located> = (0..3 * count).map(|n| ((0, n), place(n))).collect();
+        tracks.sort_by(|a, b| a.1[0].x.total_cmp(&b.1[0].x));
+        let groups = groups(&tracks);
+        let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
+        assert_eq!(sizes, [count, count]);
+        assert_eq!(groups[1][..2], [(0, 1), (0, 4)]);
     }
 
     #[test]

@@ -230,16 +230,28 @@ fn at_instant(
         }
     }
     swept.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let is_one = |a: usize, b: usize| together[a] != usize::MAX && together[a] == together[b];
+    // The end of the run of satellites in one place that each belongs to.
+    let mut run_end: Vec<usize> = (1..=swept.len()).collect();
+    for n in (1..swept.len()).rev() {
+        if is_one(swept[n - 1].2, swept[n].2) {
+            run_end[n - 1] = run_end[n];
+        }
+    }
     let mut found: Option<Meetings> = None;
     // The line has a length of 1.
     for (n, &(along, position, place)) in swept.iter().enumerate() {
-        for &(other_along, other_position, other) in &swept[n + 1..] {
-            if other_along - along > MEET_WITHIN_KM {
-                break;
+        let mut next = run_end[n];
+        while let Some(&(other_along, other_position, other)) = swept.get(next)
+            && other_along - along <= MEET_WITHIN_KM
+        {
+            if is_one(place, other) {
+                next = run_end[next];
+                continue;
             }
+            next += 1;
             let distance_km = (position - other_position).norm();
-            let is_one = together[place] != usize::MAX && together[place] == together[other];
-            if distance_km > MEET_WITHIN_KM || is_one {
+            if distance_km > MEET_WITHIN_KM {
                 continue;
             }
             let meeting = Meetings::of(Meeting {
@@ -267,6 +279,18 @@ mod tests {
     fn found(text: &str, grid: TimeGrid) -> Option<Meetings> {
         let design: Design = text.parse().unwrap();
         meetings(&Ephemeris::of_design(&design, Model::J2, grid).unwrap()).unwrap()
+    }
+
+    /// Those in one place are passed over together, and each meets the one that passes by.
+    #[test]
+    fn every_satellite_in_one_place_meets_another() {
+        // Three in one place, between two that pass at the epoch only, 0.64 km from it.
+        let text = "delta:53:1/1/0@1000+delta:53:1/1/0@1000+delta:53:1/1/0@1000\
+            +star:90:1/1/0@1000,u=0.005+star:100:1/1/0@1000,u=-0.005";
+        let meetings = found(text, grid(60.0, 60.0)).unwrap();
+        // The two are 1.29 km apart.
+        assert_eq!(meetings.count, 6);
+        assert_eq!(meetings.first.pair, [0, 3]);
     }
 
     /// The satellites start at the same node, 0.01° = 1.27 km apart in altitude and phase: at the epoch only.

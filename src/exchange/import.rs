@@ -8,6 +8,7 @@
 //! ([`crate::orbit::earth_orbit`]), and that everything left out is counted and named
 //! ([`crate::formats::text::finding::LeftOut`]). `docs/formats.md` describes them for users.
 
+mod choice;
 mod gathered;
 mod inclusion;
 mod merged;
@@ -15,6 +16,7 @@ mod objects;
 mod propagation;
 mod sampling;
 
+pub use choice::StateChoice;
 use gathered::GatheredFleet;
 pub use merged::{Merged, MergedFiles};
 pub use objects::{NoSuchSatellite, SatelliteFilter};
@@ -29,6 +31,7 @@ use crate::formats::ccsds::ndm::{self, NdmMessage};
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{oem, omm, opm};
 use crate::formats::csv::ElementsRow;
+use crate::formats::kept_states::KeptStates;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{FindingList, LeftOut};
 use crate::formats::trajectory::{
@@ -109,6 +112,19 @@ impl Fleet {
         format: Option<Format>,
         file_name: Option<&str>,
     ) -> Result<Imported, ReadFleetError> {
+        Self::read_chosen(input, format, file_name, &StateChoice::default())
+    }
+
+    /// The same, in which OEM and SP3 keep the states of `choice`.
+    ///
+    /// # Errors
+    /// As of [`Self::read`].
+    pub fn read_chosen(
+        input: impl BufRead,
+        format: Option<Format>,
+        file_name: Option<&str>,
+        choice: &StateChoice,
+    ) -> Result<Imported, ReadFleetError> {
         let kinds = xml_kinds(format);
         let (format, input) = match format {
             Some(format) => (format, unpacked(input).map_err(ReadError::Io)?),
@@ -119,7 +135,7 @@ impl Fleet {
         };
         let file_name = file_name.map(|name| name.strip_suffix(".gz").unwrap_or(name));
         let mut findings = FindingList::of_reader();
-        let mut fleet = Self::read_as((format, kinds), input, file_name, &mut findings)?;
+        let mut fleet = Self::read_as((format, kinds), input, (file_name, choice), &mut findings)?;
         fleet.name_after_file(file_name);
         fleet.make_names_printable();
         Ok(Imported {
@@ -132,9 +148,10 @@ impl Fleet {
     fn read_as(
         (format, kinds): (Format, &[&str]),
         input: impl BufRead,
-        file_name: Option<&str>,
+        (file_name, choice): (Option<&str>, &StateChoice),
         findings: &mut FindingList,
     ) -> Result<Self, ReadFleetError> {
+        let of_segment = |metadata: &oem::SegmentMetadata| choice.of_segment(metadata, file_name);
         let omm = |input, syntax, findings: &mut FindingList| {
             let messages = all(findings, |findings, take| {
                 omm::parse(input, syntax, findings, take)
@@ -149,13 +166,17 @@ impl Fleet {
             }
             Format::Omm => omm(input, OmmSyntax::Kvn, findings),
             Format::OmmXml | Format::OemXml | Format::OpmXml => {
-                Self::of_ndm(kinds, input, findings)
+                Self::of_ndm(kinds, input, findings, &of_segment)
             }
             Format::OmmJson => omm(input, OmmSyntax::Json, findings),
             Format::OmmCsv => omm(input, OmmSyntax::Csv, findings),
-            Format::Oem => Self::of_oem(input, findings),
+            Format::Oem => Self::of_oem(input, findings, &of_segment),
             Format::Opm => Self::of_opm(opm::read(input)?),
-            Format::Sp3 => Self::of_sp3(whole(findings, |findings| sp3::parse(input, findings))?),
+            Format::Sp3 => {
+                let kept = |name: &str| choice.kept((name, name), file_name);
+                let file = whole(findings, |findings| sp3::parse_kept(input, findings, &kept))?;
+                Self::of_sp3(file, &kept)
+            }
             Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
             Format::ElementsCsv => Ok(Self::Elements(csv::read_elements(input)?)),
             Format::Czml => Ok(Self::Sampled(whole(findings, |findings| {
@@ -178,11 +199,12 @@ impl Fleet {
         kinds: &[&str],
         input: impl BufRead,
         findings: &mut FindingList,
+        choice: oem::SegmentChoice<'_>,
     ) -> Result<Self, ReadFleetError> {
         let fleet = gathered(
             GatheredFleet::default(),
             findings,
-            |findings, take| ndm::parse(input, kinds, findings, take),
+            |findings, take| ndm::parse_kept(input, kinds, findings, choice, take),
             |fleet, message| {
                 fleet.add(match message {
                     NdmMessage::Oem(message) => Self::of_segments(message.segments)?,
@@ -205,11 +227,15 @@ impl Fleet {
     }
 
     /// Each segment is turned into a trajectory as soon as it has been read.
-    fn of_oem(input: impl BufRead, findings: &mut FindingList) -> Result<Self, ReadFleetError> {
+    fn of_oem(
+        input: impl BufRead,
+        findings: &mut FindingList,
+        choice: oem::SegmentChoice<'_>,
+    ) -> Result<Self, ReadFleetError> {
         let fleet = gathered(
             GatheredFleet::from(Self::Sampled(Vec::new())),
             findings,
-            |findings, take| oem::parse(input, findings, take).map(drop),
+            |findings, take| oem::parse_kept(input, findings, choice, take).map(drop),
             |fleet, segment: oem::Segment| {
                 fleet.add(Self::Sampled(vec![segment.into_trajectory()?]));
                 Ok(())
@@ -247,13 +273,24 @@ impl Fleet {
         }
     }
 
-    fn of_sp3(mut file: sp3::Sp3) -> Result<Self, ReadFleetError> {
+    fn of_sp3(mut file: sp3::Sp3, choice: sp3::Sp3Choice<'_>) -> Result<Self, ReadFleetError> {
         let frame = frame_of_sp3_name(&file.frame).map_err(TrajectoryError::Name)?;
         let mut trajectories = Vec::new();
         let states = std::mem::take(&mut file.states);
-        let given = file.ids.iter().zip(states);
-        for (id, samples) in given.filter(|(_, samples)| !samples.is_empty()) {
+        for ((id, samples), span) in file.ids.iter().zip(states).zip(&file.spans) {
+            let Some(span) = span else { continue };
             let name = file.name_of(id).unwrap_or(id);
+            if choice(name) == KeptStates::None {
+                trajectories.push(Trajectory {
+                    name: name.to_owned(),
+                    id: name.to_owned(),
+                    arcs: vec![Arc::without_states(frame, SP3_INTERPOLATION, *span)],
+                });
+                continue;
+            }
+            if samples.is_empty() {
+                continue;
+            }
             let runs = file.split_at_gaps(samples).into_iter();
             let arcs = runs.map(|run| sp3_arc(frame, run));
             let arcs = arcs.collect::<Option<Vec<Arc>>>();

@@ -5,6 +5,7 @@ use crate::exchange::recognise::{recognise, unpacked};
 use crate::formats::ccsds::omm::OmmSyntax;
 use crate::formats::ccsds::{ndm, oem, omm, opm};
 use crate::formats::csv;
+use crate::formats::kept_states::KeptStates;
 use crate::formats::maps::czml;
 use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::{sem, sp3, stk, tle, yuma};
@@ -115,14 +116,18 @@ pub fn lint(
     };
     match format {
         Format::Tle => lint_tle(input, &mut findings)?,
-        Format::Oem => oem::parse(input, &mut findings, |_| ()).map(drop)?,
+        Format::Oem => {
+            oem::parse_kept(input, &mut findings, &|_| KeptStates::None, |_| ()).map(drop)?;
+        }
         Format::OemXml | Format::OmmXml | Format::OpmXml => {
-            ndm::parse(input, kinds, &mut findings, |_| ())?;
+            ndm::parse_kept(input, kinds, &mut findings, &|_| KeptStates::None, |_| ())?;
         }
         Format::Omm => omm::parse(input, OmmSyntax::Kvn, &mut findings, |_| ())?,
         Format::OmmJson => omm::parse(input, OmmSyntax::Json, &mut findings, |_| ())?,
         Format::OmmCsv => omm::parse(input, OmmSyntax::Csv, &mut findings, |_| ())?,
-        Format::Sp3 => sp3::parse(input, &mut findings).map(drop)?,
+        Format::Sp3 => {
+            sp3::parse_kept(input, &mut findings, &|_| KeptStates::None).map(drop)?;
+        }
         Format::Czml => czml::parse(input, &mut findings).map(drop)?,
         Format::Yuma => yuma::parse(input, &mut findings).map(drop)?,
         Format::Sem => sem::parse(input, &mut findings).map(drop)?,

@@ -6,8 +6,9 @@
 //! digits; the letter `L` means a low orbit, and some readers know other letters only.
 
 mod read;
+mod track;
 
-pub use read::{parse, read};
+pub use read::{Sp3Choice, parse, parse_kept, read};
 
 use crate::constellation::gnss::Preset;
 use crate::ephemeris::EphemerisSatellite;
@@ -353,7 +354,9 @@ pub struct Sp3 {
     pub ids: Vec<String>,
     /// Comments.
     pub comments: Vec<String>,
-    /// The states of each satellite in order of time; a missing velocity is `None`.
+    /// The first and the last instant at which each satellite has a position.
+    pub spans: Vec<Option<(Epoch, Epoch)>>,
+    /// The states of each satellite in order of time, or those of them that are kept; a missing velocity is `None`.
     pub states: Vec<Vec<Sp3Sample>>,
     /// Smallest spacing of the epochs, s.
     pub step_s: Option<f64>,
@@ -365,8 +368,25 @@ impl Sp3 {
         &self,
         samples: &'a [Sp3Sample],
     ) -> impl Iterator<Item = &'a [Sp3Sample]> + use<'a> {
-        let most_s = self.step_s.map_or(f64::INFINITY, |step_s| GAP * step_s);
+        let most_s = self.most_between_s();
         samples.chunk_by(move |one, other| other.at.seconds_since(one.at) <= most_s)
+    }
+
+    /// The longest time between samples without a gap, s.
+    fn most_between_s(&self) -> f64 {
+        self.step_s.map_or(f64::INFINITY, |step_s| GAP * step_s)
+    }
+
+    /// Drops positions between gaps that have no velocity.
+    fn drop_lone_positions(&mut self) {
+        let is_lone = |run: &[Sp3Sample]| matches!(run, [lone] if lone.velocity_km_s.is_none());
+        for place in 0..self.states.len() {
+            let states = &self.states[place];
+            if self.runs(states).any(is_lone) {
+                let kept = self.runs(states).filter(|run| !is_lone(run));
+                self.states[place] = kept.flatten().copied().collect();
+            }
+        }
     }
 
     /// The same of samples that are not needed otherwise: those without a gap stay where they are in memory.

@@ -12,6 +12,7 @@ mod histogram;
 mod map;
 mod outages;
 mod phases;
+mod study;
 mod table;
 
 pub use super::Baseline;
@@ -24,6 +25,7 @@ pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
 pub use phases::{NamedPhases, phases};
+pub use study::{NamedChart, PAPER_FIGURES, deviations_name, study_figures};
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
@@ -216,6 +218,8 @@ pub enum Chart {
     Bars(BarChart),
     /// Rows of bars over time.
     Timeline(TimelineChart),
+    /// Dots on rows, in units of a tolerance.
+    Deviations(DeviationChart),
 }
 
 /// Points and lines in a plane.
@@ -285,6 +289,28 @@ pub struct TimelineChart {
     pub span: [f64; 2],
     /// Name, and beginnings and ends, of each row.
     pub rows: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+/// Numbers compared with published ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationChart {
+    /// Title.
+    pub title: String,
+    /// Label of the horizontal axis, with its unit.
+    pub x: String,
+    /// The numbers, from the top.
+    pub rows: Vec<DeviationRow>,
+}
+
+/// A number compared with a published one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationRow {
+    /// Its name.
+    pub name: String,
+    /// Its deviation in units of the tolerance.
+    pub tolerances: f64,
+    /// The n-th colour.
+    pub colour: usize,
 }
 
 /// Groups of bars.

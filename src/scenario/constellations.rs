@@ -6,9 +6,10 @@ use super::values::{ConstellationParts, NamedConstellation};
 use crate::constellation::{Design, NotationError};
 use crate::exchange::constellation::{Constellation, FileSatellites};
 use crate::exchange::import::{
-    Fleet, Merged, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter,
+    Fleet, Merged, MergedFiles, NoSuchSatellite, ReadFleetError, SatelliteFilter, StateChoice,
 };
 use crate::keyword::nearest;
+use crate::time::TimeGrid;
 use std::io;
 use thiserror::Error;
 
@@ -119,19 +120,20 @@ impl Scenario {
 }
 
 impl NamedConstellation {
-    /// The constellation, with notes on parts of its files that are not read. `read` returns the bytes of a
-    /// file by the path as written.
+    /// The constellation in a study on `grid`, with notes on parts of its files that are not read. `read` returns the
+    /// bytes of a file by the path as written.
     ///
     /// # Errors
     /// If a file cannot be read, or the satellites that are selected are not in the files.
     pub fn read(
         &self,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+        grid: TimeGrid,
     ) -> Result<(Constellation, Vec<String>), SetupError> {
         let mut notes = Vec::new();
         let files = match self.parts.files.as_slice() {
             [] => None,
-            _ => Some(self.satellites(read, &mut notes)?),
+            _ => Some(self.satellites(read, grid, &mut notes)?),
         };
         let constellation = Constellation {
             name: self.name.clone(),
@@ -144,42 +146,57 @@ impl NamedConstellation {
     fn satellites(
         &self,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+        grid: TimeGrid,
         notes: &mut Vec<String>,
     ) -> Result<FileSatellites, SetupError> {
         let ConstellationParts {
             files,
-            input_format,
             only,
             exclude,
             ..
         } = &self.parts;
-        let mut names = Vec::new();
-        let mut merged = MergedFiles::default();
-        for file in files {
-            let error = |error| self.error(file, error);
-            let name = file.rsplit('/').next().unwrap_or(file);
-            let bytes = read(file).map_err(|source| error(source.into()))?;
-            let imported = Fleet::read(bytes.as_slice(), *input_format, Some(name))
-                .map_err(|source| error(source.into()))?;
-            if !imported.left_out.is_empty() {
-                notes.push(format!("{file}: {}", imported.left_out));
-            }
-            names.push(name.to_owned());
-            merged.add(imported);
-        }
-        let none = || Merged {
-            formats: Vec::new(),
-            fleet: Fleet::Sets(Vec::new()),
-            origins: Vec::new(),
-        };
-        let merged = merged.finish().unwrap_or_else(none);
         let filter = SatelliteFilter {
             only: only.clone(),
             exclude: exclude.clone(),
         };
+        let choice = StateChoice::new(filter.clone(), grid);
+        let mut merged = self.merged(read, &choice, notes)?;
+        if merged.fleet.lacks_states(&filter) {
+            notes.clear();
+            merged = self.merged(read, &choice.of_all(), notes)?;
+        }
+        let name = |file: &String| file.rsplit('/').next().unwrap_or(file).to_owned();
+        let names: Vec<String> = files.iter().map(name).collect();
         let called = names.join(", ");
         FileSatellites::new(names, merged, &filter)
             .map_err(|source| self.error(&called, source.into()))
+    }
+
+    /// The satellites of all files.
+    fn merged(
+        &self,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+        choice: &StateChoice,
+        notes: &mut Vec<String>,
+    ) -> Result<Merged, SetupError> {
+        let mut merged = MergedFiles::default();
+        for file in &self.parts.files {
+            let error = |error| self.error(file, error);
+            let name = file.rsplit('/').next().unwrap_or(file);
+            let bytes = read(file).map_err(|source| error(source.into()))?;
+            let format = self.parts.input_format;
+            let imported = Fleet::read_chosen(bytes.as_slice(), format, Some(name), choice)
+                .map_err(|source| error(source.into()))?;
+            if !imported.left_out.is_empty() {
+                notes.push(format!("{file}: {}", imported.left_out));
+            }
+            merged.add(imported);
+        }
+        Ok(merged.finish().unwrap_or_else(|| Merged {
+            formats: Vec::new(),
+            fleet: Fleet::Sets(Vec::new()),
+            origins: Vec::new(),
+        }))
     }
 
     /// The error of a file of this constellation.

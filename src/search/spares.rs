@@ -1,4 +1,4 @@
-//! Planes with spares: how many of their slots are vacant, and which ([M-62](crate::models#m-62)).
+//! Planes with spares: how many of their slots are vacant, and which ([M-64](crate::models#m-64)).
 
 use crate::optimize::generator::Generator;
 

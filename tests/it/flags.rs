@@ -93,6 +93,20 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "optimize",
+        "evaluations",
+        "--out out SMALL SEARCH",
+        "--evaluations",
+        Out,
+    ),
+    Row(
+        "optimize",
+        "from",
+        "optimize --out old SMALL SEARCH --evaluations | ",
+        "--from old",
+        Stdout,
+    ),
+    Row(
+        "optimize",
         "report",
         "--out out SMALL SEARCH",
         "--report",
@@ -232,6 +246,23 @@ const ROWS: &[Row] = &[
     ),
     Row("lint", "as", "six.tle", "--as sp3", Status),
     Row("lint", "format", "six.csv six.tle", "--format json", Stdout),
+    Row("dop", "mask-deg", "sky.csv", "--mask-deg 12", Stdout),
+    Row("dop", "clocks", "sky.csv", "--clocks shared", Stdout),
+    Row(
+        "dop",
+        "weighting",
+        "sky.csv",
+        "--weighting sine-elevation",
+        Stdout,
+    ),
+    Row("dop", "format", "sky.csv", "--format json", Stdout),
+    Row(
+        "orbit",
+        "format",
+        "delta:55:6/3/1@925",
+        "--format json",
+        Stdout,
+    ),
     Row(
         "reproduce",
         "set",
@@ -854,6 +885,8 @@ fn every_flag_has_its_effect() {
     }
     fs::rename(place.join("six/elements.csv"), place.join("six.csv")).unwrap();
     fs::rename(place.join("six/constellation.tle"), place.join("six.tle")).unwrap();
+    let sky = "azimuth_deg,elevation_deg,system\n0,15,a\n90,40,a\n200,25,b\n300,70,b\n45,11,b\n";
+    fs::write(place.join("sky.csv"), sky).unwrap();
     fs::write(place.join("list.txt"), "delta:60:4/2/1@800\n").unwrap();
     fs::write(place.join("phases.csv"), "phase,add\na,NW-P01\n").unwrap();
     let mut none = Vec::new();

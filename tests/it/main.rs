@@ -7,6 +7,7 @@ mod common;
 mod compared;
 #[cfg(unix)]
 mod ctrl_c;
+mod evaluations;
 mod evidence;
 mod exports;
 mod failures;
@@ -29,6 +30,7 @@ mod scenes;
 mod shells;
 mod singular;
 mod size;
+mod skies;
 mod study;
 mod tidy;
 mod trust;

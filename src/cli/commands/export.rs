@@ -10,6 +10,7 @@ use crate::exchange::constellation::Constellation;
 use crate::exchange::export::{
     Choices, ExportSource, ExportSubject, Naming, Product, ShownScenario, export_size,
 };
+use crate::exchange::import::StateChoice;
 use crate::exchange::lint::Format as LintFormat;
 use crate::exchange::manifest::{ChangedIdentity, ExportedStudy, FILE_NAME, Manifest};
 use crate::exchange::read_back::{Difference, Grouping, Original, ReadBack};
@@ -203,7 +204,7 @@ fn check(
         read_back,
     } in groups(args, manifest, has_elements)
     {
-        let mut merged = read_constellation::read(&paths, None)?;
+        let mut merged = read_constellation::read(&paths, None, &StateChoice::default())?;
         let fleet = &mut merged.fleet;
         if merged.formats == [LintFormat::Sp3] {
             fleet.name_by_place();

@@ -1,4 +1,4 @@
-//! What is expected over states of the constellation that were drawn ([M-62](crate::models#m-62)).
+//! What is expected over states of the constellation that were drawn ([M-64](crate::models#m-64)).
 
 use super::expected::{ExpectedMetrics, bucket_of, tail};
 use crate::ephemeris::{Ephemeris, EphemerisError};

@@ -6,11 +6,15 @@ use crate::formats::trajectory::Trajectory;
 use crate::keyword::nearest;
 use thiserror::Error;
 
-/// The identity of a satellite with states; an id that differs from its name is valid outside its file.
+/// The identity of a satellite with states.
 pub(super) fn identity(trajectory: &Trajectory) -> ObjectIdentity {
-    let is_own = trajectory.id != trajectory.name;
-    let designator = if is_own { trajectory.id.as_str() } else { "" };
-    ObjectIdentity::new(0, designator, &trajectory.name)
+    identity_of(&trajectory.name, &trajectory.id)
+}
+
+/// The identity of a satellite with this name and id; an id that differs from its name is valid outside its file.
+pub(super) fn identity_of(name: &str, id: &str) -> ObjectIdentity {
+    let designator = if id == name { "" } else { id };
+    ObjectIdentity::new(0, designator, name)
 }
 
 /// Whether the arcs of two satellites overlap by more than an instant.
@@ -62,6 +66,23 @@ impl Fleet {
         filter.keep(&mut [self])
     }
 
+    /// Whether a satellite that `filter` selects lacks states that were not kept: its label selects it, which is known only
+    /// with all satellites, or it shares an identity with another. All must then be kept.
+    #[must_use]
+    pub fn lacks_states(&self, filter: &SatelliteFilter) -> bool {
+        if filter.is_empty() {
+            return false;
+        }
+        let identities = self.identities();
+        let Ok(kept) = filter.choose(&identities, &unique_labels(&identities)) else {
+            return false;
+        };
+        let lacks =
+            |trajectory: &Trajectory| trajectory.arcs.iter().any(|arc| arc.nodes.is_empty());
+        let mut each = self.trajectories().into_iter().zip(kept);
+        each.any(|(trajectory, kept)| kept && trajectory.is_some_and(lacks))
+    }
+
     fn retain(&mut self, keep: &mut dyn FnMut() -> bool) {
         match self {
             Self::Sets(sets) => sets.retain(|_| keep()),
@@ -111,6 +132,13 @@ impl SatelliteFilter {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.only.is_empty() && self.exclude.is_empty()
+    }
+
+    /// Whether a satellite may be selected by what is known of it alone: by its identity, not its label among others.
+    pub(super) fn may_select(&self, identity: &ObjectIdentity) -> bool {
+        let texts: Vec<String> = identity.texts().collect();
+        let is_met = |pattern: &String| texts.iter().any(|text| matches(pattern, text));
+        (self.only.is_empty() || self.only.iter().any(is_met)) && !self.exclude.iter().any(is_met)
     }
 
     /// Keeps the satellites of several fleets that are selected, and says of each whether it is; each pattern must match in

@@ -33,20 +33,19 @@ pub enum FleetError {
     TwoNames(String, String),
     /// Satellites without a state at an instant of the study.
     #[error(
-        "{name} has no state at {missing}; its {samples} states run from {first} to {last}: \
-         change time.epoch, time.duration-h or time.step-s"
+        "{name} has no state at {missing}; its states {} at {edge}: \
+         change time.epoch, time.duration-h or time.step-s",
+        if *is_first { "begin" } else { "end" }
     )]
     NotCovered {
         /// The satellite.
         name: String,
         /// First instant without a state.
         missing: Epoch,
-        /// Number of its states.
-        samples: usize,
-        /// The first of them.
-        first: Epoch,
-        /// The last.
-        last: Epoch,
+        /// The first of its states, if they begin later, or else the last.
+        edge: Epoch,
+        /// Whether it is the first.
+        is_first: bool,
     },
 }
 
@@ -188,7 +187,7 @@ impl Fleet {
     }
 
     /// The sampled states of each satellite, where it has such.
-    fn trajectories(&self) -> Vec<Option<&Trajectory>> {
+    pub(super) fn trajectories(&self) -> Vec<Option<&Trajectory>> {
         match self {
             Self::Sampled(trajectories) => trajectories.iter().map(Some).collect(),
             Self::Mixed(parts) => parts.iter().flat_map(Self::trajectories).collect(),
@@ -328,7 +327,7 @@ fn check_span(
 ) -> Result<(), FleetError> {
     let spans = trajectories.iter().zip(labels);
     let spans = spans.filter_map(|(one, label)| Some((one, label, one.span()?)));
-    let Some((longest, label, (first, last))) = spans.reduce(|one, other| {
+    let Some((_, label, (first, last))) = spans.reduce(|one, other| {
         let length_s = |(first, last): (Epoch, Epoch)| last.seconds_since(first);
         if length_s(other.2) > length_s(one.2) {
             other
@@ -355,9 +354,8 @@ fn check_span(
         Some(missing) => Err(FleetError::NotCovered {
             name: label.clone(),
             missing,
-            samples: longest.samples().len(),
-            first,
-            last,
+            edge: if missing < first { first } else { last },
+            is_first: missing < first,
         }),
     }
 }

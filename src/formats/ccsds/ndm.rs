@@ -1,10 +1,11 @@
 //! Navigation Data Messages in XML (CCSDS 505.0-B-2): a single message, or a combined instantiation of
 //! messages of any type.
 
-use super::oem::{self, Oem};
+use super::oem::{self, Oem, SegmentChoice};
 use super::omm::{self, Omm};
 use super::opm::{self, Opm};
 use super::xml::{Nodes, XmlNode};
+use crate::formats::kept_states::KeptStates;
 use crate::formats::text::finding::FindingList;
 use std::io::{self, BufRead};
 
@@ -74,9 +75,15 @@ impl OpenMessage {
         }
     }
 
-    fn node(&mut self, node: &XmlNode, place: (usize, usize), findings: &mut FindingList) {
+    fn node(
+        &mut self,
+        node: &XmlNode,
+        place: (usize, usize),
+        choice: SegmentChoice<'_>,
+        findings: &mut FindingList,
+    ) {
         match self {
-            Self::Oem(message) => message.node(node, place, findings),
+            Self::Oem(message) => message.node(node, place, choice, findings),
             Self::Omm(message) => message.node(node, place, findings),
             Self::Opm(message) => message.node(node, place, findings),
         }
@@ -121,6 +128,20 @@ pub fn parse(
     input: impl BufRead,
     wanted: &[&str],
     findings: &mut FindingList,
+    take: impl FnMut(NdmMessage),
+) -> io::Result<()> {
+    parse_kept(input, wanted, findings, &|_| KeptStates::All, take)
+}
+
+/// The same, with the states that `choice` keeps of each segment of an ephemeris.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_kept(
+    input: impl BufRead,
+    wanted: &[&str],
+    findings: &mut FindingList,
+    choice: SegmentChoice<'_>,
     mut take: impl FnMut(NdmMessage),
 ) -> io::Result<()> {
     let mut nodes = Nodes::new(input);
@@ -152,7 +173,9 @@ pub fn parse(
                 }
             }
             (XmlNode::Close(_), Some(OpenElement::Other(at))) if *at + 1 == depth => open = None,
-            (_, Some(OpenElement::Message(message))) => message.node(&node, place, findings),
+            (_, Some(OpenElement::Message(message))) => {
+                message.node(&node, place, choice, findings);
+            }
             _ => {}
         }
         match node {

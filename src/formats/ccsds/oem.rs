@@ -5,12 +5,14 @@
 //! (5.1.3), no comment between ephemeris lines (7.8.9), numbers of at most 16 digits (7.5.6). In
 //! XML (505.0-B-2) a combined instantiation holds the messages of several objects.
 
+mod open_segment;
 mod read;
 mod rules;
 mod write;
 mod xml;
 
-pub use read::{parse, read};
+pub use open_segment::SegmentChoice;
+pub use read::{parse, parse_kept, read};
 pub use write::{OemMessage, OemWriter, write_combined_xml};
 pub(super) use xml::OemXmlMessage;
 pub use xml::{parse_xml, read_xml};
@@ -94,7 +96,8 @@ pub struct Segment {
     pub metadata: SegmentMetadata,
     /// Comments before the first ephemeris line.
     pub comments: Vec<String>,
-    /// The ephemeris lines. A covariance is checked on reading, and not kept.
+    /// The ephemeris lines, or those of them that are kept; all have been checked. A covariance is checked on reading, and
+    /// not kept.
     pub states: Vec<StateLine>,
 }
 
@@ -170,11 +173,15 @@ impl Segment {
         // The samples beyond the useable span are there to interpolate (5.2.4.4, table 5-3).
         let (first, last) = metadata.useable_span();
         let span = (time_system.epoch(first), time_system.epoch(last));
-        let useable = |arc: Arc| arc.within(span);
+        let arcs = match arc {
+            Some(arc) => Vec::from_iter(arc.within(span)),
+            // A segment without lines is refused: these are not kept.
+            None => vec![Arc::without_states(frame, interpolation, span)],
+        };
         Ok(Trajectory {
             name: metadata.object_name.clone(),
             id: metadata.object_id.clone(),
-            arcs: Vec::from_iter(arc.and_then(useable)),
+            arcs,
         })
     }
 

@@ -8,14 +8,14 @@ use crate::evaluate::PointMetrics;
 use crate::formats::WriteError;
 use crate::formats::maps::scene::{ColourScale, Scene, colour_of, point_place, shown};
 use crate::formats::maps::tracks::Ground;
-use crate::ground::shapes::{LonLat, cell_rings};
+use crate::ground::shapes::{LonLat, cell_rings, lines};
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// The standard that the files follow.
 pub const FORMAT_VERSION: &str = "RFC 7946";
 
-/// Writes the ground points with their metrics: the cells of a grid, or the points of a list.
+/// Writes the ground points with their metrics, the cells of a grid or the points of a list, and the borders of an area.
 ///
 /// # Errors
 /// If a satellite has no state, or the output fails.
@@ -29,7 +29,19 @@ pub fn write_region(out: &mut impl Write, scene: &Scene<'_>) -> Result<(), Write
         };
         feature(&geometry, &point_properties(point, scale.as_ref()))
     });
-    collection(out, features)?;
+    let borders: Vec<_> = scene
+        .borders()
+        .iter()
+        .flat_map(|line| lines(line))
+        .collect();
+    let border = (!borders.is_empty()).then(|| {
+        let geometry = json!({"type": "MultiLineString", "coordinates": borders});
+        feature(
+            &geometry,
+            &json!({"name": "border of the region", "stroke": "#303030"}),
+        )
+    });
+    collection(out, features.chain(border))?;
     Ok(())
 }
 

@@ -10,7 +10,7 @@ use crate::formats::WriteError;
 use crate::formats::maps::palette::{Palette, place_text};
 use crate::formats::maps::scene::{ColourScale, Scene, UNSOLVED, colour_of, point_place, shown};
 use crate::formats::maps::tracks::Ground;
-use crate::ground::shapes::{LonLat, cell_rings};
+use crate::ground::shapes::{LonLat, cell_rings, lines};
 use quick_xml::escape::escape;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -20,6 +20,9 @@ pub const FORMAT_VERSION: &str = "2.2";
 
 /// Opacity of the cells of the region, of 255.
 const CELL_OPACITY: u8 = 0x90;
+
+/// Colour of the borders of the region: visible on imagery.
+const BORDER: [u8; 3] = [255, 255, 255];
 
 /// Writes the document.
 ///
@@ -53,19 +56,15 @@ pub fn write(out: &mut impl Write, scene: &Scene<'_>, ground: &[Ground]) -> Resu
     folder(out, "Mean PDOP", true, points, |out, point| {
         place(out, scene, scale.as_ref(), point)
     })?;
+    borders(out, scene)?;
     folder(
         out,
         "Ground tracks of the first revolution",
         false,
         ground,
         |out, one| {
-            let lines = one.track.iter().map(|line| {
-                format!(
-                    "<LineString><tessellate>1</tessellate>{}</LineString>",
-                    coordinates(line)
-                )
-            });
-            satellite(out, one, group(one), &lines.collect::<String>())
+            let track: String = one.track.iter().map(|line| line_string(line)).collect();
+            satellite(out, one, group(one), &track)
         },
     )?;
     folder(out, "Footprints at the epoch", false, ground, |out, one| {
@@ -114,6 +113,22 @@ fn folder<W: Write, T>(
         each(out, item)?;
     }
     writeln!(out, "</Folder>")
+}
+
+/// The borders of the area that the points are in, if it is one.
+fn borders(out: &mut impl Write, scene: &Scene<'_>) -> io::Result<()> {
+    let cut = scene.borders().iter().flat_map(|line| lines(line));
+    let geometry: String = cut.map(|line| line_string(&line)).collect();
+    if geometry.is_empty() {
+        return Ok(());
+    }
+    let colour = hex(BORDER, 0xff);
+    writeln!(
+        out,
+        "<Placemark><name>Border of the region</name><Style><LineStyle><color>{colour}</color>\
+         <width>2</width></LineStyle></Style>{}</Placemark>",
+        grouped(&geometry)
+    )
 }
 
 /// A point of the region: a coloured cell, or a place mark if there is no grid.
@@ -191,6 +206,13 @@ fn polygon(ring: &[LonLat]) -> String {
     format!(
         "<Polygon><tessellate>1</tessellate><outerBoundaryIs><LinearRing>{}</LinearRing></outerBoundaryIs></Polygon>",
         coordinates(ring)
+    )
+}
+
+fn line_string(line: &[LonLat]) -> String {
+    format!(
+        "<LineString><tessellate>1</tessellate>{}</LineString>",
+        coordinates(line)
     )
 }
 

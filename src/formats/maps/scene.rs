@@ -105,6 +105,11 @@ impl<'a> Scene<'a> {
         map.cell([point.longitude_deg, point.latitude_deg])
     }
 
+    /// The borders of the area that the points are in, as closed lines; none of a grid or a list.
+    pub(crate) fn borders(&self) -> &'a [Vec<LonLat>] {
+        &self.evaluator.setup().map.outlines
+    }
+
     /// The settings another program needs to get the same numbers, one sentence each.
     #[must_use]
     pub fn assumptions(&self) -> Vec<String> {

@@ -1,8 +1,9 @@
 //! Reads SP3-a to SP3-d by columns.
 
+use super::track::SatelliteTrack;
 use super::{DM_IN_KM, Sp3, Sp3Sample};
-use crate::ephemeris::derivative::velocity_fault;
 use crate::formats::ReadError;
+use crate::formats::kept_states::KeptStates;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines, keep_comment};
 use crate::formats::text::timestamp::{TimeSystem, stamp};
@@ -29,8 +30,20 @@ pub fn read(input: impl BufRead) -> Result<Sp3, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Sp3> {
+    parse_kept(input, findings, &|_| KeptStates::All)
+}
+
+/// The same, with the states that `choice` keeps of the satellite of a name.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_kept(
+    input: impl BufRead,
+    findings: &mut FindingList,
+    choice: Sp3Choice<'_>,
+) -> io::Result<Sp3> {
     let mut lines = Lines::new(input).with_comments(is_comment);
-    let mut parser = Sp3Parser::new();
+    let mut parser = Sp3Parser::new(choice);
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
     }
@@ -42,8 +55,14 @@ fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b"/*") || line.starts_with(b"%/*")
 }
 
-struct Sp3Parser {
+/// Says which states of the satellite of a name are kept.
+pub type Sp3Choice<'a> = &'a dyn Fn(&str) -> KeptStates<Epoch>;
+
+struct Sp3Parser<'a> {
+    choice: Sp3Choice<'a>,
     file: Sp3,
+    /// The positions of each satellite.
+    tracks: Vec<SatelliteTrack>,
     /// Number of satellites and of epochs that the header announces.
     announced: (usize, usize),
     /// Lines that begin with `%c`.
@@ -58,9 +77,11 @@ struct Sp3Parser {
     any: bool,
 }
 
-impl Sp3Parser {
-    fn new() -> Self {
+impl<'a> Sp3Parser<'a> {
+    fn new(choice: Sp3Choice<'a>) -> Self {
         Self {
+            choice,
+            tracks: Vec::new(),
             file: Sp3 {
                 version: ' ',
                 time_system: TimeSystem::Gps,
@@ -68,6 +89,7 @@ impl Sp3Parser {
                 ids: Vec::new(),
                 comments: Vec::new(),
                 states: Vec::new(),
+                spans: Vec::new(),
                 step_s: None,
             },
             announced: (0, 0),
@@ -163,7 +185,7 @@ impl Sp3Parser {
                 findings.error(place, "sp3-id", format!("{id} is named twice"));
             } else {
                 self.file.ids.push(id.to_owned());
-                self.file.states.push(Vec::new());
+                self.tracks.push(SatelliteTrack::default());
             }
         }
     }
@@ -266,34 +288,33 @@ impl Sp3Parser {
             findings.error((line.number, 5), "implausible-state", message);
             return;
         }
-        let states = &mut self.file.states[index];
-        if states.last().is_some_and(|last| last.at >= at) {
-            let message = "the satellite has two positions at one epoch";
-            findings.error((line.number, 2), "sp3-repeated", message);
-            return;
-        }
-        states.push(Sp3Sample {
+        let sample = Sp3Sample {
             at,
             position_km: Position::new(position_km),
             velocity_km_s: None,
-        });
+        };
+        let id = &self.file.ids[index];
+        let choice = || (self.choice)(self.file.name_of(id).unwrap_or(id));
+        if !self.tracks[index].add(sample, choice) {
+            let message = "the satellite has two positions at one epoch";
+            findings.error((line.number, 2), "sp3-repeated", message);
+        }
     }
 
     fn velocity(&mut self, line: &Line, findings: &mut FindingList) {
         let Some((index, velocity_dm_s)) = self.record(line, findings) else {
             return;
         };
-        match self.file.states[index].last_mut() {
-            Some(last) if Some(last.at) == self.at => {
-                // Zeros stand for a missing velocity too.
-                let given = velocity_dm_s.norm_squared() > 0.0;
-                last.velocity_km_s = given.then(|| velocity_dm_s / DM_IN_KM);
-            }
-            _ if self.missing.contains(&index) => {}
-            _ => {
-                let message = "a velocity without a position before it";
-                findings.error((line.number, 1), "sp3-velocity", message);
-            }
+        // Zeros stand for a missing velocity too.
+        let given = velocity_dm_s.norm_squared() > 0.0;
+        let velocity_km_s = given.then(|| velocity_dm_s / DM_IN_KM);
+        let track = &mut self.tracks[index];
+        let is_set = self
+            .at
+            .is_some_and(|at| track.set_velocity(at, velocity_km_s));
+        if !is_set && !self.missing.contains(&index) {
+            let message = "a velocity without a position before it";
+            findings.error((line.number, 1), "sp3-velocity", message);
         }
     }
 
@@ -329,38 +350,37 @@ impl Sp3Parser {
             );
             findings.error(place, "sp3-count", message);
         }
+        self.tracks.iter_mut().for_each(SatelliteTrack::end);
         self.check_velocities(number, findings);
         self.leave_out_lone_positions(number, findings);
+        self.file.spans = self.tracks.iter().map(SatelliteTrack::span).collect();
+        let kept = self.tracks.into_iter().map(SatelliteTrack::into_kept);
+        self.file.states = kept.collect();
+        self.file.drop_lone_positions();
         self.file
     }
 
     /// A position between gaps has no neighbours to derive its velocity from.
-    fn leave_out_lone_positions(&mut self, number: usize, findings: &mut FindingList) {
-        let given = |file: &Sp3| file.states.iter().any(|samples| !samples.is_empty());
-        let had_any = given(&self.file);
-        for index in 0..self.file.ids.len() {
-            let samples = std::mem::take(&mut self.file.states[index]);
-            if samples.is_empty() {
-                findings.pass_over("satellite without positions", &self.file.ids[index]);
+    fn leave_out_lone_positions(&self, number: usize, findings: &mut FindingList) {
+        let most_s = self.file.most_between_s();
+        let (mut given, mut all_lone) = (0, 0);
+        for (id, track) in self.file.ids.iter().zip(&self.tracks) {
+            if track.count() == 0 {
+                findings.pass_over("satellite without positions", id);
             }
-            let is_lone = |run: &[Sp3Sample]| matches!(run, [lone] if lone.velocity_km_s.is_none());
-            if !self.file.runs(&samples).any(is_lone) {
-                self.file.states[index] = samples;
-                continue;
+            let (lone, instants) = track.lone(most_s);
+            // The names of the many are never shown.
+            for place in 0..lone {
+                let name = match instants.get(place) {
+                    Some(at) => format!("{id} at {at}"),
+                    None => id.clone(),
+                };
+                findings.leave_out((number, 1), "lone position without velocity", &name);
             }
-            let mut kept = Vec::with_capacity(samples.len());
-            for run in self.file.runs(&samples) {
-                match run {
-                    [lone] if is_lone(run) => {
-                        let name = format!("{} at {}", self.file.ids[index], lone.at);
-                        findings.leave_out((number, 1), "lone position without velocity", &name);
-                    }
-                    run => kept.extend_from_slice(run),
-                }
-            }
-            self.file.states[index] = kept;
+            given += track.count();
+            all_lone += lone;
         }
-        if had_any && !given(&self.file) {
+        if given > 0 && given == all_lone {
             let message = "there are no velocities, and too few positions to derive them";
             findings.error((number, 1), "sp3-velocity", message);
         }
@@ -369,20 +389,11 @@ impl Sp3Parser {
     /// Velocities that are not the derivative of the positions: m/s in place of dm/s, or those of inertial
     /// axes.
     fn check_velocities(&self, number: usize, findings: &mut FindingList) {
-        for (id, samples) in self.file.ids.iter().zip(&self.file.states) {
-            if samples.iter().any(|sample| sample.velocity_km_s.is_none()) {
-                continue;
-            }
-            let sample = |place: usize| {
-                let sample: &Sp3Sample = &samples[place];
-                let velocity_km_s = sample.velocity_km_s.unwrap_or_default();
-                (sample.at, sample.position_km, velocity_km_s)
-            };
-            if let Some(message) = velocity_fault(samples.len(), sample) {
-                let message = format!("{id}: {message}; SP3 has dm/s in the axes of the positions");
-                findings.warning((number, 1), "sp3-velocity-unit", message);
-                return;
-            }
+        let mut tracks = self.file.ids.iter().zip(&self.tracks);
+        let fault = tracks.find_map(|(id, track)| Some((id, track.velocity_fault()?)));
+        if let Some((id, message)) = fault {
+            let message = format!("{id}: {message}; SP3 has dm/s in the axes of the positions");
+            findings.warning((number, 1), "sp3-velocity-unit", message);
         }
     }
 }

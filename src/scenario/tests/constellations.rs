@@ -248,10 +248,11 @@ fn files_become_satellites_or_an_error_at_their_key() {
         "in/a.csv" => Ok(elements.as_bytes().to_vec()),
         _ => Err(io::Error::from(io::ErrorKind::NotFound)),
     };
+    let grid = scenario.time_grid().unwrap();
     let [both, wrong @ ..] = scenario.constellations.as_slice() else {
         panic!("four are named");
     };
-    let (both, notes) = both.read(&read).unwrap();
+    let (both, notes) = both.read(&read, grid).unwrap();
     assert_eq!((both.name.as_str(), both.satellite_count()), ("both", 5));
     let files = both.files.unwrap();
     assert_eq!(
@@ -261,7 +262,7 @@ fn files_become_satellites_or_an_error_at_their_key() {
     assert!(notes.is_empty(), "{notes:?}");
     let told: Vec<String> = wrong
         .iter()
-        .map(|one| place_of(text, &one.read(&read).unwrap_err()))
+        .map(|one| place_of(text, &one.read(&read, grid).unwrap_err()))
         .collect();
     let expected = [
         "study.toml:3: constellations.none.files: none.csv: cannot read it: ",

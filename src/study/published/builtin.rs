@@ -3,7 +3,7 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in study of published numbers.
-const STUDIES: [(&str, &str); 7] = [
+const STUDIES: [(&str, &str); 12] = [
     (
         "gps-sps",
         include_str!("../../../data/studies/gps-sps.toml"),
@@ -32,6 +32,20 @@ const STUDIES: [(&str, &str); 7] = [
         "sun-synchronous",
         include_str!("../../../data/studies/sun-synchronous.toml"),
     ),
+    ("skies", include_str!("../../../data/studies/skies.toml")),
+    (
+        "galileo",
+        include_str!("../../../data/studies/galileo.toml"),
+    ),
+    (
+        "glonass",
+        include_str!("../../../data/studies/glonass.toml"),
+    ),
+    (
+        "wang-2019",
+        include_str!("../../../data/studies/wang-2019.toml"),
+    ),
+    ("topex", include_str!("../../../data/studies/topex.toml")),
 ];
 
 /// The names of the built-in studies of published numbers.

@@ -1,12 +1,14 @@
 //! Reads messages strictly, line by line.
 
-use super::rules::MessageRules;
+use super::open_segment::{OpenSegment, SegmentChoice};
+use super::rules::{MessageRules, SegmentLines};
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
 use crate::formats::ReadError;
 use crate::formats::ccsds::keywords::{KvnKeyword, may, must, named};
 use crate::formats::ccsds::kvn::{
     CcsdsHeader, Item, KvnBlock, Pair, item, lines, read_number, read_stamp, words,
 };
+use crate::formats::kept_states::KeptStates;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, keep_comment};
 use crate::frames::State;
@@ -63,10 +65,23 @@ pub fn read(input: impl BufRead) -> Result<Oem, ReadError> {
 pub fn parse(
     input: impl BufRead,
     findings: &mut FindingList,
+    take: impl FnMut(Segment),
+) -> io::Result<Option<CcsdsHeader>> {
+    parse_kept(input, findings, &|_| KeptStates::All, take)
+}
+
+/// The same, with the states that `choice` keeps of each segment.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_kept(
+    input: impl BufRead,
+    findings: &mut FindingList,
+    choice: SegmentChoice<'_>,
     mut take: impl FnMut(Segment),
 ) -> io::Result<Option<CcsdsHeader>> {
     let mut lines = lines(input);
-    let mut parser = OemParser::new();
+    let mut parser = OemParser::new(choice);
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings, &mut take);
     }
@@ -83,20 +98,22 @@ enum OemSection {
     BetweenSegments,
 }
 
-struct OemParser {
+struct OemParser<'a> {
+    choice: SegmentChoice<'a>,
     part: OemSection,
     header_block: KvnBlock,
     header: Option<CcsdsHeader>,
     rules: MessageRules,
-    segment: Option<Segment>,
+    segment: Option<OpenSegment>,
     /// Line of the last `META_START`.
     segment_line: usize,
     segments: usize,
 }
 
-impl OemParser {
-    fn new() -> Self {
+impl<'a> OemParser<'a> {
+    fn new(choice: SegmentChoice<'a>) -> Self {
         Self {
+            choice,
             part: OemSection::Header,
             header_block: KvnBlock::new(&[HEADER]),
             header: None,
@@ -126,8 +143,8 @@ impl OemParser {
                 &mut self.header_block.comments
             }
             (OemSection::Metadata(block), _) if block.is_empty() => &mut block.comments,
-            (OemSection::Ephemeris, Some(segment)) if segment.states.is_empty() => {
-                &mut segment.comments
+            (OemSection::Ephemeris, Some(open)) if self.rules.lines().count == 0 => {
+                &mut open.segment.comments
             }
             (OemSection::Covariance(covariance), _) if covariance.is_untouched() => return,
             _ => {
@@ -178,11 +195,7 @@ impl OemParser {
             self.rules.check_metadata(metadata, block, findings);
         }
         self.segments += 1;
-        self.segment = metadata.map(|metadata| Segment {
-            metadata,
-            comments: Vec::new(),
-            states: Vec::new(),
-        });
+        self.segment = metadata.map(|metadata| OpenSegment::new(metadata, self.choice));
         self.part = OemSection::Ephemeris;
     }
 
@@ -205,10 +218,11 @@ impl OemParser {
         match &mut self.part {
             OemSection::Ephemeris => {
                 let state = state_line(line, findings);
-                if let (Some(segment), Some(state)) = (&mut self.segment, state)
-                    && self.rules.admit(segment, &state, line.number, findings)
-                {
-                    segment.states.push(state);
+                if let (Some(open), Some(state)) = (&mut self.segment, state) {
+                    let metadata = &open.segment.metadata;
+                    if self.rules.admit(metadata, &state, line.number, findings) {
+                        open.push(state);
+                    }
                 }
             }
             OemSection::Covariance(covariance) => covariance.row(line, findings),
@@ -220,8 +234,9 @@ impl OemParser {
     }
 
     fn end_segment(&mut self, findings: &mut FindingList, take: &mut impl FnMut(Segment)) {
-        if let Some(segment) = self.segment.take() {
-            check_segment(&segment, (self.segment_line, 1), findings);
+        if let Some(OpenSegment { segment, .. }) = self.segment.take() {
+            let place = (self.segment_line, 1);
+            check_segment(&segment.metadata, self.rules.lines(), place, findings);
             take(segment);
         }
     }
@@ -250,25 +265,25 @@ impl OemParser {
 }
 
 /// What must hold for a segment as a whole.
-pub(super) fn check_segment(segment: &Segment, place: (usize, usize), findings: &mut FindingList) {
-    let lines = segment.states.len();
-    let needed = match &segment.metadata.interpolation {
+pub(super) fn check_segment(
+    metadata: &SegmentMetadata,
+    SegmentLines { count, last, .. }: SegmentLines,
+    place: (usize, usize),
+    findings: &mut FindingList,
+) {
+    let needed = match &metadata.interpolation {
         Some((method, degree)) if method.eq_ignore_ascii_case("HERMITE") => degree / 2 + 1,
         Some((_, degree)) => degree.saturating_add(1),
         None => 1,
     };
-    if lines == 0 {
+    if count == 0 {
         findings.error(place, "oem-empty", "the segment has no ephemeris lines");
-    } else if lines < needed {
+    } else if count < needed {
         let message =
-            format!("{lines} lines are too few for the interpolation, which needs {needed}");
+            format!("{count} lines are too few for the interpolation, which needs {needed}");
         findings.warning(place, "oem-interpolation", message);
     }
-    if segment
-        .states
-        .last()
-        .is_some_and(|last| last.epoch < segment.metadata.stop_time)
-    {
+    if last.is_some_and(|last| last < metadata.stop_time) {
         let message = "the last line is before STOP_TIME: is the file cut short?";
         findings.warning(place, "oem-span", message);
     }

@@ -1,6 +1,6 @@
 //! Rules across the segments and lines of a message, in both notations, and the limits of this reader.
 
-use super::{Segment, SegmentMetadata, StateLine};
+use super::{SegmentMetadata, StateLine};
 use crate::constellation::identity::ObjectIdentity;
 use crate::formats::ccsds::frame::supported_frame;
 use crate::formats::ccsds::kvn::KvnBlock;
@@ -24,6 +24,19 @@ pub(super) struct MessageRules {
     frame: Option<Frame>,
     /// Whether the current segment already has an implausible state or a line with too few fields.
     is_told: bool,
+    /// The lines of the current segment.
+    lines: SegmentLines,
+}
+
+/// The lines of a segment so far, kept or not.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct SegmentLines {
+    /// Their number.
+    pub(super) count: usize,
+    /// Instant of the last one.
+    pub(super) last: Option<NaiveDateTime>,
+    /// Whether the first one has an acceleration.
+    have_accelerations: bool,
 }
 
 impl MessageRules {
@@ -35,6 +48,7 @@ impl MessageRules {
         findings: &mut FindingList,
     ) {
         self.is_told = false;
+        self.lines = SegmentLines::default();
         self.check_object(metadata, block, findings);
         self.check_time_system(metadata, block, findings);
         self.check_frame(metadata, block, findings);
@@ -154,19 +168,18 @@ impl MessageRules {
     /// the first line, and is a plausible state of an Earth orbit.
     pub(super) fn admit(
         &mut self,
-        segment: &Segment,
+        metadata: &SegmentMetadata,
         line: &StateLine,
         number: usize,
         findings: &mut FindingList,
     ) -> bool {
         let place = (number, 1);
-        let previous = segment.states.last().map(|last| last.epoch);
+        let previous = self.lines.last;
         if previous.is_some_and(|previous| line.epoch <= previous) {
             let message = "the time is not after that of the previous line";
             findings.error(place, "oem-time-order", message);
             return false;
         }
-        let metadata = &segment.metadata;
         let system = time_system_of_name(&metadata.time_system);
         if system.is_ok_and(|system| !system.has(line.epoch)) {
             let message = format!("{} has no second 60; only UTC has", metadata.time_system);
@@ -178,31 +191,40 @@ impl MessageRules {
             findings.error(place, "oem-span", message);
             return false;
         }
-        if let Some(problem) = self.first_problem(segment, line) {
+        if let Some(problem) = self.first_problem(metadata, line) {
             self.is_told = true;
             findings.error(place, problem.0, problem.1);
             return false;
         }
+        if self.lines.count == 0 {
+            self.lines.have_accelerations = line.acceleration_km_s2.is_some();
+        }
+        self.lines.count += 1;
+        self.lines.last = Some(line.epoch);
         true
     }
 
+    /// The lines of the current segment so far.
+    pub(super) fn lines(&self) -> SegmentLines {
+        self.lines
+    }
+
     /// The problem of a line, once per segment, since the lines that follow would have it too.
-    fn first_problem(&self, segment: &Segment, line: &StateLine) -> Option<(&'static str, String)> {
+    fn first_problem(
+        &self,
+        metadata: &SegmentMetadata,
+        line: &StateLine,
+    ) -> Option<(&'static str, String)> {
         if self.is_told {
             return None;
         }
-        let has_acceleration = |line: &StateLine| line.acceleration_km_s2.is_some();
-        if let Some(first) = segment.states.first()
-            && has_acceleration(first) != has_acceleration(line)
-        {
+        let has_acceleration = line.acceleration_km_s2.is_some();
+        if self.lines.count > 0 && self.lines.have_accelerations != has_acceleration {
             let message = "only some lines have accelerations; either all lines of a segment must have them or none";
             return Some(("oem-accelerations", message.to_owned()));
         }
         let problem = check_state(self.frame?, &line.state).err()?;
-        let message = format!(
-            "{} at {}: {problem}",
-            segment.metadata.object_name, line.epoch
-        );
+        let message = format!("{} at {}: {problem}", metadata.object_name, line.epoch);
         Some(("implausible-state", message))
     }
 }

@@ -1,5 +1,6 @@
 //! Messages in XML (CCSDS 502.0-B-3, section 8; 505.0-B-2), written and read.
 
+use super::open_segment::{OpenSegment, SegmentChoice};
 use super::read::{HEADER, METADATA, check_segment, header, metadata};
 use super::rules::MessageRules;
 use super::{Oem, Segment, SegmentMetadata, StateLine, VERSION};
@@ -146,7 +147,7 @@ pub(in crate::formats::ccsds) struct OemXmlMessage {
     header: KvnBlock,
     rules: MessageRules,
     segment_place: (usize, usize),
-    segment: Option<Segment>,
+    segment: Option<OpenSegment>,
     segments: Vec<Segment>,
 }
 
@@ -174,12 +175,13 @@ impl OemXmlMessage {
         &mut self,
         node: &XmlNode,
         place: (usize, usize),
+        choice: SegmentChoice<'_>,
         findings: &mut FindingList,
     ) {
         match node {
             XmlNode::Open(name, _) => self.open(name, place),
             XmlNode::Leaf(leaf) => self.leaf(leaf, place, findings),
-            XmlNode::Close(name) => self.close(name, place, findings),
+            XmlNode::Close(name) => self.close(name, place, choice, findings),
         }
     }
 
@@ -210,8 +212,8 @@ impl OemXmlMessage {
             (OemXmlSection::Metadata(block) | OemXmlSection::State(block), _) => {
                 block.accept_at(pair, unit, place, findings);
             }
-            (OemXmlSection::Data, Some(segment)) if is_comment => {
-                keep_comment(&mut segment.comments, text)
+            (OemXmlSection::Data, Some(open)) if is_comment => {
+                keep_comment(&mut open.segment.comments, text)
             }
             (OemXmlSection::Covariance, _) => {}
             (OemXmlSection::Data, None) if is_comment => {}
@@ -222,33 +224,38 @@ impl OemXmlMessage {
         }
     }
 
-    fn close(&mut self, name: &str, place: (usize, usize), findings: &mut FindingList) {
+    fn close(
+        &mut self,
+        name: &str,
+        place: (usize, usize),
+        choice: SegmentChoice<'_>,
+        findings: &mut FindingList,
+    ) {
         match (name, &self.part) {
             ("metadata", OemXmlSection::Metadata(block)) => {
                 let metadata = metadata(block, place.0, findings);
                 if let Some(metadata) = &metadata {
                     self.rules.check_metadata(metadata, block, findings);
                 }
-                self.segment = metadata.map(|metadata| Segment {
-                    metadata,
-                    comments: Vec::new(),
-                    states: Vec::new(),
-                });
+                self.segment = metadata.map(|metadata| OpenSegment::new(metadata, choice));
                 self.part = OemXmlSection::Body;
             }
             ("stateVector", OemXmlSection::State(block)) => {
                 let line = state(block, place, findings);
-                if let (Some(segment), Some(line)) = (&mut self.segment, line)
-                    && self.rules.admit(segment, &line, place.0, findings)
+                if let (Some(open), Some(line)) = (&mut self.segment, line)
+                    && self
+                        .rules
+                        .admit(&open.segment.metadata, &line, place.0, findings)
                 {
-                    segment.states.push(line);
+                    open.push(line);
                 }
                 self.part = OemXmlSection::Data;
             }
             ("covarianceMatrix", _) => self.part = OemXmlSection::Data,
             ("segment", _) => {
-                if let Some(segment) = self.segment.take() {
-                    check_segment(&segment, self.segment_place, findings);
+                if let Some(OpenSegment { segment, .. }) = self.segment.take() {
+                    let lines = self.rules.lines();
+                    check_segment(&segment.metadata, lines, self.segment_place, findings);
                     self.segments.push(segment);
                 }
                 self.part = OemXmlSection::Body;
