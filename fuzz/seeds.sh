@@ -1,5 +1,5 @@
 #!/bin/sh
-# Seeds of the fuzz targets, by the program's own writers; SEM, which it only reads, begins without any:
+# Seeds of the fuzz targets, by the program's own writers; SEM, which it only reads, begins without any, and terrain with two written here:
 #     sh fuzz/seeds.sh [path/to/navwalker]
 # A corpus that is there is kept; what the fuzzer found stays in it.
 set -eu
@@ -22,9 +22,11 @@ export_to map --as czml --set region.step-deg=90 --set gnss.constellations='[]'
 export_to almanac --as yuma --set region.step-deg=90
 export_to teme --as oem,opm,stk,sp3 --frame TEME --time-system TT --sp3-letter G
 
-for target in tle omm oem opm sp3 stk csv czml yuma sem lint; do
+for target in tle omm oem opm sp3 stk csv czml yuma sem lint terrain; do
     mkdir -p "fuzz/corpus/$target"
 done
+printf 'ncols 2\nnrows 3\nxllcorner 19.75\nyllcorner 9.75\ncellsize 0.5\nNODATA_value -9999\n1 2\n3 4.5\n5 6\n' >fuzz/corpus/terrain/grid.asc
+printf 'latitude_deg,longitude_deg,height_m,weight\n10,20,1,1\n10,21,2,2\n11,20,3,3\n11,21,,4\n' >fuzz/corpus/terrain/table.csv
 find "$work" -type f -size -20k ! -name manifest.json ! -name log | sort | while read -r file; do
     name="$(echo "${file#"$work"/}" | tr / -)"
     # One satellite tells as much as four.

@@ -6,9 +6,11 @@ mod cells;
 mod countries;
 mod map;
 mod points;
+mod raster;
 pub(crate) mod shapes;
 mod skylines;
 mod terrain;
+mod weighting;
 
 pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
@@ -16,8 +18,10 @@ pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
 pub(crate) use points::line_of;
 pub use points::{ignored_columns, sites_from_csv};
+pub use raster::{Raster, RasterError};
 pub use skylines::with_inline_skylines;
 pub use terrain::{Terrain, TerrainError};
+pub use weighting::WeightingError;
 
 use crate::earth::Surface;
 use crate::frames::{EarthFixed, LocalFrame, Position};
@@ -158,6 +162,8 @@ pub struct Site {
     pub longitude_deg: f64,
     /// Height over the surface (over the ellipsoid on WGS 84), m.
     pub height_m: f64,
+    /// Whether the height is given, and not that of the surface for want of one.
+    pub is_height_given: bool,
     /// Weight in means and tails.
     pub weight: f64,
     /// Position and local axes, Earth-fixed.
@@ -201,6 +207,7 @@ impl Site {
             latitude_deg,
             longitude_deg,
             height_m: 0.0,
+            is_height_given: false,
             weight,
             local,
             skyline: None,
@@ -215,6 +222,7 @@ impl Site {
         if !(HEIGHTS_M[0]..=HEIGHTS_M[1]).contains(&height_m) {
             return Err(GroundError::Height(height_m));
         }
+        self.is_height_given = true;
         if height_m != 0.0 {
             self.height_m = height_m;
             self.local.origin_km = self.local.origin_km + self.local.up * (height_m / 1000.0);

@@ -56,7 +56,8 @@ pub use template::{json_schema, reference_markdown, template};
 pub use values::{
     AreaSource, ConstellationParts, Earth, Export, FurtherMetrics, GnssSetup, Grid, MaskPoint,
     NamedConstellation, Objectives, Optimizer, Propagation, RangeErrors, Region, RegionTerrain,
-    Reliability, SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan, Visibility,
+    RegionWeightGrid, Reliability, SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan,
+    Visibility,
 };
 
 use document::Document;

@@ -5,6 +5,7 @@
 //! then on nothing moves: with v = read(bytes), v₁ = read(write(v)), v₁ is v to the written digits
 //! and read(write(v₁)) is v₁ exactly.
 
+mod rasters;
 mod sampled;
 
 use navwalker::exchange::import::{Fleet, ReadFleetError};
@@ -22,6 +23,7 @@ use navwalker::frames::{Frame, State};
 use navwalker::keyword::Keyword;
 use std::fmt::Debug;
 
+pub use rasters::terrain;
 pub use sampled::{sem, sp3, yuma};
 
 /// Writes and reads again, twice: nothing moves after the first time, which it returns.

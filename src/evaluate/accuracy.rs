@@ -1,11 +1,12 @@
 //! The accuracy of positions in metres, from a range error of each system ([M-49](crate::models#m-49) and
-//! [M-50](crate::models#m-50)), by the plain path.
+//! [M-50](crate::models#m-50)).
 
 use super::fixed::{self, PlainPositions};
+use super::kernel::RangeNormal;
 use super::{Evaluator, Setup, leo};
 use crate::dop::{ClockGroup, Clocks, Factor, Geometry};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::frames::LocalFrame;
+use crate::frames::{EarthRotation, LocalFrame};
 use crate::ground::Site;
 use crate::stats::gaussian::length_exceeded_by;
 use crate::stats::{Level, Weighted, weighted_cvar, weighted_mean, weighted_quantile};
@@ -165,21 +166,86 @@ impl Evaluator {
         let Some(accuracy) = &setup.accuracy else {
             return Ok(None);
         };
+        let Some(kernel) = self.kernel_for(ephemeris) else {
+            return self.position_errors_plain(ephemeris, accuracy).map(Some);
+        };
+        let mut errors = Errors::default();
         let systems = fixed::systems(setup);
-        let (mut errors, mut clocks) = (Errors::default(), Vec::new());
+        kernel.range_normals(ephemeris, accuracy, |instant| {
+            let is_open = |normal: &RangeNormal| matches!(normal, RangeNormal::Open);
+            let skies = match instant.points.iter().any(is_open) {
+                true => Skies::new(
+                    self,
+                    ephemeris,
+                    &systems,
+                    instant.elapsed_s,
+                    instant.rotation,
+                )?,
+                false => Skies::default(),
+            };
+            for (number, normal) in instant.points.iter().enumerate() {
+                let factor = match normal {
+                    RangeNormal::Unsolved => None,
+                    RangeNormal::Solved(factor) => Some(*factor),
+                    RangeNormal::Open => skies.solve(setup, accuracy, number),
+                };
+                errors.add_sample(self, number, factor);
+            }
+            Ok(())
+        })?;
+        Ok(Some(errors))
+    }
+
+    /// The same by the plain path, the reference for the kernel.
+    fn position_errors_plain(
+        &self,
+        ephemeris: &Ephemeris,
+        accuracy: &Accuracy,
+    ) -> Result<Errors, EphemerisError> {
+        let setup = self.setup();
+        let mut errors = Errors::default();
+        let systems = fixed::systems(setup);
         for (elapsed_s, &rotation) in setup.grid.iter().zip(self.rotations.iter()) {
-            leo::positions(setup, ephemeris, elapsed_s, rotation, &mut clocks)?;
-            let gnss = fixed::positions(&systems, elapsed_s, rotation)?;
-            for (number, site) in setup.sites.iter().enumerate() {
-                let sky = Sky::new(setup, accuracy, site, &clocks, &gnss);
-                let weight = self.weights.of(number) as f64;
-                errors.total += weight;
-                if let Some(factor) = sky.solve(setup) {
-                    errors.add(&factor, &site.local, weight);
-                }
+            let skies = Skies::new(self, ephemeris, &systems, elapsed_s, rotation)?;
+            for number in 0..setup.sites.len() {
+                errors.add_sample(self, number, skies.solve(setup, accuracy, number));
             }
         }
-        Ok(Some(errors))
+        Ok(errors)
+    }
+}
+
+/// The satellites at one instant by the plain path.
+#[derive(Default)]
+struct Skies {
+    clocks: Vec<PlainPositions>,
+    gnss: Vec<PlainPositions>,
+}
+
+impl Skies {
+    fn new(
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+        systems: &[Ephemeris],
+        elapsed_s: f64,
+        rotation: EarthRotation,
+    ) -> Result<Self, EphemerisError> {
+        let mut clocks = Vec::new();
+        leo::positions(
+            evaluator.setup(),
+            ephemeris,
+            elapsed_s,
+            rotation,
+            &mut clocks,
+        )?;
+        let gnss = fixed::positions(systems, elapsed_s, rotation)?;
+        Ok(Self { clocks, gnss })
+    }
+
+    /// The factor of the normal matrix of a point by range errors, where the PDOP is solved.
+    fn solve(&self, setup: &Setup, accuracy: &Accuracy, number: usize) -> Option<Factor> {
+        let site = &setup.sites[number];
+        Sky::new(setup, accuracy, site, &self.clocks, &self.gnss).solve(setup)
     }
 }
 
@@ -242,6 +308,15 @@ impl Sky {
 }
 
 impl Errors {
+    /// Adds the next sample of a point, with the factor of its normal matrix if it has an accuracy.
+    fn add_sample(&mut self, evaluator: &Evaluator, number: usize, factor: Option<Factor>) {
+        let weight = evaluator.weights.of(number) as f64;
+        self.total += weight;
+        if let Some(factor) = factor {
+            self.add(&factor, &evaluator.setup().sites[number].local, weight);
+        }
+    }
+
     fn add(&mut self, factor: &Factor, site: &LocalFrame, weight: f64) {
         let [east, north, up] = [site.east, site.north, site.up];
         let columns = [east, north, up].map(|axis| factor.solve(axis));

@@ -117,9 +117,9 @@ pub(super) struct Views {
 pub(super) struct PointViews {
     pub(super) samples: u32,
     /// Satellites of all samples together.
-    pub(super) sum: u32,
+    pub(super) sum: u64,
     /// Samples with fewer than 1, 2, … 12 satellites.
-    pub(super) fewer: [u8; COVERAGE_LEVELS],
+    pub(super) fewer: [u32; COVERAGE_LEVELS],
     pub(super) least: u32,
 }
 
@@ -140,17 +140,6 @@ impl Views {
             *fewer += u64::from(samples) * weight;
         }
         self.reach_down_to(point.least);
-    }
-
-    pub(super) fn merge(&mut self, other: &Self) {
-        self.total += other.total;
-        self.sum += other.sum;
-        for (mine, theirs) in self.fewer.iter_mut().zip(&other.fewer) {
-            *mine += theirs;
-        }
-        if let Some(least) = other.least {
-            self.reach_down_to(least);
-        }
     }
 
     fn reach_down_to(&mut self, visible: u32) {

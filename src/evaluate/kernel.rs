@@ -45,6 +45,7 @@ mod lanes;
 mod limits;
 mod losses;
 mod memory;
+mod metres;
 mod normal;
 mod order_statistics;
 mod probe;
@@ -62,6 +63,7 @@ pub(super) use losses::{
     ChangedSample, DoubtAbout, LossDoubt, LossDoubts, SampleLosses, WholeSample,
 };
 pub(super) use memory::{dops_bytes, memory_bytes};
+pub(super) use metres::RangeNormal;
 pub(super) use order_statistics::quantile_rank;
 pub use probe::{SampleTile, SampleTiles};
 
@@ -260,7 +262,8 @@ impl Kernel {
                 let mut found = Found::new();
                 let tail = self.find(&values, &search, &mut found);
                 let mut summary = search.summary(&found, sum, tail);
-                self.refine(propagation, &values, &search, &mut summary)?;
+                let ranked = std::array::from_fn(|number| search.ranked(&found, number));
+                self.refine(propagation, &values, ranked, &mut summary)?;
                 Some(summary)
             }
             None => None,
@@ -273,7 +276,7 @@ impl Kernel {
         &self,
         propagation: &Propagation<'_>,
         values: &[Lanes<f32>],
-        search: &RankSearch,
+        ranked: [Ranked; 4],
         summary: &mut Summary,
     ) -> Result<(), EphemerisError> {
         let statistics = [
@@ -282,10 +285,6 @@ impl Kernel {
             &mut summary.p99,
             &mut summary.max,
         ];
-        let ranked = std::array::from_fn(|number| Ranked {
-            rank: search.rank(number),
-            value: *statistics[number],
-        });
         let windows: [_; 4] = self.instructions.run(Surround {
             tiles: &self.scene.tiles.tiles,
             values,

@@ -13,10 +13,6 @@ impl Setup {
     pub fn plain_path_note(&self) -> Option<String> {
         let parts = [
             (
-                self.accuracy.is_some(),
-                "the accuracy in metres ([accuracy])",
-            ),
-            (
                 self.window_s.is_some(),
                 "the PDOP of windows (metrics.window-min)",
             ),

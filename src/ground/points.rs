@@ -155,10 +155,13 @@ impl Columns {
         let longitude_deg = number(self.longitude, NEEDED[1])?;
         let site = Site::new(surface, latitude_deg, longitude_deg, weight);
         let height_m = match self.height.filter(|at| !field(*at).is_empty()) {
-            Some(at) => number(at, OPTIONAL[2])?,
-            None => 0.0,
+            Some(at) => Some(number(at, OPTIONAL[2])?),
+            None => None,
         };
-        let site = site.and_then(|site| site.at_height_m(height_m));
+        let site = site.and_then(|site| match height_m {
+            Some(height_m) => site.at_height_m(height_m),
+            None => Ok(site),
+        });
         let mut site = site.map_err(|error| error.to_string())?;
         let name = self.name.map(field).filter(|name| !name.is_empty());
         if name.is_some_and(|name| name.contains(char::is_control)) {

@@ -2,7 +2,7 @@
 
 mod horizon;
 
-use super::Site;
+use super::{Raster, RasterError, Site};
 use crate::earth::Surface;
 use crate::units::counted;
 use crate::visibility::MaskTable;
@@ -12,9 +12,6 @@ use thiserror::Error;
 
 /// Accepted heights of terrain, m: from below the Dead Sea to above Mount Everest.
 const HEIGHTS_M: [f64; 2] = [-500.0, 9_000.0];
-
-/// Most cells of a terrain.
-const MAX_CELLS: usize = 200_000_000;
 
 /// Most points whose skylines are computed.
 const MAX_POINTS: usize = 10_000;
@@ -28,31 +25,9 @@ const ROUNDING_DEG: f64 = 1e-6;
 /// Why a terrain is rejected, or a point has no skyline on it.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TerrainError {
-    /// Fewer than two rows or columns, or more than `MAX_CELLS` in all.
-    #[error(
-        "{rows} rows and {columns} columns: expected at least 2 of each and at most {MAX_CELLS} cells"
-    )]
-    Shape {
-        /// Rows.
-        rows: usize,
-        /// Columns.
-        columns: usize,
-    },
-    /// Coordinates that are not degrees.
-    #[error(
-        "latitudes {south_deg} to {north_deg} and longitudes {west_deg} to {east_deg} are not degrees on the globe; \
-         a terrain is on latitude and longitude of WGS 84 (EPSG:4326; gdalwarp -t_srs EPSG:4326 converts others)"
-    )]
-    Degrees {
-        /// Southern end.
-        south_deg: f64,
-        /// Northern end.
-        north_deg: f64,
-        /// Western end.
-        west_deg: f64,
-        /// Eastern end.
-        east_deg: f64,
-    },
+    /// The heights are not a raster.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
     /// A height outside `HEIGHTS_M`.
     #[error(
         "height {height_m} m at latitude {latitude_deg}, longitude {longitude_deg} is outside {least} to {most} m: a value for \
@@ -127,83 +102,32 @@ pub enum TerrainError {
 /// Heights over the surface at the nodes of a lattice of latitude and longitude, linear between them in both.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Terrain {
-    /// Latitude of the first row and longitude of the first column, degrees.
-    south_west_deg: [f64; 2],
-    /// Steps northwards and eastwards, degrees.
-    step_deg: [f64; 2],
-    rows: usize,
-    columns: usize,
-    /// m, row by row from the south, each from the west; NaN in a hole.
-    heights_m: Vec<f32>,
+    /// Heights, m.
+    raster: Raster,
     highest_m: f64,
 }
 
 impl Terrain {
-    /// The terrain with a south-western node, steps northwards and eastwards (degrees) and heights in m, row by row from
-    /// the south, each from the west; NaN is a hole.
+    /// The terrain of heights in m.
     ///
     /// # Errors
-    /// If there are too few or too many cells, the nodes leave the globe, or a height is out of range.
-    pub fn new(
-        south_west_deg: [f64; 2],
-        step_deg: [f64; 2],
-        columns: usize,
-        heights_m: Vec<f32>,
-    ) -> Result<Self, TerrainError> {
-        let rows = heights_m.len() / columns.max(1);
-        if rows < 2 || columns < 2 || heights_m.len() > MAX_CELLS {
-            return Err(TerrainError::Shape { rows, columns });
-        }
-        let mut terrain = Self {
-            south_west_deg,
-            step_deg,
-            rows,
-            columns,
-            heights_m,
-            highest_m: 0.0,
-        };
-        let [south_deg, north_deg, west_deg, east_deg] = terrain.edges_deg();
-        let is_sound = step_deg.iter().all(|step| *step > 0.0)
-            && south_deg >= -90.0
-            && north_deg <= 90.0 + 1e-9
-            && super::is_longitude(west_deg)
-            && super::is_longitude(east_deg)
-            && east_deg - west_deg <= 360.0 + 1e-9;
-        if !is_sound {
-            return Err(TerrainError::Degrees {
-                south_deg,
-                north_deg,
-                west_deg,
-                east_deg,
-            });
-        }
+    /// If a height is out of range.
+    pub fn new(raster: Raster) -> Result<Self, TerrainError> {
         let range = HEIGHTS_M[0]..=HEIGHTS_M[1];
         let wrong = |height: &f32| !height.is_nan() && !range.contains(&f64::from(*height));
-        if let Some(at) = terrain.heights_m.iter().position(wrong) {
-            let [latitude_deg, longitude_deg] = terrain.node_deg(at / columns, at % columns);
+        if let Some(at) = raster.values.iter().position(wrong) {
+            let [latitude_deg, longitude_deg] = raster.node_of_value_deg(at);
             return Err(TerrainError::Height {
-                height_m: f64::from(terrain.heights_m[at]),
+                height_m: f64::from(raster.values[at]),
                 latitude_deg,
                 longitude_deg,
             });
         }
-        let highest = terrain.heights_m.iter().copied().fold(f32::MIN, f32::max);
-        terrain.highest_m = f64::from(highest);
-        Ok(terrain)
-    }
-
-    /// Southern, northern, western and eastern end, degrees.
-    fn edges_deg(&self) -> [f64; 4] {
-        let [south, west] = self.south_west_deg;
-        let [north, east] = self.node_deg(self.rows - 1, self.columns - 1);
-        [south, north, west, east]
-    }
-
-    fn node_deg(&self, row: usize, column: usize) -> [f64; 2] {
-        [
-            self.south_west_deg[0] + row as f64 * self.step_deg[0],
-            self.south_west_deg[1] + column as f64 * self.step_deg[1],
-        ]
+        let highest = raster.values.iter().copied().fold(f32::MIN, f32::max);
+        Ok(Self {
+            highest_m: f64::from(highest),
+            raster,
+        })
     }
 
     /// A point in steps from the south-western node, northwards and eastwards, if it is on the terrain. Longitudes a turn
@@ -217,30 +141,33 @@ impl Terrain {
                 .contains(&at)
                 .then(|| at.clamp(0.0, last))
         };
-        let north = (latitude_deg - self.south_west_deg[0]) / self.step_deg[0];
-        let east_deg = longitude_deg - self.south_west_deg[1];
+        let north = (latitude_deg - self.raster.south_west_deg[0]) / self.raster.step_deg[0];
+        let east_deg = longitude_deg - self.raster.south_west_deg[1];
         let turns = [east_deg, east_deg.rem_euclid(360.0)];
-        let east = turns
-            .into_iter()
-            .find_map(|east_deg| within(east_deg / self.step_deg[1], self.columns - 1));
-        Some([within(north, self.rows - 1)?, east?])
+        let east = turns.into_iter().find_map(|east_deg| {
+            within(east_deg / self.raster.step_deg[1], self.raster.columns - 1)
+        });
+        Some([within(north, self.raster.rows - 1)?, east?])
     }
 
     /// Whether a place in steps is between the outermost nodes.
     fn contains(&self, [north, east]: [f64; 2]) -> bool {
-        let (last_row, last_column) = ((self.rows - 1) as f64, (self.columns - 1) as f64);
+        let (last_row, last_column) = (
+            (self.raster.rows - 1) as f64,
+            (self.raster.columns - 1) as f64,
+        );
         (0.0..=last_row).contains(&north) && (0.0..=last_column).contains(&east)
     }
 
     /// The height of a node, m.
     fn node_m(&self, row: usize, column: usize) -> f64 {
-        f64::from(self.heights_m[row * self.columns + column])
+        f64::from(self.raster.values[row * self.raster.columns + column])
     }
 
     /// The height at a place in steps, by bilinear interpolation, m; NaN in a cell with a hole.
     fn height_m(&self, [north, east]: [f64; 2]) -> f64 {
-        let row = (north as usize).min(self.rows - 2);
-        let column = (east as usize).min(self.columns - 2);
+        let row = (north as usize).min(self.raster.rows - 2);
+        let column = (east as usize).min(self.raster.columns - 2);
         let (up, right) = (north - row as f64, east - column as f64);
         let along = |row: usize| {
             let (west_m, east_m) = (self.node_m(row, column), self.node_m(row, column + 1));
@@ -250,7 +177,7 @@ impl Terrain {
         south_m + (north_m - south_m) * up
     }
 
-    /// Puts points on the terrain: those without a height (0) at `antenna_m` over it, and those without a skyline of their
+    /// Puts points on the terrain: those without a height at `antenna_m` over it, and those without a skyline of their
     /// own under the one that the terrain gives them ([M-58](crate::models#m-58)). Returns the shortest distance from a
     /// point at which a skyline ended with the terrain, km, if one did.
     ///
@@ -285,7 +212,7 @@ impl Terrain {
         antenna_m: f64,
     ) -> Result<Option<f64>, TerrainError> {
         let place = self.place(site.latitude_deg, site.longitude_deg);
-        let [south_deg, north_deg, west_deg, east_deg] = self.edges_deg();
+        let [south_deg, north_deg, west_deg, east_deg] = self.raster.edges_deg();
         let place = place.ok_or_else(|| TerrainError::Outside {
             site: label(site),
             south_deg,
@@ -301,7 +228,7 @@ impl Terrain {
                 longitude_deg: site.longitude_deg,
             });
         }
-        if site.height_m == 0.0 {
+        if !site.is_height_given {
             let raised = site.clone().at_height_m(terrain_m + antenna_m);
             *site = raised.map_err(|error| TerrainError::Site {
                 site: label(site),
@@ -323,8 +250,8 @@ impl Terrain {
         let horizon = horizon::Scan::new(self, site, place, surface).horizon();
         let horizon = horizon.map_err(|[north, east]| TerrainError::Hole {
             site: label(site),
-            latitude_deg: south_deg + north * self.step_deg[0],
-            longitude_deg: west_deg + east * self.step_deg[1],
+            latitude_deg: south_deg + north * self.raster.step_deg[0],
+            longitude_deg: west_deg + east * self.raster.step_deg[1],
         })?;
         if horizon.highest_deg() > ROUNDING_DEG {
             let skyline = MaskTable::new(horizon.vertices_deg);
@@ -337,14 +264,15 @@ impl Terrain {
     #[must_use]
     pub fn told(&self) -> String {
         let holes = self
-            .heights_m
+            .raster
+            .values
             .iter()
             .filter(|height| height.is_nan())
             .count();
-        let lowest = self.heights_m.iter().copied().fold(f32::MAX, f32::min);
+        let lowest = self.raster.values.iter().copied().fold(f32::MAX, f32::min);
         let mut told = format!(
             "{} x {} heights from {lowest} to {} m",
-            self.rows, self.columns, self.highest_m
+            self.raster.rows, self.raster.columns, self.highest_m
         );
         if holes > 0 {
             told += &format!(", {}", counted(holes, "hole"));

@@ -154,14 +154,15 @@ pub fn outages_csv(series: &Series) -> io::Result<String> {
     writer.write_record(OUTAGE_COLUMNS)?;
     for (n, point) in series.points.iter().enumerate() {
         for outage in series.outages(n) {
-            writer.write_record([
-                point.latitude_deg.to_string(),
-                point.longitude_deg.to_string(),
-                outage.start_s.to_string(),
-                outage.length_s.to_string(),
-                outage.is_cut.to_string(),
-                point.name.as_deref().unwrap_or_default().to_owned(),
-            ])?;
+            // As the numbers of the other tables are written.
+            writer.serialize((
+                point.latitude_deg,
+                point.longitude_deg,
+                outage.start_s,
+                outage.length_s,
+                outage.is_cut,
+                point.name.as_deref().unwrap_or_default(),
+            ))?;
         }
     }
     text(writer)

@@ -40,11 +40,21 @@ pub struct PointOutages {
 /// Most points whose outages are kept.
 const MOST_OUT: usize = 24;
 
-/// The outages of the points that are out longest; of equal ones the first.
+/// The outages of the points that are out longest; of equal ones the first. The points of a grid at a pole are one place.
 fn longest_out(series: &Series) -> Vec<PointOutages> {
     let out_s = |&n: &usize| series.points[n].total_outage_s;
     let mut points: Vec<usize> = (0..series.points.len()).collect();
-    points.retain(|n| out_s(n) > 0.0);
+    let mut poles = Vec::new();
+    points.retain(|n| {
+        let point = &series.points[*n];
+        if point.latitude_deg.abs() == 90.0 && point.name.is_none() {
+            if poles.contains(&point.latitude_deg) {
+                return false;
+            }
+            poles.push(point.latitude_deg);
+        }
+        out_s(n) > 0.0
+    });
     points.sort_by(|a, b| out_s(b).total_cmp(&out_s(a)));
     points.truncate(MOST_OUT);
     let outages = points.into_iter().map(|point| PointOutages {

@@ -9,7 +9,7 @@ use super::keys::{Key, KeyPath, Section, Walk, key};
 use super::rule::{Rule, parts_without_paths};
 use super::values::{
     AreaSource, Export, GnssSetup, NamedConstellation, Optimizer, Region, RegionKeys,
-    RegionTerrain, SatelliteOutages, Scenario,
+    RegionTerrain, RegionWeightGrid, SatelliteOutages, Scenario,
 };
 use crate::constellation::Design;
 
@@ -40,7 +40,7 @@ impl Scenario {
         hex
     }
 
-    /// The paths of the files that the scenario refers to, as written: that of the region, the terrain, the GNSS files in
+    /// The paths of the files that the scenario refers to, as written: that of the region, its weights, the terrain, the GNSS files in
     /// their order, those of outages, then those of each constellation, the one that is fixed in the search before the others.
     #[must_use]
     pub fn files(&self) -> Vec<&str> {
@@ -52,6 +52,7 @@ impl Scenario {
         self.region
             .file()
             .into_iter()
+            .chain(&self.weighting.weight_grid)
             .chain(&self.terrain.terrain)
             .chain(&self.gnss.files)
             .chain(&self.outages.file)
@@ -90,6 +91,7 @@ impl Scenario {
             .region
             .file_mut()
             .into_iter()
+            .chain(&mut scenario.weighting.weight_grid)
             .chain(&mut scenario.terrain.terrain)
             .chain(&mut scenario.gnss.files)
             .chain(&mut scenario.outages.file)
@@ -191,6 +193,7 @@ fn is_computed(path: KeyPath) -> bool {
         key!(Scenario.constellations),
         key!(RegionKeys.points),
         key!(RegionKeys.polygon),
+        key!(RegionWeightGrid.weight_grid),
         key!(RegionTerrain.terrain),
         key!(GnssSetup.files),
         key!(SatelliteOutages.file),

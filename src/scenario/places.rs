@@ -2,7 +2,7 @@
 
 use super::setup::SetupError;
 use super::{AreaSource, Region, Scenario};
-use crate::formats::terrain::terrain;
+use crate::formats::terrain::{terrain, weights};
 use crate::ground::{
     Country, GroundError, RegionMap, ServiceArea, Site, sites_from_csv, with_inline_skylines,
 };
@@ -86,6 +86,30 @@ impl Scenario {
                 Ok((sites, RegionMap::default()))
             }
         }
+    }
+
+    /// Weights the points by a grid of counts, if there is one; a note on those that are left out for want of any.
+    pub(super) fn weigh(
+        &self,
+        sites: &mut Vec<Site>,
+        map: &mut RegionMap,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<Option<String>, SetupError> {
+        let Some(file) = &self.weighting.weight_grid else {
+            return Ok(None);
+        };
+        let bytes = read(file).map_err(|source| self.unreadable(file, source))?;
+        let all = sites.len();
+        let weighed = weights(&bytes).and_then(|raster| Ok(raster.weigh(sites, map)?));
+        let left_out = weighed.map_err(|source| SetupError::WeightGrid {
+            file: file.clone(),
+            source,
+        })?;
+        let told = map.told.trim_end_matches("; point weights equal");
+        map.told = format!("{told}; weighted by a grid of counts");
+        Ok((left_out > 0).then(|| {
+            format!("region.weight-grid: {file}: {left_out} of {all} points have no weight and are left out")
+        }))
     }
 
     /// Puts the points on the terrain, if there is one, and returns what there is to know about it.

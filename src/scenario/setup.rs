@@ -5,15 +5,15 @@ use super::gnss_file::GnssFiles;
 use super::keys::{KeyPath, key};
 use super::values::RegionKeys;
 use super::{
-    Algorithm, GnssSetup, Objectives, Region, RegionTerrain, SatelliteOutages, Scenario, TimeSpan,
-    Visibility,
+    Algorithm, GnssSetup, Objectives, Region, RegionTerrain, RegionWeightGrid, SatelliteOutages,
+    Scenario, TimeSpan, Visibility,
 };
 use crate::constellation::Design;
 use crate::constellation::gnss::{ElementSetError, System};
 use crate::ephemeris::outages::OutageError;
 use crate::evaluate::{MetricOptions, Setup};
 use crate::exchange::import::{FleetError, ReadFleetError};
-use crate::formats::terrain::TerrainFileError;
+use crate::formats::terrain::RasterFileError;
 use crate::ground::GroundError;
 use crate::optimize::{ExhaustiveConfig, Method, MopsoConfig, Nsga2Config, RandomConfig};
 use crate::search::{DesignSpace, Goals, Quantity};
@@ -42,7 +42,7 @@ pub enum SetupError {
     /// The points file or the polygons cannot be read.
     #[error("region.{key}: cannot read {file}: {source}")]
     RegionFile {
-        /// The key: `points`, `polygon` or `terrain`.
+        /// The key: `points`, `polygon`, `weight-grid` or `terrain`.
         key: &'static str,
         /// The path as written.
         file: String,
@@ -71,7 +71,15 @@ pub enum SetupError {
         /// The path as written.
         file: String,
         /// What is wrong with it.
-        source: TerrainFileError,
+        source: RasterFileError,
+    },
+    /// The file does not weight the points.
+    #[error("region.weight-grid: {file}: {source}")]
+    WeightGrid {
+        /// The path as written.
+        file: String,
+        /// What is wrong with it.
+        source: RasterFileError,
     },
     /// The grid or the countries have no points.
     #[error("region: {0}")]
@@ -119,6 +127,12 @@ impl SetupError {
     pub(super) fn keys(&self) -> Vec<KeyPath> {
         match self {
             Self::GnssFile { .. } => vec![key!(GnssSetup.files)],
+            Self::RegionFile {
+                key: "weight-grid", ..
+            }
+            | Self::WeightGrid { .. } => {
+                vec![key!(RegionWeightGrid.weight_grid)]
+            }
             Self::RegionFile { key: "terrain", .. } | Self::Terrain { .. } => {
                 vec![key!(RegionTerrain.terrain)]
             }
@@ -166,7 +180,9 @@ impl SetupError {
             Self::Points { file, source } | Self::Polygon { file, source } => {
                 format!("{file}: {source}")
             }
-            Self::Terrain { file, source } => format!("{file}: {source}"),
+            Self::Terrain { file, source } | Self::WeightGrid { file, source } => {
+                format!("{file}: {source}")
+            }
             Self::Region(source) => source.to_string(),
             Self::Time(source) => source.to_string(),
             Self::Mask(source) => source.to_string(),
@@ -244,7 +260,8 @@ impl Scenario {
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<(Setup, Vec<String>), SetupError> {
         let visibility = &self.visibility;
-        let (mut sites, map) = self.region(read)?;
+        let (mut sites, mut map) = self.region(read)?;
+        let weight_note = self.weigh(&mut sites, &mut map, read)?;
         let terrain_note = self.stand_on_terrain(&mut sites, read)?;
         let setup = Setup::new(self.time_grid()?, sites)
             .with_map(map)
@@ -256,6 +273,7 @@ impl Scenario {
         };
         let (systems, mut notes) = self.systems(setup.grid, read)?;
         notes.extend(self.unused_range_errors());
+        notes.extend(weight_note);
         notes.extend(terrain_note);
         let presets = &self.gnss.constellations;
         let setup = Setup {
@@ -317,14 +335,17 @@ impl Scenario {
             .file()
             .is_some_and(|of_region| of_region == file);
         // A file that is both is told as that of the points.
-        let is_terrain = !is_region && self.terrain.terrain.as_deref() == Some(file);
+        let is_weighting = !is_region && self.weighting.weight_grid.as_deref() == Some(file);
+        let is_terrain =
+            !is_region && !is_weighting && self.terrain.terrain.as_deref() == Some(file);
         let is_gnss = self.gnss.files.iter().any(|gnss| gnss == file);
         let of_outages = self.outages.file.iter().any(|known| known == file);
         let named = self.constellations.iter();
         let mut named = named.filter(|one| one.parts.files.iter().any(|known| known == file));
         let file = file.to_owned();
-        if is_region || is_terrain {
+        if is_region || is_weighting || is_terrain {
             let key = match self.region {
+                _ if is_weighting => "weight-grid",
                 _ if is_terrain => "terrain",
                 Region::Points { .. } => "points",
                 _ => "polygon",

@@ -12,6 +12,7 @@ mod search;
 mod setting;
 mod shell;
 mod terrain;
+mod weight_grid;
 
 pub use crate::ground::Grid;
 pub use accuracy::{FurtherMetrics, RangeErrors};
@@ -29,6 +30,7 @@ pub use search::{SearchShells, SearchSpace};
 pub use setting::{Earth, GnssSetup, MaskPoint, Propagation, TimeSpan, Visibility};
 pub(super) use shell::INTERVALS;
 pub use terrain::RegionTerrain;
+pub use weight_grid::RegionWeightGrid;
 
 use chrono::{DateTime, Utc};
 
@@ -39,6 +41,7 @@ use super::reader::Reader;
 use super::rule::{Constellations, Integer, Text, UtcInstant};
 use crate::ephemeris::NAME_PREFIX;
 use crate::formats::metadata::CatalogNumber;
+use crate::ground::{AreaPoints, PointWeights};
 use crate::search::{ShellSpace, SweepSteps};
 
 /// Lets a duration that is an integer number of steps, up to rounding, end before
@@ -75,6 +78,8 @@ section! {
         pub propagation: Propagation;
         /// The points where the receivers are.
         pub region: Region;
+        /// What they count for, from a grid of values.
+        pub weighting: RegionWeightGrid;
         /// The terrain on which they stand.
         pub terrain: RegionTerrain;
         /// Visibility.
@@ -131,11 +136,35 @@ fn finish_scenario(scenario: &mut Scenario, reader: &mut Reader<'_>) {
         let other = key!(RegionTerrain.terrain).to_string();
         reader.refuse(&[key!(Visibility.mask_table)], Fault::Excluded { other });
     }
+    check_weighting(scenario, reader);
     if reader.is_sound() {
         check_point_samples(scenario, reader);
         check_designs(scenario, reader);
         accuracy::check(scenario, reader);
     }
+}
+
+/// A grid of weights is instead of those of the region, and needs cells to count in.
+fn check_weighting(scenario: &Scenario, reader: &mut Reader<'_>) {
+    let grid = key!(RegionWeightGrid.weight_grid);
+    if !reader.is_given(grid) {
+        return;
+    }
+    let weights = match &scenario.region {
+        Region::Grid(grid) => grid.weights,
+        Region::Area {
+            points: AreaPoints::Lattice { weights, .. },
+            ..
+        } => *weights,
+        Region::Area { .. } | Region::Cells(_) | Region::Points { .. } => PointWeights::Equal,
+    };
+    let rival = match &scenario.region {
+        Region::Points { .. } => key!(RegionKeys.points),
+        _ if weights != PointWeights::Equal => key!(RegionKeys.weights),
+        _ => return,
+    };
+    let other = rival.to_string();
+    reader.refuse(&[grid], Fault::Excluded { other });
 }
 
 /// What is fixed is a notation or the name of a constellation.

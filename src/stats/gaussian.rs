@@ -33,17 +33,30 @@ static CONTOUR: LazyLock<Contour> = LazyLock::new(|| {
 /// The probability that the length of an error with these principal variances exceeds `length` > 0, both in one unit.
 #[must_use]
 pub fn exceedance<const D: usize>(variances: &[f64; D], length: f64) -> f64 {
-    let square = length * length;
+    let scale = 2.0 / (length * length);
     let term = |(point, weight): &(Complex<f64>, Complex<f64>)| {
-        let mut transform = *weight;
+        let mut roots = Complex::from(1.0);
         for variance in variances {
             // Each root apart: on the contour no factor crosses the cut of the root, but their product does.
-            transform /= (Complex::from(1.0) + point * (2.0 * variance / square)).sqrt();
+            let share = variance * scale;
+            roots *= root_above(1.0 + point.re * share, point.im * share);
         }
-        transform.im
+        (weight.im * roots.re - weight.re * roots.im) / roots.norm_sqr()
     };
     let within: f64 = CONTOUR.iter().map(term).sum();
     (1.0 - within).clamp(0.0, 1.0)
+}
+
+/// The principal square root of a number in the upper half plane that is neither so large nor so small that its square is
+/// lost, without a trigonometric function.
+fn root_above(re: f64, im: f64) -> Complex<f64> {
+    let long = (0.5 * ((re * re + im * im).sqrt() + re.abs())).sqrt();
+    let short = 0.5 * im / long;
+    if re >= 0.0 {
+        Complex::new(long, short)
+    } else {
+        Complex::new(short, long)
+    }
 }
 
 /// Errors that are summed in one piece, so that the sum does not depend on the number of threads.

@@ -74,7 +74,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 93] = [
+const ROWS: [Row; 94] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
@@ -191,6 +191,12 @@ const ROWS: [Row; 93] = [
     row(
         "region.points",
         "points.csv",
+        EVALUATE_POINTS,
+        "/metrics/mean_visible",
+    ),
+    row(
+        "region.weight-grid",
+        "people.csv",
         EVALUATE_POINTS,
         "/metrics/mean_visible",
     ),
@@ -533,6 +539,11 @@ fn every_key_moves_its_result() {
     fs::write(
         place.join("terrain.csv"),
         "latitude_deg,longitude_deg,height_m\n0,70,0\n0,140,3000\n60,70,3000\n60,140,0\n",
+    )
+    .unwrap();
+    fs::write(
+        place.join("people.csv"),
+        "latitude_deg,longitude_deg,weight\n0,70,1\n0,140,0\n60,70,9\n60,140,0\n",
     )
     .unwrap();
     fs::write(

@@ -27,6 +27,7 @@ mod reference;
 mod regions;
 mod runs;
 mod scenes;
+mod series;
 mod shells;
 mod singular;
 mod size;

@@ -285,13 +285,38 @@ fn exports_show_cells_and_borders() {
     assert_eq!(made.status, 0, "{}", made.stderr);
     let read = |path: &str| fs::read_to_string(place.join("files").join(path)).unwrap();
     let region: Value = serde_json::from_str(&read("geojson/region.geojson")).unwrap();
-    let cells = region["features"].as_array().unwrap();
+    let features = region["features"].as_array().unwrap();
+    let (border, cells) = features.split_last().unwrap();
+    assert_eq!(border["geometry"]["type"], "MultiLineString");
+    // The border encloses the middle of every cell, and is closed.
+    let line = border["geometry"]["coordinates"][0].as_array().unwrap();
+    assert_eq!(line.first(), line.last());
+    let ends = |axis: usize| {
+        let along = line.iter().map(|place| place[axis].as_f64().unwrap());
+        along.fold((f64::MAX, f64::MIN), |(low, high), x| {
+            (low.min(x), high.max(x))
+        })
+    };
+    for (axis, key) in ["longitude_deg", "latitude_deg"].into_iter().enumerate() {
+        let (low, high) = ends(axis);
+        let within =
+            |cell: &Value| (low..=high).contains(&cell["properties"][key].as_f64().unwrap());
+        assert!(cells.iter().all(within), "{key}: {low} to {high}");
+    }
     assert!((10..=14).contains(&cells.len()));
     assert!(
         cells
             .iter()
             .all(|cell| cell["geometry"]["type"] == "Polygon")
     );
+    let kml = read("scene.kml");
+    let border = kml
+        .split("<name>Border of the region</name>")
+        .nth(1)
+        .unwrap();
+    let border = border.split("</Placemark>").next().unwrap();
+    let places = |text: &str| text.matches(',').count();
+    assert_eq!(places(border), line.len(), "the same border in both");
     let scene = read("scene.czml");
     assert!(
         scene.contains("region-border:1")

@@ -2,9 +2,11 @@ use super::*;
 use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::earth::Surface;
+use crate::evaluate::InstructionSet;
 use crate::evaluate::testing::{self, design_matrix, observed};
 use crate::ground::Site;
 use crate::time::{Epoch, TimeGrid};
+use crate::visibility::MaskTable;
 use nalgebra::{DMatrix, DVector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -134,7 +136,7 @@ fn validate_one_metre_against_the_dops() {
         });
         let ours = accuracy(&setup, &ephemeris);
         let evaluator = Evaluator::new(setup).unwrap();
-        // Accuracy is of the plain path; the lanes have six digits.
+        // The dilutions of the lanes are kept with six digits.
         let dops = evaluator.dops_plain(&ephemeris).unwrap();
         for (sigma, dop) in [
             (ours.sigma_3d_m, dops.pdop),
@@ -149,6 +151,71 @@ fn validate_one_metre_against_the_dops() {
             ] {
                 // The variances are those of other sums: a few ulp times the condition.
                 assert!((sigma / dop - 1.0).abs() < 1e-12, "{sigma} {dop}");
+            }
+        }
+    }
+}
+
+/// The lanes give what the sums of the plain path give, and the same bits on every instruction set.
+#[test]
+fn lanes_equal_the_plain_path() {
+    let (base, _) = study();
+    let street = [
+        (0.0, 5.0),
+        (90.0, 35.0),
+        (180.0, 5.0),
+        (270.0, 35.0),
+        (360.0, 5.0),
+    ];
+    let street = MaskTable::new(street.to_vec()).unwrap();
+    let site = |n: u32| {
+        let (latitude_deg, longitude_deg) = (f64::from(n % 7) * 9.0, f64::from(n) * 4.0);
+        let weight = f64::from(1 + n % 3);
+        Site::new(Surface::Wgs84, latitude_deg, longitude_deg, weight).unwrap()
+    };
+    let open = Setup {
+        sites: (0..40).map(site).collect(),
+        ..base
+    };
+    let under_skyline = open.clone().with_skyline(street);
+    for setup in [open, under_skyline] {
+        for (clocks, notation) in [
+            (Clocks::PerSystem, "delta:55:72/8/3@925"),
+            (Clocks::Shared, "delta:40:40/5/1@400"),
+        ] {
+            let setup = setup.clone().with_clocks(clocks);
+            let design: Design = notation.parse().unwrap();
+            let ephemeris = Ephemeris::of_design(&design, setup.model, setup.grid).unwrap();
+            let evaluators = InstructionSet::ALL
+                .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
+            let errors = setup.accuracy.as_ref().unwrap();
+            let plain = evaluators[0].position_errors_plain(&ephemeris, errors).unwrap();
+            let plain = plain.metrics(evaluators[0].setup().metrics.cvar_level);
+            let [fast, others @ ..] = evaluators
+                .each_ref()
+                .map(|evaluator| evaluator.accuracy(&ephemeris).unwrap().unwrap());
+            assert_eq!(others, [fast; 2]);
+            assert_eq!(fast.solved_fraction, plain.solved_fraction);
+            assert!(fast.solved_fraction > 0.5);
+            let sigmas = |of: &AccuracyMetrics| [of.sigma_3d_m, of.sigma_h_m, of.sigma_v_m];
+            for (fast, plain) in sigmas(&fast).into_iter().zip(sigmas(&plain)) {
+                let (fast, plain) = (fast.unwrap(), plain.unwrap());
+                for (ours, theirs) in [
+                    (fast.mean, plain.mean),
+                    (fast.p95, plain.p95),
+                    (fast.cvar, plain.cvar),
+                ] {
+                    // Lines of sight are good to 2e-14, which the condition of a solved sample magnifies.
+                    assert!((ours / theirs - 1.0).abs() < 1e-10, "{ours} {theirs}");
+                }
+            }
+            let errors = |of: &AccuracyMetrics| [of.error95_3d_m, of.error95_h_m, of.error95_v_m];
+            for (ours, theirs) in errors(&fast).into_iter().zip(errors(&plain)) {
+                // The search for a length ends at 1e-9 of it.
+                let apart = ours
+                    .zip(theirs)
+                    .map(|(ours, theirs)| (ours / theirs - 1.0).abs());
+                assert!(ours == theirs || apart.is_some_and(|apart| apart < 3e-9));
             }
         }
     }

@@ -12,6 +12,8 @@ pub(super) struct Block {
     x: [f32; BLOCK],
     y: [f32; BLOCK],
     z: [f32; BLOCK],
+    /// What the rounding to f32 took from x, y and z.
+    rest: [[f32; BLOCK]; 3],
     /// sqrt(|r|² - k²), see [`super::tiles`].
     q: [f32; BLOCK],
     /// Number of each among all satellites.
@@ -23,13 +25,20 @@ impl Block {
         x: [f32::NAN; BLOCK],
         y: [f32::NAN; BLOCK],
         z: [f32::NAN; BLOCK],
+        rest: [[0.0; BLOCK]; 3],
         q: [f32::NAN; BLOCK],
         index: [0; BLOCK],
     };
 
+    /// The position seen from a place close to it, which is exact in f32: good to f32 of the distance, not of the radius.
     #[inline(always)]
-    pub(super) fn position(&self, n: usize) -> [f32; 3] {
-        [self.x[n], self.y[n], self.z[n]]
+    pub(super) fn position_from(&self, place: [f32; 3], n: usize) -> [f32; 3] {
+        let [x, y, z] = place;
+        [
+            (self.x[n] - x) + self.rest[0][n],
+            (self.y[n] - y) + self.rest[1][n],
+            (self.z[n] - z) + self.rest[2][n],
+        ]
     }
 
     #[inline(always)]
@@ -63,6 +72,9 @@ impl Block {
             let (x, y, z) = (from.x[n], from.y[n], from.z[n]);
             let beyond = (x * x + y * y + z * z - reach2) as f32;
             (self.x[n], self.y[n], self.z[n]) = (x as f32, y as f32, z as f32);
+            self.rest[0][n] = (x - f64::from(self.x[n])) as f32;
+            self.rest[1][n] = (y - f64::from(self.y[n])) as f32;
+            self.rest[2][n] = (z - f64::from(self.z[n])) as f32;
             self.q[n] = if beyond > 0.0 { beyond.sqrt() } else { 0.0 };
             self.index[n] = (first + n) as u32;
         }
@@ -125,6 +137,9 @@ impl Candidates {
                 to.x[place] = block.x[n];
                 to.y[place] = block.y[n];
                 to.z[place] = block.z[n];
+                for (to, rest) in to.rest.iter_mut().zip(&block.rest) {
+                    to[place] = rest[n];
+                }
                 to.q[place] = block.q[n];
                 to.index[place] = block.index[n];
                 self.count += 1;

@@ -259,7 +259,11 @@ impl Dilute<'_> {
                     system.add_to::<W>(&mut seen, tile, self.fixed_mask);
                     sums.push(seen);
                 }
-                sums.push(self.work.double_sums::<W>(self.scene, number, group));
+                let mut leo = Sums::<f64>::zero();
+                self.work.look(self.scene, number, group, |l, line, seen| {
+                    leo.add_line::<W>(line, seen, seen, l);
+                });
+                sums.push(leo);
                 if self.clocks == Clocks::Shared {
                     let mut all = Sums::<f64>::zero();
                     sums.drain(..)

@@ -4,10 +4,10 @@ use super::super::Setup;
 use super::super::fixed::systems;
 use super::candidates::{Candidates, bits};
 use super::instructions::{InstructionSet, Work};
-use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SineWeights, Sums, UnitWeights, Weighting};
 use super::normal::{FixedTile, Normal, SharedClock, nearest, remainder};
 use super::propagation::Positions;
-use super::skylines::{SightSlack, Skyward};
+use super::skylines::SightSlack;
 use super::tiles::{Horizon, Tile, Tiles};
 use crate::dop::{Clocks, ObservationWeights};
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -256,25 +256,27 @@ impl FixedSystem {
         tile: &Tile,
         mask: &MaskTerms<f64>,
     ) {
-        let seen = self.candidates.blocks().iter().flat_map(|block| {
+        self.look(tile, mask, |l, line, seen| {
+            sums.add_line::<W>(line, seen, seen, l);
+        });
+    }
+
+    /// Passes the lines from the points of a tile to `add`, satellite by satellite and lane by lane, with whether it is
+    /// visible.
+    #[inline(always)]
+    pub(super) fn look(
+        &self,
+        tile: &Tile,
+        mask: &MaskTerms<f64>,
+        mut add: impl FnMut(usize, &SightLine<f64>, bool),
+    ) {
+        let blocks = self.candidates.blocks().iter();
+        let near = blocks.flat_map(|block| {
             bits(block.inside(&tile.fixed_cap, self.slack_km)).map(|n| block.index(n))
         });
-        let Some(sky) = &tile.sky else {
-            for n in seen {
-                sums.add::<W>(&tile.double, self.positions.at(n), mask);
-            }
-            return;
-        };
-        let points = Skyward {
-            sites: &tile.double,
-            sky,
-            mask,
-            slack: self.sight,
-        };
-        for n in seen {
+        for n in near {
             let satellite = self.positions.at(n);
-            let decide = |lane: usize| Some(sky.sees(lane, satellite, self.mask));
-            points.add::<W>(sums, satellite, decide);
+            tile.look(satellite, (mask, self.mask), self.sight, &mut add);
         }
     }
 }

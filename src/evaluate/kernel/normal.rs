@@ -204,7 +204,7 @@ impl NormalLanes<f64> {
                 xz,
                 yz,
             });
-            let clear = factor.exceeds(clear_pivot(self.surplus.0[l] + clocks));
+            let clear = factor.exceeds(clear_pivot(f64::from(self.surplus.0[l] + clocks)));
             let pdop = factor.trace_of_inverse().root();
             lanes.0[l] = if clear { pdop } else { f64::INFINITY };
         }
@@ -216,6 +216,6 @@ impl NormalLanes<f64> {
 /// order: storing the GNSS part in 48 bits moves a pivot by at most two floors, and the order of the
 /// sums by less than one.
 #[inline(always)]
-pub(super) fn clear_pivot(satellites: u32) -> f64 {
-    4.0 * pivot_floor(f64::from(satellites))
+pub(super) fn clear_pivot(weight: f64) -> f64 {
+    4.0 * pivot_floor(weight)
 }

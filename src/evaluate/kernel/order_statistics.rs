@@ -10,6 +10,7 @@
 
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes};
+use super::refine::Ranked;
 use super::sample::UNSOLVED;
 use super::tiles::Tile;
 use crate::stats::{Level, Summary};
@@ -284,6 +285,18 @@ pub(in crate::evaluate) fn quantile_rank(q: f64, weight: u64, number: u64) -> u6
     (rank.max(1.0) as u64).min(weight)
 }
 
+/// The value of a place that has `before` of the weight of the place before it or with it, and what it has before it.
+fn reached(place: u32, before: u64, counts: &[u64]) -> (f64, u64) {
+    let mut passed = 0;
+    for (trailing, &count) in counts.iter().enumerate() {
+        if before < passed + count {
+            return (value(place, trailing), passed);
+        }
+        passed += count;
+    }
+    (f64::NAN, passed)
+}
+
 impl RankSearch {
     /// `None` if no value is solved.
     pub(super) fn new(counts: &Counts, level: Level) -> Option<Self> {
@@ -303,9 +316,19 @@ impl RankSearch {
         })
     }
 
-    /// The rank of an order statistic: median, 95 %, 99 %, largest.
-    pub(super) fn rank(&self, number: usize) -> u64 {
-        self.wanted[number].rank
+    /// An order statistic in f32: median, 95 %, 99 %, largest.
+    pub(super) fn ranked(&self, found: &Found, number: usize) -> Ranked {
+        let Wanted {
+            place,
+            rank,
+            before,
+        } = self.wanted[number];
+        let (value, passed) = reached(place, before, &found.0[number]);
+        Ranked {
+            rank,
+            value,
+            below: rank - 1 - before + passed,
+        }
     }
 
     /// The statistics, from the finds of all tiles, the sum of all values and that of those
@@ -313,12 +336,7 @@ impl RankSearch {
     pub(super) fn summary(&self, found: &Found, sum: f64, tail: f64) -> Summary {
         let [p50, p95, p99, max, value_at_risk] = std::array::from_fn(|n| {
             let Wanted { place, before, .. } = self.wanted[n];
-            let mut passed = 0;
-            let trailing = found.0[n].iter().position(|count| {
-                passed += count;
-                passed > before
-            });
-            trailing.map_or(f64::NAN, |trailing| value(place, trailing))
+            reached(place, before, &found.0[n]).0
         });
         let Wanted {
             place,

@@ -5,7 +5,7 @@
 //! order statistic is taken among them.
 
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes};
+use super::lanes::Lanes;
 use super::tiles::Tile;
 
 /// Relative distance within which the order of two f32 values is meaningless: more than twice the error
@@ -15,20 +15,24 @@ const WINDOW: f64 = 2e-6;
 /// With more values than this in a window, they are so dense that their order does not matter.
 const CROWD: usize = 256;
 
-/// An order statistic by its rank (from 1, in units of weight) and its value in f32.
+/// An order statistic by its rank (from 1, in units of weight), its value in f32, and the weight of smaller values.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ranked {
     pub(super) rank: u64,
     pub(super) value: f64,
+    pub(super) below: u64,
 }
 
 /// The values around an order statistic.
 #[derive(Debug, Clone)]
 pub(super) struct Window {
     start: f32,
+    value: f32,
     end: f32,
     rank: u64,
+    /// Weight of the values below the order statistic, and of those among them that are inside.
     below: u64,
+    inside: u64,
     /// Tile and lane of the values inside.
     pub(super) places: Vec<(usize, usize)>,
 }
@@ -37,26 +41,32 @@ impl Window {
     fn new(ranked: Ranked) -> Self {
         Self {
             start: (ranked.value * (1.0 - WINDOW)) as f32,
+            value: ranked.value as f32,
             end: (ranked.value * (1.0 + WINDOW)) as f32,
             rank: ranked.rank,
-            below: 0,
+            below: ranked.below,
+            inside: 0,
             places: Vec::new(),
         }
     }
 
     /// Records the slots of a tile that are inside, up to the limit.
-    fn note(&mut self, number: usize, tile: &Lanes<f32>) {
-        if self.places.len() <= CROWD {
-            let inside = |l: &usize| tile.0[*l] >= self.start && tile.0[*l] <= self.end;
-            let lanes = (0..LANES).filter(inside);
-            self.places.extend(lanes.map(|lane| (number, lane)));
+    fn note(&mut self, number: usize, values: &Lanes<f32>, weights: &Lanes<u64>) {
+        if self.places.len() > CROWD {
+            return;
+        }
+        for (lane, (&value, weight)) in values.0.iter().zip(weights.0).enumerate() {
+            if value >= self.start && value <= self.end {
+                self.places.push((number, lane));
+                self.inside += if value < self.value { weight } else { 0 };
+            }
         }
     }
 
     /// The order statistic among the recomputed values, each with its weight.
     pub(super) fn pick(&self, mut values: Vec<(f32, u64)>) -> Option<f64> {
         values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        let mut reached = self.below;
+        let mut reached = self.below - self.inside;
         let found = values.into_iter().find(|(_, weight)| {
             reached += weight;
             reached >= self.rank
@@ -81,25 +91,21 @@ impl<const N: usize> Work for Surround<'_, N> {
         let mut windows = self.ranked.map(Window::new);
         let starts = windows.each_ref().map(|window| window.start);
         let ends = windows.each_ref().map(|window| window.end);
-        let mut below = [[0_u64; LANES]; N];
         let tiles = self.tiles.iter().cycle();
         for ((number, values), tile) in self.values.iter().enumerate().zip(tiles) {
-            let weights = &tile.weights.whole.0;
             let mut inside = 0;
-            for (l, &value) in values.0.iter().enumerate() {
+            for &value in &values.0 {
                 for w in 0..N {
-                    below[w][l] += if value < starts[w] { weights[l] } else { 0 };
                     inside |= u32::from((value >= starts[w]) & (value <= ends[w]));
                 }
             }
             if inside != 0 {
-                windows
-                    .iter_mut()
-                    .for_each(|window| window.note(number, values));
+                let weights = &tile.weights.whole;
+                let note = |window: &mut Window| window.note(number, values, weights);
+                windows.iter_mut().for_each(note);
             }
         }
-        for (window, below) in windows.iter_mut().zip(below) {
-            window.below = below.into_iter().sum();
+        for window in &mut windows {
             if window.places.len() > CROWD {
                 window.places.clear();
             }

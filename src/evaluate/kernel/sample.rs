@@ -3,11 +3,11 @@
 use super::candidates::{Block, Candidates, bits};
 use super::fixed::FixedSample;
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, SiteLanes, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SineWeights, Sums, UnitWeights, Weighting};
 use super::limits::Limits;
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::skylines::{SightSlack, Skyward};
+use super::skylines::{SeenLanes, SightSlack, Skyward, UNSEEN};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
 use crate::dop::ObservationWeights;
 use crate::visibility::Mask;
@@ -88,16 +88,18 @@ impl Workspace {
         }
     }
 
-    /// The sums of a tile of the selected group in f64.
+    /// Passes the lines in f64 from a tile of the selected group to `add`, satellite by satellite and lane by lane, with
+    /// whether it is visible.
     #[inline(always)]
-    pub(super) fn double_sums<W: Weighting>(
+    pub(super) fn look(
         &self,
         scene: &SampleContext,
         number: usize,
         group: &Group,
-    ) -> Sums<f64> {
+        mut add: impl FnMut(usize, &SightLine<f64>, bool),
+    ) {
         let candidates = self.candidates(number, group);
-        candidates.double_sums::<W>(scene, number, &self.positions)
+        candidates.look(scene, number, &self.positions, &mut add);
     }
 
     pub(super) fn new(satellites: usize) -> Self {
@@ -144,6 +146,8 @@ pub(super) struct SampleOutcome {
     pub(super) doubled: u64,
     /// Points to recompute, or recomputed.
     pub(super) doubts: Vec<Undecided>,
+    /// The points of the last tile with skylines that see each of its candidates.
+    seen: Vec<SeenLanes>,
 }
 
 impl SampleOutcome {
@@ -153,6 +157,7 @@ impl SampleOutcome {
             visible: vec![Lanes([0; LANES]); tiles],
             doubled: 0,
             doubts: Vec::new(),
+            seen: Vec::new(),
         }
     }
 }
@@ -257,7 +262,7 @@ impl<'a> Begun<'a> {
         };
         // Each arm goes to the end, so that tiles without a skyline keep their sums in registers.
         match &tile.sky {
-            None => judging.judge::<W>(&candidates.sums::<W>(&tile.single, &self.mask), out),
+            None => judging.judge::<W>(&candidates.sums::<W>(tile, &self.mask), out),
             Some(sky) => {
                 let points = Skyward {
                     sites: &tile.single,
@@ -265,7 +270,8 @@ impl<'a> Begun<'a> {
                     mask: &self.mask,
                     slack: self.slack,
                 };
-                let sums = candidates.sums_skyward::<W>(&points, scene.mask, &work.positions);
+                let seen = &mut out.seen;
+                let sums = candidates.sums_skyward::<W>(&points, tile, &judging, seen);
                 judging.judge::<W>(&sums, out);
             }
         }
@@ -301,7 +307,11 @@ impl Judging<'_> {
     #[inline(always)]
     fn compute_again<W: Weighting>(&self, verdict: &LaneVerdict, out: &mut SampleOutcome) {
         let (number, candidates) = (self.number, self.candidates);
-        let sums = candidates.double_sums::<W>(self.scene, number, self.positions);
+        // Where a decision in f32 is in doubt, another path computes the sample.
+        let sums = match &self.scene.tiles.tiles[number].sky {
+            None => candidates.double_sums::<W>(self.scene, number, self.positions),
+            Some(_) => candidates.double_sums_of_seen::<W>(self, &out.seen),
+        };
         let limits = &self.scene.limits;
         let system = NormalLanes::new::<W>(&sums, self.fixed);
         let double = system.pdop(limits.clocks);
@@ -342,12 +352,12 @@ pub(super) struct TileCandidates<'a> {
 
 impl<'a> TileCandidates<'a> {
     #[inline(always)]
-    fn sums<W: Weighting>(&self, sites: &SiteLanes<f32>, mask: &MaskTerms<f32>) -> Sums<f32> {
+    fn sums<W: Weighting>(&self, tile: &Tile, mask: &MaskTerms<f32>) -> Sums<f32> {
         let mut all = Sums::zero();
         for (block, &word) in self.blocks.iter().zip(self.words) {
             let mut sums = Sums::zero();
             for n in bits(word) {
-                sums.add::<W>(sites, block.position(n), mask);
+                sums.add::<W>(&tile.single, block.position_from(tile.middle, n), mask);
             }
             // Sums of sums: adding hundreds of visible satellites one by one would cost f32 a digit.
             all.merge::<W>(&sums);
@@ -355,25 +365,47 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
-    /// The same under the skylines of the points.
+    /// The same under the skylines of the points, which `seen` remembers.
     #[inline(always)]
     fn sums_skyward<W: Weighting>(
         &self,
         points: &Skyward<'_, f32>,
-        mask: Mask,
-        positions: &Positions,
+        tile: &Tile,
+        judging: &Judging<'_>,
+        seen: &mut Vec<SeenLanes>,
     ) -> Sums<f32> {
+        let (mask, positions) = (judging.scene.mask, judging.positions);
+        seen.clear();
         let mut all = Sums::zero();
         for (block, &word) in self.blocks.iter().zip(self.words) {
             let mut sums = Sums::zero();
             for n in bits(word) {
                 let satellite = || positions.at(block.index(n));
                 let decide = |lane: usize| points.sky.surely_sees(lane, satellite(), mask);
-                points.add::<W>(&mut sums, block.position(n), decide);
+                let place = block.position_from(tile.middle, n);
+                seen.push(points.add::<W>(&mut sums, place, decide));
             }
             all.merge::<W>(&sums);
         }
         all
+    }
+
+    /// The sums in f64 where it is known who sees each of the satellites.
+    #[inline(always)]
+    fn double_sums_of_seen<W: Weighting>(
+        self,
+        judging: &Judging<'_>,
+        seen: &[SeenLanes],
+    ) -> Sums<f64> {
+        let mut sums = Sums::zero();
+        let tile = &judging.scene.tiles.tiles[judging.number];
+        for (n, seen) in self.satellites().zip(seen) {
+            if *seen != UNSEEN {
+                let satellite = judging.positions.at(n);
+                sums.add_seen::<W>(&tile.double, satellite, &judging.scene.double, seen);
+            }
+        }
+        sums
     }
 
     #[inline(always)]
@@ -384,28 +416,26 @@ impl<'a> TileCandidates<'a> {
         positions: &Positions,
     ) -> Sums<f64> {
         let mut sums = Sums::zero();
-        let tile = &scene.tiles.tiles[number];
-        match &tile.sky {
-            None => {
-                for n in self.satellites() {
-                    sums.add::<W>(&tile.double, positions.at(n), &scene.double);
-                }
-            }
-            Some(sky) => {
-                let points = Skyward {
-                    sites: &tile.double,
-                    sky,
-                    mask: &scene.double,
-                    slack: scene.tiles.horizon.double_slack(positions),
-                };
-                for n in self.satellites() {
-                    let satellite = positions.at(n);
-                    let decide = |lane: usize| Some(sky.sees(lane, satellite, scene.mask));
-                    points.add::<W>(&mut sums, satellite, decide);
-                }
-            }
-        }
+        self.look(scene, number, positions, &mut |l, line, seen| {
+            sums.add_line::<W>(line, seen, seen, l);
+        });
         sums
+    }
+
+    /// Passes the lines in f64 to the satellites to `add`, lane by lane, with whether they are visible.
+    #[inline(always)]
+    fn look(
+        self,
+        scene: &SampleContext,
+        number: usize,
+        positions: &Positions,
+        add: &mut impl FnMut(usize, &SightLine<f64>, bool),
+    ) {
+        let tile = &scene.tiles.tiles[number];
+        let slack = scene.tiles.horizon.double_slack(positions);
+        for n in self.satellites() {
+            tile.look(positions.at(n), (&scene.double, scene.mask), slack, add);
+        }
     }
 
     /// Their indices among all satellites.

@@ -150,7 +150,8 @@ impl<'a> Settling<'a> {
         let satellites = surplus + limits.clocks;
         let factor = Factor::new(&normal);
         let pdop = factor.trace_of_inverse().sqrt();
-        let decided = factor.exceeds(clear_pivot(satellites)) && limits.decides(pdop, satellites);
+        let decided =
+            factor.exceeds(clear_pivot(f64::from(satellites))) && limits.decides(pdop, satellites);
         decided.then(|| Settled {
             visible,
             pdop: (pdop <= limits.cap).then_some(pdop),

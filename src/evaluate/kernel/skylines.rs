@@ -8,7 +8,6 @@
 use super::lanes::{
     LANES, Lanes, LineLanes, MaskTerms, Real, SightLine, SiteLanes, Sums, Weighting,
 };
-use super::propagation::Positions;
 use crate::frames::Position;
 use crate::ground::Site;
 use crate::visibility::{Mask, MaskTable};
@@ -47,14 +46,11 @@ pub(super) struct SightSlack {
 }
 
 impl SightSlack {
-    /// For lines of sight to some satellites from points up to `farthest_km` from the centre of the Earth, which may be
-    /// displaced by `rounding_km`.
-    pub(super) fn new(positions: &Positions, farthest_km: f64, rounding_km: f64) -> Self {
+    /// For lines of sight up to `longest_km`, whose direction may be off by `rotation_rad` and whose end by `rounding_km`.
+    pub(super) fn new(rotation_rad: f64, rounding_km: f64, longest_km: f64) -> Self {
         let epsilon = f64::from(f32::EPSILON);
-        let range_km = (positions.nearest_km - farthest_km).max(0.0);
-        let sine = rounding_km / range_km + 4.0 * epsilon;
-        // Two rounded positions, and six roundings of a component along the horizon.
-        let longest_km = positions.farthest_km + farthest_km;
+        let sine = rotation_rad + 4.0 * epsilon;
+        // Both components of the displacement, and six roundings of a component along the horizon.
         let level_km = 2.0 * rounding_km + 6.0 * epsilon * longest_km;
         Self {
             sine: sine.min(2.0) as f32,
@@ -117,10 +113,24 @@ impl SkyTables {
                 Lanes(std::array::from_fn(component))
             })
         };
+        let first = std::array::from_fn(|l| first(l).copied().unwrap_or(0));
+        let bins = (0..points.len()).flat_map(|l| {
+            let first: usize = first[l] as usize;
+            self.bounds
+                .iter()
+                .skip(first)
+                .take(BINS)
+                .map(|&of| sines_of(of))
+        });
+        let (lowest, highest) = bins.fold((1.0, 0.0), |(lowest, highest), (low, high)| {
+            (low.min(lowest), high.max(highest))
+        });
         Some(TileSky {
             east: lanes(|site| site.local.east),
             north: lanes(|site| site.local.north),
-            first: Lanes(std::array::from_fn(|l| first(l).copied().unwrap_or(0))),
+            first: Lanes(first),
+            lowest,
+            highest,
             bounds: Arc::clone(&self.bounds),
             points,
         })
@@ -153,6 +163,13 @@ fn bounds_of(skyline: &MaskTable, bin: usize) -> SineBounds {
     low << 16 | high
 }
 
+/// The bounds as they are compared with a sine.
+#[inline(always)]
+fn sines_of(bounds: SineBounds) -> (f32, f32) {
+    let sine = |steps: u32| steps as i32 as f32 * QUANTUM as f32;
+    (sine(bounds >> 16), sine(bounds % (1 << 16)))
+}
+
 /// The skylines of the points of a tile.
 #[derive(Debug, Clone)]
 pub(super) struct TileSky {
@@ -160,6 +177,9 @@ pub(super) struct TileSky {
     north: [Lanes<f32>; 3],
     /// The first bin of each point.
     first: Lanes<u32>,
+    /// Bounds of all its bins.
+    lowest: f32,
+    highest: f32,
     bounds: Arc<[SineBounds]>,
     points: Vec<Site>,
 }
@@ -226,57 +246,113 @@ pub(super) struct Skyward<'a, R> {
 }
 
 impl<R: Real> Skyward<'_, R> {
-    /// Adds a satellite where it is visible. `decide` decides for a lane, if it can.
+    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible and whether it may be, unless it is
+    /// visible nowhere; and returns where it is. `decide` decides for a lane, if it can.
+    #[inline(always)]
+    pub(super) fn look(
+        &self,
+        satellite: [R; 3],
+        decide: impl Fn(usize) -> Option<bool>,
+        mut add: impl FnMut(usize, &SightLine<R>, bool, bool),
+    ) -> SeenLanes {
+        let (mut seen, mut possible) = ([0_u32; LANES], [0_u32; LANES]);
+        let mut sines = [0.0_f32; LANES];
+        let mut lines = LineLanes::nowhere();
+        let (mut above, mut among) = (0, 0);
+        for l in 0..LANES {
+            let (line, is_seen, is_possible) = self.sites.line(satellite, self.mask, l);
+            lines.set(l, &line);
+            sines[l] = line.sine.single();
+            let is_above = is_possible & (sines[l] >= self.sky.lowest - self.slack.sine);
+            (seen[l], possible[l]) = (u32::from(is_seen & is_above), u32::from(is_above));
+            let is_clear = sines[l] >= self.sky.highest + self.slack.sine;
+            above |= possible[l];
+            among |= possible[l] & (1 - u32::from(is_clear));
+        }
+        if above == 0 {
+            return UNSEEN;
+        }
+        if among != 0 {
+            self.look_up(&lines, &sines, &mut seen, &mut possible);
+            let open = (0..LANES).fold(0, |open, l| open | (possible[l] & (1 - seen[l])));
+            if open != 0 {
+                for l in 0..LANES {
+                    let is_open = possible[l] > seen[l];
+                    if let Some(is_seen) = is_open.then(|| decide(l)).flatten() {
+                        (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_seen));
+                    }
+                }
+            }
+        }
+        for l in 0..LANES {
+            add(l, &lines.get(l), seen[l] != 0, possible[l] != 0);
+        }
+        seen.map(|seen| seen as u8)
+    }
+
+    /// Adds a satellite where it is visible, and returns where that is.
     #[inline(always)]
     pub(super) fn add<W: Weighting>(
         &self,
         sums: &mut Sums<R>,
         satellite: [R; 3],
         decide: impl Fn(usize) -> Option<bool>,
+    ) -> SeenLanes {
+        self.look(satellite, decide, |l, line, seen, possible| {
+            sums.add_line::<W>(line, seen, possible, l);
+        })
+    }
+
+    /// Compares with the skylines where the satellite may be visible.
+    #[inline(always)]
+    fn look_up(
+        &self,
+        lines: &LineLanes<R>,
+        sines: &[f32; LANES],
+        seen: &mut [u32; LANES],
+        possible: &mut [u32; LANES],
     ) {
-        let (mut seen, mut possible) = ([0_u32; LANES], [0_u32; LANES]);
-        let (mut places, mut sines) = ([0_u32; LANES], [0.0_f32; LANES]);
-        let mut firm = [0_u32; LANES];
-        let mut lines = LineLanes::nowhere();
+        let (mut places, mut firm) = ([0_u32; LANES], [0_u32; LANES]);
         for l in 0..LANES {
-            let (line, is_seen, is_possible) = self.sites.line(satellite, self.mask, l);
-            lines.set(l, &line);
-            (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_possible));
-            let (bin, is_firm) = self.sky.bin(&line, self.slack, l);
+            let (bin, is_firm) = self.sky.bin(&lines.get(l), self.slack, l);
             places[l] = self.sky.first.0[l] + bin;
             firm[l] = u32::from(is_firm);
-            sines[l] = line.sine.single();
         }
         let mut bounds: [SineBounds; LANES] = [0; LANES];
         for l in 0..LANES {
             // There is such a place.
-            bounds[l] = self
-                .sky
-                .bounds
-                .get(places[l] as usize)
-                .copied()
-                .unwrap_or(0);
+            let of = self.sky.bounds.get(places[l] as usize);
+            bounds[l] = of.copied().unwrap_or(0);
         }
-        let mut open = 0;
         for l in 0..LANES {
-            let low = (bounds[l] >> 16) as i32 as f32 * QUANTUM as f32;
-            let high = (bounds[l] % (1 << 16)) as i32 as f32 * QUANTUM as f32;
+            let (low, high) = sines_of(bounds[l]);
             let clear = u32::from(sines[l] >= high + self.slack.sine) & firm[l];
             let blocked = u32::from(sines[l] < low - self.slack.sine) & firm[l];
             seen[l] &= clear;
             possible[l] &= 1 - blocked;
-            open |= possible[l] & (1 - seen[l]);
         }
-        if open != 0 {
-            for l in 0..LANES {
-                let is_open = possible[l] > seen[l];
-                if let Some(is_seen) = is_open.then(|| decide(l)).flatten() {
-                    (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_seen));
-                }
-            }
-        }
-        for l in 0..LANES {
-            sums.add_line::<W>(&lines.get(l), seen[l] != 0, possible[l] != 0, l);
+    }
+}
+
+/// 1 in the lanes that see a satellite.
+pub(super) type SeenLanes = [u8; LANES];
+
+/// Seen nowhere.
+pub(super) const UNSEEN: SeenLanes = [0; LANES];
+
+impl<R: Real> Sums<R> {
+    /// Adds a satellite where it is known to be visible.
+    #[inline(always)]
+    pub(super) fn add_seen<W: Weighting>(
+        &mut self,
+        sites: &SiteLanes<R>,
+        satellite: [R; 3],
+        mask: &MaskTerms<R>,
+        seen: &SeenLanes,
+    ) {
+        for (l, &seen) in seen.iter().enumerate() {
+            let (line, ..) = sites.line(satellite, mask, l);
+            self.add_line::<W>(&line, seen != 0, seen != 0, l);
         }
     }
 }

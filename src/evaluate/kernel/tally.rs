@@ -12,52 +12,111 @@ use super::sample::SampleOutcome;
 use super::tiles::Tile;
 use super::{Evaluating, Kernel, Rechecks};
 
-/// The most instants that [`ViewLanes`] counts.
-const SPAN: u32 = u8::MAX as u32;
+/// Instants whose satellites in view are kept one by one.
+const RECENT: usize = 32;
 
-/// The satellites in view of the points of a tile over the last instants.
+/// Instants whose numbers fill one register of any processor, or a few.
+const ABREAST: usize = 4;
+
+/// The satellites in view of the points of a tile.
 #[derive(Debug, Clone)]
 struct ViewLanes {
-    /// Satellites of all instants together.
+    counts: ViewCounts,
+    /// Satellites of the recent instants together.
     sum: Lanes<u32>,
     least: Lanes<u32>,
-    /// Instants with fewer than 1, 2, … 12 satellites: bytes, all lanes of which fit in one register of any processor.
-    fewer: [[u8; LANES]; COVERAGE_LEVELS],
+    /// The numbers of the recent instants one after the other, as bytes that end at the greatest level.
+    recent: [[u8; ABREAST * LANES]; RECENT / ABREAST],
 }
+
+/// The same, counted.
+#[derive(Debug, Clone)]
+struct ViewCounts {
+    sum: Lanes<u64>,
+    /// Instants with fewer than 1, 2, … 12 satellites.
+    fewer: [Lanes<u32>; COVERAGE_LEVELS],
+}
+
+/// As many satellites or more count for every level.
+const ENOUGH: u8 = COVERAGE_LEVELS as u8;
 
 impl ViewLanes {
     const NONE: Self = Self {
+        counts: ViewCounts {
+            sum: Lanes([0; LANES]),
+            fewer: [Lanes([0; LANES]); COVERAGE_LEVELS],
+        },
         sum: Lanes([0; LANES]),
         least: Lanes([u32::MAX; LANES]),
-        fewer: [[0; LANES]; COVERAGE_LEVELS],
+        recent: [[ENOUGH; ABREAST * LANES]; RECENT / ABREAST],
     };
 
+    /// Adds an instant after `recent` others that are not yet counted, fewer than [`RECENT`].
     #[inline(always)]
-    fn add(&mut self, visible: &Lanes<u32>) {
-        const LEVELS: u8 = COVERAGE_LEVELS as u8;
-        let (mut few, mut any_few) = ([0; LANES], 0);
-        for (l, few) in few.iter_mut().enumerate() {
+    fn add(&mut self, visible: &Lanes<u32>, recent: usize) {
+        let abreast = &mut self.recent[recent / ABREAST % (RECENT / ABREAST)];
+        let first = recent % ABREAST * LANES;
+        for (l, few) in abreast[first..first + LANES].iter_mut().enumerate() {
             let visible = visible.0[l];
             self.sum.0[l] += visible;
             self.least.0[l] = self.least.0[l].min(visible);
-            *few = visible.min(LEVELS.into()) as u8;
-            any_few |= u8::from(*few < LEVELS);
+            *few = visible.min(ENOUGH.into()) as u8;
         }
-        if any_few == 0 {
-            return;
+    }
+
+    /// Counts the recent instants.
+    #[inline(always)]
+    fn settle(&mut self) {
+        let mut fewest = [ENOUGH; ABREAST * LANES];
+        for abreast in &self.recent {
+            for (fewest, &few) in fewest.iter_mut().zip(abreast) {
+                *fewest = few.min(*fewest);
+            }
         }
-        for (below, fewer) in self.fewer.iter_mut().enumerate() {
-            for l in 0..LANES {
-                fewer[l] += u8::from(few[l] <= below as u8);
+        let fewest = fewest.into_iter().fold(ENOUGH, u8::min);
+        let counts = &mut self.counts;
+        for (below, fewer) in (0..).zip(&mut counts.fewer).skip(fewest.into()) {
+            let mut instants = [0_u8; ABREAST * LANES];
+            for abreast in &self.recent {
+                for (instants, &few) in instants.iter_mut().zip(abreast) {
+                    *instants += u8::from(few <= below);
+                }
+            }
+            for (l, fewer) in fewer.0.iter_mut().enumerate() {
+                for n in 0..ABREAST {
+                    *fewer += u32::from(instants[n * LANES + l]);
+                }
+            }
+        }
+        for (l, sum) in counts.sum.0.iter_mut().enumerate() {
+            *sum += u64::from(self.sum.0[l]);
+        }
+        self.sum = Self::NONE.sum;
+        self.recent = Self::NONE.recent;
+    }
+
+    /// Adds counts of other instants.
+    fn merge(&mut self, other: &Self) {
+        let mut other = other.clone();
+        self.settle();
+        other.settle();
+        for l in 0..LANES {
+            self.counts.sum.0[l] += other.counts.sum.0[l];
+            self.least.0[l] = self.least.0[l].min(other.least.0[l]);
+        }
+        for (mine, theirs) in self.counts.fewer.iter_mut().zip(&other.counts.fewer) {
+            for (mine, theirs) in mine.0.iter_mut().zip(theirs.0) {
+                *mine += theirs;
             }
         }
     }
 
+    /// The point in a lane, of `samples` samples that are all counted.
     fn point(&self, lane: usize, samples: u32) -> PointViews {
         PointViews {
             samples,
-            sum: self.sum.0[lane],
-            fewer: self.fewer.map(|lanes| lanes[lane]),
+            sum: self.counts.sum.0[lane],
+            fewer: self.counts.fewer.map(|lanes| lanes.0[lane]),
             least: self.least.0[lane],
         }
     }
@@ -176,9 +235,8 @@ pub(super) struct ViewTally<'a> {
     tiles: &'a [Tile],
     of_tiles: Vec<TileTally>,
     instants: u32,
-    /// Satellites in view, LEO and all, but for the last `pending` instants.
-    views: [Views; 2],
-    pending: u32,
+    /// Of those, the last ones, whose satellites in view are not yet counted.
+    recent: usize,
     /// How often so many are in view, where asked for.
     pub(super) bins: Option<[ViewBins; 2]>,
     pub(super) rechecks: Rechecks,
@@ -191,34 +249,34 @@ impl<'a> ViewTally<'a> {
             tiles,
             of_tiles: vec![TileTally::NONE; tiles.len()],
             instants: 0,
-            views: [Views::default(), Views::default()],
-            pending: 0,
+            recent: 0,
             bins: histograms.then(Default::default),
             rechecks: Rechecks::default(),
         }
     }
 
     /// LEO satellites in view, and all.
-    pub(super) fn views(&self) -> [Views; 2] {
-        let [mut leo, mut all] = self.views.clone();
-        if self.pending > 0 {
-            for (tile, tally) in self.tiles.iter().zip(&self.of_tiles) {
-                for lane in 0..tile.members.len() {
-                    let weight = tile.weights.whole.0[lane];
-                    leo.add_point(&tally.leo.point(lane, self.pending), weight);
-                    all.add_point(&tally.all.point(lane, self.pending), weight);
-                }
+    pub(super) fn views(&mut self) -> [Views; 2] {
+        self.settle();
+        let [mut leo, mut all] = [Views::default(), Views::default()];
+        for (tile, tally) in self.tiles.iter().zip(&self.of_tiles) {
+            for lane in 0..tile.members.len() {
+                let weight = tile.weights.whole.0[lane];
+                leo.add_point(&tally.leo.point(lane, self.instants), weight);
+                all.add_point(&tally.all.point(lane, self.instants), weight);
             }
         }
         [leo, all]
     }
 
-    fn settle_pending(&mut self) {
-        self.views = self.views();
-        self.pending = 0;
+    /// Counts the satellites in view of the recent instants.
+    #[inline(always)]
+    fn settle(&mut self) {
         for tally in &mut self.of_tiles {
-            (tally.leo, tally.all) = (ViewLanes::NONE, ViewLanes::NONE);
+            tally.leo.settle();
+            tally.all.settle();
         }
+        self.recent = 0;
     }
 
     /// Weight of the available samples.
@@ -250,10 +308,6 @@ impl<'a> ViewTally<'a> {
 impl Merge for ViewTally<'_> {
     /// `other` follows in time.
     fn merged(mut self, other: &Self) -> Self {
-        self.settle_pending();
-        for (mine, theirs) in self.views.iter_mut().zip(other.views()) {
-            mine.merge(&theirs);
-        }
         for (mine, theirs) in self
             .bins
             .iter_mut()
@@ -264,7 +318,10 @@ impl Merge for ViewTally<'_> {
         }
         let samples = [self.instants, other.instants];
         self.instants += other.instants;
+        self.recent = 0;
         for (mine, theirs) in self.of_tiles.iter_mut().zip(&other.of_tiles) {
+            mine.leo.merge(&theirs.leo);
+            mine.all.merge(&theirs.all);
             for lane in 0..LANES {
                 let point = |tally: &TileTally, n: usize| tally.outages.point(lane, samples[n]);
                 let both = joined(point(mine, 0), point(theirs, 1));
@@ -307,22 +364,20 @@ impl Work for TallySample<'_, '_> {
     #[inline(always)]
     fn run(self) {
         let to = self.to;
-        if to.pending == SPAN {
-            to.settle_pending();
-        }
         let tiles = to.tiles.iter().zip(&mut to.of_tiles).enumerate();
         for (number, (tile, tally)) in tiles {
             let (pdop, leo) = (&self.outcome.pdop[number], &self.outcome.visible[number]);
             let gnss = self.fixed.tile(number).visible;
-            let (mut all, mut out) = (*leo, Lanes([0; LANES]));
-            for (l, &gnss) in gnss.iter().enumerate() {
-                all.0[l] += u32::from(gnss);
-                let good = pdop.0[l] <= self.available;
-                out.0[l] = if good { 0 } else { tile.weights.member.0[l] };
+            let (mut all, mut out) = (*leo, tile.weights.member);
+            for (all, &gnss) in all.0.iter_mut().zip(gnss) {
+                *all += u32::from(gnss);
+            }
+            for (out, &pdop) in out.0.iter_mut().zip(&pdop.0) {
+                *out &= 1 - u32::from(pdop <= self.available);
             }
             tally.outages.add(&out, to.instants);
-            tally.leo.add(leo);
-            tally.all.add(&all);
+            tally.leo.add(leo, to.recent);
+            tally.all.add(&all, to.recent);
             if let Some(bins) = &mut to.bins {
                 for (of, visible) in bins.iter_mut().zip([leo, &all]) {
                     for lane in 0..tile.members.len() {
@@ -332,7 +387,10 @@ impl Work for TallySample<'_, '_> {
             }
         }
         to.instants += 1;
-        to.pending += 1;
+        to.recent += 1;
+        if to.recent == RECENT {
+            to.settle();
+        }
     }
 }
 
@@ -349,21 +407,35 @@ mod tests {
         lanes.point(3, is_out.len() as u32)
     }
 
+    fn view_lanes(visible: &[[u32; LANES]]) -> ViewLanes {
+        let mut lanes = ViewLanes::NONE;
+        for (instant, visible) in visible.iter().enumerate() {
+            lanes.add(&Lanes(*visible), instant % RECENT);
+            if instant % RECENT + 1 == RECENT {
+                lanes.settle();
+            }
+        }
+        lanes
+    }
+
     proptest! {
-        /// Point by point, the views are those of the definition: below all levels, across them and above.
+        /// Point by point and in two spans, the views are those of the definition: below all levels, across them and above.
         #[test]
         fn views_of_points_are_those_of_samples(
             visible in prop::collection::vec(
-                prop::array::uniform16(prop_oneof![3 => 0..20_u32, 1 => 12..400_u32]), 1..256,
+                prop::array::uniform16(prop_oneof![3 => 0..20_u32, 1 => 12..400_u32]), 1..100,
             ),
             weights in prop::array::uniform16(1..1_000_000_u64),
+            cut in 0..100_usize,
         ) {
-            let (mut lanes, mut expected) = (ViewLanes::NONE, Views::default());
+            let mut expected = Views::default();
             for visible in &visible {
-                lanes.add(&Lanes(*visible));
                 let samples = visible.iter().zip(weights);
                 samples.for_each(|(&visible, weight)| expected.add(visible, weight));
             }
+            let (before, after) = visible.split_at(cut.min(visible.len()));
+            let mut lanes = view_lanes(before);
+            lanes.merge(&view_lanes(after));
             let mut views = Views::default();
             for (lane, &weight) in weights.iter().enumerate() {
                 views.add_point(&lanes.point(lane, visible.len() as u32), weight);

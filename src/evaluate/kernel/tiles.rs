@@ -18,9 +18,9 @@
 //! radius, this is valid for points on an ellipsoid too; it never misses a visible satellite.
 
 use super::super::weights::WholeWeights;
-use super::lanes::{LANES, Lanes, SiteLanes};
+use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SiteLanes};
 use super::propagation::Positions;
-use super::skylines::{SightSlack, SkyTables, TileSky, lowest_deg};
+use super::skylines::{SightSlack, SkyTables, Skyward, TileSky, lowest_deg};
 use crate::ground::Site;
 use crate::visibility::Mask;
 use nalgebra::Vector3;
@@ -42,6 +42,9 @@ pub(super) struct Cap {
 pub(super) struct Tile {
     /// Index of the point in each lane; shorter than the lanes in the last tile.
     pub(super) members: Vec<u32>,
+    /// The middle of the points, Earth-fixed, km: a place that is exact in f32.
+    pub(super) middle: [f32; 3],
+    /// The points from there.
     pub(super) single: SiteLanes<f32>,
     pub(super) double: SiteLanes<f64>,
     pub(super) cap: Cap,
@@ -102,6 +105,8 @@ pub(super) struct Horizon {
     cos_most: f64,
     /// k², km²: a satellite closer to the centre than k is visible nowhere.
     pub(super) reach2: f64,
+    /// Largest distance of a point from the middle of its tile, km.
+    widest_km: f64,
 }
 
 impl Horizon {
@@ -124,7 +129,22 @@ impl Horizon {
             sin_most,
             cos_most,
             reach2: (nearest_km * (mask_rad - tilt_rad).cos()).powi(2),
+            widest_km: 0.0,
         }
+    }
+
+    /// How far a line of sight in f32 of this length may be displaced, km: two roundings of the satellite from the middle of
+    /// the tile, one of the point from there, and one of the line.
+    fn rounding_km(&self, range_km: f64) -> f64 {
+        1.5 * f64::from(f32::EPSILON) * (range_km + self.widest_km)
+    }
+
+    /// Largest distance at which a point sees a satellite, km.
+    fn longest_km(&self, positions: &Positions) -> f64 {
+        let level_km = (positions.farthest_km.powi(2) - self.reach2)
+            .max(0.0)
+            .sqrt();
+        level_km + self.farthest_km * (-self.least_mask_rad).max(0.0).sin()
     }
 
     /// Smallest distance from a point to a satellite at the mask that is `radius_km` from the
@@ -134,34 +154,42 @@ impl Horizon {
         (beyond.max(0.0).sqrt() - self.farthest_km * self.sin_most).max(0.0)
     }
 
-    /// Error bound of the sine of an elevation at the mask in f32: two rounded positions over the shortest
-    /// range, plus eight roundings of the sine itself.
+    /// Error bound of the sine of an elevation at the mask in f32: that of the line over the shortest range, plus eight
+    /// roundings of the sine itself.
     #[inline(always)]
     pub(super) fn sine_slack(&self, positions: &Positions) -> f32 {
         let range_km = self.range_at_mask_km(positions.nearest_km);
-        let slack = rounding_km(positions) / range_km + 4.0 * f64::from(f32::EPSILON);
+        let slack = self.rounding_km(range_km) / range_km + 4.0 * f64::from(f32::EPSILON);
         // For satellites on the ground f32 cannot decide anything.
         slack.min(2.0) as f32
     }
 
-    /// Error bounds of lines of sight to positions in f32.
+    /// Error bounds of lines of sight in f32.
     #[inline(always)]
     pub(super) fn single_slack(&self, positions: &Positions) -> SightSlack {
-        SightSlack::new(positions, self.farthest_km, rounding_km(positions))
+        let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
+        let longest_km = self.longest_km(positions);
+        SightSlack::new(
+            self.rounding_km(range_km) / range_km,
+            self.rounding_km(longest_km),
+            longest_km,
+        )
     }
 
-    /// The same of positions in f64.
+    /// The same of lines in f64.
     pub(super) fn double_slack(&self, positions: &Positions) -> SightSlack {
-        SightSlack::new(positions, self.farthest_km, 0.0)
+        SightSlack::new(0.0, 0.0, self.longest_km(positions))
     }
 
-    /// PDOP up to which f32 gives six digits. A line of sight is rotated by the rounding of the positions
-    /// divided by the range, most at the zenith, and PDOP magnifies this at most by its square; the
-    /// constant was found by trial, with a margin of two (seven digits at 925 km).
+    /// PDOP up to which f32 gives six digits. A line of sight is rotated by its displacement divided by the range, most at
+    /// the zenith, and PDOP magnifies this at most by its square; the constant was found by trial, with a margin of two.
     #[inline(always)]
     pub(super) fn single_below(&self, positions: &Positions) -> f32 {
         let range_km = (positions.nearest_km - self.farthest_km).max(0.0);
-        (5e-6 * range_km / rounding_km(positions)).sqrt() as f32
+        // For satellites on the ground that is 0, also over points without extent.
+        (5e-6 * range_km / self.rounding_km(range_km))
+            .max(0.0)
+            .sqrt() as f32
     }
 
     /// Error bound of a cap test in f32, km: eight roundings of the largest number in it, times two.
@@ -182,14 +210,6 @@ impl Horizon {
             bound: (self.reach2.sqrt() * angle.cos()) as f32,
         }
     }
-}
-
-/// How far two positions that were rounded to f32 may be displaced: half a unit in each of the
-/// three components.
-#[inline(always)]
-fn rounding_km(positions: &Positions) -> f64 {
-    const ROOT_3: f64 = 1.732_050_807_568_877_2;
-    positions.farthest_km * f64::from(f32::EPSILON) * ROOT_3
 }
 
 /// A circle on the sphere around some points.
@@ -255,6 +275,8 @@ impl Tiles {
             fixed_horizon: Horizon::new(sites, fixed_mask, lowest_deg),
         };
         tiles.split(sites, weights, &mut members);
+        let widest_km = tiles.tiles.iter().map(Tile::widest_km).fold(0.0, f64::max);
+        (tiles.horizon.widest_km, tiles.fixed_horizon.widest_km) = (widest_km, widest_km);
         let tables = SkyTables::new(sites);
         for tile in &mut tiles.tiles {
             tile.sky = tables.tile(sites, &tile.members);
@@ -292,9 +314,13 @@ impl Tiles {
             return;
         }
         let circle = EnclosingCircle::around(sites, members);
+        let middle = middle_of(sites, members);
+        let single = |x: f64| x as f32;
+        let lanes = site_lanes(sites, members, middle.map(f64::from), single, f32::NAN);
         self.tiles.push(Tile {
-            single: site_lanes(sites, members, |x| x as f32, f32::NAN),
-            double: site_lanes(sites, members, |x| x, f64::NAN),
+            middle,
+            single: lanes,
+            double: site_lanes(sites, members, [0.0; 3], |x| x, f64::NAN),
             cap: self.horizon.cap(circle),
             fixed_cap: self.fixed_horizon.cap(circle),
             weights: TileWeights::new(weights, members),
@@ -362,21 +388,69 @@ fn cut_well(sites: &[Site], members: &mut [u32]) {
     }
 }
 
+/// The middle of the box around some points, rounded to f32.
+fn middle_of(sites: &[Site], members: &[u32]) -> [f32; 3] {
+    let origins = members
+        .iter()
+        .map(|&m| sites[m as usize].local.origin_km.km());
+    let low = origins.clone().reduce(|a, b| a.inf(&b));
+    let high = origins.reduce(|a, b| a.sup(&b));
+    let middle = low.zip(high).map(|(low, high)| (low + high) / 2.0);
+    middle.unwrap_or_default().map(|x| x as f32).into()
+}
+
+impl Tile {
+    /// Passes the lines in f64 to a satellite to `add`, lane by lane, with whether it is visible.
+    #[inline(always)]
+    pub(super) fn look(
+        &self,
+        satellite: [f64; 3],
+        (terms, mask): (&MaskTerms<f64>, Mask),
+        slack: SightSlack,
+        add: &mut impl FnMut(usize, &SightLine<f64>, bool),
+    ) {
+        let Some(sky) = &self.sky else {
+            for l in 0..LANES {
+                let (line, seen, _) = self.double.line(satellite, terms, l);
+                add(l, &line, seen);
+            }
+            return;
+        };
+        let points = Skyward {
+            sites: &self.double,
+            sky,
+            mask: terms,
+            slack,
+        };
+        let decide = |lane: usize| Some(sky.sees(lane, satellite, mask));
+        points.look(satellite, decide, |l, line, seen, _| add(l, line, seen));
+    }
+
+    /// Largest distance of a point from the middle, km.
+    fn widest_km(&self) -> f64 {
+        let [x, y, z] = &self.single.origin;
+        let distance = |l: usize| Vector3::new(x.0[l], y.0[l], z.0[l]).cast::<f64>().norm();
+        (0..self.members.len()).map(distance).fold(0.0, f64::max)
+    }
+}
+
+/// Points, from some origin.
 fn site_lanes<R: Copy>(
     sites: &[Site],
     members: &[u32],
+    from: [f64; 3],
     convert: impl Fn(f64) -> R,
     empty: R,
 ) -> SiteLanes<R> {
-    let lanes = |part: fn(&Site) -> Vector3<f64>, axis: usize| {
+    let lanes = |part: fn(&Site) -> Vector3<f64>, from: f64, axis: usize| {
         Lanes(std::array::from_fn(|l| {
             members
                 .get(l)
-                .map_or(empty, |&m| convert(part(&sites[m as usize])[axis]))
+                .map_or(empty, |&m| convert(part(&sites[m as usize])[axis] - from))
         }))
     };
     SiteLanes {
-        origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km.km(), axis)),
-        up: [0, 1, 2].map(|axis| lanes(|site| site.local.up, axis)),
+        origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km.km(), from[axis], axis)),
+        up: [0, 1, 2].map(|axis| lanes(|site| site.local.up, 0.0, axis)),
     }
 }

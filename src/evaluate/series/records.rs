@@ -3,6 +3,7 @@
 use crate::evaluate::counts::{
     COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage,
 };
+use crate::units::round_decimal;
 use serde::ser::SerializeStruct;
 use serde::{Serialize, Serializer};
 use std::sync::Arc;
@@ -171,7 +172,24 @@ impl PointMetrics {
     pub fn label(&self) -> String {
         match &self.name {
             Some(name) => name.to_string(),
-            None => format!("{}°, {}°", self.latitude_deg, self.longitude_deg),
+            None => place(self.latitude_deg, self.longitude_deg),
         }
+    }
+}
+
+/// A place in degrees with the digits of the finest step, 0.0005°: middles of cells of equal area have many more.
+fn place(latitude_deg: f64, longitude_deg: f64) -> String {
+    let [latitude, longitude] = [latitude_deg, longitude_deg].map(|at| round_decimal(at, 4));
+    format!("{latitude}°, {longitude}°")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::place;
+
+    #[test]
+    fn places_have_the_digits_of_the_finest_step() {
+        assert_eq!(place(80.951_259_296_161_82, -146.25), "80.9513°, -146.25°");
+        assert_eq!(place(-3.0005, 136.0), "-3.0005°, 136°");
     }
 }

@@ -5,9 +5,10 @@ use super::*;
 use crate::constellation::gnss::{GnssOrbit, GnssSatellite};
 use crate::dop::{ClockGroup, DopFamily, Geometry, pivot_floor};
 use crate::ephemeris::EphemerisSatellite;
+use crate::frames::{Position, State, Teme};
 use crate::keyword::Keyword;
-use crate::orbit::MeanElements;
 use crate::orbit::j2::SecularOrbit;
+use crate::orbit::{MeanElements, PropagationError, Propagator};
 use std::f64::consts::FRAC_PI_2;
 
 /// Made by `validation/external/make_skies.py`.
@@ -388,5 +389,51 @@ fn an_equatorial_ring_of_docked_satellites_solves_nothing() {
             };
             assert_eq!(verdict, nothing, "{path} {cap}");
         }
+    }
+}
+
+/// A satellite that stays where it is at the first instant.
+struct Resting(Vector3<f64>);
+
+impl Propagator for Resting {
+    fn state_at(&self, _elapsed_s: f64) -> Result<State<Teme>, PropagationError> {
+        Ok(State {
+            position_km: Position::new(self.0),
+            velocity_km_s: Vector3::zeros(),
+        })
+    }
+}
+
+/// A satellite on the horizon has no weight by elevation: it is in view, but has no part in a position, nor has its clock.
+#[test]
+fn a_satellite_without_weight_is_seen_and_not_used() {
+    let mut pole = Site::new(Surface::Sphere, 90.0, 0.0, 1.0).unwrap();
+    // Exactly, so that the elevation of what is beside it is 0 and not a rounding of it.
+    let height_km = pole.local.origin_km.norm();
+    pole.local.origin_km = Position::new(Vector3::z() * height_km);
+    pole.local.up = Vector3::z();
+    (pole.local.east, pole.local.north) = (Vector3::y(), -Vector3::x());
+    let grid = TimeGrid::new(epoch(), 1.0, 1.0).unwrap();
+    let beside = EphemerisSatellite {
+        name: "beside".to_owned(),
+        slot: None,
+        propagator: Box::new(Resting(Vector3::new(2000.0, 0.0, height_km))),
+    };
+    let with = Ephemeris::new(grid, vec![beside]);
+    let without = Ephemeris::new(grid, Vec::new());
+    for clocks in [Clocks::PerSystem, Clocks::Shared] {
+        let setup = Setup::new(grid, vec![pole.clone()])
+            .with_mask(Mask::from_degrees(0.0).unwrap())
+            .with_gnss(vec![Preset::Gps.into()])
+            .with_clocks(clocks)
+            .with_observation_weights(ObservationWeights::SineElevation);
+        let evaluator = Evaluator::new(setup.clone()).unwrap();
+        assert_eq!(
+            evaluator.evaluate_ephemeris(&with).unwrap().mean_visible,
+            1.0
+        );
+        let alone = verdicts(&setup, &without);
+        assert_eq!(alone[0].1.solved, 1.0);
+        assert_eq!(verdicts(&setup, &with), alone, "{clocks}");
     }
 }

@@ -1,7 +1,7 @@
 //! ESRI ASCII grids (`.asc`).
 
-use super::{TerrainFileError, from_the_south};
-use crate::ground::Terrain;
+use super::{RasterFileError, from_the_south};
+use crate::ground::Raster;
 use crate::printable::printable;
 
 /// Most rows or columns.
@@ -27,13 +27,13 @@ pub(super) fn is_ascii_grid(text: &str) -> bool {
         .any(|key| word.eq_ignore_ascii_case(key))
 }
 
-/// Heights at the middles of cells.
-pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
+/// Values at the middles of cells.
+pub(super) fn read(text: &str) -> Result<Raster, RasterFileError> {
     let mut header = Header::default();
     let mut heights: Vec<f32> = Vec::new();
     let mut shape = None;
     for (number, line) in (1..).zip(text.lines()) {
-        let at = |reason: String| TerrainFileError::Line {
+        let at = |reason: String| RasterFileError::Line {
             line: number,
             reason,
         };
@@ -53,17 +53,14 @@ pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
             if heights.len() == rows * columns {
                 return Err(at(format!("more than {rows} x {columns} heights")));
             }
-            let height = word.parse::<f64>().map_err(|_| {
-                at(format!(
-                    "found \"{}\", expected a height in m",
-                    printable(word)
-                ))
-            })?;
+            let height = word
+                .parse::<f64>()
+                .map_err(|_| at(format!("found \"{}\", expected a number", printable(word))))?;
             let is_hole = !height.is_finite() || Some(height) == header.nodata;
             heights.push(if is_hole { f32::NAN } else { height as f32 });
         }
     }
-    let end = |reason| TerrainFileError::Line {
+    let end = |reason| RasterFileError::Line {
         line: text.lines().count().max(1),
         reason,
     };
@@ -75,7 +72,7 @@ pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
         )));
     }
     let (corner, step) = header.lattice().map_err(end)?;
-    Ok(Terrain::new(
+    Ok(Raster::new(
         corner,
         step,
         columns,

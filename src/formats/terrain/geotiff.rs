@@ -1,7 +1,7 @@
 //! GeoTIFF: the first image of a TIFF with the keys of OGC GeoTIFF 1.1, over latitude and longitude of WGS 84.
 
-use super::{TerrainFile, TerrainFileError, from_the_south};
-use crate::ground::Terrain;
+use super::{RasterFileError, from_the_south};
+use crate::ground::Raster;
 use crate::printable::printable;
 use std::io::Cursor;
 use tiff::TiffError;
@@ -35,11 +35,11 @@ pub(super) fn is_tiff(bytes: &[u8]) -> bool {
         .any(|magic| bytes.starts_with(magic))
 }
 
-fn error(reason: impl Into<String>) -> TerrainFileError {
-    TerrainFileError::GeoTiff(reason.into())
+fn error(reason: impl Into<String>) -> RasterFileError {
+    RasterFileError::GeoTiff(reason.into())
 }
 
-fn unreadable(failure: &TiffError) -> TerrainFileError {
+fn unreadable(failure: &TiffError) -> RasterFileError {
     error(printable(&failure.to_string()).into_owned())
 }
 
@@ -50,7 +50,8 @@ struct Image<'a> {
     keys: Vec<(u16, u16)>,
 }
 
-pub(super) fn read(bytes: &[u8]) -> Result<TerrainFile, TerrainFileError> {
+/// The raster, and a note on heights over a geoid.
+pub(super) fn read(bytes: &[u8]) -> Result<(Raster, Option<String>), RasterFileError> {
     let mut limits = Limits::default();
     limits.decoding_buffer_size = MOST_BYTES;
     limits.intermediate_buffer_size = MOST_BYTES;
@@ -68,12 +69,12 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainFile, TerrainFileError> {
         .map_err(|failure| unreadable(&failure))?;
     let heights = image.heights()?;
     let columns = width as usize;
-    let terrain = Terrain::new(corner, step, columns, from_the_south(&heights, columns))?;
-    Ok(TerrainFile { terrain, note })
+    let raster = Raster::new(corner, step, columns, from_the_south(&heights, columns))?;
+    Ok((raster, note))
 }
 
 impl Image<'_> {
-    fn short_keys(&mut self) -> Result<Vec<(u16, u16)>, TerrainFileError> {
+    fn short_keys(&mut self) -> Result<Vec<(u16, u16)>, RasterFileError> {
         let directory = self
             .decoder
             .find_tag_unsigned_vec::<u16>(Tag::GeoKeyDirectoryTag);
@@ -94,7 +95,7 @@ impl Image<'_> {
 
     /// Refuses other coordinates than latitude and longitude of WGS 84, and other units than the metre; a note on heights over
     /// a geoid.
-    fn check_reference(&self) -> Result<Option<String>, TerrainFileError> {
+    fn check_reference(&self) -> Result<Option<String>, RasterFileError> {
         let crs = self.key(GEODETIC_CRS);
         if self.key(MODEL_TYPE) != Some(GEOGRAPHIC) || !crs.is_some_and(|crs| WGS_84.contains(&crs))
         {
@@ -128,7 +129,7 @@ impl Image<'_> {
         }))
     }
 
-    fn numbers(&mut self, tag: Tag) -> Result<Option<Vec<f64>>, TerrainFileError> {
+    fn numbers(&mut self, tag: Tag) -> Result<Option<Vec<f64>>, RasterFileError> {
         let value = self
             .decoder
             .find_tag(tag)
@@ -138,7 +139,7 @@ impl Image<'_> {
     }
 
     /// The middle of the south-western cell and the steps, northwards and eastwards, degrees.
-    fn lattice(&mut self) -> Result<([f64; 2], [f64; 2]), TerrainFileError> {
+    fn lattice(&mut self) -> Result<([f64; 2], [f64; 2]), RasterFileError> {
         let (scale, tie) = (
             self.numbers(Tag::ModelPixelScaleTag)?,
             self.numbers(Tag::ModelTiepointTag)?,
@@ -166,7 +167,7 @@ impl Image<'_> {
     }
 
     /// Row by row from the north, m; NaN in a hole.
-    fn heights(&mut self) -> Result<Vec<f32>, TerrainFileError> {
+    fn heights(&mut self) -> Result<Vec<f32>, RasterFileError> {
         let nodata = self.decoder.find_tag(Tag::GdalNodata);
         let nodata = nodata.map_err(|failure| unreadable(&failure))?;
         let nodata = nodata.and_then(|text| text.into_string().ok());
@@ -188,10 +189,10 @@ impl Image<'_> {
             DecodingResult::I32(values) => values.into_iter().map(f64::from).collect(),
             DecodingResult::F32(values) => values.into_iter().map(f64::from).collect(),
             DecodingResult::F64(values) => values,
-            _ => return Err(error("its numbers are of a kind that heights are not")),
+            _ => return Err(error("its numbers are of a kind that is not supported")),
         };
         if metres.len() as u64 != u64::from(width) * u64::from(height) {
-            return Err(error("it has several bands, expected one of heights"));
+            return Err(error("it has several bands, expected one"));
         }
         // Files of single precision name the value in more digits.
         let is_hole = |metre: f64| {

@@ -1,25 +1,27 @@
-//! Tables of heights: CSV with one node of a lattice a line, in any order.
+//! Tables of values: CSV with one node of a lattice a line, in any order.
 
-use super::TerrainFileError;
-use crate::ground::Terrain;
+use super::RasterFileError;
+use crate::ground::Raster;
 use crate::printable::printable;
 
-const COLUMNS: [&str; 3] = ["latitude_deg", "longitude_deg", "height_m"];
+const PLACE: [&str; 2] = ["latitude_deg", "longitude_deg"];
 
 /// How far nodes may be from their place in the lattice, in steps: the rounding of decimals.
 const SLACK: f64 = 1e-3;
 
-/// Whether a line is the header of a table of heights.
+/// Whether a line is the header of a table of values.
 pub(super) fn is_header(line: &str) -> bool {
-    line.split(',').any(|name| name.trim() == COLUMNS[0])
+    line.split(',').any(|name| name.trim() == PLACE[0])
 }
 
-pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
+/// The values in the column `value`.
+pub(super) fn read(text: &str, value: &'static str) -> Result<Raster, RasterFileError> {
     let header: Vec<&str> = text.lines().next().unwrap_or_default().split(',').collect();
+    let names = [PLACE[0], PLACE[1], value];
     let mut columns = [0; 3];
-    for (column, name) in columns.iter_mut().zip(COLUMNS) {
+    for (column, name) in columns.iter_mut().zip(names) {
         let found = header.iter().position(|known| known.trim() == name);
-        *column = found.ok_or_else(|| TerrainFileError::Line {
+        *column = found.ok_or_else(|| RasterFileError::Line {
             line: 1,
             reason: format!("there is no column {name}"),
         })?;
@@ -31,18 +33,18 @@ pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
         }
         let fields: Vec<&str> = text.split(',').collect();
         let mut node = [0.0; 3];
-        for ((value, column), name) in node.iter_mut().zip(columns).zip(COLUMNS) {
+        for ((number_of, column), name) in node.iter_mut().zip(columns).zip(names) {
             let field = fields.get(column).map_or("", |field| field.trim());
             let number = field
                 .parse::<f64>()
                 .ok()
                 .filter(|number| number.is_finite());
-            // An empty height is a hole.
-            let number = number.or((name == COLUMNS[2] && field.is_empty()).then_some(f64::NAN));
-            *value = number.ok_or_else(|| {
+            // An empty value is a hole.
+            let number = number.or((name == value && field.is_empty()).then_some(f64::NAN));
+            *number_of = number.ok_or_else(|| {
                 let field = printable(field);
                 let reason = format!("{name}: found \"{field}\", expected a number");
-                TerrainFileError::Line { line, reason }
+                RasterFileError::Line { line, reason }
             })?;
         }
         nodes.push(node);
@@ -51,13 +53,11 @@ pub(super) fn read(text: &str) -> Result<Terrain, TerrainFileError> {
 }
 
 /// The values of a coordinate: the first and the step of at least two.
-fn axis(nodes: &[[f64; 3]], at: usize) -> Result<(f64, f64, usize), TerrainFileError> {
+fn axis(nodes: &[[f64; 3]], at: usize) -> Result<(f64, f64, usize), RasterFileError> {
     let mut values: Vec<f64> = nodes.iter().map(|node| node[at]).collect();
     values.sort_by(f64::total_cmp);
     let (Some(&first), Some(&last)) = (values.first(), values.last()) else {
-        return Err(TerrainFileError::Irregular(
-            "there are no points".to_owned(),
-        ));
+        return Err(RasterFileError::Irregular("there are no points".to_owned()));
     };
     let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
     // Equal values may differ by rounding, which is far below any step.
@@ -65,26 +65,26 @@ fn axis(nodes: &[[f64; 3]], at: usize) -> Result<(f64, f64, usize), TerrainFileE
     let step = gaps
         .filter(|gap| *gap > 1e-7 * widest)
         .fold(f64::INFINITY, f64::min);
-    let name = COLUMNS[at];
+    let name = PLACE[at];
     if !(step.is_finite() && step > 0.0) {
         let reason = format!("there is one {name} only, {first}");
-        return Err(TerrainFileError::Irregular(reason));
+        return Err(RasterFileError::Irregular(reason));
     }
     let count = (widest / step).round();
     if count >= 1e6 {
         let reason = format!("{name} has steps as small as {step}");
-        return Err(TerrainFileError::Irregular(reason));
+        return Err(RasterFileError::Irregular(reason));
     }
     // The mean step has no rounding of single decimals.
     Ok((first, widest / count, count as usize + 1))
 }
 
-fn lattice(nodes: &[[f64; 3]]) -> Result<Terrain, TerrainFileError> {
+fn lattice(nodes: &[[f64; 3]]) -> Result<Raster, RasterFileError> {
     let (south, north_step, rows) = axis(nodes, 0)?;
     let (west, east_step, columns) = axis(nodes, 1)?;
     if rows * columns != nodes.len() {
         let reason = format!("found {} points, expected {rows} x {columns}", nodes.len());
-        return Err(TerrainFileError::Irregular(reason));
+        return Err(RasterFileError::Irregular(reason));
     }
     let mut heights = vec![None; nodes.len()];
     for &[latitude_deg, longitude_deg, height_m] in nodes {
@@ -94,7 +94,7 @@ fn lattice(nodes: &[[f64; 3]]) -> Result<Terrain, TerrainFileError> {
         ];
         let told = |what: &str| {
             let place = format!("latitude {latitude_deg}, longitude {longitude_deg} {what}");
-            TerrainFileError::Irregular(place)
+            RasterFileError::Irregular(place)
         };
         if place.iter().any(|at| (at - at.round()).abs() > SLACK) {
             return Err(told("is between the others"));
@@ -105,7 +105,7 @@ fn lattice(nodes: &[[f64; 3]]) -> Result<Terrain, TerrainFileError> {
         }
     }
     let heights = heights.into_iter().map(|height| height.unwrap_or(f32::NAN));
-    Ok(Terrain::new(
+    Ok(Raster::new(
         [south, west],
         [north_step, east_step],
         columns,

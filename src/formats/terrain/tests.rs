@@ -1,6 +1,6 @@
 use super::*;
 use crate::earth::Surface;
-use crate::ground::Site;
+use crate::ground::{Grid, PointWeights, RegionMap, Site};
 use std::io::Cursor;
 use tiff::encoder::{TiffEncoder, colortype::Gray32Float};
 use tiff::tags::Tag;
@@ -11,13 +11,9 @@ const HEIGHTS: [f32; 6] = [1.0, 2.0, 3.0, 4.5, 5.0, -6.0];
 const GRID: &str = "ncols 2\nNROWS 3\nxllcorner 19.75\nyllcorner 9.75\ncellsize 0.5\nNODATA_value -9999\n1 2\n3 4.5\n5 -6\n";
 
 fn expected() -> Terrain {
-    Terrain::new(
-        [10.0, 20.0],
-        [0.5, 0.5],
-        2,
-        vec![5.0, -6.0, 3.0, 4.5, 1.0, 2.0],
-    )
-    .unwrap()
+    let heights = vec![5.0, -6.0, 3.0, 4.5, 1.0, 2.0];
+    let raster = Raster::new([10.0, 20.0], [0.5, 0.5], 2, heights);
+    Terrain::new(raster.unwrap()).unwrap()
 }
 
 fn read(text: &str) -> Result<Terrain, String> {
@@ -62,7 +58,7 @@ fn what_is_no_terrain_is_told() {
         ("a,b\n", "the format is unknown"),
         (
             &GRID.replace("4.5", "x"),
-            "line 8: found \"x\", expected a height in m",
+            "line 8: found \"x\", expected a number",
         ),
         (
             &GRID.replace("5 -6\n", "5\n"),
@@ -202,4 +198,58 @@ fn geotiff_of_another_datum_is_refused() {
             assert_eq!(file.terrain, expected());
         }
     }
+}
+
+/// Any bytes: what is accepted carries a point and weights a region, or says why not, without a number that is none.
+fn survives(bytes: &[u8]) {
+    if let Ok(file) = terrain(bytes) {
+        let mut sites = [Site::new(Surface::Wgs84, 10.4, 20.2, 1.0).unwrap()];
+        if file.terrain.carry(&mut sites, Surface::Wgs84, 2.0).is_ok() {
+            assert!(sites[0].height_m.is_finite());
+            let highest = sites[0]
+                .skyline
+                .as_ref()
+                .map(|skyline| skyline.highest_deg());
+            assert!(highest.is_none_or(|degrees| (0.0..90.0).contains(&degrees)));
+        }
+    }
+    if let Ok(raster) = weights(bytes) {
+        let grid = Grid {
+            latitude_deg: [-90.0, 90.0],
+            longitude_deg: [-180.0, 180.0],
+            step_deg: [30.0, 30.0],
+            weights: PointWeights::Equal,
+        };
+        let mut sites = grid.sites(Surface::Wgs84).unwrap();
+        if raster.weigh(&mut sites, &RegionMap::of_grid(&grid)).is_ok() {
+            assert!(
+                sites
+                    .iter()
+                    .all(|site| site.weight > 0.0 && site.weight.is_finite())
+            );
+        }
+    }
+}
+
+/// Files that are cut, and files with a byte exchanged, in all three formats.
+#[test]
+fn damaged_rasters_are_refused_or_sound() {
+    let table =
+        "latitude_deg,longitude_deg,height_m,weight\n10,20,1,1\n10,21,2,2\n11,20,3,3\n11,21,,4\n";
+    let keys = [[1024, 0, 1, 2], [1025, 0, 1, 1], [2048, 0, 1, 4326]];
+    let image = geotiff(&keys, [0.0, 0.0, 0.0, 19.75, 11.25, 0.0], Some("-6"));
+    for bytes in [GRID.as_bytes(), table.as_bytes(), &image] {
+        assert!(weights(bytes).is_ok());
+        for at in 0..bytes.len() {
+            survives(&bytes[..at]);
+            for byte in *b"\0-9e\n\xff" {
+                let mut damaged = bytes.to_vec();
+                damaged[at] = byte;
+                survives(&damaged);
+            }
+        }
+    }
+    // A table has its values in the column of what it is read for.
+    assert!(weights(table.replace("weight", "people").as_bytes()).is_err());
+    assert!(terrain(table.replace("height_m", "people").as_bytes()).is_err());
 }

@@ -175,8 +175,8 @@ impl Ray<'_> {
         Foot {
             along_km,
             place: [
-                (latitude_deg - terrain.south_west_deg[0]) / terrain.step_deg[0],
-                scan.place[1] + eastwards_deg / terrain.step_deg[1],
+                (latitude_deg - terrain.raster.south_west_deg[0]) / terrain.raster.step_deg[0],
+                scan.place[1] + eastwards_deg / terrain.raster.step_deg[1],
             ],
             normal: [normal.dot(&self.direction), normal.dot(&local.up)],
         }
@@ -186,7 +186,7 @@ impl Ray<'_> {
     fn cross(&mut self, axis: usize, from: Foot, to: Foot) -> Result<(), [f64; 2]> {
         let terrain = self.scan.terrain;
         let (start, end) = (from.place[axis], to.place[axis]);
-        let lines = [terrain.rows, terrain.columns];
+        let lines = [terrain.raster.rows, terrain.raster.columns];
         let low = start.min(end).ceil().max(0.0) as usize;
         let high = start.max(end).floor().min((lines[axis] - 1) as f64);
         if high < 0.0 || start == end {

@@ -14,7 +14,8 @@ fn around_zero(
         let at = |n: usize, count: usize| (n as f64 - middle(count)) * step_deg;
         height_m(at(row, rows), at(column, columns)) as f32
     };
-    Terrain::new(corner, [step_deg; 2], columns, nodes.map(height).collect()).unwrap()
+    let raster = Raster::new(corner, [step_deg; 2], columns, nodes.map(height).collect());
+    Terrain::new(raster.unwrap()).unwrap()
 }
 
 fn site(latitude_deg: f64, longitude_deg: f64) -> Site {
@@ -146,7 +147,10 @@ fn validate_crests_on_the_ellipsoid() {
             })
             .collect::<Vec<f32>>()
     };
-    let new = |north_m| Terrain::new([45.0, 9.99], [step_deg; 2], 3, heights(north_m)).unwrap();
+    let new = |north_m| {
+        let raster = Raster::new([45.0, 9.99], [step_deg; 2], 3, heights(north_m));
+        Terrain::new(raster.unwrap()).unwrap()
+    };
     let place = |row: usize, height_m: f64| {
         let site = Site::new(Surface::Wgs84, at(row), 10.0, 1.0).unwrap();
         site.at_height_m(height_m).unwrap()
@@ -210,6 +214,26 @@ fn points_stand_on_the_terrain() {
     assert_eq!((sites[2].height_m, &sites[2].skyline), (400.0, &Some(own)));
 }
 
+/// A height of 0 is one like any other: on the terrain, or below it.
+#[test]
+fn a_height_of_zero_is_kept() {
+    let given = || site(0.25, 0.35).at_height_m(0.0).unwrap();
+    let sea = around_zero([11, 11], 0.1, |_, _| 0.0);
+    let mut sites = [site(0.25, 0.35), given()];
+    sea.carry(&mut sites, Surface::Sphere, 1.5).unwrap();
+    assert_eq!(sites.map(|site| site.height_m), [1.5, 0.0]);
+    let land = around_zero([11, 11], 0.1, |_, _| 300.0);
+    let error = land
+        .carry(&mut [given()], Surface::Sphere, 1.5)
+        .unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("is at 0 m, 300.00 m below the terrain"),
+        "{error}"
+    );
+}
+
 #[test]
 fn what_does_not_stand_is_told() {
     let told = |terrain: &Terrain, mut site: Site| {
@@ -248,7 +272,10 @@ fn what_does_not_stand_is_told() {
         ),
         "{hole}"
     );
-    let nodes = |height: f32| Terrain::new([0.0; 2], [0.1; 2], 2, vec![0.0, 0.0, 0.0, height]);
+    let nodes = |height: f32| {
+        let raster = Raster::new([0.0; 2], [0.1; 2], 2, vec![0.0, 0.0, 0.0, height]);
+        Terrain::new(raster.unwrap())
+    };
     let error = nodes(-9999.0).unwrap_err().to_string();
     assert!(
         error
@@ -256,7 +283,7 @@ fn what_does_not_stand_is_told() {
         "{error}"
     );
     assert!(nodes(f32::NAN).is_ok());
-    let projected = Terrain::new([5_000_000.0, 400_000.0], [30.0; 2], 2, vec![0.0; 4]);
+    let projected = Raster::new([5_000_000.0, 400_000.0], [30.0; 2], 2, vec![0.0; 4]);
     assert!(
         projected
             .unwrap_err()
@@ -264,8 +291,8 @@ fn what_does_not_stand_is_told() {
             .contains("are not degrees on the globe")
     );
     assert!(matches!(
-        Terrain::new([0.0; 2], [0.1; 2], 1, vec![0.0; 4]),
-        Err(TerrainError::Shape { .. })
+        Raster::new([0.0; 2], [0.1; 2], 1, vec![0.0; 4]),
+        Err(RasterError::Shape { .. })
     ));
 }
 

@@ -1,22 +1,16 @@
 //! The outages of the points that are out longest, over time.
 
-use super::{Chart, Figure, FigureError, NamedProfile, Plate, TimelineChart, title};
+use super::{Chart, FigureError, NamedProfile, Plate, TimelineChart, title};
 use crate::report::csv::OUTAGE_COLUMNS;
 use crate::report::figures::table::Csv;
 use crate::units::SECONDS_PER_HOUR;
 
-/// The outages of a constellation at the points that are out longest.
+/// The outages of a constellation at the points that are out longest; without rows if no point has any.
 ///
 /// # Errors
-/// If no point has an outage.
+/// Never for a table in memory.
 pub fn timeline(named: &NamedProfile<'_>) -> Result<Plate, FigureError> {
     let profile = named.profile;
-    if profile.outages.is_empty() {
-        return Err(FigureError::Nothing {
-            figure: Figure::Timeline,
-            reason: "no point has an outage",
-        });
-    }
     let mut csv = Csv::new(&OUTAGE_COLUMNS)?;
     let mut rows = Vec::new();
     for one in &profile.outages {
@@ -38,9 +32,14 @@ pub fn timeline(named: &NamedProfile<'_>) -> Result<Plate, FigureError> {
         rows.push((point.label(), hours.collect()));
     }
     let step_s = profile.step_s();
+    let unseen = format!("what is shorter than a step of {step_s} s is unseen");
+    let title = title(named);
     let chart = TimelineChart {
-        title: format!("Outages: {}", title(named)),
-        x: format!("time since the epoch (h); what is shorter than a step of {step_s} s is unseen"),
+        title: match rows.is_empty() {
+            true => format!("No point has an outage: {title}"),
+            false => format!("Outages: {title}"),
+        },
+        x: format!("time since the epoch (h); {unseen}"),
         span: [0.0, profile.epochs.len() as f64 * step_s / SECONDS_PER_HOUR],
         rows,
     };

@@ -14,6 +14,7 @@ fn the_canonical_text_has_every_key_and_parses_back() {
     let absent = [
         "points",
         "terrain",
+        "weight-grid",
         "antenna-height-m",
         "polygon",
         "country",
@@ -166,9 +167,9 @@ fn the_hash_moves_with_everything_that_is_computed() {
     hashes.push(with(&RANGE_ERRORS).hash(&[]));
     hashes.push(defaults().hash(&[]));
     assert!(hashes.iter().all(|hash| hash.len() == 64));
-    // name, constellations and the keys of [export]; region.points, region.polygon, region.terrain, gnss.files, outages.file;
+    // name, constellations and the keys of [export]; region.points, region.polygon, region.weight-grid, region.terrain, gnss.files, outages.file;
     // optimizer.generations
-    let (labels, files, budgets) = (6, 5, 1);
+    let (labels, files, budgets) = (6, 6, 1);
     let with_conditions = errors.len() + TIMES.len() + antenna[1..].len();
     assert_eq!(
         changes.len() + with_conditions + labels + files + budgets,

@@ -148,6 +148,7 @@ fn the_template_uncommented_is_still_a_scenario() {
     let mut left_out: Vec<&str> = on_demand.map(|key| key.name).collect();
     left_out.extend([
         "points",
+        "weight-grid",
         "terrain",
         "antenna-height-m",
         "polygon",

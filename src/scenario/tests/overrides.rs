@@ -71,7 +71,7 @@ fn problems_name_the_argument() {
     assert_eq!(
         one_problem("", &["region.weigths=equal"]),
         "--set region.weigths=equal: region.weigths: unknown key, did you mean \
-         `region.weights`? (choices: latitude-deg, longitude-deg, step-deg, weights, spacing-km, polygon, country, points, terrain, antenna-height-m)"
+         `region.weights`? (choices: latitude-deg, longitude-deg, step-deg, weights, spacing-km, polygon, country, points, weight-grid, terrain, antenna-height-m)"
     );
     let nearest = one_problem("", &["optimiser.seed=4"]);
     assert!(

@@ -43,7 +43,7 @@ fn names_are_safe_in_a_path() {
 
 #[test]
 fn unknown_keys_suggest_the_nearest() {
-    let region = "(choices: latitude-deg, longitude-deg, step-deg, weights, spacing-km, polygon, country, points, terrain, antenna-height-m)";
+    let region = "(choices: latitude-deg, longitude-deg, step-deg, weights, spacing-km, polygon, country, points, weight-grid, terrain, antenna-height-m)";
     let nearest = format!("unknown key, did you mean `region.latitude-deg`? {region}");
     refuses("region", "latitude = [3, 54]", "latitude", &nearest);
     refuses(

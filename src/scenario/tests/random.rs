@@ -14,8 +14,8 @@ use crate::scenario::{
     Algorithm, AreaSource, Clocks, ConstellationParts, Constraint, Earth, Export, FurtherMetrics,
     GnssSetup, Grid, Keyword, LaunchCost, LeoClocks, MaskPoint, NamedConstellation, Objectives,
     Optimizer, Pattern, Preset, Propagation, Quantity, RangeErrors, Region, RegionTerrain,
-    Relation, Reliability, SatelliteOutages, Scenario, SearchShells, SearchSpace, TimeSpan,
-    Visibility, template,
+    RegionWeightGrid, Relation, Reliability, SatelliteOutages, Scenario, SearchShells, SearchSpace,
+    TimeSpan, Visibility, template,
 };
 use spaces::search;
 
@@ -332,6 +332,7 @@ fn scenario() -> impl Strategy<Value = Scenario> {
             earth: Earth { surface },
             propagation: Propagation { model },
             region,
+            weighting: RegionWeightGrid { weight_grid: None },
             terrain: RegionTerrain {
                 terrain,
                 antenna_height_m,

@@ -134,6 +134,7 @@ impl PublishedStudy {
                 None
             }
         };
+        problems.found.sort_by_key(|(line, _)| *line);
         match study {
             Some(study) if problems.found.is_empty() => Ok(study),
             _ => Err(StudyFileError {
@@ -437,22 +438,22 @@ source = \"page 2\"
         let wrong = STUDY
             .replace("p95-hdop", "p95-hdob")
             .replace("tolerance = 0.01", "tolerance = 0")
-            .replace("source = \"page 2\"\n", "");
+            .replace("source = \"page 1\"\n", "");
         let told = told(&wrong);
         let lines: Vec<&str> = told.lines().collect();
         assert!(
-            lines[0].starts_with(
+            lines[0].starts_with("two.toml:10: statement \"first\" has no source"),
+            "{told}"
+        );
+        assert!(
+            lines[1].starts_with(
                 "two.toml:12: metric: unknown metric \"p95-hdob\", did you mean \"p95-hdop\"?"
             ),
             "{told}"
         );
         assert_eq!(
-            lines[1],
+            lines[2],
             "two.toml:14: tolerance: found 0, expected a number above 0"
-        );
-        assert!(
-            lines[2].starts_with("two.toml:16: statement \"second\" has no source"),
-            "{told}"
         );
         assert_eq!(lines.len(), 3);
     }

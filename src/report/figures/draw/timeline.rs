@@ -17,12 +17,14 @@ const NAMES: u32 = 150;
 const NAME_CHARACTERS: usize = 24;
 
 pub(super) fn height(chart: &TimelineChart) -> u32 {
-    AROUND + ROW * chart.rows.len() as u32
+    AROUND + ROW * chart.rows.len().max(1) as u32
 }
 
 pub(super) fn draw(root: &Area<'_>, chart: &TimelineChart) -> Drawn {
-    let rows = chart.rows.len() as f64;
+    // Without an outage there is an empty row, and of a single instant some time, so that there are axes.
+    let rows = chart.rows.len().max(1) as f64;
     let [start, end] = chart.span;
+    let end = if end > start { end } else { start + 1.0 };
     let mut context = ChartBuilder::on(root)
         .caption(&chart.title, font(17))
         .margin(fine(12))

@@ -41,7 +41,8 @@ macro_rules! rules {
         $(
             #[test]
             fn $name() {
-                let evaluator = Evaluator::new(setup(30, 48, true, 1.6)).unwrap();
+                // 192 tiles: the tail is looked at for the last time when all have been seen.
+                let evaluator = Evaluator::new(setup(30, 96, true, 1.6)).unwrap();
                 at_the_bound(&evaluator, $quantity, $relation);
             }
         )*
