@@ -45,8 +45,8 @@ pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
-pub use from_evaluations::NotEvaluated;
 pub use expected::{ExpectedService, SpareService};
+pub use from_evaluations::NotEvaluated;
 pub use labels::quantity_label;
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 pub use phases::{PhaseRange, PhaseSpread};

@@ -141,15 +141,17 @@ fn validate_draws_against_all_states() {
 fn quantiles_are_of_the_mixture() {
     let (evaluator, ephemeris) = study();
     let all = states(&evaluator, &ephemeris);
-    let ours = evaluator
-        .expected_over(&ephemeris, 1.0, &[vec![], vec![]])
-        .unwrap();
-    for (ours, whole) in [
-        (ours.p95_pdop, all[0].p95_pdop),
-        (ours.cvar_pdop, all[0].cvar_pdop),
-    ] {
-        // Buckets are 1/4096 wide.
-        assert!((ours.unwrap() / whole.unwrap() - 1.0).abs() < 1.0 / 4096.0);
+    // Of one state twice it is that of the state, also of one in which every sample with a LEO satellite is another.
+    for (vacant, state) in [(vec![], 0), ((0..8).collect::<Vec<usize>>(), 255)] {
+        let twice = [vacant.clone(), vacant];
+        let ours = evaluator.expected_over(&ephemeris, 1.0, &twice).unwrap();
+        for (ours, whole) in [
+            (ours.p95_pdop, all[state].p95_pdop),
+            (ours.cvar_pdop, all[state].cvar_pdop),
+        ] {
+            // Buckets are 1/4096 wide.
+            assert!((ours.unwrap() / whole.unwrap() - 1.0).abs() < 1.0 / 4096.0);
+        }
     }
     let mixed = evaluator
         .expected_over(&ephemeris, 1.0, &[vec![], (0..8).collect()])
