@@ -260,9 +260,15 @@ impl Dilute<'_> {
                     sums.push(seen);
                 }
                 let mut leo = Sums::<f64>::zero();
-                self.work.look(self.scene, number, group, |l, line, seen| {
-                    leo.add_line::<W>(line, seen, seen, l);
-                });
+                let candidates = self.work.candidates(number, group);
+                candidates.look(
+                    self.scene,
+                    number,
+                    &self.work.positions,
+                    &mut |l, line, seen| {
+                        leo.add_line::<W>(line, seen, seen, l);
+                    },
+                );
                 sums.push(leo);
                 if self.clocks == Clocks::Shared {
                     let mut all = Sums::<f64>::zero();

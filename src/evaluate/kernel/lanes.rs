@@ -211,7 +211,7 @@ impl Weighting for SineWeights {
 pub(super) struct SightLine<R> {
     pub(super) to: [R; 3],
     /// One over the range.
-    pub(super) inverse: R,
+    inverse: R,
     /// Of the elevation.
     pub(super) sine: R,
 }

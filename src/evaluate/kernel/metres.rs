@@ -136,7 +136,7 @@ impl RangeSums {
     #[inline(always)]
     fn add_line(&mut self, line: &SightLine<f64>, is_seen: bool, error: RangeWeight, l: usize) {
         let weight = if is_seen { error.of(line.sine) } else { 0.0 };
-        let [x, y, z] = line.to.map(|along| along * line.inverse);
+        let [x, y, z] = line.unit();
         let (wx, wy, wz) = (weight * x, weight * y, weight * z);
         self.sum[0].0[l] += wx;
         self.sum[1].0[l] += wy;
@@ -243,9 +243,15 @@ impl Work for Weigh<'_> {
                         sums = RangeSums::NONE;
                     }
                 }
-                self.work.look(self.scene, number, group, |l, line, seen| {
-                    sums.add_line(line, seen, leo, l);
-                });
+                let candidates = self.work.candidates(number, group);
+                candidates.look(
+                    self.scene,
+                    number,
+                    &self.work.positions,
+                    &mut |l, line, seen| {
+                        sums.add_line(line, seen, leo, l);
+                    },
+                );
                 to.add(&sums);
             }
         }

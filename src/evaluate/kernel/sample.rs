@@ -88,20 +88,6 @@ impl Workspace {
         }
     }
 
-    /// Passes the lines in f64 from a tile of the selected group to `add`, satellite by satellite and lane by lane, with
-    /// whether it is visible.
-    #[inline(always)]
-    pub(super) fn look(
-        &self,
-        scene: &SampleContext,
-        number: usize,
-        group: &Group,
-        mut add: impl FnMut(usize, &SightLine<f64>, bool),
-    ) {
-        let candidates = self.candidates(number, group);
-        candidates.look(scene, number, &self.positions, &mut add);
-    }
-
     pub(super) fn new(satellites: usize) -> Self {
         let all = Candidates::with_capacity(satellites);
         let blocks = satellites.div_ceil(BLOCK).max(1);
@@ -422,9 +408,9 @@ impl<'a> TileCandidates<'a> {
         sums
     }
 
-    /// Passes the lines in f64 to the satellites to `add`, lane by lane, with whether they are visible.
+    /// Passes the lines in f64 to the satellites to `add`, satellite by satellite and lane by lane, with whether it is visible.
     #[inline(always)]
-    fn look(
+    pub(super) fn look(
         self,
         scene: &SampleContext,
         number: usize,

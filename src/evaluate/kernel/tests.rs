@@ -343,6 +343,7 @@ proptest! {
 /// The paper's scenario, a dense and a sparse constellation, and designs that are hard for f32.
 #[test]
 fn whole_days_equal_the_plain_path() {
+    let mut large_pdop = 0;
     for (text, gnss) in [
         ("delta:55:182/13/1@925", vec![Preset::Beidou3.into()]),
         ("delta:50:44/11/3@420", vec![Preset::Beidou3.into()]),
@@ -365,8 +366,9 @@ fn whole_days_equal_the_plain_path() {
         // Means are more accurate than single values because rounding errors average out.
         assert!(relative(fast.mean_pdop, plain.mean_pdop) < 5e-8, "{text}");
         assert!(rechecks.near_mask > 0, "{text}");
-        assert!(rechecks.large_pdop > 0, "{text}");
+        large_pdop += rechecks.large_pdop;
     }
+    assert!(large_pdop > 0, "f32 is not enough for some");
 }
 
 /// No satellite at all, and satellites that never rise.
