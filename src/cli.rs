@@ -13,6 +13,8 @@ mod chart;
 mod coincidence;
 mod commands;
 mod constellations;
+pub mod embedded;
+mod evaluations;
 mod files;
 mod interrupt;
 mod limits;
@@ -46,6 +48,11 @@ enum Status {
 
 /// Runs the command line `args`, which begins with the program name, and returns its exit status.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
+    ExitCode::from(exit_status(args))
+}
+
+/// The same as a number.
+pub fn exit_status(args: impl IntoIterator<Item = OsString>) -> u8 {
     output::choose_colors();
     let cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
@@ -59,12 +66,12 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> ExitCode {
             Status::CouldNotRun
         }
     };
-    ExitCode::from(status as u8)
+    status as u8
 }
 
 /// Prints what parsing came to: help to stdout with status 0, errors to stderr with status 2.
-fn said(message: &clap::Error) -> ExitCode {
-    let status = u8::try_from(message.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from);
+fn said(message: &clap::Error) -> u8 {
+    let status = u8::try_from(message.exit_code()).unwrap_or(Status::CouldNotRun as u8);
     // What was typed is repeated: with colours only if it holds nothing that a terminal would obey.
     let plain = message.render().to_string();
     if let Cow::Owned(safe) = printable_lines(&plain) {
@@ -74,15 +81,13 @@ fn said(message: &clap::Error) -> ExitCode {
     match message.print().and_then(|()| io::stdout().flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
             output::error(&anyhow::Error::new(error).context("cannot print"));
-            ExitCode::from(Status::CouldNotRun as u8)
+            Status::CouldNotRun as u8
         }
         _ => status,
     }
 }
 
 fn run(cli: Cli) -> anyhow::Result<Status> {
-    output::set_quiet(cli.quiet);
-    limits::set_allow_large(cli.allow_large);
     interrupt::install();
     if let Some(threads) = cli.threads {
         limits::check_threads(threads)?;
@@ -90,11 +95,19 @@ fn run(cli: Cli) -> anyhow::Result<Status> {
             .num_threads(threads.get())
             .build_global()?;
     }
+    command(cli)
+}
+
+fn command(cli: Cli) -> anyhow::Result<Status> {
+    output::set_quiet(cli.quiet);
+    limits::set_allow_large(cli.allow_large);
     match cli.command {
         Command::Optimize(args) => commands::optimize::run(&args),
         Command::Size(args) => commands::size::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
+        Command::Dop(args) => commands::dop::run(&args),
+        Command::Orbit(args) => commands::orbit::run(&args),
         Command::Export(args) => commands::export::run(&args),
         Command::Lint(args) => commands::lint::run(&args),
         Command::Validate(args) => commands::validate::run(&args),

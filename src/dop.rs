@@ -13,9 +13,11 @@
 mod downdate;
 mod factor;
 mod family;
+mod sky;
 
 pub(crate) use factor::{Factor, pivot_floor};
 pub use family::{DopFamily, ObservationWeights};
+pub use sky::{SkyClock, SkyDops, SkyRule, SkySatellite, SkyView};
 
 use crate::keyword::keywords;
 use nalgebra::Vector3;

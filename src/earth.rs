@@ -2,6 +2,7 @@
 
 use crate::keyword::keywords;
 use nalgebra::Vector3;
+use std::f64::consts::TAU;
 
 /// Gravitational parameter of the Earth, km³/s² (WGS 84 and EGM96).
 pub const MU_KM3_S2: f64 = 398_600.441_8;
@@ -23,6 +24,10 @@ pub const FLATTENING: f64 = 1.0 / 298.257_223_563;
 /// Rate of Greenwich mean sidereal time, rad/s (derivative of the IAU 1982 expression,
 /// Aoki et al., *Astron. Astrophys.* 105 (1982) 359).
 pub const GMST_RATE_RAD_S: f64 = 7.292_115_855_3e-5;
+
+/// Mean rate of the Sun in right ascension, rad/s: a turn in a tropical year of 365.2422 days. The node of a
+/// sun-synchronous orbit follows it.
+pub const MEAN_SUN_RATE_RAD_S: f64 = TAU / (365.242_2 * 86_400.0);
 
 /// Semi-major axis of the geosynchronous satellites of the presets, km.
 pub const GEOSYNCHRONOUS_RADIUS_KM: f64 = 42_164.17;

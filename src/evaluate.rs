@@ -26,14 +26,14 @@ mod window;
 pub use accuracy::{Accuracy, AccuracyMetrics, RangeError, SigmaSpread};
 pub use counts::{COVERAGE_COLUMNS, COVERAGE_LEVELS, COVERAGE_TOTAL_COLUMNS, Coverage};
 pub use dops::{ClockDop, DopStatistics};
-pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost};
+pub use failures::{ExpectedError, ExpectedMetrics, NEGLECTED, OneLost, PointOneLost, StateDraws};
 pub use gain::Gain;
 pub use histograms::{HistogramRow, ViewHistograms};
 pub use kernel::{InstructionSet, Rechecks, SampleTile, SampleTiles};
 pub use metrics::{MetricOptions, Metrics};
 pub use on_demand::OnDemand;
 pub use phases::PhaseError;
-pub use series::{EpochMetrics, Outage, PointMetrics, Series};
+pub use series::{EpochMetrics, Outage, PointMetrics, Samples, Series};
 pub use window::InformationPdop;
 
 use crate::constellation::Design;

@@ -2,6 +2,7 @@
 //! read back, and files checked against their standards.
 
 pub mod constellation;
+pub mod deployment;
 mod element_sets;
 pub mod export;
 mod identities;

@@ -6,6 +6,7 @@
 
 pub mod ccsds;
 pub mod csv;
+pub mod deployment;
 mod element_set;
 pub mod gmat;
 pub mod kept_states;
@@ -13,6 +14,7 @@ pub mod maps;
 pub mod metadata;
 pub mod outages;
 pub mod sem;
+pub mod skies;
 pub mod sp3;
 pub mod stk;
 pub mod terrain;

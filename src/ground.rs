@@ -16,6 +16,7 @@ pub use area::{AreaError, AreaPoints, ServiceArea};
 pub use cells::{CellRow, EqualAreaCells};
 pub use countries::{Country, UnknownCountry};
 pub use map::{RegionMap, Tiling};
+pub(crate) use points::line_of;
 pub use points::{ignored_columns, sites_from_csv};
 pub use raster::{Raster, RasterError};
 pub use skylines::with_inline_skylines;

@@ -48,6 +48,7 @@ mod history;
 mod hypervolume;
 mod method;
 mod mopso;
+mod near;
 mod nsga2;
 mod pick;
 mod problem;
@@ -58,6 +59,7 @@ mod strategy;
 mod test_problems;
 mod variation;
 
+pub use archive::front_of;
 pub use decision::{DecisionError, Memberships, best, fuzzy, knee, topsis};
 pub use error::OptimizeError;
 pub use exhaustive::{Exhaustive, ExhaustiveConfig};

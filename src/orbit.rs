@@ -3,6 +3,7 @@
 pub mod earth_orbit;
 mod elements;
 pub mod fit;
+pub mod ground_track;
 pub mod j2;
 pub mod kepler;
 pub mod osculating;

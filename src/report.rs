@@ -6,15 +6,19 @@ pub mod coastline;
 mod compared;
 mod comparison_columns;
 mod csv;
+mod deployment;
 mod diagnostics;
 #[cfg(feature = "figures")]
 mod dominance;
 mod evaluated;
+mod expected;
 pub mod failures;
 #[cfg(feature = "figures")]
 pub mod figures;
+mod from_evaluations;
 pub(crate) mod front_table;
 mod labels;
+mod orbits;
 #[cfg(feature = "figures")]
 pub mod page;
 pub(crate) mod phases;
@@ -23,7 +27,10 @@ mod reproduction;
 mod results;
 mod seeds;
 pub(crate) mod shown;
+mod skies;
 mod studies;
+#[cfg(feature = "figures")]
+mod study_page;
 mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
@@ -32,12 +39,16 @@ pub use baseline::{Baseline, compared_designs};
 pub use compared::Compared;
 pub use comparison_columns::{ComparisonColumn, comparison_columns, on_demand_quantities};
 pub use csv::{ConstellationColumns, outages_csv, records_csv};
+pub use deployment::{DeploymentSummary, PhaseService};
 pub use diagnostics::{at_bounds, diagnose, dominated_by, seed_spread};
 pub use evaluated::{
     Alone, Assessment, ConstellationEntry, ConstellationResult, ConstellationSummary,
     ConstraintCheck, EvaluateResult,
 };
+pub use from_evaluations::NotEvaluated;
+pub use expected::{ExpectedService, SpareService};
 pub use labels::quantity_label;
+pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 pub use phases::{PhaseRange, PhaseSpread};
 pub use reproduction::{
     REPRODUCTION_FILES, ReproduceResult, reproduction_files, reproduction_markdown,
@@ -45,10 +56,13 @@ pub use reproduction::{
 };
 pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
+pub use skies::{SkyClockResult, SkyResult, skies_csv, skies_text};
 pub use studies::{
     PublishedResult, StatementRecord, StudiesResult, StudyResult, statements_csv, studies_markdown,
     studies_text,
 };
+#[cfg(feature = "figures")]
+pub use study_page::StudyPageError;
 pub use table::{Align, Table};
 #[cfg(feature = "validate")]
 pub use validation::{checks_csv, checks_junit, validation_markdown, validation_text};

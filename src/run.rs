@@ -4,6 +4,7 @@
 
 pub mod checkpoint;
 pub(crate) mod columns;
+pub mod evaluations;
 pub mod inputs;
 mod results;
 pub mod size;
@@ -11,6 +12,7 @@ pub(crate) mod tables;
 #[cfg(feature = "validate")]
 mod validation;
 
+pub use columns::metric_values;
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,

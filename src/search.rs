@@ -6,15 +6,19 @@ mod counted;
 pub mod failures;
 mod fixed;
 mod quantity;
+mod recording;
 mod shell_space;
 pub mod size;
 mod space;
+mod spares;
 
 pub use constraint::{Constraint, ConstraintError, Relation};
 pub use counted::CountedSatellites;
 pub use quantity::{LaunchCost, Quantity};
+pub use recording::{RecordedEvaluation, RecordingProblem};
 pub use shell_space::{ShellSpace, SweepSteps};
 pub use space::DesignSpace;
+pub use spares::SparedPlanes;
 
 use crate::constellation::Design;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -188,7 +192,13 @@ impl<'a> DesignProblem<'a> {
     }
 
     fn answer(&self, genome: &[f64]) -> Evaluation {
-        let Some((design, metrics)) = self.evaluated(genome) else {
+        self.evaluation(self.evaluated(genome).as_ref())
+    }
+
+    /// The evaluation for an optimiser of what [`Self::evaluated`] gives.
+    #[must_use]
+    pub fn evaluation(&self, evaluated: Option<&(Option<Design>, Metrics)>) -> Evaluation {
+        let Some((design, metrics)) = evaluated else {
             let objectives = vec![f64::INFINITY; self.goals.objectives.len()];
             return Evaluation {
                 objectives,
@@ -196,8 +206,8 @@ impl<'a> DesignProblem<'a> {
             };
         };
         self.judge(
-            &|quantity| self.value(quantity, design.as_ref(), &metrics),
-            &metrics,
+            &|quantity| self.value(quantity, design.as_ref(), metrics),
+            metrics,
         )
     }
 

@@ -3,27 +3,28 @@
 mod evaluate;
 mod export;
 mod member_pick;
+mod optimize;
 mod products;
 mod run_view;
 mod satellites;
 mod scenario;
 mod size;
+mod sky;
 
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
 pub(crate) use member_pick::MemberPick;
+pub(crate) use optimize::OptimizeArgs;
 pub(crate) use run_view::{PlotArgs, ReportArgs, ViewArgs};
 pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 pub(crate) use size::SizeArgs;
+pub(crate) use sky::{DopArgs, OrbitArgs};
 
 use crate::cli::constellations::Named;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-
-/// Maximum number of seeds in one command: the results of all of them are in memory at the end.
-const MAX_SEEDS: u64 = 1000;
 
 /// Designs, evaluates, exports and validates LEO Walker constellations that augment a GNSS.
 ///
@@ -105,12 +106,30 @@ pub(crate) enum Command {
     #[command(verbatim_doc_comment)]
     Lint(LintArgs),
 
+    /// Compute the dilution of precision of skies: satellites by azimuth and elevation.
+    ///
+    /// GDOP, PDOP, HDOP, VDOP and TDOP by least squares, with a clock for each system. A sky that cannot be
+    /// solved has none, and the reason is told.
+    ///
+    /// Example: navwalker dop sky.csv --mask-deg 5
+    #[command(verbatim_doc_comment)]
+    Dop(DopArgs),
+
+    /// Show periods, rates and the ground track of orbits, and the sun-synchronous inclination at their altitude.
+    ///
+    /// By secular J2, from mean elements. The repeats of the ground track are those within 70 nodal days that
+    /// come closer to the first ascending node than all before, each with the altitude at which it is exact.
+    ///
+    /// Example: navwalker orbit delta:97.4018:1/1/0@500
+    #[command(verbatim_doc_comment)]
+    Orbit(OrbitArgs),
+
     /// Reproduce published numbers: those of the paper that this program implements, or of other studies.
     ///
     /// Every statement gets a computed verdict: met, met-under-assumption (one is changed at a time),
     /// fitted (the assumption was found from it), input (copied), not-met, or unconfirmed (nothing to
-    /// compare with, or a number from memory). DIR gets the report, and for the paper its tables and the
-    /// data of each figure. The exit status is 1 if a number is not met and its study does not say why.
+    /// compare with, or a number from memory). DIR gets the report as JSON, Markdown and an HTML page, the
+    /// figures as SVG and PNG, and for the paper its tables and the data of each figure. The exit status is 1 if a number is not met and its study does not say why.
     ///
     /// Examples: navwalker reproduce --set visibility.mask-deg=10
     ///           navwalker reproduce gps-sps iridium
@@ -291,52 +310,6 @@ pub(crate) enum OutputFormat {
     Csv,
 }
 
-#[derive(Debug, Clone, Args)]
-pub(crate) struct OptimizeArgs {
-    #[command(flatten)]
-    pub(crate) study: StudyArgs,
-
-    /// Run directory to write [default: runs/<scenario>-<seed>].
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-
-    /// Seed of the search; the same as `--set optimizer.seed=N`.
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-
-    /// Run this many consecutive seeds, at most 1000, starting with the scenario's, and report their spread
-    /// and joint front.
-    ///
-    /// Each seed has its own run in DIR/seed-N; the summary is in DIR/seeds.csv and DIR/seeds.json, what
-    /// no seed's front dominates in DIR/joint-front.csv. The front of the first seed and the summary are
-    /// printed. All hypervolumes are at one reference point, which is printed too.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MAX_SEEDS))]
-    pub(crate) seeds: Option<u64>,
-
-    /// Also sweep the search space on a grid of the scenario's steps and compare the fronts: both
-    /// hypervolumes, the distance of each design, and what was missed.
-    ///
-    /// The sweep is a separate run in DIR-sweep, resumed if it exists.
-    #[arg(long)]
-    pub(crate) certify: bool,
-
-    /// Resume from the checkpoint in the run directory; without SCENARIO with the scenario of the run.
-    #[arg(long)]
-    pub(crate) resume: bool,
-
-    /// Replace another run that this program wrote; other files are never deleted.
-    #[arg(long)]
-    pub(crate) force: bool,
-
-    /// Also write report.html, as `navwalker report` does.
-    #[arg(long, conflicts_with = "seeds")]
-    pub(crate) report: bool,
-
-    /// Output format.
-    #[arg(long, value_enum, default_value = "text")]
-    pub(crate) format: OutputFormat,
-}
-
 /// Output format of a study on stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum StudyFormat {
@@ -368,9 +341,10 @@ pub(crate) struct ReproduceArgs {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
 
-    /// Directory for the report and the data of the figures.
-    #[arg(long, value_name = "DIR", default_value = "runs/reproduce")]
-    pub(crate) out: PathBuf,
+    /// Directory for the report, its page and the figures [default: runs/reproduce/STUDY; of several studies their names
+    /// joined by +, or all].
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 
     /// Seed of the paper's searches; the same as `--set optimizer.seed=N`.
     #[arg(long, value_name = "N")]
@@ -407,6 +381,10 @@ pub(crate) struct ValidateArgs {
 
     #[command(flatten)]
     pub(crate) chosen: ChosenArgs,
+
+    /// Refused: of evaluate, report and plot.
+    #[arg(long, hide = true, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
 
     /// What to check against, separated by commas: sgp4, geographiclib, numerical, analytic, paper,
     /// all, or files and directories written by another program (OEM, OMM, TLE, SP3, STK .e; any

@@ -1,10 +1,12 @@
 //! One file per command.
 
+pub(crate) mod dop;
 pub(crate) mod evaluate;
 pub(crate) mod export;
 pub(crate) mod help;
 pub(crate) mod lint;
 pub(crate) mod optimize;
+pub(crate) mod orbit;
 pub(crate) mod plot;
 pub(crate) mod report;
 pub(crate) mod reproduce;

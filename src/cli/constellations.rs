@@ -7,7 +7,7 @@ use crate::cli::{coincidence, output, read_constellation, run};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{
-    Constellation, FileSatellites, GNSS_ONLY, accepted_name, is_name,
+    Constellation, ConstellationError, FileSatellites, GNSS_ONLY, accepted_name, is_name,
 };
 use crate::exchange::import::StateChoice;
 use crate::time::TimeGrid;
@@ -180,8 +180,22 @@ pub(crate) fn propagate(one: &Constellation, setup: &Setup) -> Result<Ephemeris>
 
 /// The same for a member of a run, of which the command that made the run has warned.
 pub(crate) fn propagate_member(one: &Constellation, setup: &Setup) -> Result<Ephemeris> {
-    one.in_service(setup)
-        .with_context(|| format!("cannot propagate {}", one.name))
+    match one.in_service(setup) {
+        // It says of what, and where it is written.
+        Err(ConstellationError::Outage(error)) => Err(error.into()),
+        found => found.with_context(|| format!("cannot propagate {}", one.name)),
+    }
+}
+
+/// Refuses `--without` where all satellites count, in service or not.
+pub(crate) fn refuse_without(names: &[String], what: &str) -> Result<()> {
+    match names.first() {
+        None => Ok(()),
+        Some(name) => bail!(
+            "--without {name}: {what} every satellite, in service or not; --without is of evaluate, report and plot, and \
+             --exclude leaves satellites of files (--constellation) out"
+        ),
+    }
 }
 
 /// Warns of old element sets and of interpolated states.

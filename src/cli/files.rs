@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use tempfile::{NamedTempFile, PersistError, TempDir};
 
 /// Maximum bytes of a file that is read into memory at once: a scenario, or a file it names.
-const MOST_BYTES: u64 = 64 << 20;
+pub(crate) const MOST_BYTES: u64 = 64 << 20;
 
 /// Maximum bytes of a file that this program wrote: a million generations, and a factor of two.
 const MOST_RUN_BYTES: u64 = 1 << 30;

@@ -39,6 +39,13 @@ pub(crate) fn install() {
     });
 }
 
+/// Asks a search to stop after the current generation, as the first Ctrl-C does; without one it does nothing.
+pub(crate) fn ask_to_stop() {
+    let (order, otherwise) = (Ordering::SeqCst, Ordering::SeqCst);
+    // If there is none, there is nothing to stop.
+    let _ = STATE.compare_exchange(ASKS, ASKED, order, otherwise);
+}
+
 /// Work that can stop by itself and keep what it has: the first Ctrl-C only asks it to, a second one
 /// ends the program at once. Afterwards Ctrl-C does what it did before.
 pub(crate) struct Stoppable(());

@@ -2,6 +2,7 @@
 
 use crate::printable::{printable, printable_lines};
 use anyhow::Result;
+use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,6 +12,52 @@ static QUIET: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn set_quiet(quiet: bool) {
     QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// What was printed, where another program runs a command.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Printed {
+    /// The result, as stdout would have it.
+    pub result: String,
+    /// Everything else, in its order.
+    pub messages: Vec<Message>,
+}
+
+/// A message beside the result.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// What it is.
+    pub kind: MessageKind,
+    /// Its text, without what a terminal would obey.
+    pub text: String,
+}
+
+/// What a message is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MessageKind {
+    /// What a reader may do next.
+    Hint,
+    /// What may be wrong.
+    Warning,
+    /// Why the command could not run.
+    Error,
+}
+
+thread_local! {
+    /// Where this thread prints to, if not to stdout and stderr.
+    static KEPT: RefCell<Option<Printed>> = const { RefCell::new(None) };
+}
+
+/// Does some work of this thread and keeps what it prints.
+pub(crate) fn kept<T>(work: impl FnOnce() -> T) -> (T, Printed) {
+    let outer = KEPT.replace(Some(Printed::default()));
+    let done = work();
+    (done, KEPT.replace(outer).unwrap_or_default())
+}
+
+/// Adds to what is kept; `false` if nothing is.
+fn keep(add: impl FnOnce(&mut Printed)) -> bool {
+    KEPT.with_borrow_mut(|kept| kept.as_mut().map(add).is_some())
 }
 
 /// Turns colours off if `--no-color` is on the command line, before parsing, so that parse errors
@@ -29,7 +76,7 @@ const PLAIN: &str = "\x1b[0m";
 
 /// Whether progress may be drawn: not quiet, and on a terminal.
 pub(crate) fn shows_progress() -> bool {
-    !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal()
+    !QUIET.load(Ordering::Relaxed) && io::stderr().is_terminal() && !keep(|_| {})
 }
 
 /// A path on one line: a directory may come from elsewhere, with names of any characters.
@@ -45,27 +92,36 @@ pub(crate) fn result(text: &str) -> Result<()> {
 
 /// Prints a part of a result as it is, at once.
 pub(crate) fn part(text: &str) -> Result<()> {
+    let text = printable_lines(text);
+    if keep(|kept| kept.result += &text) {
+        return Ok(());
+    }
     let mut stdout = io::stdout().lock();
-    stdout.write_all(printable_lines(text).as_bytes())?;
+    stdout.write_all(text.as_bytes())?;
     Ok(stdout.flush()?)
 }
 
 /// Prints a hint, which is not part of the result.
 pub(crate) fn hint(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
-        to_stderr("", text);
+        say(MessageKind::Hint, text);
     }
 }
 
 /// Prints a warning.
 pub(crate) fn warning(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
-        to_stderr(&format!("{YELLOW}warning:{PLAIN} "), text);
+        say(MessageKind::Warning, text);
     }
 }
 
 /// Prints why the command could not run, one cause per line.
 pub(crate) fn error(error: &anyhow::Error) {
+    say(MessageKind::Error, &causes(error));
+}
+
+/// The text of an error, one cause per line.
+pub(crate) fn causes(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
     for cause in error.chain().skip(1) {
         let cause = cause.to_string();
@@ -74,16 +130,34 @@ pub(crate) fn error(error: &anyhow::Error) {
             text += &format!("\n  cause: {cause}");
         }
     }
-    to_stderr(&format!("{RED}error:{PLAIN} "), &text);
+    text
 }
 
-fn to_stderr(label: &str, text: &str) {
+fn say(kind: MessageKind, text: &str) {
+    let text = printable_lines(text);
+    let message = || Message {
+        kind,
+        text: text.clone().into_owned(),
+    };
+    if keep(|kept| kept.messages.push(message())) {
+        return;
+    }
+    let label = match kind {
+        MessageKind::Hint => String::new(),
+        MessageKind::Warning => format!("{YELLOW}warning:{PLAIN} "),
+        MessageKind::Error => format!("{RED}error:{PLAIN} "),
+    };
     // If stderr is closed, nothing can be reported.
-    let _ = writeln!(
-        anstream::stderr().lock(),
-        "{label}{}",
-        printable_lines(text)
-    );
+    let _ = writeln!(anstream::stderr().lock(), "{label}{text}");
+}
+
+/// Keeps or prints what was kept.
+pub(crate) fn say_again(printed: Printed) {
+    // Printing into what is kept cannot fail, and a result of this size is kept.
+    let _ = part(&printed.result);
+    for message in printed.messages {
+        say(message.kind, &message.text);
+    }
 }
 
 /// Whether the reader of stdout has closed the pipe, as `head` does.

@@ -7,6 +7,7 @@ use crate::cli::{files, output};
 use crate::exchange::constellation::Constellation;
 use crate::optimize::{Search, Strategy};
 use crate::run::checkpoint::{self, Identity, RecordLog};
+use crate::run::evaluations::EVALUATIONS_FILES;
 use crate::run::{
     CHECKPOINT, CHECKPOINT_LOG, FILES, FRONT_JSON, FrontMember, INPUTS, MANIFEST, OptimizeResult,
     PREVIOUS_CHECKPOINT, SCENARIO, VALIDATION, result_files,
@@ -29,7 +30,8 @@ fn own() -> BTreeSet<String> {
     for directory in [INPUTS, VALIDATION, "figures"] {
         own.insert(format!("{directory}/"));
     }
-    own.extend(["report.html".to_owned(), HOLDER.to_owned()]);
+    own.extend(["report.html", HOLDER].map(str::to_owned));
+    own.extend(EVALUATIONS_FILES.map(str::to_owned));
     own
 }
 
@@ -233,6 +235,11 @@ impl RunDirectory {
         files::write_all(staged.path(), &self.first_files)?;
         self.lock = staged.commit_keeping(kept)?;
         Ok(())
+    }
+
+    /// The directory.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// The directory, to be shown.

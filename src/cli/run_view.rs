@@ -59,6 +59,11 @@ impl View {
                 "--set {key}: a run keeps the scenario that it was made with; give a scenario in its place"
             );
         }
+        if let Some(name) = args.without.first() {
+            bail!(
+                "--without {name}: a run keeps the scenario that it was made with; give a scenario in its place"
+            );
+        }
         let files = read(directory, args)?;
         let mut run = Run::read(&files);
         let study = match study(directory, &run) {
@@ -120,6 +125,7 @@ impl View {
             }
         }
         let study = Study::load(&args.study(), &[]).map_err(|error| neither(args, error))?;
+        let study = study.without(&args.study(), &args.without)?;
         let given = match args.constellations.is_empty() {
             true => constellations::of_scenario(&study)?,
             false => constellations::resolve(&args.constellations, &study)?,

@@ -20,8 +20,9 @@ use std::path::{Path, PathBuf};
 
 /// A scenario and the files that it names.
 #[derive(Clone)]
-pub(crate) struct Study {
-    pub(crate) scenario: Scenario,
+pub struct Study {
+    /// The scenario.
+    pub scenario: Scenario,
     written: Written,
     /// Directory to which paths in the scenario are relative.
     directory: PathBuf,
@@ -44,13 +45,32 @@ struct Written {
 impl Study {
     /// The scenario named on the command line, with its overrides.
     pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
-        let name = args.name();
+        let overrides: Vec<String> = args.overrides.iter().chain(further).cloned().collect();
+        Self::open(args.name(), &overrides)
+    }
+
+    /// The built-in scenario of a name, or that in a file, with overrides such as `region.step-deg=2`.
+    ///
+    /// # Errors
+    /// If there is no such scenario, it cannot be read, or a key or value is wrong.
+    pub fn open(name: &str, overrides: &[String]) -> Result<Self> {
         let (bytes, directory) = read_scenario(name)?;
-        Self::parse(
-            Written::new(name, bytes, &args.overrides, further),
-            directory,
-            None,
-        )
+        let written = Written::new(name, bytes, overrides, &[]);
+        Self::parse(written, directory, None)
+    }
+
+    /// The scenario of a text, called `label` in messages, whose files are relative to a directory.
+    ///
+    /// # Errors
+    /// If a key or value is wrong.
+    pub fn of_text(
+        label: &str,
+        text: &str,
+        directory: &Path,
+        overrides: &[String],
+    ) -> Result<Self> {
+        let written = Written::new(label, text.as_bytes().to_vec(), overrides, &[]);
+        Self::parse(written, directory.to_owned(), None)
     }
 
     /// The same with further satellites out of service throughout.
@@ -130,7 +150,10 @@ impl Study {
     }
 
     /// The identification of the study in results.
-    pub(crate) fn stamp(&self) -> Result<ScenarioStamp> {
+    ///
+    /// # Errors
+    /// If a file that the scenario names cannot be read.
+    pub fn stamp(&self) -> Result<ScenarioStamp> {
         Ok(ScenarioStamp {
             name: self.scenario.name.clone(),
             hash: self.hash()?,
@@ -307,7 +330,10 @@ impl Study {
     }
 
     /// The default design.
-    pub(crate) fn reference_design(&self) -> Result<Design> {
+    ///
+    /// # Errors
+    /// If the scenario has none.
+    pub fn reference_design(&self) -> Result<Design> {
         let design = self.scenario.reference_design();
         design.map_err(|error| self.placed(&error))
     }
@@ -323,7 +349,10 @@ impl Study {
     }
 
     /// The search of the scenario, with the satellites from files that are fixed.
-    pub(crate) fn problem<'e>(&self, evaluator: &'e Evaluator) -> Result<DesignProblem<'e>> {
+    ///
+    /// # Errors
+    /// If the space is empty, or a file cannot be read.
+    pub fn problem<'e>(&self, evaluator: &'e Evaluator) -> Result<DesignProblem<'e>> {
         let (space, goals) = (self.scenario.design_space(), self.scenario.goals());
         let problem = DesignProblem::new(evaluator, space, goals)?;
         let Some(files) = self.fixed()?.and_then(|fixed| fixed.files) else {
@@ -350,10 +379,16 @@ impl Study {
     }
 
     /// The evaluator of the scenario.
-    pub(crate) fn evaluator(&self) -> Result<Evaluator> {
+    ///
+    /// # Errors
+    /// If a file that the scenario names cannot be read or is wrong, or a GNSS satellite cannot be propagated.
+    pub fn evaluator(&self) -> Result<Evaluator> {
         let setup = self.setup()?;
         if let Some(note) = setup.plain_path_note() {
             output::hint(&note);
+        }
+        for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
+            output::warning(&note);
         }
         Ok(Evaluator::new(setup)?)
     }

@@ -5,6 +5,7 @@ use crate::constellation::gnss::{GivenOrbit, GnssOrbit, GnssSatellite};
 use crate::frames::{State, Teme};
 use crate::keyword::nearest;
 use crate::orbit::{PropagationError, Propagator};
+use crate::time::TimeGrid;
 use std::ops::Range;
 use std::sync::Arc;
 use thiserror::Error;
@@ -70,6 +71,31 @@ fn no_gnss_either(gnss: &[String], meant: Option<&str>) -> String {
 }
 
 impl SatelliteOutage {
+    /// What of an interval has no effect on the samples of a grid, if anything: what is outside its span, or all of an interval
+    /// between two samples.
+    #[must_use]
+    pub fn note(&self, grid: TimeGrid) -> Option<String> {
+        let interval = self.interval_s.as_ref()?;
+        let at = |elapsed_s: f64| grid.epoch().plus_seconds(elapsed_s);
+        let (start, end) = (at(interval.start), at(interval.end));
+        let what = format!(
+            "{}: {} is out of service from {start} to {end}",
+            self.origin, self.satellite
+        );
+        let span_s = grid.elapsed_s(grid.len());
+        if !grid.iter().any(|elapsed_s| interval.contains(&elapsed_s)) {
+            let step_s = grid.step_s();
+            return Some(format!(
+                "{what}, between two samples {step_s} s apart: it has no effect"
+            ));
+        }
+        let is_cut = interval.start < 0.0 || interval.end > span_s;
+        is_cut.then(|| {
+            let (first, last) = (grid.epoch(), at(span_s));
+            format!("{what}, of which only what is within the span of the study counts, {first} to {last}")
+        })
+    }
+
     /// Whether it is of this satellite.
     fn is_of(&self, satellite: &EphemerisSatellite) -> bool {
         let name = &satellite.name;
@@ -273,9 +299,51 @@ fn nearest_name<'a>(written: &str, known: &[&'a str]) -> Option<&'a str> {
     Some(known[at])
 }
 
+impl Ephemeris {
+    /// The places of the satellites of a name, or of those of a plane or shell; `constellation` and `origin` are for messages.
+    ///
+    /// # Errors
+    /// If there is none.
+    pub fn places_of(
+        &self,
+        constellation: &str,
+        name: &str,
+        origin: &str,
+    ) -> Result<Vec<usize>, OutageError> {
+        let part = SatelliteOutage {
+            satellite: name.to_owned(),
+            origin: origin.to_owned(),
+            interval_s: None,
+        };
+        let satellites = self.satellites.iter().enumerate();
+        let own = satellites.filter(|(_, one)| part.is_of(one));
+        let places: Vec<usize> = own.map(|(place, _)| place).collect();
+        match places.as_slice() {
+            [] => Err(unknown(constellation, self, &part, &[])),
+            _ => Ok(places),
+        }
+    }
+
+    /// The planes of its designs, each with the places of its satellites.
+    #[must_use]
+    pub fn planes(&self) -> Vec<(String, Vec<usize>)> {
+        let mut planes: Vec<(String, Vec<usize>)> = Vec::new();
+        for (place, satellite) in self.satellites.iter().enumerate() {
+            let Some(name) = plane_name(satellite) else {
+                continue;
+            };
+            match planes.last_mut().filter(|(last, _)| last == name) {
+                Some((_, places)) => places.push(place),
+                None => planes.push((name.to_owned(), vec![place])),
+            }
+        }
+        planes
+    }
+}
+
 /// The name of the plane of a satellite of a design: that of the satellite without its place in the plane.
 #[must_use]
-pub fn plane_name(satellite: &EphemerisSatellite) -> Option<&str> {
+fn plane_name(satellite: &EphemerisSatellite) -> Option<&str> {
     satellite.slot?;
     let (plane, _) = satellite.name.rsplit_once("-S")?;
     Some(plane)
@@ -286,7 +354,7 @@ mod tests {
     use super::*;
     use crate::constellation::Design;
     use crate::orbit::Model;
-    use crate::time::{Epoch, TimeGrid};
+    use crate::time::Epoch;
 
     fn hybrid() -> Ephemeris {
         let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
@@ -362,6 +430,28 @@ mod tests {
             outage("NW-A-P01", None),
         ];
         assert_eq!(hybrid().with_outages(&both).satellites().len(), 8);
+    }
+
+    #[test]
+    fn intervals_without_effect_are_noted() {
+        let grid = hybrid().grid();
+        let note = |interval: Range<f64>| outage("NW-C", Some(interval)).note(grid);
+        assert_eq!(note(60.0..61.0), None);
+        assert_eq!(note(0.0..grid.elapsed_s(grid.len())), None);
+        let between = note(61.0..120.0).unwrap();
+        assert_eq!(
+            between,
+            "outages.satellites: NW-C is out of service from 2025-01-01T00:01:01Z to 2025-01-01T00:02:00Z, between two samples 60 s \
+             apart: it has no effect"
+        );
+        for cut in [-1.0..61.0, 500.0..601.0] {
+            let note = note(cut).unwrap();
+            assert!(
+                note.ends_with("2025-01-01T00:00:00Z to 2025-01-01T00:10:00Z"),
+                "{note}"
+            );
+        }
+        assert_eq!(outage("NW-C", None).note(grid), None);
     }
 
     #[test]

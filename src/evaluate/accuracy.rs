@@ -133,6 +133,34 @@ impl Evaluator {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<Option<AccuracyMetrics>, EphemerisError> {
+        let level = self.setup().metrics.cvar_level;
+        let errors = self.position_errors(ephemeris)?;
+        Ok(errors.map(|errors| errors.metrics(level)))
+    }
+
+    /// The standard deviation of the position, of the horizontal position and of the height of each sample that has an
+    /// accuracy, metres; `None` without range errors.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn sigma_samples(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Option<[Vec<Weighted>; 3]>, EphemerisError> {
+        let errors = self.position_errors(ephemeris)?;
+        Ok(errors.map(|errors| {
+            let Errors {
+                whole,
+                horizontal,
+                vertical,
+                ..
+            } = &errors;
+            [sigmas(whole), sigmas(horizontal), sigmas(vertical)]
+        }))
+    }
+
+    /// The errors of the positions of all samples; `None` without range errors.
+    fn position_errors(&self, ephemeris: &Ephemeris) -> Result<Option<Errors>, EphemerisError> {
         let setup = self.setup();
         let Some(accuracy) = &setup.accuracy else {
             return Ok(None);
@@ -151,7 +179,7 @@ impl Evaluator {
                 }
             }
         }
-        Ok(Some(errors.metrics(setup.metrics.cvar_level)))
+        Ok(Some(errors))
     }
 }
 
@@ -252,12 +280,16 @@ impl Errors {
 }
 
 fn sigma<const D: usize>(errors: &[(f64, [f64; D])], level: Level) -> Option<SigmaSpread> {
+    SigmaSpread::of(&mut sigmas(errors), level)
+}
+
+/// The standard deviation of each sample.
+fn sigmas<const D: usize>(errors: &[(f64, [f64; D])]) -> Vec<Weighted> {
     let one = |&(weight, variances): &(f64, [f64; D])| Weighted {
         value: variances.iter().sum::<f64>().sqrt(),
         weight,
     };
-    let mut sample: Vec<Weighted> = errors.iter().map(one).collect();
-    SigmaSpread::of(&mut sample, level)
+    errors.iter().map(one).collect()
 }
 
 #[cfg(test)]

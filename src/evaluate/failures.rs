@@ -7,18 +7,23 @@
 //! - [`pass`]: PDOP of all samples, and of those that change without each set.
 //! - [`statistics`]: the metrics of each set, from those of the whole constellation and what changes.
 
+mod by_point;
 mod expected;
+mod mixture;
 mod one_lost;
 mod pass;
 mod sight;
 mod statistics;
 
+pub use by_point::PointOneLost;
 pub use expected::{ExpectedError, ExpectedMetrics, NEGLECTED};
+pub use mixture::StateDraws;
 pub use one_lost::OneLost;
 
+use super::kernel::{ChangedSample, SampleLosses};
 use super::{Evaluator, Metrics};
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use pass::{ChangedSample, Sets};
+use pass::Sets;
 use rayon::prelude::*;
 use sight::SightTree;
 use statistics::{Scratch, Whole};
@@ -44,11 +49,22 @@ impl Evaluator {
         ephemeris: &Ephemeris,
         sets: &[Vec<usize>],
     ) -> Result<Vec<Metrics>, EphemerisError> {
+        self.without_each_seeing(ephemeris, sets, |_, _| ())
+    }
+
+    /// The same, with a look at the samples of each pass.
+    fn without_each_seeing(
+        &self,
+        ephemeris: &Ephemeris,
+        sets: &[Vec<usize>],
+        mut see: impl FnMut(&[SampleLosses], usize),
+    ) -> Result<Vec<Metrics>, EphemerisError> {
         let tree = SightTree::new(self.setup());
         let mut found = Vec::with_capacity(sets.len());
         for batch in self.batches(ephemeris, sets)? {
             let sets = Sets::new(self, ephemeris, batch);
             let pieces = pass::pass(self, &tree, &sets)?;
+            see(&pieces, batch.len());
             let whole = Whole::new(self, &pieces);
             let of = |scratch: &mut Scratch, number: usize| {
                 let left = ephemeris.satellites().len() - batch[number].len();

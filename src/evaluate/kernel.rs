@@ -43,6 +43,7 @@ mod fixed;
 mod instructions;
 mod lanes;
 mod limits;
+mod losses;
 mod memory;
 mod normal;
 mod order_statistics;
@@ -55,7 +56,11 @@ mod skylines;
 mod tally;
 mod tiles;
 
+pub(super) use fixed::at_most_u16;
 pub use instructions::InstructionSet;
+pub(super) use losses::{
+    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, SampleLosses, WholeSample,
+};
 pub(super) use memory::{dops_bytes, memory_bytes};
 pub(super) use order_statistics::quantile_rank;
 pub use probe::{SampleTile, SampleTiles};

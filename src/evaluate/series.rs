@@ -1,8 +1,10 @@
 //! Metrics per instant and per point, for figures and maps.
 
 mod records;
+mod samples;
 
 pub use records::{EpochMetrics, Outage, PointMetrics};
+pub use samples::Samples;
 
 use super::Evaluator;
 use super::counts::{COVERAGE_LEVELS, Coverage, OutageRun, Outages, Threshold};
@@ -151,11 +153,20 @@ impl Evaluator {
     /// The same without gain.
     pub(super) fn cuts(&self, ephemeris: &Ephemeris) -> Result<Series, EphemerisError> {
         let mut cuts = SeriesSums::new(self);
-        match self.kernel_for(ephemeris) {
-            Some(kernel) => kernel.visit(ephemeris, |instant| cuts.add(instant))?,
-            None => self.visit_plain(ephemeris, |instant| cuts.add(instant))?,
-        }
+        self.visit(ephemeris, |instant| cuts.add(instant))?;
         Ok(cuts.series())
+    }
+
+    /// Shows every instant, in the order of time.
+    fn visit(
+        &self,
+        ephemeris: &Ephemeris,
+        see: impl FnMut(&Instant),
+    ) -> Result<(), EphemerisError> {
+        match self.kernel_for(ephemeris) {
+            Some(kernel) => kernel.visit(ephemeris, see),
+            None => self.visit_plain(ephemeris, see),
+        }
     }
 
     /// The same by the plain path, the reference for the kernel.

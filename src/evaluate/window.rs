@@ -69,6 +69,15 @@ impl SlidingSum {
     }
 }
 
+/// The windows of all points.
+#[derive(Default)]
+struct Windows {
+    /// PDOP of those that are solved.
+    pdop: Vec<Weighted>,
+    /// Weight of all.
+    total: f64,
+}
+
 impl Evaluator {
     /// The PDOP of all observations in each window of the setup with some satellites; `None` without a window.
     ///
@@ -78,25 +87,11 @@ impl Evaluator {
         &self,
         ephemeris: &Ephemeris,
     ) -> Result<Option<InformationPdop>, EphemerisError> {
-        let setup = self.setup();
-        let Some(window_s) = setup.window_s else {
+        let Some(Windows { mut pdop, total }) = self.windows(ephemeris)? else {
             return Ok(None);
         };
-        let count = instants(window_s, setup.grid.step_s());
-        let mut sums = vec![SlidingSum::default(); setup.sites.len()];
-        let (mut pdop, mut total, mut solved) = (Vec::new(), 0.0, 0.0);
-        plain::visit_geometries(self, ephemeris, |_, site, _, geometry| {
-            let Some(sum) = sums[site].push(geometry, count) else {
-                return;
-            };
-            let weight = self.weights.of(site) as f64;
-            total += weight;
-            if let Some(value) = sum.pdop(setup.pdop_cap) {
-                solved += weight;
-                pdop.push(Weighted { value, weight });
-            }
-        })?;
-        let spread = SigmaSpread::of(&mut pdop, setup.metrics.cvar_level);
+        let solved: f64 = pdop.iter().map(|window| window.weight).sum();
+        let spread = SigmaSpread::of(&mut pdop, self.setup().metrics.cvar_level);
         Ok(Some(InformationPdop {
             mean: spread.map(|one| one.mean),
             p95: spread.map(|one| one.p95),
@@ -104,6 +99,38 @@ impl Evaluator {
             // A window longer than the span has no place in it.
             solved_fraction: if total > 0.0 { solved / total } else { 0.0 },
         }))
+    }
+
+    /// The PDOP of each window that is solved; `None` without a window.
+    ///
+    /// # Errors
+    /// If a satellite cannot be propagated.
+    pub fn information_samples(
+        &self,
+        ephemeris: &Ephemeris,
+    ) -> Result<Option<Vec<Weighted>>, EphemerisError> {
+        Ok(self.windows(ephemeris)?.map(|windows| windows.pdop))
+    }
+
+    fn windows(&self, ephemeris: &Ephemeris) -> Result<Option<Windows>, EphemerisError> {
+        let setup = self.setup();
+        let Some(window_s) = setup.window_s else {
+            return Ok(None);
+        };
+        let count = instants(window_s, setup.grid.step_s());
+        let mut sums = vec![SlidingSum::default(); setup.sites.len()];
+        let mut windows = Windows::default();
+        plain::visit_geometries(self, ephemeris, |_, site, _, geometry| {
+            let Some(sum) = sums[site].push(geometry, count) else {
+                return;
+            };
+            let weight = self.weights.of(site) as f64;
+            windows.total += weight;
+            if let Some(value) = sum.pdop(setup.pdop_cap) {
+                windows.pdop.push(Weighted { value, weight });
+            }
+        })?;
+        Ok(Some(windows))
     }
 }
 

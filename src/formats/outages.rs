@@ -132,7 +132,7 @@ fn of_csv(text: &str) -> Result<Vec<OutageInterval>, OutageFileError> {
 }
 
 /// The line of a record. The reader reports the position of blank lines and comments before it.
-fn line_of(position: &csv::Position, text: &str) -> u64 {
+pub(super) fn line_of(position: &csv::Position, text: &str) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     let is_passed_over = |line: &&str| line.trim().is_empty() || line.starts_with('#');

@@ -85,7 +85,7 @@ pub fn ignored_columns(source: impl Read) -> Vec<String> {
 }
 
 /// The line of a record. The reader reports the position of any blank lines before it, so they are added.
-pub(super) fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
+pub(crate) fn line_of(position: &csv::Position, text: &[u8]) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     let blank = rest.iter().take_while(|byte| byte.is_ascii_whitespace());

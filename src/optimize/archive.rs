@@ -1,7 +1,7 @@
 //! The non-dominated set of everything seen so far.
 
 use super::problem::Individual;
-use super::sorting::constraint_dominates;
+use super::sorting::{constraint_dominates, feasible_front};
 
 /// Offers a candidate to an archive, which then contains every feasible candidate
 /// that no other one dominates, each genome once.
@@ -23,9 +23,19 @@ pub(super) fn offer(archive: &mut Vec<Individual>, candidate: &Individual) {
     archive.push(candidate.clone());
 }
 
+/// The feasible candidates that no other one dominates, each genome once, sorted by their objectives and then by their
+/// genomes.
+#[must_use]
+pub fn front_of(candidates: impl IntoIterator<Item = Individual>) -> Vec<Individual> {
+    let mut archive = Vec::new();
+    for candidate in candidates {
+        offer(&mut archive, &candidate);
+    }
+    feasible_front(&archive)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::sorting::feasible_front;
     use super::*;
     use proptest::prelude::*;
 
@@ -64,6 +74,7 @@ mod tests {
                 offer(&mut archive, candidate);
             }
             prop_assert_eq!(feasible_front(&archive), feasible_front(&candidates));
+            prop_assert_eq!(front_of(candidates.clone()), feasible_front(&candidates));
             let all_infeasible = candidates.iter().all(|a| !a.is_feasible());
             prop_assert_eq!(archive.len(), feasible_front(&candidates).len().max(all_infeasible.into()));
         }

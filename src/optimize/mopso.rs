@@ -308,7 +308,7 @@ fn better(best: Individual, now: Individual, generator: &mut Generator) -> Indiv
 #[cfg(test)]
 mod tests {
     use super::super::hypervolume;
-    use super::super::test_problems::{binh_korn, constr, mixed, zdt1};
+    use super::super::test_problems::{TestProblem, UNIT, binh_korn, constr, mixed, zdt1};
     use super::*;
 
     fn run(problem: &dyn Problem, config: &MopsoConfig, seed: u64) -> Mopso {
@@ -398,6 +398,40 @@ mod tests {
         assert!((-6.0..-0.6).contains(&velocity[0]), "{velocity:?}");
         assert_eq!(velocity[1..3], [0.0, 0.0]);
         assert!((0.01..=0.1).contains(&velocity[3]), "{velocity:?}");
+    }
+
+    /// Nothing lies between two choices: a particle has its own, that of its best or that of the leader.
+    #[test]
+    fn a_choice_is_taken_and_not_approached() {
+        let kinds = [VariableKind::Category { count: 5 }, UNIT];
+        let problem = TestProblem::new(&kinds, 1, |_| (vec![0.0], 0.0));
+        let at = |choice: f64| Individual {
+            genome: vec![choice, 0.5],
+            objectives: vec![0.0],
+            violation: 0.0,
+        };
+        let particle = Particle {
+            position: vec![0.0, 0.5],
+            velocity: vec![1.0, 0.0],
+            best: at(4.0),
+        };
+        let mut generator = Generator::new(1, 1);
+        let mut counts = [0_i32; 5];
+        for _ in 0..3000 {
+            let (position, velocity) =
+                particle.propagate(problem.space(), &at(2.0), &mut generator);
+            assert_eq!(position[0], position[0].round(), "{position:?}");
+            assert_eq!(velocity[0], 1.0);
+            counts[position[0] as usize] += 1;
+        }
+        assert_eq!((counts[1], counts[3]), (0, 0));
+        // Five standard deviations of a third of 3000: 129.
+        assert!(
+            [0, 2, 4]
+                .iter()
+                .all(|choice| (counts[*choice] - 1000).abs() < 129),
+            "{counts:?}"
+        );
     }
 
     #[test]

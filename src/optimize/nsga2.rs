@@ -17,6 +17,8 @@
 //!   part that comes back has the variety of its ancestors.
 //! - Tournaments pick both contestants independently, which lets any number of
 //!   children be drawn again, and compare crowding among the survivors.
+//! - Some parents are nearly feasible designs that are kept beside the population (`near`): constraint
+//!   domination alone loses a better design for the smallest violation.
 //! - Children outside a bound are moved onto it, and integers are crossed as reals
 //!   and mutated in integer steps, as `variation` explains.
 
@@ -27,6 +29,7 @@ use serde::{Deserialize, Serialize};
 use super::error::OptimizeError;
 use super::generator::Generator;
 use super::history::History;
+use super::near;
 use super::problem::{Individual, Problem, admit, evaluate, repaired};
 use super::sorting::{crowding_distance, feasible_front, non_dominated_sort, prune_one_by_one};
 use super::strategy::{
@@ -103,6 +106,8 @@ pub struct Nsga2 {
     generation: u64,
     evaluations: u64,
     population: Vec<Individual>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    nearly_feasible: Vec<Individual>,
     history: History,
 }
 
@@ -125,6 +130,7 @@ impl Nsga2 {
             generation: 0,
             evaluations: 0,
             population: Vec::new(),
+            nearly_feasible: Vec::new(),
             history: History::default(),
         })
     }
@@ -167,7 +173,11 @@ impl Nsga2 {
             .saturating_mul(self.config.population as u64);
         check_at_most("evaluations", self.evaluations, evaluations)?;
         check_equal("population", u64::from(held > 0), self.generation.min(1))?;
-        self.population.iter().try_for_each(|a| a.check(problem))
+        let beside = self.nearly_feasible.len() as u64;
+        let most = near::most(self.config.population) as u64;
+        check_at_most("nearly feasible designs", beside, most)?;
+        let mut held = self.population.iter().chain(&self.nearly_feasible);
+        held.try_for_each(|a| a.check(problem))
     }
 
     /// New genomes, of designs none of which is in the population or twice in the batch.
@@ -204,10 +214,17 @@ impl Nsga2 {
         if self.population.is_empty() {
             return [space.draw(generator), space.draw(generator)];
         }
+        // Until a design is feasible, the population itself has the least violated ones.
+        let near = match self.population.iter().any(Individual::is_feasible) {
+            true => self.nearly_feasible.as_slice(),
+            false => &[],
+        };
         let mut parent = || {
-            self.population[ranking.tournament(generator)]
-                .genome
-                .as_slice()
+            let of_population = |generator| &self.population[ranking.tournament(generator)];
+            match near::parent(near, generator) {
+                Some(parent) => parent.genome.as_slice(),
+                None => of_population(generator).genome.as_slice(),
+            }
         };
         let parents = [parent(), parent()];
         let mut children = if generator.chance(self.config.crossover_probability) {
@@ -233,8 +250,17 @@ impl Strategy for Nsga2 {
         self.evaluations += children.len() as u64;
         self.generation += 1;
         self.history.learn(&children);
+        let infeasible = children.iter().filter(|a| !a.is_feasible());
+        let infeasible: Vec<Individual> = infeasible.cloned().collect();
         self.population.extend(children);
         select(&mut self.population, self.config.population);
+        let most = near::most(self.config.population);
+        near::offer(
+            &mut self.nearly_feasible,
+            infeasible,
+            &self.population,
+            most,
+        );
         let feasible = self.population.iter().filter(|a| a.is_feasible()).count();
         let (progress, front) = (self.progress(), self.front());
         let reference = self.config.hypervolume_reference.as_deref();

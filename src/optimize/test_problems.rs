@@ -161,3 +161,16 @@ pub(super) fn mixed() -> TestProblem {
         (vec![v[0] + loss, 12.0 - v[0] + loss], 0.0)
     })
 }
+
+/// Two counts from 10 to 15 and two reals; the objective is the product of the counts, and a product is feasible within a
+/// circle whose radius shrinks with it: 0.09 for 13 · 14 = 182, 0.05 for 12 · 15 = 180, which is the least, each at
+/// a place of its own.
+pub(super) fn islands() -> TestProblem {
+    let count = VariableKind::Integer { lo: 10, hi: 15 };
+    TestProblem::new(&[count, count, UNIT, UNIT], 1, |v| {
+        let (product, centre) = (v[0] * v[1], 0.5 + 0.1 * (v[0] - v[1]));
+        let off = (v[2] - centre).powi(2) + (v[3] - 0.9).powi(2);
+        let violation = (0.895 - product / 200.0 + 2.0 * off).max(0.0);
+        (vec![product], violation)
+    })
+}

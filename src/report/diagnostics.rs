@@ -22,11 +22,7 @@ pub fn diagnose(
     front: &[FrontMember],
     individuals: &[Individual],
 ) -> Vec<Diagnostic> {
-    let mut found = at_bounds(front, problem.designs());
-    found.extend(conflict::without_conflict(
-        individuals,
-        &problem.goals().objectives,
-    ));
+    let mut found = diagnose_front(problem, front, individuals);
     let chosen = front.iter().position(|member| member.chosen);
     if let Some(chosen) = chosen.and_then(|n| individuals.get(n)) {
         found.extend(dependence::independent(problem, chosen));
@@ -37,6 +33,21 @@ pub fn diagnose(
         found.extend(progress::of_history(history, objectives));
         found.extend(progress::lost_volume(history, objectives));
     }
+    found
+}
+
+/// The diagnostics that follow from a front alone.
+#[must_use]
+pub(super) fn diagnose_front(
+    problem: &DesignProblem<'_>,
+    front: &[FrontMember],
+    individuals: &[Individual],
+) -> Vec<Diagnostic> {
+    let mut found = at_bounds(front, problem.designs());
+    found.extend(conflict::without_conflict(
+        individuals,
+        &problem.goals().objectives,
+    ));
     found
 }
 

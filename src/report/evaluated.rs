@@ -1,8 +1,10 @@
 //! What `evaluate` prints of one constellation, and of several side by side.
 
 use super::PhaseSpread;
+use super::deployment::DeploymentSummary;
+use super::expected::ExpectedService;
 use super::failures::FailureSummary;
-use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics, ViewHistograms};
+use crate::evaluate::{DopStatistics, Metrics, ViewHistograms};
 use crate::exchange::constellation::{Constellation, FileSatellites, GNSS_ONLY};
 use crate::run::{DesignSummary, ScenarioStamp, VERSION};
 use crate::search::{Constraint, CountedSatellites, Goals, Quantity};
@@ -25,9 +27,12 @@ pub struct Assessment {
     /// What failures of satellites do, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failures: Option<FailureSummary>,
+    /// The phases of a build-up or a drawdown, if requested.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phases: Option<DeploymentSummary>,
     /// The metrics as expected over failures, if the scenario says how reliable the satellites are.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub expected: Option<ExpectedMetrics>,
+    pub expected: Option<ExpectedService>,
     /// The constraints of the scenario, and whether they are met.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub constraints: Vec<ConstraintCheck>,
@@ -93,6 +98,7 @@ impl Assessment {
             dops,
             gnss_phases: None,
             failures: None,
+            phases: None,
             expected: None,
             constraints,
             quantities,

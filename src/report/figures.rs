@@ -11,6 +11,7 @@ mod front;
 mod histogram;
 mod map;
 mod outages;
+mod study;
 mod table;
 
 pub use super::Baseline;
@@ -22,6 +23,7 @@ pub use front::{NamedFront, pareto};
 pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
+pub use study::{NamedChart, PAPER_FIGURES, deviations_name, study_figures};
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;
@@ -97,6 +99,10 @@ keywords! {
         Coverage11 = "coverage-11",
         /// Fraction with at least 12 visible LEO satellites: of the time at a point, or of the points at an instant.
         Coverage12 = "coverage-12",
+        /// Maximum PDOP of a point without any one of the satellites; of a map alone.
+        OneLostMaxPdop = "n1-max-pdop",
+        /// Fraction of the time that a point is available without any one of the satellites; of a map alone.
+        OneLostAvailability = "n1-availability",
         /// PDOP of every point and instant, with its tail.
         Pdop = "pdop",
     }
@@ -117,9 +123,19 @@ impl Measure {
             Self::P95Pdop => "95 % quantile of PDOP",
             Self::MaxPdop => "maximum PDOP",
             Self::Availability => "availability (fraction of the time)",
+            Self::OneLostMaxPdop => "maximum PDOP without the worst one satellite",
+            Self::OneLostAvailability => {
+                "availability without the worst one satellite (fraction of the time)"
+            }
             _ => "PDOP",
         };
         label.to_owned()
+    }
+
+    /// Whether it is of what is left when any one satellite is lost.
+    #[must_use]
+    pub fn is_of_one_lost(self) -> bool {
+        matches!(self, Self::OneLostMaxPdop | Self::OneLostAvailability)
     }
 
     /// For a coverage: the least number of satellites.
@@ -198,6 +214,8 @@ pub enum Chart {
     Bars(BarChart),
     /// Rows of bars over time.
     Timeline(TimelineChart),
+    /// Dots on rows, in units of a tolerance.
+    Deviations(DeviationChart),
 }
 
 /// Points and lines in a plane.
@@ -267,6 +285,28 @@ pub struct TimelineChart {
     pub span: [f64; 2],
     /// Name, and beginnings and ends, of each row.
     pub rows: Vec<(String, Vec<[f64; 2]>)>,
+}
+
+/// Numbers compared with published ones.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationChart {
+    /// Title.
+    pub title: String,
+    /// Label of the horizontal axis, with its unit.
+    pub x: String,
+    /// The numbers, from the top.
+    pub rows: Vec<DeviationRow>,
+}
+
+/// A number compared with a published one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviationRow {
+    /// Its name.
+    pub name: String,
+    /// Its deviation in units of the tolerance.
+    pub tolerances: f64,
+    /// The n-th colour.
+    pub colour: usize,
 }
 
 /// Groups of bars.

@@ -2,7 +2,9 @@
 //! distribution of PDOP.
 
 use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::evaluate::{EpochMetrics, Evaluator, Outage, PointMetrics, Series, ViewHistograms};
+use crate::evaluate::{
+    EpochMetrics, Evaluator, Outage, PointMetrics, PointOneLost, Series, ViewHistograms,
+};
 use crate::exchange::constellation::{Constellation, ConstellationError};
 use crate::stats::{Weighted, summarize_weighted, weighted_quantile};
 use rayon::prelude::*;
@@ -22,6 +24,8 @@ pub struct Profile {
     pub histograms: ViewHistograms,
     /// The outages of the points that are out longest, those first.
     pub outages: Vec<PointOutages>,
+    /// The worst at each point without any one of the satellites, where asked for; otherwise empty.
+    pub one_lost: Vec<PointOneLost>,
 }
 
 /// The outages of a point.
@@ -118,7 +122,21 @@ impl Profile {
             histograms: series.histograms,
             pdop,
             tail,
+            one_lost: Vec::new(),
         })
+    }
+
+    /// The same with the worst at each point without any one of the satellites.
+    ///
+    /// # Errors
+    /// If one of them cannot be propagated.
+    pub fn with_one_lost(
+        self,
+        evaluator: &Evaluator,
+        ephemeris: &Ephemeris,
+    ) -> Result<Self, EphemerisError> {
+        let one_lost = evaluator.one_lost_by_point(ephemeris)?;
+        Ok(Self { one_lost, ..self })
     }
 
     /// Seconds between the instants; 0 if there is one.

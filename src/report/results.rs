@@ -27,7 +27,9 @@ impl OptimizeResult {
             .iter()
             .map(|i| i.objectives.as_slice())
             .collect();
-        let front = front_members(problem, &individuals, &points);
+        let evaluated = individuals.par_iter();
+        let evaluated = evaluated.map(|individual| problem.evaluated(&individual.genome));
+        let front = front_members(problem, &individuals, &points, evaluated.collect());
         let progress = search.progress();
         let objectives = &scenario.objectives.minimize;
         let written = scenario.minimised_reference();
@@ -225,20 +227,17 @@ impl Hypervolume {
     }
 }
 
-fn front_members(
+pub(super) fn front_members(
     problem: &DesignProblem<'_>,
     individuals: &[Individual],
     points: &[&[f64]],
+    evaluated: Vec<Option<(Option<Design>, Metrics)>>,
 ) -> Vec<FrontMember> {
     // Every front but an empty one has memberships.
     let Ok(memberships) = fuzzy(points) else {
         return Vec::new();
     };
     let chosen = best(&memberships.minimum);
-    let evaluated: Vec<_> = individuals
-        .par_iter()
-        .map(|individual| problem.evaluated(&individual.genome))
-        .collect();
     let objectives = |individual: &Individual| {
         let quantities = problem.goals().objectives.iter();
         quantities
@@ -281,7 +280,7 @@ fn shells(space: &DesignSpace, genome: &[f64]) -> Vec<Option<DesignSummary>> {
 }
 
 /// What is fixed in a search.
-fn fixed(problem: &DesignProblem<'_>, scenario: &Scenario) -> Option<FixedSummary> {
+pub(super) fn fixed(problem: &DesignProblem<'_>, scenario: &Scenario) -> Option<FixedSummary> {
     let name = scenario.search.fixed.clone()?;
     let shells = problem.designs().fixed.as_ref();
     Some(FixedSummary {

@@ -3,6 +3,7 @@
 use super::reproduction::{ReproduceResult, round};
 use super::{Align, Table};
 use crate::keyword::Keyword;
+use crate::printable::{markdown, printable};
 use crate::run::VERSION;
 use crate::run::columns::optional;
 use crate::run::tables::text;
@@ -86,6 +87,11 @@ pub struct StatementRecord {
     pub disagreement: Option<String>,
 }
 
+/// A text of a study as it is shown everywhere.
+fn shown(text: &str) -> String {
+    printable(text).into_owned()
+}
+
 impl From<&Statement> for StatementRecord {
     fn from(statement: &Statement) -> Self {
         let (expected, relation, tolerance) = match statement.expected {
@@ -95,7 +101,7 @@ impl From<&Statement> for StatementRecord {
         };
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         Self {
-            name: statement.statement.clone(),
+            name: shown(&statement.statement),
             of: None,
             metric: None,
             expected,
@@ -103,21 +109,38 @@ impl From<&Statement> for StatementRecord {
             tolerance,
             computed: finite(statement.ours),
             unit: statement.unit.clone(),
-            source: statement.place.clone(),
+            source: shown(&statement.place),
             verdict: statement.verdict,
-            assumption: statement.assumption.clone(),
+            assumption: statement.assumption.as_deref().map(shown),
             computed_there: finite(statement.ours_there),
             disagreement: None,
         }
     }
 }
 
+impl StatementRecord {
+    /// Verdict, statement, published and computed number, unit, source, assumption and the number computed under it.
+    pub(super) fn cells(&self) -> [String; 8] {
+        let shown = |value: f64| computed(value, self);
+        [
+            self.verdict.to_string(),
+            self.name.clone(),
+            expected(self),
+            self.computed.map_or_else(|| "-".to_owned(), shown),
+            self.unit.clone(),
+            self.source.clone(),
+            self.assumption.clone().unwrap_or_default(),
+            self.computed_there.map_or_else(String::new, shown),
+        ]
+    }
+}
+
 impl From<&JudgedStatement> for StatementRecord {
     fn from(judged: &JudgedStatement) -> Self {
         Self {
-            of: Some(judged.of.clone()),
+            of: Some(shown(&judged.of)),
             metric: Some(judged.metric.to_string()),
-            disagreement: judged.disagreement.clone(),
+            disagreement: judged.disagreement.as_deref().map(shown),
             ..Self::from(&judged.statement)
         }
     }
@@ -129,9 +152,9 @@ impl PublishedResult {
     pub fn new(study: &JudgedStudy, sha256: String) -> Self {
         Self {
             name: study.name.clone(),
-            title: study.title.clone(),
-            source: study.source.clone(),
-            notes: study.notes.clone(),
+            title: shown(&study.title),
+            source: shown(&study.source),
+            notes: study.notes.iter().map(|note| shown(note)).collect(),
             sha256,
             statements: study.statements.iter().map(Into::into).collect(),
         }
@@ -157,7 +180,8 @@ impl StudyResult {
         }
     }
 
-    fn title(&self) -> &str {
+    /// What it is.
+    pub(super) fn title(&self) -> &str {
         match self {
             Self::Paper(_) => {
                 "The paper that this program implements; alone, it prints its tables too"
@@ -166,15 +190,34 @@ impl StudyResult {
         }
     }
 
-    fn source_and_notes(&self) -> (Option<&str>, &[String]) {
+    /// Where its numbers are from, and what is known of them.
+    pub(super) fn source_and_notes(&self) -> (Option<&str>, &[String]) {
         match self {
             Self::Paper(_) => (None, &[]),
             Self::Published(study) => (Some(&study.source), &study.notes),
         }
     }
 
+    /// What is said of the numbers that disagree, or that nothing is known of them.
+    pub(super) fn disagreements(&self) -> Vec<String> {
+        let published = matches!(self, Self::Published(_));
+        let told = self.statements().iter().filter_map(|one| {
+            let known = one.disagreement.as_deref();
+            match (one.verdict, known) {
+                (Verdict::NotMet, None) if published => {
+                    Some(format!("{}: not met, and not explained", one.name))
+                }
+                (Verdict::NotMet | Verdict::MetUnderAssumption, Some(known)) => {
+                    Some(format!("{}: {known}", one.name))
+                }
+                _ => None,
+            }
+        });
+        told.collect()
+    }
+
     /// Number of statements with each verdict, in the order of [`Verdict::ALL`].
-    fn counts(&self) -> Vec<(Verdict, usize)> {
+    pub(super) fn counts(&self) -> Vec<(Verdict, usize)> {
         let statements = self.statements().iter();
         let count = |verdict: &Verdict| {
             let with = statements.clone().filter(|one| one.verdict == *verdict);
@@ -203,18 +246,7 @@ fn statements_table(study: &StudyResult) -> Table {
     }
     let mut table = Table::new(&columns);
     for one in study.statements() {
-        table.row([
-            one.verdict.to_string(),
-            one.name.clone(),
-            expected(one),
-            one.computed
-                .map_or_else(|| "-".to_owned(), |value| computed(value, one)),
-            one.unit.clone(),
-            one.source.clone(),
-            one.assumption.clone().unwrap_or_default(),
-            one.computed_there
-                .map_or_else(String::new, |value| computed(value, one)),
-        ]);
+        table.row(one.cells());
     }
     table
 }
@@ -266,24 +298,6 @@ fn summary_table(result: &StudiesResult) -> Table {
     table
 }
 
-/// What is said of the numbers that disagree, or that nothing is known of them.
-fn disagreements(study: &StudyResult) -> Vec<String> {
-    let published = matches!(study, StudyResult::Published(_));
-    let told = study.statements().iter().filter_map(|one| {
-        let known = one.disagreement.as_deref();
-        match (one.verdict, known) {
-            (Verdict::NotMet, None) if published => {
-                Some(format!("{}: not met, and not explained", one.name))
-            }
-            (Verdict::NotMet | Verdict::MetUnderAssumption, Some(known)) => {
-                Some(format!("{}: {known}", one.name))
-            }
-            _ => None,
-        }
-    });
-    told.collect()
-}
-
 /// The studies for a terminal.
 #[must_use]
 pub fn studies_text(result: &StudiesResult) -> String {
@@ -295,7 +309,7 @@ pub fn studies_text(result: &StudiesResult) -> String {
             let _ = writeln!(text, "{source}");
         }
         let _ = write!(text, "\n{}\n", statements_table(study).to_text());
-        for note in notes.iter().chain(&disagreements(study)) {
+        for note in notes.iter().chain(&study.disagreements()) {
             let _ = writeln!(text, "note: {note}");
         }
         text.push('\n');
@@ -315,14 +329,15 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
         summary_table(result).to_markdown()
     );
     for study in &result.studies {
-        let _ = write!(text, "\n## {}\n\n{}.\n", study.name(), study.title());
+        let title = markdown(study.title());
+        let _ = write!(text, "\n## {}\n\n{title}.\n", study.name());
         let (source, notes) = study.source_and_notes();
         if let Some(source) = source {
-            let _ = writeln!(text, "\nSource: {source}.");
+            let _ = writeln!(text, "\nSource: {}.", markdown(source));
         }
         let _ = write!(text, "\n{}\n", statements_table(study).to_markdown());
-        for note in notes.iter().chain(&disagreements(study)) {
-            let _ = writeln!(text, "- {note}");
+        for note in notes.iter().chain(&study.disagreements()) {
+            let _ = writeln!(text, "- {}", markdown(note));
         }
     }
     text

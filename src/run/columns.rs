@@ -55,6 +55,20 @@ pub(crate) fn metric_columns() -> Vec<&'static str> {
     always.flat_map(columns).collect()
 }
 
+/// The metrics one by one, named and ordered as the columns of tables, those on demand last.
+///
+/// # Errors
+/// Never for metrics.
+pub fn metric_values(metrics: &Metrics) -> serde_json::Result<Vec<(String, Value)>> {
+    let all = serde_json::to_value(metrics)?;
+    let always = metric_columns().into_iter();
+    let always = always.map(|name| (name.to_owned(), field(&all, name).clone()));
+    let on_demand = metrics.on_demand().into_iter();
+    Ok(always
+        .chain(on_demand.map(|(name, value)| (name, Value::from(value))))
+        .collect())
+}
+
 /// The value of a field, or of an element of a field: `coverage_4` is element 4 of `coverage`.
 pub(crate) fn field<'a>(row: &'a Value, name: &str) -> &'a Value {
     let element = || {

@@ -1,16 +1,17 @@
 //! The result of a search for the fewest satellites, and its certificate.
 
-use super::columns::{cells, metric_columns, optional};
+mod tables;
+
+pub use tables::{basis_word, certificate_heading, certificate_rows, size_csv};
+
 use super::results::{DesignSummary, ScenarioStamp};
-use super::tables::text;
 use crate::constellation::Design;
 use crate::evaluate::Metrics;
 use crate::search::size::{
-    KeptDesign, LevelSummary, RejectionBasis, SizeProblem, SizeSearch, Witness,
+    ClosestDesign, KeptDesign, LevelSummary, RefinedDesign, RejectionBasis, SizeProblem,
+    SizeSearch, Witness,
 };
-use csv::Writer;
 use serde::{Deserialize, Serialize};
-use std::io;
 
 /// The result.
 pub const SIZE_JSON: &str = "size.json";
@@ -76,7 +77,7 @@ pub struct LevelAbove {
 pub struct BestReached {
     /// Satellites.
     pub satellites: usize,
-    /// Of the designs named as witnesses the one that violates the constraints least.
+    /// The one that violates the constraints least.
     pub design: DesignSummary,
     /// Sum of its violations.
     pub violation: f64,
@@ -106,6 +107,25 @@ pub struct SizeFront {
     pub up_to: usize,
     /// Its points, by satellites.
     pub members: Vec<SizeFrontMember>,
+}
+
+/// The best design around one of the grid, with values between the steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Refinement {
+    /// Satellites.
+    pub satellites: usize,
+    /// Notation of the design of the grid.
+    pub from: String,
+    /// The best that was found.
+    pub design: DesignSummary,
+    /// Whether it keeps the constraints.
+    pub kept: bool,
+    /// Sum of its violations.
+    pub violation: f64,
+    /// Each constraint with the value of its quantity.
+    pub constraints: Vec<KeptConstraint>,
+    /// Designs that were evaluated.
+    pub evaluations: u64,
 }
 
 /// A design under other samples than those that the answer is exact for.
@@ -176,6 +196,10 @@ pub struct SizeResult {
     /// Satellites against a further objective, if asked for.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front: Option<SizeFront>,
+    /// Around the best designs and the closest rejected ones, the best between the steps of the grid: evidence of what a
+    /// finer grid would give, not a proof.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub refinement: Vec<Refinement>,
     /// The best designs, and the closest of those rejected with one satellite number less, at half the step, on half
     /// the grid and at eight phases of the GNSS.
     pub robustness: Vec<RobustnessRow>,
@@ -199,7 +223,7 @@ pub struct SizeResult {
     pub version: String,
 }
 
-/// Designs that keep the constraints, and designs that do not, under other samples.
+/// Designs that are looked at under other samples and between the steps.
 const LOOKED_AT: usize = 3;
 
 impl SizeResult {
@@ -208,6 +232,7 @@ impl SizeResult {
     pub fn new(
         problem: &SizeProblem<'_>,
         search: &SizeSearch,
+        closest: &[ClosestDesign],
         certificate: SizeCertificate,
         scenario: ScenarioStamp,
     ) -> Self {
@@ -234,10 +259,11 @@ impl SizeResult {
                 .collect(),
             best_reached: match fewest {
                 Some(_) => Vec::new(),
-                None => below.iter().filter_map(|of| reached(problem, of)).collect(),
+                None => best_reached(problem, closest),
             },
             rejected: below.into_iter().map(rejected).collect(),
             front: front(search),
+            refinement: Vec::new(),
             robustness: Vec::new(),
             constraints: problem
                 .constraints()
@@ -259,16 +285,11 @@ impl SizeResult {
         }
     }
 
-    /// The designs that are worth a look under other samples: the best, and the closest of the number of satellites
-    /// below.
+    /// The best designs of the fewest satellites.
     #[must_use]
-    pub fn worth_a_look(&self) -> Vec<Design> {
+    pub fn best(&self) -> Vec<Design> {
         let best = self.designs.iter().take(LOOKED_AT);
-        let best = best.filter_map(|one| one.design.design());
-        let below = self.rejected.last().into_iter();
-        let closest = below.flat_map(|level| level.witnesses.iter().take(LOOKED_AT));
-        best.chain(closest.filter_map(|witness| witness.design.parse().ok()))
-            .collect()
+        best.filter_map(|one| one.design.design()).collect()
     }
 
     /// Reads `size.json`.
@@ -337,21 +358,32 @@ pub fn robustness(
     designs.iter().filter_map(row).collect()
 }
 
-/// The best of the witnesses of a number of satellites, evaluated in full.
-fn reached(problem: &SizeProblem<'_>, level: &LevelSummary) -> Option<BestReached> {
-    let assessed = level.witnesses.iter().filter_map(|witness| {
-        let design: Design = witness.design.parse().ok()?;
-        let metrics = problem.assessed(&design)?;
-        let violation = problem.violations(&design, &metrics).map(|(.., far)| far);
-        Some((violation.sum::<f64>(), design, metrics))
-    });
-    let (violation, design, metrics) = assessed.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(BestReached {
-        satellites: level.satellites,
-        violation,
-        constraints: constraints(problem, &design, &metrics),
-        design: DesignSummary::from(&design),
+/// The best of each number of satellites.
+fn best_reached(problem: &SizeProblem<'_>, closest: &[ClosestDesign]) -> Vec<BestReached> {
+    let levels = closest.chunk_by(|a, b| a.satellites == b.satellites);
+    let best = levels.filter_map(|level| level.first());
+    best.map(|one| BestReached {
+        satellites: one.satellites,
+        violation: one.violation,
+        constraints: constraints(problem, &one.design, &one.metrics),
+        design: DesignSummary::from(&one.design),
     })
+    .collect()
+}
+
+/// What was found between the steps.
+#[must_use]
+pub fn refinements(problem: &SizeProblem<'_>, refined: &[RefinedDesign]) -> Vec<Refinement> {
+    let of = |one: &RefinedDesign| Refinement {
+        satellites: one.satellites,
+        from: one.from.clone(),
+        design: DesignSummary::from(&one.design),
+        kept: one.violation == 0.0,
+        violation: one.violation,
+        constraints: constraints(problem, &one.design, &one.metrics),
+        evaluations: one.evaluations,
+    };
+    refined.iter().map(of).collect()
 }
 
 /// What no design with fewer satellites has.
@@ -392,90 +424,4 @@ fn rules(problem: &SizeProblem<'_>, search: &SizeSearch) -> Vec<RuleReport> {
             / saving.designs.max(1) as f64,
     };
     search.savings().iter().map(report).collect()
-}
-
-/// The designs with the fewest satellites, one per row, with their metrics and the margin of each constraint.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn size_csv(result: &SizeResult) -> io::Result<String> {
-    let mut writer = Writer::from_writer(Vec::new());
-    let metrics = metric_columns();
-    let mut header = vec!["rank".to_owned()];
-    header.extend(DesignSummary::columns().iter().map(|&name| name.to_owned()));
-    header.extend(metrics.iter().map(|&name| name.to_owned()));
-    header.push("margin".to_owned());
-    let of = |constraint: &String| {
-        let [value, margin] = ["value", "margin"].map(|what| format!("{what} of {constraint}"));
-        [value, margin]
-    };
-    header.extend(result.constraints.iter().flat_map(of));
-    writer.write_record(header)?;
-    for one in &result.designs {
-        let mut row = vec![one.rank.to_string()];
-        row.extend(cells(&one.design, DesignSummary::columns())?);
-        row.extend(cells(&one.metrics, &metrics)?);
-        row.push(one.margin.to_string());
-        let of = |one: &KeptConstraint| [optional(one.value), optional(one.margin)];
-        row.extend(one.constraints.iter().flat_map(of));
-        writer.write_record(row)?;
-    }
-    text(writer)
-}
-
-/// The columns of a certificate.
-const CERTIFICATE_COLUMNS: [&str; 11] = [
-    "satellites",
-    "design",
-    "constraint",
-    "basis",
-    "point",
-    "latitude_deg",
-    "longitude_deg",
-    "elapsed_s",
-    "share_at_rejection",
-    "value_at_rejection",
-    "samples_share",
-];
-
-/// The heading of a certificate.
-#[must_use]
-pub fn certificate_heading() -> String {
-    CERTIFICATE_COLUMNS.join(",") + "\n"
-}
-
-/// The rows of a certificate.
-///
-/// # Errors
-/// Never for a table in memory.
-pub fn certificate_rows(witnesses: &[(usize, Witness)]) -> io::Result<String> {
-    let mut writer = Writer::from_writer(Vec::new());
-    for (satellites, one) in witnesses {
-        let point = one.point.as_ref();
-        writer.write_record([
-            satellites.to_string(),
-            one.design.clone(),
-            one.constraint.clone(),
-            basis_word(one.basis).to_owned(),
-            point.map_or_else(String::new, |point| point.number.to_string()),
-            optional(point.map(|point| point.latitude_deg)),
-            optional(point.map(|point| point.longitude_deg)),
-            optional(one.elapsed_s),
-            optional(one.share_at_rejection),
-            optional(one.value_at_rejection),
-            one.samples_share.to_string(),
-        ])?;
-    }
-    text(writer)
-}
-
-/// How a design was rejected, as in JSON.
-#[must_use]
-pub fn basis_word(basis: RejectionBasis) -> &'static str {
-    match basis {
-        RejectionBasis::Shells => "shells",
-        RejectionBasis::Geometry => "geometry",
-        RejectionBasis::Samples => "samples",
-        RejectionBasis::Evaluation => "evaluation",
-    }
 }

@@ -8,9 +8,11 @@
 //! does any proof.
 
 mod bound;
+mod closest;
 mod counts;
 mod order;
 mod problem;
+mod refine;
 mod rules;
 mod tail;
 #[cfg(test)]
@@ -19,6 +21,8 @@ mod trial;
 mod walk;
 mod witness;
 
+pub use closest::ClosestDesign;
 pub use problem::SizeProblem;
+pub use refine::RefinedDesign;
 pub use walk::{KeptDesign, LevelSummary, RuleSaving, SizeSearch};
 pub use witness::{PointWitness, RejectionBasis, Witness};

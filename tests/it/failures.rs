@@ -270,3 +270,330 @@ fn pairs_are_all_or_drawn() {
     );
     assert_ne!(first["failures"]["spread"], other["failures"]["spread"]);
 }
+
+/// A build-up and its retirement: each phase is an evaluation without what is not in service, and says when service begins.
+#[test]
+fn phases_say_when_service_begins_and_ends() {
+    let place = TempDir::new().unwrap();
+    fs::write(
+        place.path().join("phases.csv"),
+        "phase,add,remove\n2026,NW-P01,\n2027,NW-P02 NW-P03,\n2031,,NW-P01-S02\n",
+    )
+    .unwrap();
+    let design = ["--design", "delta:55:12/3/1@925"];
+    let of = |without: &str| evaluated(&place, &[&design[..], &["--without", without]].concat());
+    let first = of("NW-P02,NW-P03");
+    let bound = first["metrics"]["mean_pdop"].as_f64().unwrap() - 1e-3;
+    let requires = format!("objectives.constraints=[\"mean-pdop <= {bound}\"]");
+    let arguments = ["--phases", "phases.csv", "--set", &requires];
+    let all = evaluated(&place, &[&design[..], &arguments].concat());
+    let phases = &all["phases"];
+    let rows = phases["phases"].as_array().unwrap();
+    for (row, anew) in rows
+        .iter()
+        .zip([first, evaluated(&place, &design), of("NW-P01-S02")])
+    {
+        assert_eq!(
+            row["metrics"]["mean_visible"],
+            anew["metrics"]["mean_visible"]
+        );
+        assert_eq!(row["metrics"]["max_pdop"], anew["metrics"]["max_pdop"]);
+    }
+    let counts: Vec<_> = rows
+        .iter()
+        .map(|row| row["satellites"].as_u64().unwrap())
+        .collect();
+    assert_eq!(counts, [4, 12, 11]);
+    assert_eq!(
+        (&phases["service_begins"], &phases["service_ends"]),
+        (&"2027".into(), &Value::Null)
+    );
+    let text = with(&[&["evaluate"], &design[..], &arguments].concat());
+    let text = ran(place.path(), &text);
+    assert!(
+        text.stdout
+            .contains("service begins in 2027 (mean-pdop <= "),
+        "{}",
+        text.stdout
+    );
+    let csv = with(
+        &[
+            &["evaluate", "--format", "csv"],
+            &design[..],
+            &arguments[..2],
+        ]
+        .concat(),
+    );
+    let csv = ran(place.path(), &csv).stdout;
+    assert!(
+        csv.starts_with("name,phase,satellites,serves,mean_visible,"),
+        "{csv}"
+    );
+    assert_eq!(csv.lines().count(), 4);
+
+    // Bad tables and names, with the line.
+    let refused = |table: &str, more: &[&str]| {
+        fs::write(place.path().join("bad.csv"), table).unwrap();
+        let arguments = [&["evaluate", "--phases", "bad.csv"], &design[..], more].concat();
+        let ran = ran(place.path(), &with(&arguments));
+        assert_eq!(ran.status, 2, "{}", ran.stderr);
+        ran.stderr
+    };
+    let error = refused("phase,add\na,NW-P01\nb,NW-P09\n", &[]);
+    assert!(
+        error.contains("bad.csv, line 3: 'NW-P09' is not a satellite or plane of delta:55:12/3/1@925, did you mean 'NW-P0"),
+        "{error}"
+    );
+    let error = refused("phase,when\na,NW-P01\n", &[]);
+    assert!(
+        error.contains("bad.csv") && error.contains("line 1: found the column 'when'"),
+        "{error}"
+    );
+    let error = refused("phase,add\na,NW-P01\nb,NW-P01\n", &[]);
+    assert!(
+        error.contains(
+            "bad.csv, line 3: NW-P01-S01 is added in phase b, and it is in service already"
+        ),
+        "{error}"
+    );
+    let bound = ["--set", "objectives.constraints=[\"satellites <= 12\"]"];
+    let error = refused("phase,add\na,NW-P01\n", &bound);
+    assert!(
+        error.contains("satellites <= 12 is not of its service"),
+        "{error}"
+    );
+}
+
+/// Spares raise what is expected, the draws are of the seed, and satellites of no plane have none.
+#[test]
+fn spares_are_drawn_from_the_seed() {
+    let place = TempDir::new().unwrap();
+    let of = |more: &[&str]| {
+        let common = [
+            "--design",
+            "delta:55:24/3/1@925",
+            "--set",
+            "reliability.availability=0.8",
+        ];
+        evaluated(&place, &[&common[..], more].concat())["expected"].clone()
+    };
+    let spares = ["--set", "reliability.spares-per-plane=2"];
+    let ours = of(&spares);
+    assert_eq!(
+        (&ours["spares_per_plane"], &ours["draws"]["draws"]),
+        (&2.into(), &200.into())
+    );
+    // Ten satellites a plane, of which more than two down leave slots vacant.
+    let down = |n: i32, ways: f64| ways * 0.2_f64.powi(n) * 0.8_f64.powi(10 - n);
+    let filled = (down(0, 1.0) + down(1, 10.0) + down(2, 45.0)).powi(3);
+    assert!((ours["all_filled"].as_f64().unwrap() - filled).abs() < 1e-12);
+    let visible = |of: &Value| of["mean_visible"].as_f64().unwrap();
+    assert!(visible(&ours) > 1.1 * visible(&of(&[])));
+    assert_eq!(ours, of(&spares));
+    assert_ne!(
+        ours,
+        of(&[&spares[..], &["--set", "optimizer.seed=2"]].concat())
+    );
+    let more = of(&[&spares[..], &["--draws", "800"]].concat());
+    let error = more["draws"]["availability_standard_error"]
+        .as_f64()
+        .unwrap();
+    assert!(
+        error
+            <= ours["draws"]["availability_standard_error"]
+                .as_f64()
+                .unwrap()
+    );
+
+    let design = ["evaluate", "--design", "delta:55:12/3/1@925"];
+    let error = refused(&with(&[&design[..], &["--draws", "5"]].concat()));
+    assert!(
+        error.contains(
+            "--draws: nothing is drawn without --failures or reliability.spares-per-plane"
+        ),
+        "{error}"
+    );
+    let error = refused(&with(&[&design[..], &spares].concat()));
+    assert!(error.contains("reliability.spares-per-plane"), "{error}");
+    let up = ["--set", "reliability.availability=0.9"];
+    let goal = ["--set", "objectives.minimize=[\"expected-availability\"]"];
+    let error = refused(&with(&[&design[..], &up, &spares, &goal].concat()));
+    assert!(
+        error.contains("expected-availability") && error.contains("spares-per-plane"),
+        "{error}"
+    );
+}
+
+/// Intervals that have no effect, or only a part of one, are warned of; a misspelt name is not a matter of propagation.
+#[test]
+fn outages_without_effect_are_warned_of() {
+    let place = TempDir::new().unwrap();
+    fs::write(
+        place.path().join("odd.csv"),
+        "satellite,start_utc,end_utc\nNW-P01-S01,2025-01-01T00:20:10Z,2025-01-01T00:39:00Z\n\
+         NW-P01-S02,2024-12-31T00:00:00Z,2025-01-01T01:00:00Z\n",
+    )
+    .unwrap();
+    let arguments = [
+        "evaluate",
+        "--design",
+        "delta:55:12/3/1@925",
+        "--set",
+        "outages.file=odd.csv",
+    ];
+    let warned = ran(place.path(), &with(&arguments));
+    assert_eq!(warned.status, 0, "{}", warned.stderr);
+    for expected in [
+        "odd.csv, line 2: NW-P01-S01 is out of service from 2025-01-01T00:20:10Z to 2025-01-01T00:39:00Z, between two samples 1200 s \
+         apart: it has no effect",
+        "odd.csv, line 3: NW-P01-S02 is out of service from 2024-12-31T00:00:00Z to 2025-01-01T01:00:00Z, of which only what is within",
+    ] {
+        assert!(warned.stderr.contains(expected), "{}", warned.stderr);
+    }
+    let error = refused(&with(&[&arguments[..3], &["--without", "NW-P09"]].concat()));
+    assert!(
+        !error.contains("propagate") && error.contains("'NW-P09' is not a satellite"),
+        "{error}"
+    );
+}
+
+/// What `--without` does in the other commands: what is shown is without the satellites, and what writes all says so.
+#[test]
+fn other_commands_take_or_refuse_without() {
+    let place = TempDir::new().unwrap();
+    let design = ["--design", "delta:55:12/3/1@925"];
+    let plot = |more: &[&str]| {
+        let arguments = [&["plot", "--as", "csv"], &design[..], more].concat();
+        let ran = ran(place.path(), &with(&arguments));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        ran.stdout
+    };
+    let map = ["--figure", "map"];
+    let whole = plot(&map);
+    let without = plot(&[&map[..], &["--without", "NW-P02"]].concat());
+    let outages = plot(&[&map[..], &["--set", "outages.satellites=[\"NW-P02\"]"]].concat());
+    assert!(whole != without && without == outages);
+    for (command, what) in [
+        ("export", "export writes"),
+        ("validate", "validate compares"),
+    ] {
+        let more: &[&str] = match command {
+            "export" => &["--as", "tle", "--out", "out"],
+            _ => &["--against", "sgp4"],
+        };
+        let arguments = [&[command, "--without", "NW-P02"], &design[..], more].concat();
+        let error = refused(&arguments);
+        let expected = format!("--without NW-P02: {what} every satellite, in service or not");
+        assert!(error.contains(&expected), "{error}");
+    }
+}
+
+/// The map of the worst loss has, at each point, the worst of the maps without each satellite.
+#[test]
+fn the_map_of_the_worst_loss_is_that_of_all_maps() {
+    let place = TempDir::new().unwrap();
+    let column = |more: &[&str], name: &str| -> Vec<f64> {
+        let common = [
+            "plot",
+            "--figure",
+            "map",
+            "--as",
+            "csv",
+            "--design",
+            "delta:55:6/3/1@925",
+        ];
+        let ran = ran(place.path(), &with(&[&common[..], more].concat()));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        let mut lines = ran
+            .stdout
+            .lines()
+            .map(|line| line.split(',').collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        let at = header.iter().position(|one| *one == name).unwrap();
+        lines.map(|line| line[at].parse().unwrap()).collect()
+    };
+    let worst = column(&["--measure", "n1-max-pdop"], "n1_max_pdop");
+    let mut expected = vec![0.0_f64; worst.len()];
+    for plane in 1..=3 {
+        for slot in 1..=2 {
+            let name = format!("NW-P0{plane}-S0{slot}");
+            let one = column(&["--without", &name], "max_pdop");
+            expected = expected.iter().zip(one).map(|(a, b)| a.max(b)).collect();
+        }
+    }
+    for (ours, expected) in worst.iter().zip(&expected) {
+        // The map of one constellation is in f32.
+        assert!((ours / expected - 1.0).abs() < 1e-6, "{ours} {expected}");
+    }
+    let error = refused(&with(&[
+        "plot",
+        "--figure",
+        "series",
+        "--measure",
+        "n1-max-pdop",
+        "--design",
+        "delta:55:6/3/1@925",
+    ]));
+    assert!(
+        error.contains("figure series cannot show n1-max-pdop"),
+        "{error}"
+    );
+}
+
+/// The figure of failures has a row for each set, as many as are drawn.
+#[test]
+fn the_figure_of_failures_is_over_sets_too() {
+    let place = TempDir::new().unwrap();
+    let rows = |more: &[&str]| {
+        let common = ["plot", "--figure", "failures", "--as", "csv"];
+        let ran = ran(place.path(), &with(&[&common[..], more].concat()));
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        ran.stdout
+    };
+    let pairs = rows(&["--design", "delta:55:8/2/1@925", "--failures", "2"]);
+    assert_eq!(pairs.lines().count(), 1 + 28);
+    assert!(pairs.contains(",NW-P01-S01+NW-P01-S02,"), "{pairs}");
+    let many = [
+        "--design",
+        "delta:55:30/5/1@925",
+        "--failures",
+        "3",
+        "--draws",
+        "7",
+    ];
+    assert_eq!(rows(&many).lines().count(), 1 + 7);
+    let error = refused(&with(&[
+        "plot",
+        "--figure",
+        "map",
+        "--failures",
+        "2",
+        "--design",
+        "delta:55:8/2/1@925",
+    ]));
+    assert!(
+        error.contains("--failures and --draws are of the figure failures, not of map"),
+        "{error}"
+    );
+    // What is evaluated anew for each case is told.
+    let metres = [
+        "--set",
+        "accuracy.leo-m=1",
+        "--set",
+        "accuracy.beidou-3-m=1",
+    ];
+    let of = [
+        "evaluate",
+        "--design",
+        "delta:55:4/2/1@925",
+        "--failures",
+        "1",
+    ];
+    let told = ran(place.path(), &with(&[&of[..], &metres].concat()));
+    assert!(
+        told.stderr
+            .contains("each case takes an evaluation of its own for the accuracy in metres"),
+        "{}",
+        told.stderr
+    );
+}

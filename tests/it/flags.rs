@@ -93,6 +93,20 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "optimize",
+        "evaluations",
+        "--out out SMALL SEARCH",
+        "--evaluations",
+        Out,
+    ),
+    Row(
+        "optimize",
+        "from",
+        "optimize --out old SMALL SEARCH --evaluations | ",
+        "--from old",
+        Stdout,
+    ),
+    Row(
+        "optimize",
         "report",
         "--out out SMALL SEARCH",
         "--report",
@@ -167,6 +181,13 @@ const ROWS: &[Row] = &[
     ),
     Row(
         "evaluate",
+        "phases",
+        "DESIGN SMALL",
+        "--phases phases.csv",
+        Stdout,
+    ),
+    Row(
+        "evaluate",
         "without",
         "DESIGN SMALL",
         "--without NW-P01-S02,GEO-1",
@@ -225,6 +246,23 @@ const ROWS: &[Row] = &[
     ),
     Row("lint", "as", "six.tle", "--as sp3", Status),
     Row("lint", "format", "six.csv six.tle", "--format json", Stdout),
+    Row("dop", "mask-deg", "sky.csv", "--mask-deg 12", Stdout),
+    Row("dop", "clocks", "sky.csv", "--clocks shared", Stdout),
+    Row(
+        "dop",
+        "weighting",
+        "sky.csv",
+        "--weighting sine-elevation",
+        Stdout,
+    ),
+    Row("dop", "format", "sky.csv", "--format json", Stdout),
+    Row(
+        "orbit",
+        "format",
+        "delta:55:6/3/1@925",
+        "--format json",
+        Stdout,
+    ),
     Row(
         "reproduce",
         "set",
@@ -471,6 +509,27 @@ const ROWS: &[Row] = &[
         "--validation checks",
         Status,
     ),
+    Row(
+        "plot",
+        "without",
+        "SMALL --figure cdf --measure mean-visible OTHER",
+        "--without NW-P01",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "failures",
+        "SMALL --figure failures --as csv DESIGN",
+        "--failures 2",
+        Stdout,
+    ),
+    Row(
+        "plot",
+        "draws",
+        "SMALL --figure failures --as csv --failures 3 --design delta:55:30/5/1@925",
+        "--draws 5",
+        Stdout,
+    ),
     Row("plot", "figure", "run", "--figure pareto", Status),
     Row(
         "plot",
@@ -589,6 +648,13 @@ const ROWS: &[Row] = &[
         "exclude",
         "SMALL --out out --constellation six.csv",
         "--exclude NW-P01-S01",
+        Out,
+    ),
+    Row(
+        "report",
+        "without",
+        "SMALL --out out OTHER",
+        "--without NW-P01",
         Out,
     ),
     Row(
@@ -798,7 +864,10 @@ fn every_flag_has_its_effect() {
     }
     fs::rename(place.join("six/elements.csv"), place.join("six.csv")).unwrap();
     fs::rename(place.join("six/constellation.tle"), place.join("six.tle")).unwrap();
+    let sky = "azimuth_deg,elevation_deg,system\n0,15,a\n90,40,a\n200,25,b\n300,70,b\n45,11,b\n";
+    fs::write(place.join("sky.csv"), sky).unwrap();
     fs::write(place.join("list.txt"), "delta:60:4/2/1@800\n").unwrap();
+    fs::write(place.join("phases.csv"), "phase,add\na,NW-P01\n").unwrap();
     let mut none = Vec::new();
     for Row(command, flag, arguments, with, seen) in ROWS {
         let written = if *with == "DESIGN" { "--design" } else { with };

@@ -220,7 +220,36 @@ fn what_is_typed_is_shown_not_obeyed() {
         "name = \"a\\u001b\\u202e\"\n\"\\u202ekey\\u001b\" = 1\n",
     )
     .unwrap();
+    fs::write(
+        place.join("sky.csv"),
+        "azimuth_deg,elevation_deg,sky,system,e\u{202e}\n1,1,a\u{202e}b,c\u{200b}\n",
+    )
+    .unwrap();
+    fs::write(
+        place.join("sky2.csv"),
+        format!("azimuth_deg,elevation_deg\n\"{NAME}\n{FORGED}\",1\n"),
+    )
+    .unwrap();
+    let hostile = "a\\u001b[2J\\u202e<b>|`[x](y)";
+    let statement = format!(
+        "[[statement]]\nname = \"{hostile}\"\nof = \"delta:55:6/3/1@925\"\nmetric = \"raan-deg\"\nat-least = 1\n\
+         source = \"{hostile}\"\ndisagreement = \"{hostile}\"\n"
+    );
+    fs::write(
+        place.join("study.toml"),
+        format!("name = \"s\"\ntitle = \"{hostile}\"\nsource = \"{hostile}\"\nnotes = [\"{hostile}\"]\n{statement}"),
+    )
+    .unwrap();
     for command in [
+        "dop FILE",
+        "dop sky.csv",
+        "dop sky.csv --format json",
+        "dop sky.csv --format csv",
+        "dop sky2.csv",
+        "orbit FILE",
+        "reproduce FILE",
+        "reproduce study.toml",
+        "reproduce study.toml --format markdown",
         "FILE",
         "evaluate FILE --design delta:55:6/3/1@925",
         "evaluate --design FILE",
@@ -245,6 +274,7 @@ fn what_is_typed_is_shown_not_obeyed() {
         assert_shown(&ran.stdout, command);
         assert_shown(&ran.stderr, command);
     }
+    assert_files_shown(&place.join("runs/reproduce/s"), "reproduce");
     let points = fs::read_to_string(place.join("series/points.csv")).unwrap();
     assert!(points.contains(r"a\u{202e}b\u{200b}c"), "{points}");
 }

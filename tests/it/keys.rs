@@ -74,7 +74,7 @@ const fn row(
 }
 
 /// One row for each key. `mean_visible` counts LEO satellites alone, so that it tells their mask from that of the GNSS.
-const ROWS: [Row; 93] = [
+const ROWS: [Row; 94] = [
     row("name", "other", EVALUATE, "/scenario/name"),
     row(
         "constellations",
@@ -109,6 +109,12 @@ const ROWS: [Row; 93] = [
     row(
         "reliability.mttr-h",
         "200",
+        EVALUATE_RELIABILITY,
+        "/expected/mean_visible",
+    ),
+    row(
+        "reliability.spares-per-plane",
+        "1",
         EVALUATE_RELIABILITY,
         "/expected/mean_visible",
     ),

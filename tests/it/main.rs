@@ -7,6 +7,7 @@ mod common;
 mod compared;
 #[cfg(unix)]
 mod ctrl_c;
+mod evaluations;
 mod evidence;
 mod exports;
 mod failures;
@@ -30,6 +31,7 @@ mod series;
 mod shells;
 mod singular;
 mod size;
+mod skies;
 mod study;
 mod tidy;
 mod trust;

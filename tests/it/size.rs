@@ -64,6 +64,31 @@ fn the_fewest_satellites_are_those_of_a_sweep() {
     });
     assert_eq!(below.count() as u64, number);
     assert!(result["above"][0]["satellites"].as_u64().unwrap() > fewest);
+    // Between the steps, around the closest of two numbers below and around the best.
+    let refined = result["refinement"].as_array().unwrap();
+    let of = |satellites: u64| {
+        refined
+            .iter()
+            .filter(|one| one["satellites"] == satellites)
+            .count()
+    };
+    assert_eq!(of(fewest), designs.len().min(3));
+    let below: Vec<u64> = rejected
+        .iter()
+        .rev()
+        .take(2)
+        .map(|level| level["satellites"].as_u64().unwrap())
+        .collect();
+    for satellites in below {
+        assert!((1..=3).contains(&of(satellites)), "{satellites}");
+    }
+    for one in refined {
+        assert_eq!(one["kept"], one["violation"] == 0.0);
+        assert_eq!(
+            one["kept"].as_bool().unwrap(),
+            one["constraints"][0]["value"].as_f64().unwrap() >= 0.85
+        );
+    }
     let evaluations = &result["evaluations"];
     assert!(
         evaluations["samples_share"].as_f64().unwrap() < 0.9,
@@ -110,34 +135,91 @@ fn a_changed_certificate_is_noticed() {
     let result = json(&run(place, &arguments).stdout);
     let path = place.join("fewest/certificate.csv");
     let original = fs::read_to_string(&path).unwrap();
-    let kept = result["designs"][0]["design"]["notation"]
+    let designs = result["designs"].as_array().unwrap();
+    let kept = designs[0]["design"]["notation"]
         .as_str()
         .unwrap()
         .to_owned();
     let line = original.lines().nth(5).unwrap().to_owned();
     let design = line.split(',').nth(1).unwrap().to_owned();
+    let next = result["above"][0]["satellites"].as_u64().unwrap();
+    let of_next = |line: &&str| line.starts_with(&format!("{next},"));
+    let above = original.lines().find(of_next).unwrap().to_owned();
+    let without = |line: &str| original.replacen(&format!("{line}\n"), "", 1);
+    let lines: Vec<&str> = original.lines().collect();
+    let swapped = [&lines[..3], &[lines[4], lines[3]], &lines[5..]].concat();
+    // What is changed, what must be said, and how many things are wrong: what is missing at one place says nothing about
+    // the rest. Every change is also one of the checksum.
     let changes = [
         (
-            original.replacen(&format!("{line}\n"), "", 1),
-            "but the next design of the grid is",
+            without(&line),
+            format!("1 design without a proof with 16 satellites, the first is {design}"),
+            2,
+        ),
+        (
+            without(&above),
+            format!("with {next} satellites are without a proof, but the result says"),
+            3,
         ),
         (
             original.replacen(&design, &kept, 1),
-            "is rejected, but keeps the constraints",
+            "is rejected, but keeps the constraints".to_owned(),
+            4,
         ),
-        (original.replacen("availability", "max-pdop", 1), "checksum"),
+        (
+            swapped.join("\n") + "\n",
+            "not in the order of the grid".to_owned(),
+            2,
+        ),
+        (
+            original.clone() + "oops\n",
+            "not a row of a certificate: oops".to_owned(),
+            2,
+        ),
+        (
+            original.replacen("availability", "max-pdop", 1),
+            "checksum".to_owned(),
+            1,
+        ),
     ];
-    for (changed, finding) in changes {
+    for (changed, finding, wrong) in changes {
         assert_ne!(changed, original);
         fs::write(&path, changed).unwrap();
         let verified = ran(place, &["size", "--verify", "fewest", "--draw", "100000"]);
         assert_eq!(verified.status, 1, "{}", verified.stdout);
         assert!(
-            verified.stdout.contains(finding),
+            verified.stdout.contains(&finding),
             "{finding}: {}",
             verified.stdout
         );
+        let found = verified.stdout.matches("wrong: ").count();
+        assert_eq!(found, wrong, "{finding}: {}", verified.stdout);
     }
+    fs::write(&path, &original).unwrap();
+    let table = place.join("fewest/size.csv");
+    let text = fs::read_to_string(&table).unwrap();
+    for changed in [String::new(), text.replacen("delta", "star", 1)] {
+        fs::write(&table, changed).unwrap();
+        let verified = ran(place, &["size", "--verify", "fewest"]);
+        assert_eq!(verified.status, 1, "{}", verified.stdout);
+        assert!(
+            verified
+                .stdout
+                .contains("size.csv does not have the designs of size.json"),
+            "{}",
+            verified.stdout
+        );
+    }
+    fs::write(&table, &text).unwrap();
+    // Every row is drawn, those with the fewest satellites and above among them.
+    let all = [
+        "size", "--verify", "fewest", "--draw", "100000", "--format", "json",
+    ];
+    let all = json(&ran(place, &all).stdout);
+    assert_eq!(all["drawn"], result["certificate"]["designs"]);
+    let more = result["above"][0]["kept"].as_u64().unwrap();
+    assert_eq!(all["kept"], designs.len() as u64 + more);
+    assert_eq!(all["passed"], true);
     fs::write(&path, &original).unwrap();
     let path = place.join("fewest/size.json");
     let text = fs::read_to_string(&path).unwrap();

@@ -370,7 +370,8 @@ fn the_paper_is_repeated_into_a_directory() {
             "{line}"
         );
     }
-    let read = |name: &str| fs::read_to_string(place.join("runs/reproduce").join(name)).unwrap();
+    let read =
+        |name: &str| fs::read_to_string(place.join("runs/reproduce/paper").join(name)).unwrap();
     for (name, rows) in [
         ("table2.csv", 11),
         ("figure-3a.csv", 4 * 24),
@@ -381,6 +382,21 @@ fn the_paper_is_repeated_into_a_directory() {
         assert_eq!(read(name).lines().count(), rows + 1, "{name}");
     }
     assert!(read("report.md").starts_with("# Reproduction of the paper"));
+    let page = read("report.html");
+    for figure in [
+        "deviations-paper",
+        "figure-2",
+        "figure-3a",
+        "figure-3b",
+        "figure-4a",
+        "figure-4b",
+    ] {
+        let drawn = read(&format!("{figure}.svg"));
+        assert!(drawn.starts_with("<svg"), "{figure}");
+        assert!(page.contains(&drawn), "{figure}");
+        let dots = fs::read(place.join(format!("runs/reproduce/paper/{figure}.png"))).unwrap();
+        assert!(dots.starts_with(b"\x89PNG"), "{figure}");
+    }
     // The same again replaces it with the same bytes; another study needs --force.
     let before = read("report.json");
     assert_eq!(with(&["--threads", "2"]).status, 0);
@@ -389,7 +405,7 @@ fn the_paper_is_repeated_into_a_directory() {
     assert_eq!(other.status, 2);
     assert!(other.stderr.contains("--force"), "{}", other.stderr);
     // What was put beside it stays: the same study keeps it, and another one says that it is in the way.
-    let notes = place.join("runs/reproduce/notes.txt");
+    let notes = place.join("runs/reproduce/paper/notes.txt");
     fs::write(&notes, "mine").unwrap();
     assert_eq!(with(&[]).status, 0);
     let other = with(&["--set", "visibility.mask-deg=10", "--force"]);
@@ -454,6 +470,12 @@ source = \"page 12\"
         markdown.contains("- in view: not met, and not explained"),
         "{markdown}"
     );
+    // The figure has the number and its verdict; the page has the figure.
+    let drawn = fs::read_to_string(place.join("two/deviations-mine.svg")).unwrap();
+    assert!(drawn.contains("in view  (not-met)"), "{drawn}");
+    let page = fs::read_to_string(place.join("two/report.html")).unwrap();
+    assert!(page.contains(&drawn) && page.contains("in view: not met, and not explained"));
+    assert!(!page.contains("<script"));
     // Explained, it is no failure; the same studies again are replaced, others are not.
     let explained = MINE.replace("source = \"page", "disagreement = \"why\"\nsource = \"page");
     fs::write(place.join("mine.toml"), explained).unwrap();
@@ -470,6 +492,11 @@ source = \"page 12\"
         let again = reproduced(&["mine.toml", "--out", "one"]);
         assert_eq!(again.status, 0, "{}", again.stderr);
     }
+    // Another study in its place needs --force, and then nothing of the first is left.
+    let forced = reproduced(&["sun-synchronous", "--out", "one", "--force"]);
+    assert_eq!(forced.status, 0, "{}", forced.stderr);
+    assert!(!place.join("one/deviations-mine.svg").exists());
+    assert!(place.join("one/deviations-sun-synchronous.svg").exists());
     // By area nothing changes for one longitude, by another mask it does.
     let set = reproduced(&[
         "mine.toml",
@@ -492,6 +519,73 @@ source = \"page 12\"
         .map(|study| study["name"].as_str().unwrap())
         .collect();
     assert_eq!(names[..2], ["paper", "gps-sps"]);
+}
+
+/// Each study has a directory of its own, so that a second one needs no --force.
+#[test]
+fn studies_have_places_of_their_own() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for (studies, made) in [
+        (&["topex"][..], "topex"),
+        (&["sun-synchronous"], "sun-synchronous"),
+        (&["topex", "sun-synchronous"], "topex+sun-synchronous"),
+        (&["topex"], "topex"),
+    ] {
+        let ran = ran(place, &[&["reproduce"][..], studies].concat());
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        let report = place.join("runs/reproduce").join(made).join("report.json");
+        let report: Value = serde_json::from_slice(&fs::read(report).unwrap()).unwrap();
+        assert_eq!(report["studies"].as_array().unwrap().len(), studies.len());
+    }
+    let twice = refused(&["reproduce", "topex", "topex"]);
+    assert!(twice.contains("study topex is given twice"), "{twice}");
+}
+
+/// What the published tables of skies, slots and repeats are, the program computes: no statement of these studies is unexpected.
+#[test]
+fn validate_quick_studies() {
+    let directory = TempDir::new().unwrap();
+    let studies = ["skies", "galileo", "glonass", "topex", "sun-synchronous"];
+    let arguments = [&["reproduce", "--format", "json"][..], &studies].concat();
+    let ran = ran(directory.path(), &arguments);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let value: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let counted = |verdict: &str| {
+        let studies = value["studies"].as_array().unwrap().iter();
+        let statements = studies.flat_map(|study| study["statements"].as_array().unwrap());
+        statements.filter(|one| one["verdict"] == verdict).count()
+    };
+    // The numbers from memory; and the node of Galileo, which Moon and Sun turn too.
+    assert_eq!(
+        ["met", "unconfirmed", "not-met"].map(counted),
+        [26, 5, 1],
+        "{value}"
+    );
+}
+
+/// The example of the documentation is short, and says why its number is not met.
+#[test]
+fn the_example_study_runs() {
+    let directory = TempDir::new().unwrap();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/studies.md")).unwrap();
+    let (_, rest) = text.split_once("```toml\n").unwrap();
+    let (study, _) = rest.split_once("```").unwrap();
+    assert!(study.lines().count() < 20, "{study}");
+    fs::write(directory.path().join("mine.toml"), study).unwrap();
+    let ran = ran(directory.path(), &["reproduce", "mine.toml"]);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    assert!(
+        ran.stdout.contains("met-under-assumption"),
+        "{}",
+        ran.stdout
+    );
+    assert!(
+        ran.stdout.contains("note: mean visible, 72 satellites: "),
+        "{}",
+        ran.stdout
+    );
 }
 
 #[test]

@@ -45,9 +45,20 @@ pub(crate) struct EvaluateArgs {
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3), conflicts_with = "designs")]
     pub(crate) failures: Option<u8>,
 
-    /// Number of sets that are drawn for `--failures`, from the seed of the scenario.
-    #[arg(long, value_name = "N", default_value = "200", requires = "failures", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
-    pub(crate) draws: u32,
+    /// Number of draws from the seed of the scenario: of sets for `--failures`, and of vacant slots where the scenario has
+    /// `reliability.spares-per-plane` [default: 200].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) draws: Option<u32>,
+
+    /// Add the phases of a build-up or a drawdown, planes launched one after the other: the metrics in each, and in which service
+    /// begins.
+    ///
+    /// FILE is CSV with the columns `phase` (a date or another name) and `add` or `remove` or both, whose cells name satellites
+    /// (NW-P01-S03), planes (NW-P03) or shells (NW-A), separated by spaces. What is first said to be added is missing before; all
+    /// else is there from the start. A phase serves if it meets the constraints of the scenario, or, without any, if every sample is
+    /// available. With `--format csv` one row for each phase is printed in place of the constellation.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["designs", "failures"])]
+    pub(crate) phases: Option<PathBuf>,
 
     /// Write metrics by instant (epochs.csv) and by point (points.csv) to this directory, of several
     /// constellations to a folder each.

@@ -20,6 +20,10 @@ pub(crate) struct ExportArgs {
     #[command(flatten)]
     pub(crate) chosen: ChosenArgs,
 
+    /// Refused: of evaluate, report and plot.
+    #[arg(long, hide = true, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+
     /// Products to write, separated by commas; listed below.
     #[arg(
         long = "as",

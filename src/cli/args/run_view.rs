@@ -22,6 +22,11 @@ pub(crate) struct ViewArgs {
     #[command(flatten)]
     pub(crate) constellations: ConstellationArgs,
 
+    /// Take these satellites out of service throughout, as for `evaluate`: satellites (NW-P01-S03), planes (NW-P03), shells
+    /// (NW-A) or GNSS satellites (gps:A3). A run keeps those of its scenario.
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    pub(crate) without: Vec<String>,
+
     /// Also show the front of this run, in addition to the sweep of --certify; may be repeated. Only with a run.
     #[arg(long, value_name = "DIR")]
     pub(crate) front: Vec<PathBuf>,
@@ -62,7 +67,7 @@ pub(crate) struct PlotArgs {
     #[command(flatten)]
     pub(crate) view: ViewArgs,
 
-    /// Figure to draw: pareto, map, cdf, series, histogram, timeline, convergence or budget.
+    /// Figure to draw: pareto, map, cdf, series, histogram, timeline, failures, convergence or budget.
     #[arg(long)]
     pub(crate) figure: Figure,
 
@@ -75,6 +80,14 @@ pub(crate) struct PlotArgs {
     /// number from 1 [default: fuzzy, or the first constellation; needed for a map or a timeline of one of several].
     #[arg(long, value_name = "PICK")]
     pub(crate) pick: Option<String>,
+
+    /// Satellites that fail together in the figure failures: 1 to 3, all sets or draws as for `evaluate --failures` [default: 1].
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u8).range(1..=3))]
+    pub(crate) failures: Option<u8>,
+
+    /// Number of draws of the figure failures [default: 200].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) draws: Option<u32>,
 
     /// File format: svg, png, or csv for the data alone [default: by the extension of --out, or svg].
     #[arg(long = "as", value_name = "FORM")]

@@ -1,12 +1,14 @@
 //! `navwalker evaluate`.
 
+mod deployment;
 mod designs;
-mod failures;
+pub(super) mod failures;
 mod given_run;
 mod phases;
 mod print;
 mod series;
 mod single;
+mod spares;
 mod table;
 
 use crate::cli::args::EvaluateArgs;
@@ -21,6 +23,7 @@ use crate::run::ScenarioStamp;
 use crate::scenario::Scenario;
 use crate::search::{CountedSatellites, Goals};
 use anyhow::{Result, bail};
+use deployment::DeploymentTable;
 use designs::DesignList;
 use given_run::GivenRun;
 use phases::GnssPhases;
@@ -29,6 +32,7 @@ use series::SeriesDirectory;
 
 pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let study = Study::load(&args.study, &[])?.without(&args.study, &args.without)?;
+    spares::require_use_of_draws(args, &study.scenario)?;
     let sourced = given(args, &study)?;
     let list = args.designs.as_deref().map(DesignList::open).transpose()?;
     let run = GivenRun::open(args, &study, &sourced)?;
@@ -38,6 +42,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     let evaluator = study.evaluator()?;
     limits::check_memory_of_tables(evaluator.setup(), args.dops, series.is_some())?;
     let phases = GnssPhases::new(args.gnss_phases, evaluator.setup())?;
+    let deployment = DeploymentTable::read(args.phases.as_deref())?;
     let fixed = study.fixed()?;
     let goals = study.goals(fixed.as_ref());
     let gnss_only = gnss_only(args, &goals, &evaluator)?;
@@ -55,13 +60,14 @@ pub(crate) fn run(args: &EvaluateArgs) -> Result<Status> {
     for (n, one) in given.iter().enumerate() {
         let ephemeris = constellations::propagate(one, evaluator.setup())?;
         let mut entry = work.entry(one, &ephemeris)?;
-        if let Some(up) = study.scenario.reliability.satellite_availability() {
-            entry.evaluated.expected = Some(evaluator.expected(&ephemeris, up)?);
-        }
+        entry.evaluated.expected = spares::expected(&work, one, &ephemeris)?;
         if let Some(k) = args.failures {
             let found =
                 failures::summary(&work, one, &ephemeris, k.into(), &entry.evaluated.metrics)?;
             entry.evaluated.failures = Some(found);
+        }
+        if let Some(table) = &deployment {
+            entry.evaluated.phases = Some(deployment::summary(&work, one, &ephemeris, table)?);
         }
         entries.push(entry);
         if let Some(series) = &series {

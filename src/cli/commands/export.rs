@@ -31,6 +31,7 @@ const TOLD_IDENTITIES: usize = 3;
 
 pub(crate) fn run(args: &ExportArgs) -> Result<Status> {
     check_choices(args)?;
+    constellations::refuse_without(&args.without, "export writes")?;
     files::require_replaceable(&args.out, args.force, &own(&args.out))?;
     let mut asked = args.study.clone();
     if let Some(date) = &args.creation_date {

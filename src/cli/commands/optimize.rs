@@ -3,12 +3,13 @@
 mod seeds;
 
 use crate::cli::args::{OptimizeArgs, OutputFormat, quoted};
+use crate::cli::evaluations::EvaluationsFile;
 use crate::cli::interrupt::Stoppable;
 use crate::cli::limits::shown_time;
 use crate::cli::progress::SearchBar;
 use crate::cli::run::{Placed, RunDirectory};
 use crate::cli::study::{Study, read_manifest};
-use crate::cli::{Status, chart, coincidence, constellations, output};
+use crate::cli::{Status, chart, coincidence, constellations, evaluations, output};
 use crate::evaluate::{Evaluator, Setup};
 use crate::optimize::{Exhaustive, Pick, Problem, Search, Strategy};
 use crate::printable::printable;
@@ -24,9 +25,10 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 pub(crate) fn run(args: &OptimizeArgs) -> Result<Status> {
-    match args.seeds {
-        Some(count) => seeds::run(args, count),
-        None => one(args),
+    match (&args.from, args.seeds) {
+        (Some(directory), _) => evaluations::front(args, directory),
+        (None, Some(count)) => seeds::run(args, count),
+        (None, None) => one(args),
     }
 }
 
@@ -202,10 +204,14 @@ pub(super) fn search(
     if let Search::Exhaustive(sweep) = &search {
         tell_time(sweep, &problem)?;
     }
+    let mut table = EvaluationsFile::open(args.evaluations, directory.path(), &problem, &search)?;
     let progress = SearchBar::new(&search);
     let stoppable = Stoppable::begin();
     while !search.is_done() && !stoppable.is_asked_to_stop() {
-        search.step(&problem)?;
+        match &mut table {
+            Some(table) => table.step(&mut search)?,
+            None => search.step(&problem)?,
+        }
         directory.save(&mut search)?;
         progress.show(&search);
     }
@@ -215,6 +221,9 @@ pub(super) fn search(
         result.certify(sweep, &scenario.objectives.minimize);
     }
     let placed = directory.finish(scenario, &mut search, &result);
+    if let (Some(table), Ok(Placed::Written)) = (table, &placed) {
+        table.finish(study)?;
+    }
     Ok(Ended {
         result,
         placed,
@@ -243,7 +252,7 @@ fn tell_time(sweep: &Exhaustive, problem: &DesignProblem<'_>) -> Result<()> {
 const SAMPLE_FOR_TIME: u64 = 16;
 
 /// The exit status of a search that used its full budget.
-pub(super) fn status(result: &OptimizeResult) -> Status {
+pub(crate) fn status(result: &OptimizeResult) -> Status {
     if result.front.is_empty() {
         Status::Failed
     } else {
@@ -320,17 +329,33 @@ fn start(
 }
 
 pub(super) fn text(result: &OptimizeResult, scenario: &str) -> String {
-    let members = result.front.iter();
-    let table = front_table("#", members.map(|m| (m.index.to_string(), m)));
     let [done, of] = result.search.generations;
-    let mut text = format!(
-        "Pareto set of scenario {scenario}: {}, {} evaluations, {} {done}/{of} generations, seed {}\n\n{}",
+    let head = format!(
+        "Pareto set of scenario {scenario}: {}, {} evaluations, {} {done}/{of} generations, seed {}",
         counted(result.front.len(), "design"),
         result.search.evaluations,
         shown::algorithm(&result.search.algorithm),
         result.search.seed,
-        table.to_text()
     );
+    text_below(&head, result)
+}
+
+/// The same of the evaluations of a search for other goals.
+pub(crate) fn text_from_evaluations(result: &OptimizeResult, scenario: &str) -> String {
+    let head = format!(
+        "Pareto set of scenario {scenario}: {}, of {} evaluations of a search by {}, seed {}",
+        counted(result.front.len(), "design"),
+        result.search.evaluations,
+        shown::algorithm(&result.search.algorithm),
+        result.search.seed,
+    );
+    text_below(&head, result)
+}
+
+fn text_below(head: &str, result: &OptimizeResult) -> String {
+    let members = result.front.iter();
+    let table = front_table("#", members.map(|m| (m.index.to_string(), m)));
+    let mut text = format!("{head}\n\n{}", table.to_text());
     if let Some(fixed) = &result.search.fixed {
         text += &fixed_text(fixed);
     }

@@ -1,5 +1,6 @@
 //! `navwalker plot`.
 
+use super::evaluate::failures::{self, FailureSets};
 use crate::cli::args::{MemberPick, PlotArgs};
 use crate::cli::run_view::View;
 use crate::cli::{Status, files, output};
@@ -53,6 +54,12 @@ pub(crate) fn run(args: &PlotArgs) -> Result<Status> {
 
 /// Refuses a figure that only a run has, before anything is computed.
 fn refuse_figure_of_search(args: &PlotArgs) -> Result<()> {
+    if args.figure != Figure::Failures && (args.failures.is_some() || args.draws.is_some()) {
+        bail!(
+            "--failures and --draws are of the figure failures, not of {}",
+            args.figure
+        );
+    }
     let of_run = matches!(args.figure, Figure::Convergence | Figure::Budget);
     if of_run && args.view.run().is_none() {
         bail!(
@@ -195,16 +202,24 @@ fn losses(args: &PlotArgs, view: &View) -> Result<Vec<NamedLosses>> {
         .evaluator
         .as_ref()
         .context("this figure needs the scenario of the run, which cannot be set up")?;
+    let k = usize::from(args.failures.unwrap_or(1));
+    let seed = view.run.scenario.as_ref().map_or(1, |of| of.optimizer.seed);
     let of = |name: &str, notation: &str, ephemeris: &Ephemeris| -> Result<NamedLosses> {
-        let places = 0..ephemeris.satellites().len();
-        let sets: Vec<Vec<usize>> = places.map(|place| vec![place]).collect();
-        let lost = evaluator.without_each(ephemeris, &sets)?;
-        let names = ephemeris.satellites().iter().map(|one| one.name.clone());
+        let satellites = ephemeris.satellites();
+        failures::require_one_left(name, satellites.len(), k)?;
+        let sets = FailureSets::new(satellites.len(), k, (args.draws, seed));
+        let lost = evaluator.without_each(ephemeris, &sets.sets)?;
+        let names = |set: &Vec<usize>| {
+            let names = set.iter().map(|place| satellites[*place].name.as_str());
+            names.collect::<Vec<_>>().join("+")
+        };
         Ok(NamedLosses {
             name: name.to_owned(),
             notation: notation.to_owned(),
             whole: evaluator.evaluate_ephemeris(ephemeris)?,
-            lost: names.zip(lost).collect(),
+            lost: sets.sets.iter().map(names).zip(lost).collect(),
+            k,
+            is_drawn: sets.drawn.is_some(),
         })
     };
     let picked = picked(args.pick.as_deref(), view)?;
@@ -238,7 +253,7 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
         })
     };
     let picked = picked(args.pick.as_deref(), view)?;
-    let first = match &picked {
+    let mut first = match &picked {
         FirstShown::Member(one) => Shown {
             name: one.name.clone(),
             notation: one.name.clone(),
@@ -246,6 +261,17 @@ fn profiles(args: &PlotArgs, view: &View, with_others: bool) -> Result<Vec<Shown
         },
         FirstShown::Constellation(one) => of_constellation(one)?,
     };
+    if args.figure == Figure::Map && args.measure.is_some_and(Measure::is_of_one_lost) {
+        first.profile = match &picked {
+            FirstShown::Member(one) => {
+                let ephemeris = one.in_service(evaluator.setup())?;
+                first.profile.with_one_lost(evaluator, &ephemeris)?
+            }
+            FirstShown::Constellation(one) => {
+                first.profile.with_one_lost(evaluator, &one.ephemeris)?
+            }
+        };
+    }
     let is_first = |other: &&Compared| match &picked {
         FirstShown::Member(one) => other.constellation.name == one.name,
         FirstShown::Constellation(one) => std::ptr::eq(*one, *other),

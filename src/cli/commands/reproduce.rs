@@ -5,6 +5,8 @@ use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
 use crate::keyword::nearest;
 use crate::printable::printable;
+use crate::report::figures::draw::{png, svg};
+use crate::report::figures::{PAPER_FIGURES, deviations_name, study_figures};
 use crate::report::{
     Align, PublishedResult, REPRODUCTION_FILES, ReproduceResult, StudiesResult, StudyResult, Table,
     reproduction_files, reproduction_markdown, reproduction_text, statements_csv, studies_markdown,
@@ -23,8 +25,12 @@ use std::path::{Path, PathBuf};
 
 /// The report that identifies the studies in a directory.
 const REPORT: &str = "report.json";
-/// The files beside the tables.
-const OTHERS: [&str; 3] = [SCENARIO, REPORT, "report.md"];
+/// The files beside the tables and figures.
+const OTHERS: [&str; 4] = [SCENARIO, REPORT, "report.md", "report.html"];
+/// The forms of a figure.
+const FORMS: [&str; 2] = ["svg", "png"];
+/// Below it a study, or several, have their directory unless another is given.
+const DEFAULT_PLACE: &str = "runs/reproduce";
 
 /// A study that was asked for.
 enum Chosen {
@@ -56,19 +62,19 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     }
     let chosen = names.iter().map(|name| choose(name, args));
     let chosen: Vec<Chosen> = chosen.collect::<Result<_>>()?;
-    let identities = chosen.iter().map(Chosen::identity);
-    let identities: Vec<String> = identities.collect::<Result<_>>()?;
-    require_place(args, &chosen, &identities)?;
-    let staged = files::StagedDirectory::new(&args.out)?;
-    let mut written = Vec::new();
+    require_different(&chosen)?;
+    let place = StudyPlace::new(args, &chosen)?;
+    let staged = files::StagedDirectory::new(&place.directory)?;
+    let mut written: Vec<(String, Vec<u8>)> = Vec::new();
     let mut studies = Vec::new();
     let mut status = Status::Done;
     for one in chosen {
         match one {
             Chosen::Paper(study) => {
                 let result = paper(&study)?;
-                written.extend(reproduction_files(&result)?);
-                written.push((SCENARIO, study.scenario.to_toml()));
+                let tables = reproduction_files(&result)?.into_iter();
+                written.extend(tables.map(|(name, text)| (name.to_owned(), text.into_bytes())));
+                written.push((SCENARIO.to_owned(), study.scenario.to_toml().into_bytes()));
                 studies.push(StudyResult::Paper(Box::new(result)));
             }
             Chosen::Published(one) => {
@@ -82,15 +88,57 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
         }
     }
     let result = StudiesResult::new(studies);
-    written.push((REPORT, render(&result, StudyFormat::Json)?));
-    written.push(("report.md", render(&result, StudyFormat::Markdown)?));
-    for (name, text) in &written {
-        files::write_atomically(&staged.path().join(name), text.as_bytes())?;
+    written.extend(reports(&result)?);
+    written.extend(drawn(&result)?);
+    for (name, bytes) in &written {
+        files::write_atomically(&staged.path().join(name), bytes)?;
     }
-    staged.commit_keeping(&files::others(&args.out, &own())?)?;
+    staged.commit_keeping(&files::others(&place.directory, &place.own)?)?;
     output::result(&render(&result, args.format)?)?;
-    output::hint(&format!("\nreport written to {}", args.out.display()));
+    output::hint(&format!(
+        "\nreport written to {}",
+        place.directory.display()
+    ));
     Ok(status)
+}
+
+/// The reports of some studies: as JSON, Markdown and a page.
+fn reports(result: &StudiesResult) -> Result<[(String, Vec<u8>); 3]> {
+    let mut page = Vec::new();
+    result.write_page(&mut page)?;
+    let [_, json, markdown, html] = OTHERS.map(str::to_owned);
+    Ok([
+        (json, render(result, StudyFormat::Json)?.into_bytes()),
+        (
+            markdown,
+            render(result, StudyFormat::Markdown)?.into_bytes(),
+        ),
+        (html, page),
+    ])
+}
+
+/// The figures of some studies, each in every form.
+fn drawn(result: &StudiesResult) -> Result<Vec<(String, Vec<u8>)>> {
+    let mut files = Vec::new();
+    for (name, chart) in result.studies.iter().flat_map(study_figures) {
+        let [mut vector, mut dots] = [Vec::new(), Vec::new()];
+        svg(&chart, &mut vector)?;
+        png(&chart, &mut dots)?;
+        files.push((format!("{name}.{}", FORMS[0]), vector));
+        files.push((format!("{name}.{}", FORMS[1]), dots));
+    }
+    Ok(files)
+}
+
+/// Fails if two studies have the same name: so have their figures.
+fn require_different(chosen: &[Chosen]) -> Result<()> {
+    let mut known = BTreeSet::new();
+    for one in chosen {
+        if !known.insert(one.name()) {
+            bail!("study {} is given twice", one.name());
+        }
+    }
+    Ok(())
 }
 
 /// The names of the studies that are asked for.
@@ -151,6 +199,14 @@ fn no_such(name: &str) -> anyhow::Error {
 }
 
 impl Chosen {
+    /// Its name.
+    fn name(&self) -> &str {
+        match self {
+            Self::Paper(_) => ReproduceResult::NAME,
+            Self::Published(study) => &study.study.name,
+        }
+    }
+
     /// What identifies its results.
     fn identity(&self) -> Result<String> {
         match self {
@@ -177,20 +233,47 @@ impl ChosenStudy {
     }
 }
 
-/// Fails if the results may not be written to the directory.
-fn require_place(args: &ReproduceArgs, chosen: &[Chosen], identities: &[String]) -> Result<()> {
-    if holds(&args.out, identities) {
-        return Ok(());
+/// Where the results go.
+struct StudyPlace {
+    directory: PathBuf,
+    /// The files there that this command writes, or wrote for other studies.
+    own: BTreeSet<String>,
+}
+
+impl StudyPlace {
+    /// The place of some studies.
+    ///
+    /// # Errors
+    /// If the results may not be written there.
+    fn new(args: &ReproduceArgs, chosen: &[Chosen]) -> Result<Self> {
+        let directory = args.out.clone().unwrap_or_else(|| {
+            let names: Vec<&str> = chosen.iter().map(Chosen::name).collect();
+            let name = if args.all {
+                "all".to_owned()
+            } else {
+                names.join("+")
+            };
+            Path::new(DEFAULT_PLACE).join(name)
+        });
+        let stored = stored(&directory);
+        let before = stored.iter().flat_map(|stored| &stored.studies);
+        let before = before.map(|study| study.name.as_str());
+        let own = own(chosen.iter().map(Chosen::name).chain(before));
+        let identities = chosen.iter().map(Chosen::identity);
+        let identities: Vec<String> = identities.collect::<Result<_>>()?;
+        if !stored.is_some_and(|stored| stored.holds(&identities)) {
+            if !args.force && !files::is_vacant(&directory)? {
+                bail!(
+                    "{} holds something other than this study by this version; choose another --out, or replace it with --force",
+                    directory.display()
+                );
+            }
+            let inputs: Vec<PathBuf> = chosen.iter().flat_map(Chosen::inputs).collect();
+            files::refuse_inputs(&directory, inputs)?;
+            files::require_replaceable(&directory, args.force, &own)?;
+        }
+        Ok(Self { directory, own })
     }
-    if !args.force && !files::is_vacant(&args.out)? {
-        bail!(
-            "{} holds something other than this study by this version; choose another --out, or replace it with --force",
-            args.out.display()
-        );
-    }
-    let inputs: Vec<PathBuf> = chosen.iter().flat_map(Chosen::inputs).collect();
-    files::refuse_inputs(&args.out, inputs)?;
-    files::require_replaceable(&args.out, args.force, &own())
 }
 
 /// The paper's study under its scenario.
@@ -267,23 +350,32 @@ struct Stored {
 
 #[derive(Deserialize)]
 struct StoredStudy {
+    name: String,
     scenario: Option<ScenarioStamp>,
     sha256: Option<String>,
 }
 
-/// What a reproduction writes in its directory.
-fn own() -> BTreeSet<String> {
-    let own = REPRODUCTION_FILES.into_iter().chain(OTHERS);
-    own.map(str::to_owned).collect()
+impl Stored {
+    /// Whether these are its studies, by this version.
+    fn holds(self, identities: &[String]) -> bool {
+        let of = |one: StoredStudy| one.sha256.or(one.scenario.map(|stamp| stamp.hash));
+        let held: Option<Vec<String>> = self.studies.into_iter().map(of).collect();
+        held.is_some_and(|held| held == identities) && self.version == VERSION
+    }
 }
 
-/// Whether a directory contains these studies by this version.
-fn holds(directory: &Path, identities: &[String]) -> bool {
-    let stored = files::read_run(&directory.join(REPORT)).ok();
-    let stored: Option<Stored> = stored.and_then(|bytes| serde_json::from_slice(&bytes).ok());
-    stored.is_some_and(|stored| {
-        let of = |one: StoredStudy| one.sha256.or(one.scenario.map(|stamp| stamp.hash));
-        let held: Option<Vec<String>> = stored.studies.into_iter().map(of).collect();
-        held.is_some_and(|held| held == identities) && stored.version == VERSION
-    })
+/// The report in a directory, if there is one.
+fn stored(directory: &Path) -> Option<Stored> {
+    let bytes = files::read_run(&directory.join(REPORT)).ok()?;
+    serde_json::from_slice(&bytes).ok()
+}
+
+/// What the reproduction of these studies writes in its directory.
+fn own<'n>(studies: impl Iterator<Item = &'n str>) -> BTreeSet<String> {
+    let tables = REPRODUCTION_FILES.into_iter().chain(OTHERS);
+    let tables = tables.map(str::to_owned);
+    let figures = PAPER_FIGURES.into_iter().map(str::to_owned);
+    let figures = figures.chain(studies.map(deviations_name));
+    let figures = figures.flat_map(|name| FORMS.map(|form| format!("{name}.{form}")));
+    tables.chain(figures).collect()
 }

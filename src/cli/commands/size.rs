@@ -11,9 +11,9 @@ use crate::cli::progress::SizeBar;
 use crate::cli::study::Study;
 use crate::cli::{Status, coincidence, limits, output};
 use crate::evaluate::Evaluator;
-use crate::run::size::{SizeResult, size_csv};
+use crate::run::size::{Refinement, SizeResult, refinements, size_csv};
 use crate::scenario::Scenario;
-use crate::search::size::{SizeProblem, SizeSearch};
+use crate::search::size::{ClosestDesign, SizeProblem, SizeSearch};
 use crate::search::{DesignProblem, Quantity};
 use anyhow::{Result, bail};
 use directory::SizeDirectory;
@@ -22,6 +22,9 @@ use std::time::{Duration, Instant};
 
 /// Time between two checkpoints.
 const CHECKPOINT_EVERY: Duration = Duration::from_secs(5);
+
+/// Numbers of satellites below the fewest in which the closest designs are found.
+const LEVELS_BELOW: usize = 2;
 
 pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
     if let Some(directory) = &args.verify {
@@ -50,17 +53,25 @@ pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
     }
     let start = || SizeSearch::start(&problem, args.slack.unwrap_or(0), objective);
     let mut search = search.unwrap_or_else(start);
-    let is_interrupted = searched(&problem, &mut search, &mut directory)?;
-    if is_interrupted {
+    let mut closest = None;
+    if !searched(&problem, &mut search, &mut directory)? {
+        closest = closest_below(&problem, &search)?;
+    }
+    let Some(closest) = closest else {
         output::hint(&format!(
             "\ninterrupted after {} designs; {} has what is done; continue with the same command and --resume",
             search.tried(),
             out.display()
         ));
         return Ok(Status::Interrupted);
-    }
-    let mut result = SizeResult::new(&problem, &search, directory.certificate()?, study.stamp()?);
-    let designs = result.worth_a_look();
+    };
+    let (certificate, stamp) = (directory.certificate()?, study.stamp()?);
+    let mut result = SizeResult::new(&problem, &search, &closest, certificate, stamp);
+    result.refinement = refined(&problem, &result, &closest)?;
+    let mut designs = result.best();
+    let next = closest.iter().map(|one| one.satellites).max();
+    let next = closest.iter().filter(|one| Some(one.satellites) == next);
+    designs.extend(next.map(|one| one.design.clone()));
     result.robustness = robust::rows(&study, problem.problem().evaluator().setup(), &designs)?;
     directory.finish(&result)?;
     output::result(&match args.format {
@@ -68,7 +79,7 @@ pub(crate) fn run(args: &SizeArgs) -> Result<Status> {
         OutputFormat::Json => crate::printable::json(&result)?,
         OutputFormat::Csv => size_csv(&result)?,
     })?;
-    hint_what_next(&result, &study.scenario, &out);
+    hint_what_next(&result, &out);
     Ok(match result.fewest {
         Some(_) => Status::Done,
         None => Status::Failed,
@@ -109,6 +120,58 @@ fn searched(
     directory.save(search)?;
     let is_asked = stoppable.end();
     Ok(is_asked && !search.is_done())
+}
+
+/// The closest rejected designs: of each number of satellites if nothing keeps the constraints, otherwise of the next
+/// below the fewest; `None` if Ctrl-C was pressed.
+fn closest_below(
+    problem: &SizeProblem<'_>,
+    search: &SizeSearch,
+) -> Result<Option<Vec<ClosestDesign>>> {
+    let levels = search.levels();
+    let fewest = search.fewest();
+    let below = levels.partition_point(|level| fewest.is_none_or(|n| level.satellites < n));
+    let first = match fewest {
+        Some(_) => below.saturating_sub(LEVELS_BELOW),
+        None => 0,
+    };
+    if fewest.is_none() {
+        output::hint(
+            "no design keeps the constraints; looking for the best with each number of satellites",
+        );
+    }
+    let stoppable = Stoppable::begin();
+    let mut found = Vec::new();
+    for level in &levels[first..below] {
+        match problem.closest(search, level, &|| stoppable.is_asked_to_stop())? {
+            Some(closest) => found.extend(closest),
+            None => {
+                stoppable.end();
+                return Ok(None);
+            }
+        }
+    }
+    Ok((!stoppable.end()).then_some(found))
+}
+
+/// What lies between the steps around the best designs and around the closest with fewer satellites.
+fn refined(
+    problem: &SizeProblem<'_>,
+    result: &SizeResult,
+    closest: &[ClosestDesign],
+) -> Result<Vec<Refinement>> {
+    let levels: Vec<&[ClosestDesign]> = closest
+        .chunk_by(|a, b| a.satellites == b.satellites)
+        .collect();
+    let last = &levels[levels.len().saturating_sub(LEVELS_BELOW)..];
+    let mut refined = Vec::new();
+    for level in last {
+        refined.extend(problem.refined_closest(level));
+    }
+    if let Some(fewest) = result.fewest {
+        refined.extend(problem.refined_designs(fewest, &result.best())?);
+    }
+    Ok(refinements(problem, &refined))
 }
 
 /// With --slack, the first objective that is not the number of satellites.
@@ -174,7 +237,7 @@ fn warn_of_rules(problem: &SizeProblem<'_>) {
     ));
 }
 
-fn hint_what_next(result: &SizeResult, scenario: &Scenario, out: &Path) {
+fn hint_what_next(result: &SizeResult, out: &Path) {
     output::hint(&format!(
         "\nresult and certificate written to {}",
         out.display()
@@ -182,9 +245,9 @@ fn hint_what_next(result: &SizeResult, scenario: &Scenario, out: &Path) {
     let out = quoted(&out.display().to_string());
     let mut next = format!("next: navwalker size --verify {out}");
     if let Some(best) = result.designs.first() {
-        let name = quoted(&scenario.name);
         next += &format!(
-            "\n      navwalker evaluate {name} --design {}",
+            "\n      navwalker evaluate {out}/{} --design {}",
+            crate::run::SCENARIO,
             best.design.notation
         );
     }

@@ -1,7 +1,9 @@
 //! `navwalker validate`.
 
 use crate::cli::args::{ReportFormat, ValidateArgs};
-use crate::cli::constellations::{no_file_to_select_from, propagate, study_and_constellations};
+use crate::cli::constellations::{
+    no_file_to_select_from, propagate, refuse_without, study_and_constellations,
+};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output, read_constellation};
 use crate::constellation::Design;
@@ -60,6 +62,7 @@ fn targets(typed: &[String]) -> Result<Vec<Against>> {
 }
 
 pub(crate) fn run(args: &ValidateArgs) -> Result<Status> {
+    refuse_without(&args.without, "validate compares")?;
     let targets = targets(&args.against)?;
     let run = args.chosen.run.as_deref().filter(|_| args.report);
     let out = args.out.clone().or(run.map(|run| run.join("validation")));

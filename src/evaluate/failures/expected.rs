@@ -3,6 +3,7 @@
 //! Only the satellites that a sample sees matter to it: the sum goes over the subsets of these that are down, up to the number
 //! beyond which the rest of the binomial distribution is negligible.
 
+use super::mixture::StateDraws;
 use super::pass::{Sets, Sighted, Worker};
 use super::sight::SightTree;
 use crate::ephemeris::{Ephemeris, EphemerisError};
@@ -29,6 +30,11 @@ const TRAILING_BITS: u32 = 40;
 /// Least PDOP of a bucket: 2⁻⁷, below what any number of satellites gives.
 const FIRST: u64 = (1023 - 7) << (52 - TRAILING_BITS);
 
+/// The bucket of a PDOP.
+pub(super) fn bucket_of(pdop: f64) -> usize {
+    (pdop.to_bits() >> TRAILING_BITS).saturating_sub(FIRST) as usize
+}
+
 /// Metrics as expected over point, instant and state of the satellites.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ExpectedMetrics {
@@ -50,6 +56,9 @@ pub struct ExpectedMetrics {
     pub cvar_pdop: Option<f64>,
     /// Largest probability of the states of a sample that are left out; their share counts as neither solved nor available.
     pub neglected: f64,
+    /// If the states were drawn: how many, and what that leaves open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub draws: Option<StateDraws>,
 }
 
 /// Why nothing can be said.
@@ -109,7 +118,7 @@ impl ExpectedSums {
     }
 
     fn add_solved(&mut self, pdop: f64, weight: f64) {
-        let bucket = (pdop.to_bits() >> TRAILING_BITS).saturating_sub(FIRST) as usize;
+        let bucket = bucket_of(pdop);
         if bucket >= self.solved.len() {
             self.solved.resize(bucket + 1, (0.0, 0.0));
         }
@@ -134,28 +143,10 @@ impl ExpectedSums {
         }
     }
 
-    /// The mean of the bucket that the weight from below reaches, and its number.
-    fn quantile(&self, level: f64, solved: f64) -> Option<(usize, f64)> {
-        let mut reached = 0.0;
-        let wanted = level * solved * (1.0 - 1e-12);
-        let found = self.solved.iter().enumerate().find(|(_, (weight, _))| {
-            reached += weight;
-            *weight > 0.0 && reached >= wanted
-        });
-        found.map(|(bucket, (weight, sum))| (bucket, sum / weight))
-    }
-
     fn metrics(&self, up: f64, level: f64) -> ExpectedMetrics {
         let solved: f64 = self.solved.iter().map(|(weight, _)| weight).sum();
         let sum: f64 = self.solved.iter().map(|(_, sum)| sum).sum();
-        let at_risk = self.quantile(level, solved);
-        let cvar = at_risk.map(|(bucket, value)| {
-            let beyond = self.solved[bucket..].iter();
-            let excess: f64 = beyond
-                .map(|(weight, sum)| (sum - weight * value).max(0.0))
-                .sum();
-            value + excess / ((1.0 - level) * solved)
-        });
+        let [p95, cvar] = tail(&self.solved, level);
         ExpectedMetrics {
             satellite_availability: up,
             mean_visible: self.visible / self.weight,
@@ -163,11 +154,33 @@ impl ExpectedSums {
             solved_fraction: solved / self.weight,
             availability: self.available / self.weight,
             mean_pdop: (solved > 0.0).then(|| sum / solved),
-            p95_pdop: self.quantile(0.95, solved).map(|(_, value)| value),
+            p95_pdop: p95,
             cvar_pdop: cvar,
             neglected: self.neglected,
+            draws: None,
         }
     }
+}
+
+/// The 95 % quantile and the conditional value-at-risk of a distribution: weight, and weight times value, of each bucket.
+pub(super) fn tail(buckets: &[(f64, f64)], level: f64) -> [Option<f64>; 2] {
+    let all: f64 = buckets.iter().map(|(weight, _)| weight).sum();
+    // The mean of the bucket that the weight from below reaches, and its number.
+    let quantile = |level: f64| {
+        let mut reached = 0.0;
+        let wanted = level * all * (1.0 - 1e-12);
+        let found = buckets.iter().enumerate().find(|(_, (weight, _))| {
+            reached += weight;
+            *weight > 0.0 && reached >= wanted
+        });
+        found.map(|(bucket, (weight, sum))| (bucket, sum / weight))
+    };
+    let cvar = quantile(level).map(|(bucket, value)| {
+        let excess = buckets[bucket..].iter();
+        let excess = excess.map(|(weight, sum)| (sum - weight * value).max(0.0));
+        value + excess.sum::<f64>() / ((1.0 - level) * all)
+    });
+    [quantile(0.95).map(|(_, value)| value), cvar]
 }
 
 /// The states of one sample.

@@ -1,37 +1,18 @@
 //! One pass over the samples: PDOP with all satellites, and without each of some sets.
+//!
+//! The lanes of the kernel do nearly all of it; what they leave open, skylines and LEO clocks of their own take the plain path.
 
 use super::sight::{Reach, SightTree};
 use crate::dop::ClockGroup;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Evaluator;
-use crate::evaluate::fixed::PlainGnssSample;
+use crate::evaluate::fixed::{self, PlainGnssSample};
+use crate::evaluate::kernel::{
+    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, SampleLosses, WholeSample, at_most_u16,
+};
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// A sample without some satellites. Sixteen bytes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ChangedSample {
-    /// Instant times points plus point.
-    pub(super) sample: u32,
-    /// Visible satellites that are missing.
-    pub(super) missing: u32,
-    /// PDOP without them; infinite if unsolved.
-    pub(super) pdop: f64,
-}
-
-/// The samples of some instants, instant by instant and point by point.
-#[derive(Default)]
-pub(super) struct PassPiece {
-    /// PDOP with all satellites; infinite if unsolved.
-    pub(super) pdop: Vec<f64>,
-    /// Visible LEO satellites.
-    pub(super) visible: Vec<u32>,
-    /// Visible GNSS satellites.
-    pub(super) gnss_visible: Vec<u32>,
-    /// Of each set, what changes without it, by rising sample.
-    pub(super) changed: Vec<Vec<ChangedSample>>,
-}
 
 /// PDOP above which a sample is summed anew: below, downdated sums agree with these to 1e-12.
 const DOWNDATED_UP_TO: f64 = 5.0;
@@ -78,6 +59,17 @@ impl<'a> Sets<'a> {
     }
 }
 
+impl Sets<'_> {
+    /// About how many of so many samples change without a set: room to begin with.
+    fn changes_of(&self, samples: usize) -> usize {
+        /// A little more than the share of the Earth that sees a satellite at 1000 km.
+        const SHARE: f64 = 0.05;
+        let members: usize = self.of_satellite.iter().map(Vec::len).sum();
+        let share = (SHARE * members as f64 / self.count.max(1) as f64).min(1.0);
+        (share * samples as f64) as usize
+    }
+}
+
 /// A satellite in view.
 #[derive(Clone, Copy)]
 pub(super) struct Sighted {
@@ -99,7 +91,6 @@ pub(super) struct Worker<'a> {
     whole: Vec<ClockGroup>,
     /// Set and place in the sky of the satellites of a sample.
     touched: Vec<(u32, u32)>,
-    piece: PassPiece,
 }
 
 /// Evaluates the instants piece by piece, on all threads; the pieces are in the order of time.
@@ -107,16 +98,40 @@ pub(super) fn pass(
     evaluator: &Evaluator,
     tree: &SightTree,
     sets: &Sets<'_>,
-) -> Result<Vec<PassPiece>, EphemerisError> {
-    // Made before the threads ask for it.
-    evaluator.fixed()?;
-    let instants = evaluator.setup().grid.len();
+) -> Result<Vec<SampleLosses>, EphemerisError> {
+    let kernel = evaluator.kernel_for(sets.ephemeris);
+    let lanes = kernel.filter(|kernel| kernel.loses());
+    if lanes.is_none() {
+        // Made before the threads ask for it.
+        evaluator.fixed()?;
+    }
+    let setup = evaluator.setup();
+    let instants = setup.grid.len();
     let length = instants.div_ceil(4 * rayon::current_num_threads()).max(1);
     let starts: Vec<usize> = (0..instants).step_by(length).collect();
     let piece = |start: &usize| {
         let mut worker = Worker::new(evaluator, tree, sets);
-        worker.run(*start..(*start + length).min(instants))?;
-        Ok(worker.piece)
+        let range = *start..(*start + length).min(instants);
+        let capacity = sets.changes_of(range.len() * setup.sites.len());
+        let mut losses = SampleLosses {
+            first: (start * setup.sites.len()) as u32,
+            whole: Vec::with_capacity(range.len() * setup.sites.len()),
+            changed: (0..sets.count)
+                .map(|_| Vec::with_capacity(capacity))
+                .collect(),
+            largest: 0.0,
+        };
+        match lanes {
+            Some(kernel) => {
+                let of_satellite = &sets.of_satellite;
+                let settle = |instant, doubts: &mut _, losses: &mut _| {
+                    worker.settle(instant, doubts, losses)
+                };
+                kernel.losses(sets.ephemeris, of_satellite, range, &mut losses, settle)?;
+            }
+            None => worker.run(range, &mut losses)?,
+        }
+        Ok(losses)
     };
     starts.par_iter().map(piece).collect()
 }
@@ -131,23 +146,111 @@ impl<'a> Worker<'a> {
             groups: Vec::new(),
             whole: Vec::new(),
             touched: Vec::new(),
-            piece: PassPiece {
-                changed: vec![Vec::new(); sets.count],
-                ..PassPiece::default()
-            },
         }
     }
 
-    fn run(&mut self, instants: Range<usize>) -> Result<(), EphemerisError> {
+    /// Adds the samples of some instants by the plain path.
+    fn run(
+        &mut self,
+        instants: Range<usize>,
+        losses: &mut SampleLosses,
+    ) -> Result<(), EphemerisError> {
         let fixed = self.evaluator.fixed()?;
         for instant in instants {
             self.look(instant)?;
-            let first = instant * self.sky.len();
             for (site, gnss) in fixed.at(instant).iter().enumerate() {
-                self.sample((first + site) as u32, site, gnss);
+                let seen = self.take_sky(site);
+                let place = losses.whole.len() as u32;
+                losses.whole.push(WholeSample {
+                    pdop: self.start(&seen, gnss),
+                    site: site as u32,
+                    visible: at_most_u16(seen.len() as u32),
+                    gnss_visible: at_most_u16(gnss.visible),
+                });
+                self.lose(place, &seen, gnss, losses);
+                self.give_sky(site, seen);
             }
         }
         Ok(())
+    }
+
+    /// Decides what the lanes leave open at an instant.
+    fn settle(
+        &mut self,
+        instant: usize,
+        doubts: &mut LossDoubts,
+        losses: &mut SampleLosses,
+    ) -> Result<(), EphemerisError> {
+        let setup = self.evaluator.setup();
+        let elapsed_s = setup.grid.elapsed_s(instant);
+        let rotation = self.evaluator.rotations[instant];
+        let systems = fixed::positions(self.evaluator.kernel.systems(), elapsed_s, rotation)?;
+        let ephemeris = self.sets.ephemeris;
+        let mut known = vec![None; ephemeris.satellites().len()];
+        let mut seen = Vec::new();
+        doubts.samples.sort_by_key(|doubt| doubt.place);
+        for of_sample in doubts.samples.chunk_by(|a, b| a.place == b.place) {
+            let LossDoubt { place, tile, .. } = of_sample[0];
+            let number = losses.whole[place as usize].site as usize;
+            let site = &setup.sites[number];
+            let of_tile = doubts.tiles.iter().find(|(known, _)| *known == tile);
+            seen.clear();
+            for &satellite in of_tile.iter().flat_map(|(_, satellites)| satellites) {
+                let position = match known[satellite as usize] {
+                    Some(position) => position,
+                    None => {
+                        let one = &ephemeris.satellites()[satellite as usize];
+                        let state = ephemeris.state_or_gap(one, elapsed_s)?;
+                        let position =
+                            state.map(|state| rotation.to_earth_fixed(state.position_km));
+                        *known[satellite as usize].insert(position)
+                    }
+                };
+                let unit = position.and_then(|target| site.line_of_sight(setup.mask, target));
+                seen.extend(unit.map(|unit| Sighted {
+                    satellite,
+                    unit,
+                    weight: setup.observation_weight(site, unit),
+                }));
+            }
+            let gnss = PlainGnssSample::new(setup, site, &systems);
+            let pdop = self.start(&seen, &gnss);
+            for doubt in of_sample {
+                self.decide(doubt.about, (place, pdop), &seen, &gnss, losses);
+            }
+        }
+        Ok(())
+    }
+
+    /// Decides one of them at a sample that is begun.
+    fn decide(
+        &mut self,
+        about: DoubtAbout,
+        (place, pdop): (u32, f64),
+        seen: &[Sighted],
+        gnss: &PlainGnssSample,
+        losses: &mut SampleLosses,
+    ) {
+        let whole = &mut losses.whole[place as usize];
+        match about {
+            DoubtAbout::Whole => whole.pdop = pdop,
+            DoubtAbout::Sky => {
+                (whole.pdop, whole.visible) = (pdop, at_most_u16(seen.len() as u32));
+                self.lose(place, seen, gnss, losses);
+            }
+            DoubtAbout::Set { set, at } => {
+                let is_lost = |one: &Sighted| {
+                    let sets = &self.sets.of_satellite[one.satellite as usize];
+                    sets.binary_search(&set).is_ok()
+                };
+                let places = seen.iter().enumerate();
+                let places = places.filter(|(_, one)| is_lost(one));
+                let places: Vec<usize> = places.map(|(place, _)| place).collect();
+                let pdop = self.without(seen, &places, gnss);
+                losses.changed[set as usize][at as usize].pdop = pdop;
+                losses.note(pdop);
+            }
+        }
     }
 
     /// Fills the sky of each point, satellite by satellite.
@@ -180,19 +283,20 @@ impl<'a> Worker<'a> {
         Ok(())
     }
 
-    /// One sample with all satellites and without each set.
-    fn sample(&mut self, sample: u32, site: usize, gnss: &PlainGnssSample) {
-        let seen = std::mem::take(&mut self.sky[site]);
-        let pdop = self.start(&seen, gnss);
-        self.piece.pdop.push(pdop);
-        self.piece.visible.push(seen.len() as u32);
-        self.piece.gnss_visible.push(gnss.visible);
-        self.touched.clear();
-        for (place, one) in (0..).zip(&seen) {
-            let sets = self.sets.of_satellite[one.satellite as usize].iter();
-            self.touched.extend(sets.map(|set| (*set, place)));
-        }
+    /// A sample that is begun, without each set of which it sees a satellite.
+    fn lose(
+        &mut self,
+        place: u32,
+        seen: &[Sighted],
+        gnss: &PlainGnssSample,
+        losses: &mut SampleLosses,
+    ) {
         let mut touched = std::mem::take(&mut self.touched);
+        touched.clear();
+        for (place, one) in (0..).zip(seen) {
+            let sets = self.sets.of_satellite[one.satellite as usize].iter();
+            touched.extend(sets.map(|set| (*set, place)));
+        }
         if !touched.is_sorted() {
             touched.sort_unstable();
         }
@@ -200,15 +304,15 @@ impl<'a> Worker<'a> {
         for together in touched.chunk_by(|a, b| a.0 == b.0) {
             places.clear();
             places.extend(together.iter().map(|(_, place)| *place as usize));
-            let pdop = self.without(&seen, &places, gnss);
-            self.piece.changed[together[0].0 as usize].push(ChangedSample {
-                sample,
+            let pdop = self.without(seen, &places, gnss);
+            losses.note(pdop);
+            losses.changed[together[0].0 as usize].push(ChangedSample {
+                sample: losses.first + place,
                 missing: together.len() as u32,
                 pdop,
             });
         }
         self.touched = touched;
-        self.sky[site] = seen;
     }
 
     /// Begins a sample: PDOP with all satellites, from which sets are then taken away.

@@ -3,13 +3,14 @@
 //! PDOP is counted once in buckets of its leading bits. Without a set, the samples that change move to other buckets; then
 //! only the values in buckets that hold a wanted rank are sorted.
 
-use super::pass::{ChangedSample, PassPiece};
 use crate::evaluate::counts::{LongestOutage, Outages};
 use crate::evaluate::histograms::ViewBins;
-use crate::evaluate::kernel::quantile_rank;
+use crate::evaluate::kernel::{ChangedSample, SampleLosses, WholeSample, quantile_rank};
 use crate::evaluate::metrics::Evaluated;
 use crate::evaluate::{Evaluator, Metrics};
 use crate::stats::Summary;
+use std::cmp::Ordering;
+use std::sync::OnceLock;
 
 /// Bits of an f64 that a bucket ignores: it uses 10 of the 52 bits of the fraction.
 const TRAILING_BITS: u32 = 42;
@@ -21,11 +22,8 @@ const VALUE_AT_RISK: usize = 4;
 /// All samples with all satellites.
 pub(super) struct Whole<'a> {
     evaluator: &'a Evaluator,
-    pieces: &'a [PassPiece],
-    /// PDOP, infinite if unsolved, and what is visible.
-    pdop: Vec<f64>,
-    visible: Vec<u32>,
-    gnss_visible: Vec<u32>,
+    pieces: &'a [SampleLosses],
+    samples: Vec<WholeSample>,
     leo: ViewBins,
     all: ViewBins,
     buckets: Buckets,
@@ -59,6 +57,24 @@ struct Buckets {
     /// The samples, bucket by bucket, and where those of each bucket begin.
     members: Vec<u32>,
     begins: Vec<usize>,
+    /// Those of a bucket in rising order, once it is wanted.
+    ordered: Vec<OnceLock<Vec<BucketValue>>>,
+}
+
+/// A value of PDOP in a bucket.
+#[derive(Debug, Clone, Copy)]
+struct BucketValue {
+    pdop: f64,
+    sample: u32,
+    weight: u64,
+}
+
+impl BucketValue {
+    /// By the value, and of equal ones by the sample.
+    fn order(&self, other: &Self) -> Ordering {
+        let by_value = self.pdop.total_cmp(&other.pdop);
+        by_value.then(self.sample.cmp(&other.sample))
+    }
 }
 
 fn leading_bits(pdop: f64) -> u64 {
@@ -66,16 +82,22 @@ fn leading_bits(pdop: f64) -> u64 {
 }
 
 impl Buckets {
+    /// The bucket of a solved value. Without satellites PDOP rises, but for rounding.
+    #[inline(always)]
     fn of(&self, pdop: f64) -> usize {
-        (leading_bits(pdop) - self.first) as usize
+        leading_bits(pdop).saturating_sub(self.first) as usize
     }
 
-    /// Of the values of the whole constellation, with room for all others.
-    fn new(pdop: &[f64], others: impl Iterator<Item = f64>, weight: impl Fn(usize) -> u64) -> Self {
-        let solved = || pdop.iter().copied().filter(|value| value.is_finite());
-        let (mut least, mut largest) = (f64::INFINITY, 0.0_f64);
-        for value in solved().chain(others.filter(|value| value.is_finite())) {
-            (least, largest) = (least.min(value), largest.max(value));
+    /// Of the values of the whole constellation, with room for values up to the largest of others.
+    fn new(
+        samples: &[WholeSample],
+        mut largest: f64,
+        weight: impl Fn(&WholeSample) -> u64,
+    ) -> Self {
+        let solved = || (0..).zip(samples).filter(|(_, one)| one.pdop.is_finite());
+        let mut least = f64::INFINITY;
+        for (_, one) in solved() {
+            (least, largest) = (least.min(one.pdop), largest.max(one.pdop));
         }
         if least > largest {
             (least, largest) = (1.0, 1.0);
@@ -88,15 +110,12 @@ impl Buckets {
             sums_from: vec![0.0; count + 1],
             members: vec![0; solved().count()],
             begins: vec![0; count + 1],
+            ordered: vec![OnceLock::new(); count],
         };
-        for (sample, &value) in pdop
-            .iter()
-            .enumerate()
-            .filter(|(_, value)| value.is_finite())
-        {
-            let bucket = buckets.of(value);
-            buckets.weights[bucket] += weight(sample);
-            buckets.sums_from[bucket] += weight(sample) as f64 * value;
+        for (_, one) in solved() {
+            let bucket = buckets.of(one.pdop);
+            buckets.weights[bucket] += weight(one);
+            buckets.sums_from[bucket] += weight(one) as f64 * one.pdop;
             buckets.begins[bucket + 1] += 1;
         }
         for bucket in 0..count {
@@ -106,8 +125,8 @@ impl Buckets {
             buckets.sums_from[bucket] += buckets.sums_from[bucket + 1];
         }
         let mut next = buckets.begins.clone();
-        for (sample, &value) in (0..).zip(pdop).filter(|(_, value)| value.is_finite()) {
-            let place = &mut next[buckets.of(value)];
+        for (sample, one) in solved() {
+            let place = &mut next[buckets.of(one.pdop)];
             buckets.members[*place] = sample;
             *place += 1;
         }
@@ -118,27 +137,32 @@ impl Buckets {
 /// Memory for one set after the other.
 pub(super) struct Scratch {
     weights: Vec<u64>,
-    /// The mark of the set without which a sample changes.
-    changed_by: Vec<u32>,
-    mark: u32,
+    /// A bit for each rank that is wanted of a bucket.
+    wanted: Vec<u8>,
     /// Samples whose availability changes, and whether one does, point by point.
     turned: Vec<u32>,
     is_turned: Vec<bool>,
-    /// Values and weights of a bucket.
-    values: Vec<(f64, u64)>,
+    /// The values of a bucket.
+    values: Vec<BucketValue>,
 }
 
 impl Scratch {
     pub(super) fn new(whole: &Whole<'_>) -> Self {
         Self {
             weights: Vec::new(),
-            changed_by: vec![0; whole.pdop.len()],
-            mark: 0,
+            wanted: vec![0; whole.buckets.weights.len()],
             turned: Vec::new(),
-            is_turned: vec![false; whole.pdop.len()],
+            is_turned: vec![false; whole.samples.len()],
             values: Vec::new(),
         }
     }
+}
+
+/// What leaves a bucket and what arrives there without a set.
+#[derive(Default)]
+struct BucketMoves {
+    gone: Vec<BucketValue>,
+    arrived: Vec<BucketValue>,
 }
 
 /// A wanted rank, the bucket that holds it, and the weight of the buckets before.
@@ -150,42 +174,37 @@ struct WantedRank {
 }
 
 impl<'a> Whole<'a> {
-    pub(super) fn new(evaluator: &'a Evaluator, pieces: &'a [PassPiece]) -> Self {
+    pub(super) fn new(evaluator: &'a Evaluator, pieces: &'a [SampleLosses]) -> Self {
         let setup = evaluator.setup();
-        let sites = setup.sites.len();
-        let joined = |of: fn(&PassPiece) -> &Vec<u32>| -> Vec<u32> {
-            pieces.iter().flat_map(of).copied().collect()
-        };
-        let pdop: Vec<f64> = pieces
+        let samples: Vec<WholeSample> = pieces
             .iter()
-            .flat_map(|piece| &piece.pdop)
+            .flat_map(|piece| &piece.whole)
             .copied()
             .collect();
-        let (visible, gnss_visible) = (
-            joined(|piece| &piece.visible),
-            joined(|piece| &piece.gnss_visible),
-        );
         let (mut leo, mut all) = (ViewBins::default(), ViewBins::default());
-        let weight = |sample: usize| evaluator.weights.of(sample % sites);
+        let weight = |one: &WholeSample| evaluator.weights.of(one.site as usize);
         let available_up_to = setup.metrics.availability_pdop;
         let mut totals = Totals::default();
-        let mut is_out = vec![false; pdop.len()];
+        let mut is_out = vec![false; samples.len()];
         let instants = setup.grid.len();
-        for (sample, &value) in pdop.iter().enumerate() {
-            let weight = weight(sample);
-            leo.add(visible[sample], weight);
-            all.add(visible[sample] + gnss_visible[sample], weight);
-            let is_available = value <= available_up_to;
-            totals.available += if is_available { weight } else { 0 };
-            is_out[sample % sites * instants + sample / sites] = !is_available;
-            if value.is_finite() {
-                totals.number += 1;
-                totals.solved += weight;
-                totals.sum += weight as f64 * value;
+        for (instant, points) in samples.chunks(setup.sites.len()).enumerate() {
+            for one in points {
+                let weight = weight(one);
+                let visible = u32::from(one.visible);
+                leo.add(visible, weight);
+                all.add(visible + u32::from(one.gnss_visible), weight);
+                let is_available = one.pdop <= available_up_to;
+                totals.available += if is_available { weight } else { 0 };
+                is_out[one.site as usize * instants + instant] = !is_available;
+                if one.pdop.is_finite() {
+                    totals.number += 1;
+                    totals.solved += weight;
+                    totals.sum += weight as f64 * one.pdop;
+                }
             }
         }
-        let changed = pieces.iter().flat_map(|piece| &piece.changed).flatten();
-        let buckets = Buckets::new(&pdop, changed.map(|one| one.pdop), weight);
+        let largest = pieces.iter().map(|piece| piece.largest);
+        let buckets = Buckets::new(&samples, largest.fold(0.0, f64::max), weight);
         let points = is_out.chunks(instants);
         Self {
             outages: points
@@ -193,9 +212,7 @@ impl<'a> Whole<'a> {
                 .collect(),
             evaluator,
             pieces,
-            pdop,
-            visible,
-            gnss_visible,
+            samples,
             leo,
             all,
             buckets,
@@ -211,9 +228,8 @@ impl<'a> Whole<'a> {
             .flat_map(move |piece| &piece.changed[set])
     }
 
-    fn weight(&self, sample: u32) -> u64 {
-        let sites = self.evaluator.setup().sites.len();
-        self.evaluator.weights.of(sample as usize % sites)
+    fn weight(&self, one: &WholeSample) -> u64 {
+        self.evaluator.weights.of(one.site as usize)
     }
 
     /// The metrics without a set, of so many satellites that are left.
@@ -222,35 +238,39 @@ impl<'a> Whole<'a> {
         let available_up_to = setup.metrics.availability_pdop;
         let (mut leo, mut all) = (self.leo.clone(), self.all.clone());
         let mut totals = self.totals;
-        scratch.mark += 1;
         scratch.weights.clone_from(&self.buckets.weights);
+        // Sums in variables of their own stay in registers.
+        let (mut sum, mut number, mut solved) = (totals.sum, totals.number, totals.solved);
+        let weights = scratch.weights.as_mut_slice();
         for one in self.changed(set) {
-            let sample = one.sample as usize;
-            let weight = self.weight(one.sample);
-            let (old, visible) = (self.pdop[sample], self.visible[sample]);
-            let in_all = visible + self.gnss_visible[sample];
-            leo.shift(visible, visible - one.missing, weight);
-            all.shift(in_all, in_all - one.missing, weight);
-            scratch.changed_by[sample] = scratch.mark;
-            if old.is_finite() {
-                scratch.weights[self.buckets.of(old)] -= weight;
-                totals.number -= 1;
-                totals.solved -= weight;
-                totals.sum -= weight as f64 * old;
+            let whole = &self.samples[one.sample as usize];
+            let (weight, old, new) = (self.weight(whole), whole.pdop, one.pdop);
+            let visible = u32::from(whole.visible);
+            let in_all = visible + u32::from(whole.gnss_visible);
+            leo.shift(visible, visible.saturating_sub(one.missing), weight);
+            all.shift(in_all, in_all.saturating_sub(one.missing), weight);
+            if old < f64::INFINITY {
+                weights[self.buckets.of(old)] -= weight;
+                number -= 1;
+                solved -= weight;
+                sum -= weight as f64 * old;
             }
-            if one.pdop.is_finite() {
-                scratch.weights[self.buckets.of(one.pdop)] += weight;
-                totals.number += 1;
-                totals.solved += weight;
-                totals.sum += weight as f64 * one.pdop;
+            if new < f64::INFINITY {
+                weights[self.buckets.of(new)] += weight;
+                number += 1;
+                solved += weight;
+                sum += weight as f64 * new;
             }
-            match (old <= available_up_to, one.pdop <= available_up_to) {
-                (true, false) => totals.available -= weight,
-                (false, true) => totals.available += weight,
-                _ => continue,
+            let (was_available, is_available) = (old <= available_up_to, new <= available_up_to);
+            if was_available != is_available {
+                scratch.turned.push(one.sample);
+                match is_available {
+                    true => totals.available += weight,
+                    false => totals.available -= weight,
+                }
             }
-            scratch.turned.push(one.sample);
         }
+        (totals.sum, totals.number, totals.solved) = (sum, number, solved);
         let share = |weight: u64| weight as f64 / self.evaluator.weights.total() as f64;
         let evaluated = Evaluated {
             leo: leo.views(),
@@ -271,11 +291,12 @@ impl<'a> Whole<'a> {
         let Scratch {
             turned, is_turned, ..
         } = scratch;
-        let place = |sample: u32| sample as usize % sites * instants + sample as usize / sites;
+        let site = |sample: u32| self.samples[sample as usize].site as usize;
+        let place = |sample: u32| site(sample) * instants + sample as usize / sites;
         let mut affected = vec![false; sites];
         for &sample in turned.iter() {
             is_turned[place(sample)] = true;
-            affected[sample as usize % sites] = true;
+            affected[site(sample)] = true;
         }
         let points = self.outages.iter().zip(affected).enumerate();
         let longest = LongestOutage::of(points.map(|(site, (known, is_affected))| {
@@ -307,42 +328,20 @@ impl<'a> Whole<'a> {
         ];
         let wanted = locate(ranks, &scratch.weights);
         let at_risk = wanted[VALUE_AT_RISK];
-        // Of the buckets beyond that of the value-at-risk.
-        let mut tail = self.buckets.sums_from[at_risk.bucket + 1];
-        let mut arrived: [Vec<(f64, u64)>; WANTED] = Default::default();
-        for one in self.changed(set) {
-            let weight = self.weight(one.sample);
-            let old = self.pdop[one.sample as usize];
-            if old.is_finite() && self.buckets.of(old) > at_risk.bucket {
-                tail -= weight as f64 * old;
-            }
-            if !one.pdop.is_finite() {
-                continue;
-            }
-            let bucket = self.buckets.of(one.pdop);
-            if bucket > at_risk.bucket {
-                tail += weight as f64 * one.pdop;
-            }
-            for (arrived, wanted) in arrived.iter_mut().zip(&wanted) {
-                if wanted.bucket == bucket {
-                    arrived.push((one.pdop, weight));
-                }
-            }
-        }
+        let (moves, tail) = self.moves(set, &wanted, scratch);
         let mut found = [0.0; WANTED];
-        for (number, arrived) in arrived.into_iter().enumerate() {
-            let wanted = wanted[number];
-            scratch.fill(self, wanted.bucket, arrived);
-            found[number] = pick(&scratch.values, wanted);
+        for ((found, moves), wanted) in found.iter_mut().zip(moves).zip(&wanted) {
+            scratch.fill(self.ordered(wanted.bucket), moves);
+            *found = pick(&scratch.values, *wanted);
         }
         // The values of the bucket of the value-at-risk are the last.
         let value_at_risk = found[VALUE_AT_RISK];
-        let in_bucket: u64 = scratch.values.iter().map(|(_, weight)| weight).sum();
+        let in_bucket: u64 = scratch.values.iter().map(|one| one.weight).sum();
         let beyond = totals.solved - at_risk.before - in_bucket;
         let nearby = scratch
             .values
             .iter()
-            .map(|(value, weight)| (value - value_at_risk).max(0.0) * *weight as f64);
+            .map(|one| (one.pdop - value_at_risk).max(0.0) * one.weight as f64);
         let excess = tail - beyond as f64 * value_at_risk + nearby.sum::<f64>();
         let [p50, p95, p99, max, _] = found;
         Some(Summary {
@@ -354,33 +353,117 @@ impl<'a> Whole<'a> {
             cvar: value_at_risk + excess / ((1.0 - level) * totals.solved as f64),
         })
     }
+
+    /// What leaves the wanted buckets and arrives there without a set, and the sum of weight times PDOP beyond the bucket of the
+    /// value-at-risk.
+    fn moves(
+        &self,
+        set: usize,
+        wanted: &[WantedRank; WANTED],
+        scratch: &mut Scratch,
+    ) -> ([BucketMoves; WANTED], f64) {
+        let mut moves: [BucketMoves; WANTED] = Default::default();
+        for (number, one) in wanted.iter().enumerate() {
+            scratch.wanted[one.bucket] |= 1 << number;
+        }
+        // What stays below all of them moves nothing.
+        let lowest = wanted.iter().map(|one| one.bucket).min().unwrap_or(0);
+        let at_risk = wanted[VALUE_AT_RISK].bucket;
+        let mut tail = self.buckets.sums_from[at_risk + 1];
+        for one in self.changed(set) {
+            let to = one.pdop.is_finite().then(|| self.buckets.of(one.pdop));
+            if to.is_some_and(|to| to < lowest) {
+                continue;
+            }
+            let whole = &self.samples[one.sample as usize];
+            let weight = self.weight(whole);
+            let from = whole.pdop.is_finite().then(|| self.buckets.of(whole.pdop));
+            let value = |pdop| BucketValue {
+                pdop,
+                sample: one.sample,
+                weight,
+            };
+            if let Some(from) = from {
+                if from > at_risk {
+                    tail -= weight as f64 * whole.pdop;
+                }
+                if scratch.wanted[from] != 0 {
+                    for_bits(scratch.wanted[from], |n| {
+                        moves[n].gone.push(value(whole.pdop))
+                    });
+                }
+            }
+            if let Some(to) = to {
+                if to > at_risk {
+                    tail += weight as f64 * one.pdop;
+                }
+                if scratch.wanted[to] != 0 {
+                    for_bits(scratch.wanted[to], |n| {
+                        moves[n].arrived.push(value(one.pdop))
+                    });
+                }
+            }
+        }
+        wanted.iter().for_each(|one| scratch.wanted[one.bucket] = 0);
+        (moves, tail)
+    }
+
+    /// The values of a bucket with all satellites, in rising order.
+    fn ordered(&self, bucket: usize) -> &[BucketValue] {
+        self.buckets.ordered[bucket].get_or_init(|| {
+            let begins = &self.buckets.begins;
+            let members = &self.buckets.members[begins[bucket]..begins[bucket + 1]];
+            let value = |&sample: &u32| {
+                let one = &self.samples[sample as usize];
+                BucketValue {
+                    pdop: one.pdop,
+                    sample,
+                    weight: self.weight(one),
+                }
+            };
+            let mut values: Vec<BucketValue> = members.iter().map(value).collect();
+            values.sort_unstable_by(BucketValue::order);
+            values
+        })
+    }
+}
+
+/// Calls `each` with the numbers of the bits that are set.
+#[inline(always)]
+fn for_bits(bits: u8, each: impl FnMut(usize)) {
+    (0..WANTED).filter(|n| bits >> n & 1 == 1).for_each(each);
 }
 
 impl Scratch {
-    /// Takes the values of a bucket that do not change, and those that arrive, in rising order.
-    fn fill(&mut self, whole: &Whole<'_>, bucket: usize, arrived: Vec<(f64, u64)>) {
+    /// Takes the values of a bucket that stay, and those that arrive, in rising order.
+    fn fill(&mut self, ordered: &[BucketValue], mut moves: BucketMoves) {
+        moves.gone.sort_unstable_by(BucketValue::order);
+        moves.arrived.sort_unstable_by(BucketValue::order);
+        let mut gone = moves.gone.iter().peekable();
+        let mut arrived = moves.arrived.into_iter().peekable();
         self.values.clear();
-        self.values.extend(arrived);
-        let buckets = &whole.buckets;
-        let members = &buckets.members[buckets.begins[bucket]..buckets.begins[bucket + 1]];
-        for &sample in members {
-            if self.changed_by[sample as usize] != self.mark {
-                let value = whole.pdop[sample as usize];
-                self.values.push((value, whole.weight(sample)));
+        for one in ordered {
+            if gone.next_if(|gone| gone.sample == one.sample).is_some() {
+                continue;
             }
+            let is_before = |new: &BucketValue| new.order(one) == Ordering::Less;
+            while let Some(new) = arrived.next_if(is_before) {
+                self.values.push(new);
+            }
+            self.values.push(*one);
         }
-        self.values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        self.values.extend(arrived);
     }
 }
 
 /// The value of a rank among those of its bucket, in rising order.
-fn pick(values: &[(f64, u64)], wanted: WantedRank) -> f64 {
+fn pick(values: &[BucketValue], wanted: WantedRank) -> f64 {
     let mut reached = wanted.before;
-    let found = values.iter().find(|(_, weight)| {
-        reached += weight;
+    let found = values.iter().find(|one| {
+        reached += one.weight;
         reached >= wanted.rank
     });
-    found.map_or(f64::NAN, |(value, _)| *value)
+    found.map_or(f64::NAN, |one| one.pdop)
 }
 
 /// Finds the buckets of some ranks.

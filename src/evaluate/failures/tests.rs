@@ -3,6 +3,7 @@ use crate::constellation::Design;
 use crate::constellation::gnss::Preset;
 use crate::dop::{Clocks, LeoClocks, ObservationWeights};
 use crate::earth::Surface;
+use crate::evaluate::kernel::WholeSample;
 use crate::evaluate::{Setup, plain, testing};
 use crate::ground::Site;
 use crate::stats::Level;
@@ -154,6 +155,22 @@ fn sets_are_lost_as_if_evaluated_anew() {
     }
 }
 
+/// All 780 pairs of 40 satellites, pair by pair, against brute force.
+#[test]
+fn all_pairs_are_as_if_evaluated_anew() {
+    let base = study(Surface::Wgs84);
+    let setup = Setup {
+        sites: base.sites.iter().step_by(3).cloned().collect(),
+        grid: TimeGrid::new(base.grid.epoch(), 3600.0, 900.0).unwrap(),
+        ..base
+    };
+    let pairs: Vec<Vec<usize>> = (0..40)
+        .flat_map(|first| (first + 1..40).map(move |second| vec![first, second]))
+        .collect();
+    assert_eq!(pairs.len(), 780);
+    assert_as_evaluated_anew(setup, "delta:55:40/5/1@1200", &pairs);
+}
+
 /// Sample by sample, to 1e-12 and with the same verdicts.
 #[test]
 fn each_sample_is_as_if_evaluated_anew() {
@@ -163,20 +180,23 @@ fn each_sample_is_as_if_evaluated_anew() {
         let lost = each(satellites);
         let sets = Sets::new(&evaluator, &whole, &lost);
         let pieces = pass::pass(&evaluator, &SightTree::new(&setup), &sets).unwrap();
-        let base: Vec<f64> = pieces
-            .iter()
-            .flat_map(|piece| &piece.pdop)
-            .copied()
-            .collect();
+        let instants = setup.grid.len();
+        let samples = pieces.iter().flat_map(|piece| &piece.whole);
+        let samples: Vec<WholeSample> = samples.copied().collect();
+        assert_eq!(samples.len(), setup.sites.len() * instants);
         for place in (0..satellites).step_by(7) {
-            let mut ours = base.clone();
-            for piece in &pieces {
-                for one in &piece.changed[place] {
-                    ours[one.sample as usize] = one.pdop;
-                }
+            let mut ours: Vec<f64> = samples.iter().map(|one| one.pdop).collect();
+            for one in pieces.iter().flat_map(|piece| &piece.changed[place]) {
+                ours[one.sample as usize] = one.pdop;
+            }
+            // From the order of the pass to that of the points.
+            let mut by_site = vec![f64::NAN; ours.len()];
+            for (n, one) in samples.iter().enumerate() {
+                let first = n / setup.sites.len() * setup.sites.len();
+                by_site[first + one.site as usize] = ours[n];
             }
             let left = propagated(&setup, design).without(&[place]);
-            let mut ours = ours.into_iter();
+            let mut ours = by_site.into_iter();
             plain::visit(&evaluator, &left, |sample| {
                 let (ours, anew) = (ours.next().unwrap(), sample.pdop);
                 assert_eq!(ours.is_finite(), anew.is_some(), "{design} {place}");
@@ -185,6 +205,34 @@ fn each_sample_is_as_if_evaluated_anew() {
                 assert!(is_same, "{design} {place}: {ours} {anew}");
             })
             .unwrap();
+        }
+    }
+}
+
+/// Point by point against the series of the constellations that are left.
+#[test]
+fn the_worst_of_each_point_is_that_of_all_losses() {
+    for (setup, design, satellites) in studies() {
+        let evaluator = Evaluator::new(setup.clone()).unwrap();
+        let ours = evaluator
+            .one_lost_by_point(&propagated(&setup, design))
+            .unwrap();
+        let mut worst = vec![(0.0_f64, 1.0_f64); setup.sites.len()];
+        for place in 0..satellites {
+            let left = propagated(&setup, design).without(&[place]);
+            let series = evaluator.series(&left).unwrap();
+            for (worst, point) in worst.iter_mut().zip(&series.points) {
+                let solved = point.max_pdop.filter(|_| point.solved_fraction == 1.0);
+                worst.0 = worst.0.max(solved.unwrap_or(f64::INFINITY));
+                worst.1 = worst.1.min(point.availability);
+            }
+        }
+        for (ours, worst) in ours.iter().zip(worst) {
+            let max_pdop = ours.max_pdop.unwrap_or(f64::INFINITY);
+            // The series is in f32.
+            let is_same = max_pdop == worst.0 || (max_pdop / worst.0 - 1.0).abs() < 1e-6;
+            assert!(is_same, "{design}: {max_pdop} {}", worst.0);
+            assert!((ours.availability - worst.1).abs() < 1e-12, "{design}");
         }
     }
 }

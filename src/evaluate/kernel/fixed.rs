@@ -222,7 +222,7 @@ impl Fixed {
 }
 
 #[inline(always)]
-fn at_most_u16(count: u32) -> u16 {
+pub(in crate::evaluate) fn at_most_u16(count: u32) -> u16 {
     u16::try_from(count).unwrap_or(u16::MAX)
 }
 

@@ -159,6 +159,12 @@ impl<R: Real> MaskTerms<R> {
         }
     }
 
+    /// The sine of the mask.
+    #[inline(always)]
+    pub(super) fn sine(&self) -> R {
+        self.sine
+    }
+
     #[inline(always)]
     pub(super) fn with_slack(self, slack: R) -> Self {
         Self { slack, ..self }
@@ -208,6 +214,14 @@ pub(super) struct SightLine<R> {
     inverse: R,
     /// Of the elevation.
     pub(super) sine: R,
+}
+
+impl<R: Real> SightLine<R> {
+    /// The unit vector to the satellite.
+    #[inline(always)]
+    pub(super) fn unit(&self) -> [R; 3] {
+        self.to.map(|component| component * self.inverse)
+    }
 }
 
 /// The lines from the points of a tile.

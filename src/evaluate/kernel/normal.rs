@@ -42,7 +42,7 @@ impl SharedClock {
     }
 
     #[inline(always)]
-    fn weight<R: Real>(&self, lane: usize) -> R {
+    pub(super) fn weight<R: Real>(&self, lane: usize) -> R {
         R::joined(self.weight[0].0[lane], self.weight[1].0[lane])
     }
 }
@@ -97,6 +97,12 @@ impl<R: Real> NormalLanes<R> {
             system.join_clocks::<W>(sums, shared);
         }
         system
+    }
+
+    /// The matrix at one point: (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
+    #[inline(always)]
+    pub(super) fn at(&self, lane: usize) -> [R; 6] {
+        std::array::from_fn(|element| self.matrix[element].0[lane])
     }
 
     /// The GNSS part and Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w of the design.

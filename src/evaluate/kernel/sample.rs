@@ -42,6 +42,12 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
+    /// Takes the satellites where they are now.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, horizon: &Horizon) {
+        self.all.fill(&self.positions, horizon);
+    }
+
     /// Selects the satellites that the tiles of a group may see.
     #[inline(always)]
     pub(super) fn select(&mut self, scene: &SampleContext, group: &Group) {
@@ -74,7 +80,7 @@ impl Workspace {
 
     /// The satellites that a tile of the selected group may see.
     #[inline(always)]
-    fn candidates(&self, number: usize, group: &Group) -> TileCandidates<'_> {
+    pub(super) fn candidates(&self, number: usize, group: &Group) -> TileCandidates<'_> {
         let place = number - group.tiles.start;
         TileCandidates {
             blocks: self.near.blocks(),
@@ -218,7 +224,7 @@ impl<'a> Begun<'a> {
         out: &mut SampleOutcome,
     ) -> Self {
         let horizon = &scene.tiles.horizon;
-        work.all.fill(&work.positions, horizon);
+        work.begin(horizon);
         out.doubled = 0;
         out.doubts.clear();
         Self {
@@ -328,7 +334,7 @@ fn any(lanes: &Lanes<u32>) -> bool {
 
 /// The satellites that may be visible from a tile.
 #[derive(Clone, Copy)]
-struct TileCandidates<'a> {
+pub(super) struct TileCandidates<'a> {
     blocks: &'a [Block],
     /// A bit for each satellite of the block.
     words: &'a [u64],
@@ -404,7 +410,7 @@ impl<'a> TileCandidates<'a> {
 
     /// Their indices among all satellites.
     #[inline(always)]
-    fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
+    pub(super) fn satellites(self) -> impl Iterator<Item = usize> + use<'a> {
         let blocks = self.blocks.iter().zip(self.words);
         blocks.flat_map(|(block, &word)| bits(word).map(|n| block.index(n)))
     }

@@ -1,3 +1,5 @@
+mod constrained;
+
 use super::super::hypervolume;
 use super::super::problem::VariableKind;
 use super::super::test_problems::{

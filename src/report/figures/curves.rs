@@ -22,7 +22,20 @@ pub struct NamedProfile<'a> {
 }
 
 /// Measures without a value at each instant.
-const NOT_OVER_TIME: [Measure; 3] = [Measure::P95Pdop, Measure::LongestOutageS, Measure::Pdop];
+const NOT_OVER_TIME: [Measure; 5] = [
+    Measure::P95Pdop,
+    Measure::LongestOutageS,
+    Measure::OneLostMaxPdop,
+    Measure::OneLostAvailability,
+    Measure::Pdop,
+];
+
+/// Measures without a distribution.
+const NOT_DISTRIBUTED: [Measure; 3] = [
+    Measure::P95Pdop,
+    Measure::OneLostMaxPdop,
+    Measure::OneLostAvailability,
+];
 
 /// The measures that are not among `others`.
 fn all_but(others: &[Measure]) -> Vec<Measure> {
@@ -84,8 +97,9 @@ pub fn cdf(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, Figu
             _ => quantiles_of(epochs.filter_map(|epoch| at_epoch(measure, epoch))),
         }
     };
-    if measure == Measure::P95Pdop {
-        return Err(FigureError::measure(figure, measure, &all_but(&[measure])));
+    if NOT_DISTRIBUTED.contains(&measure) {
+        let choices = all_but(&NOT_DISTRIBUTED);
+        return Err(FigureError::measure(figure, measure, &choices));
     }
     let mut csv = Csv::new(&["design", "share", &measure.column(), "name"])?;
     let mut layers = Vec::new();

@@ -3,11 +3,12 @@
 //! No system font is read: text is set in Ubuntu Light, which comes with the library. PNG has its
 //! shapes; SVG names a generic `sans-serif` and uses its widths.
 
+mod deviations;
 mod map;
 mod plane;
 mod timeline;
 
-use super::{BarChart, Chart, PlaneChart, TimelineChart};
+use super::{BarChart, Chart, DeviationChart, PlaneChart, TimelineChart};
 use crate::keyword::keywords;
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -164,6 +165,7 @@ fn size(chart: &Chart) -> (u32, u32) {
     match chart {
         Chart::Map(chart) => (WIDTH, map::height(chart, WIDTH)),
         Chart::Timeline(chart) => (WIDTH, timeline::height(chart)),
+        Chart::Deviations(chart) => (WIDTH, deviations::height(chart)),
         Chart::Plane(_) | Chart::Bars(_) => (WIDTH, HEIGHT),
     }
 }
@@ -181,6 +183,7 @@ fn text(chart: &Chart) -> Result<String, DrawError> {
             Chart::Map(chart) => map::draw(&root, chart)?,
             Chart::Bars(chart) => bars(&root, chart)?,
             Chart::Timeline(chart) => timeline::draw(&root, chart)?,
+            Chart::Deviations(chart) => deviations::draw(&root, chart)?,
         }
         root.present()?;
     }

@@ -13,11 +13,16 @@ pub struct NamedLosses {
     pub notation: String,
     /// The metrics with all satellites.
     pub whole: Metrics,
-    /// Name of each satellite, and the metrics without it.
+    /// Name of each satellite, or names of each set joined by `+`, and the metrics without it.
     pub lost: Vec<(String, Metrics)>,
+    /// Number of satellites that fail together.
+    pub k: usize,
+    /// Whether the sets were drawn.
+    pub is_drawn: bool,
 }
 
-/// The distribution of the CVaR of PDOP over the satellites, each lost alone, beside that of the whole constellation.
+/// The distribution of the CVaR of PDOP over the satellites, each lost alone, or over sets of them, beside that of the whole
+/// constellation.
 ///
 /// # Errors
 /// If no loss leaves a solved sample.
@@ -67,10 +72,21 @@ pub fn failures(all: &[NamedLosses]) -> Result<Plate, FigureError> {
             reason: "without a satellite no sample is solved",
         });
     }
+    let k = all.first().map_or(1, |one| one.k);
+    let is_drawn = all.iter().any(|one| one.is_drawn);
     let chart = PlaneChart {
-        title: "Loss of one satellite".to_owned(),
-        x: "CVaR of PDOP without the satellite".to_owned(),
-        y: "fraction of the satellites".to_owned(),
+        title: format!("Loss of {}", crate::units::counted(k, "satellite")),
+        x: match k {
+            1 => "CVaR of PDOP without the satellite",
+            _ => "CVaR of PDOP without the satellites",
+        }
+        .to_owned(),
+        y: match (k, is_drawn) {
+            (1, _) => "fraction of the satellites",
+            (_, true) => "fraction of the draws",
+            (_, false) => "fraction of the sets",
+        }
+        .to_owned(),
         layers,
     };
     Ok(Plate {
@@ -105,6 +121,8 @@ mod tests {
             notation: "delta:55:3/3/1@925".to_owned(),
             whole: with(Some(1.5)),
             lost: values.map(|value| ("NW".to_owned(), with(value))).to_vec(),
+            k: 1,
+            is_drawn: false,
         };
         let plate = failures(&[losses([Some(3.0), Some(2.0), None])]).unwrap();
         assert_eq!(plate.csv.lines().count(), 4);

@@ -6,6 +6,7 @@ use crate::evaluate::{COVERAGE_COLUMNS, PointMetrics};
 use crate::ground::RegionMap;
 use crate::keyword::Keyword;
 use crate::report::coastline::Bounds;
+use crate::report::profile::Profile;
 
 /// Measures that a map does not show.
 const NOT_OF_POINTS: [Measure; 1] = [Measure::Pdop];
@@ -52,11 +53,16 @@ pub fn map(
         return Err(FigureError::Nothing { figure, reason });
     };
     let name = |p: &PointMetrics| p.name.as_deref().unwrap_or_default().to_owned();
-    let cell = |p: &PointMetrics| (p.longitude_deg, p.latitude_deg, at_point(measure, p));
+    let value = |n: usize, p: &PointMetrics| match (measure, profile.one_lost.get(n)) {
+        (Measure::OneLostMaxPdop, lost) => lost.and_then(|of| of.max_pdop),
+        (Measure::OneLostAvailability, lost) => lost.map(|of| of.availability),
+        _ => at_point(measure, p),
+    };
+    let cell = |(n, p): (usize, &PointMetrics)| (p.longitude_deg, p.latitude_deg, value(n, p));
     let chart = MapChart {
         title: title(named),
         label: measure.label(),
-        cells: profile.points.iter().map(cell).collect(),
+        cells: profile.points.iter().enumerate().map(cell).collect(),
         names: match map.tiling {
             Some(_) => Vec::new(),
             None => profile.points.iter().map(name).collect(),
@@ -65,12 +71,12 @@ pub fn map(
         bounds,
     };
     Ok(Plate {
-        csv: table(&profile.points)?,
+        csv: table(profile)?,
         chart: Chart::Map(chart),
     })
 }
 
-fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
+fn table(profile: &Profile) -> Result<String, FigureError> {
     let before = [
         "latitude_deg",
         "longitude_deg",
@@ -83,8 +89,12 @@ fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
         "longest_outage_s",
         "gain_mean_pdop",
     ];
-    let mut csv = Csv::new(&[&before[..], &COVERAGE_COLUMNS, &["name"]].concat())?;
-    for p in points {
+    let one_lost: &[&str] = match profile.one_lost.as_slice() {
+        [] => &[],
+        _ => &["n1_max_pdop", "n1_availability"],
+    };
+    let mut csv = Csv::new(&[&before[..], &COVERAGE_COLUMNS, one_lost, &["name"]].concat())?;
+    for (n, p) in profile.points.iter().enumerate() {
         let numbers = [
             Some(p.latitude_deg),
             Some(p.longitude_deg),
@@ -98,7 +108,10 @@ fn table(points: &[PointMetrics]) -> Result<String, FigureError> {
             p.gain_mean_pdop,
         ];
         let coverage = p.coverage.shares().map(Some);
-        let cells = numbers.into_iter().chain(coverage).map(optional);
+        let lost = profile.one_lost.get(n);
+        let lost = lost.map(|of| [of.max_pdop, Some(of.availability)]);
+        let numbers = numbers.into_iter().chain(coverage);
+        let cells = numbers.chain(lost.into_iter().flatten()).map(optional);
         let name = p.name.as_deref().unwrap_or_default().to_owned();
         csv.row(cells.chain([name]))?;
     }

@@ -64,14 +64,18 @@ const RANGE_ERRORS: [&str; 8] = [
     "accuracy.files-m=0.7",
 ];
 
-/// Of the times of [reliability], one needs the other.
-const TIMES: [[&str; 2]; 2] = [
-    ["reliability.mtbf-h=1000", "reliability.mttr-h=100"],
-    ["reliability.mtbf-h=1000", "reliability.mttr-h=50"],
+/// Of the times of [reliability], one needs the other, and spares need either.
+const TIMES: [&[&str]; 3] = [
+    &["reliability.mtbf-h=1000", "reliability.mttr-h=100"],
+    &["reliability.mtbf-h=1000", "reliability.mttr-h=50"],
+    &[
+        "reliability.availability=0.95",
+        "reliability.spares-per-plane=1",
+    ],
 ];
 
-fn hashes_of_times() -> [String; 2] {
-    TIMES.map(|times| with(&times).hash(&[]))
+fn hashes_of_times() -> [String; 3] {
+    TIMES.map(|times| with(times).hash(&[]))
 }
 
 #[test]

@@ -347,6 +347,8 @@ fn scenario() -> impl Strategy<Value = Scenario> {
                 availability: None,
                 mtbf_h: Some(1000.0),
                 mttr_h: Some(0.0),
+                // The objectives may have expected-availability, which is without.
+                spares_per_plane: None,
             },
             accuracy: all_range_errors(),
             metrics: FurtherMetrics {

@@ -300,6 +300,14 @@ fn check_quantities(scenario: &Scenario, reader: &mut Reader<'_>, has_errors: bo
         if quantity == Quantity::ExpectedAvailability && up.is_none() {
             return Some(format!("`{}`", key!(Reliability.availability)));
         }
+        if quantity == Quantity::ExpectedAvailability
+            && scenario.reliability.spares_per_plane.is_some()
+        {
+            let spares = key!(Reliability.spares_per_plane);
+            return Some(format!(
+                "a study without `{spares}`, whose draws are of `evaluate` alone"
+            ));
+        }
         let gnss = &scenario.gnss;
         let has_gnss = !gnss.constellations.is_empty() || !gnss.files.is_empty();
         if quantity.gain_in().is_some() && !has_gnss {

@@ -3,7 +3,7 @@
 use crate::scenario::keys::{key, section};
 use crate::scenario::problem::Fault;
 use crate::scenario::reader::Reader;
-use crate::scenario::rule::{Number, Optional};
+use crate::scenario::rule::{Integer, Number, Optional};
 
 section! {
     /// Reliability of the LEO satellites: metrics as expected over their failures are computed if it is given.
@@ -16,6 +16,9 @@ section! {
         pub mtbf_h: Option<f64> = Optional(Number::above_to(0.0, 1e9)), unit "h", follows "none", example Some(43_800.0);
         /// Mean time to repair or replace a satellite, with mtbf-h.
         pub mttr_h: Option<f64> = Optional(Number::from_to(0.0, 1e9)), unit "h", follows "none", example Some(720.0);
+        /// Spares in the orbit of each plane, which fail like the others and fill vacant slots at once: the metrics are those of
+        /// seeded draws of the vacant slots.
+        pub spares_per_plane: Option<u32> = Optional(Integer { low: 0, high: 100 }), follows "none", example Some(1);
     }
 }
 
@@ -35,6 +38,16 @@ fn check_reliability(reliability: &mut Reliability, reader: &mut Reader<'_>) {
         if !is_given {
             *value = None;
         }
+    }
+    let spares = key!(Reliability.spares_per_plane);
+    if !reader.is_given(spares) {
+        reliability.spares_per_plane = None;
+    } else if !availability && !mtbf {
+        let fault = Fault::Needs {
+            quantity: spares.to_string(),
+            needs: format!("{} or {}", keys[0], keys[1]),
+        };
+        reader.refuse(&[spares], fault);
     }
     if availability && (mtbf || mttr) {
         let other = if mtbf { keys[1] } else { keys[2] };

@@ -68,13 +68,18 @@ mod tests {
         assert!(ratio > 1.0 && ratio < 1.0 + 1e-5, "{ratio}");
     }
 
-    /// PDOP with one clock, by inverting the whole normal matrix.
+    /// PDOP with one clock, by inverting the whole normal matrix; `None` where rounding decides whether it has an inverse.
     fn pdop(units: &[Vector3<f64>]) -> Option<f64> {
         let rows = DMatrix::from_fn(units.len(), 4, |n, axis| match axis {
             3 => 1.0,
             _ => units[n][axis],
         });
-        let inverse = (rows.transpose() * rows).try_inverse()?;
+        let normal = rows.transpose() * rows;
+        let eigenvalues = normal.clone().symmetric_eigenvalues();
+        if eigenvalues.min() < 1e-12 * eigenvalues.max() {
+            return None;
+        }
+        let inverse = normal.try_inverse()?;
         Some((inverse[(0, 0)] + inverse[(1, 1)] + inverse[(2, 2)]).sqrt())
     }
 

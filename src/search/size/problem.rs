@@ -205,7 +205,7 @@ impl<'a> SizeProblem<'a> {
         tiles as f64 / all.max(1) as f64
     }
 
-    fn probe(
+    pub(super) fn probe(
         &self,
         ephemeris: &Ephemeris,
         order: &SampleOrder,
@@ -227,18 +227,39 @@ impl<'a> SizeProblem<'a> {
             .probe(ephemeris, order.instants(), see);
     }
 
+    /// The constraints about the shells, each with its value and violation.
+    fn of_shells(&self, design: &Design) -> impl Iterator<Item = (&Constraint, Option<f64>, f64)> {
+        let of_shells = self.constraints().iter();
+        let of_shells = of_shells.filter(|constraint| constraint.quantity.is_of_shells());
+        of_shells.map(|constraint| {
+            let value = self.problem.value_of_shells(constraint.quantity, design);
+            (constraint, value, constraint.violation(value, 1.0))
+        })
+    }
+
+    /// The violation of the constraints about the shells.
+    pub(super) fn violation_by_shells(&self, design: &Design) -> f64 {
+        self.of_shells(design)
+            .map(|(.., violation)| violation)
+            .sum()
+    }
+
+    /// The rules that prove a violation beyond `most`; `None` where the plain path evaluates all designs.
+    pub(super) fn rules_beyond(&self, most: f64) -> Option<RuleSet> {
+        let evaluator = self.problem.evaluator;
+        let (shape, gnss) = (evaluator.sample_tiles()?, evaluator.gnss_satellites());
+        let constraints = match most.is_finite() {
+            true => self.constraints(),
+            false => &[],
+        };
+        let setup = evaluator.setup();
+        Some(RuleSet::beyond(constraints, most, setup, shape, gnss))
+    }
+
     /// A constraint about the shells that they violate.
     fn by_shells(&self, design: &Design) -> Option<Witness> {
-        let of_shells = self
-            .constraints()
-            .iter()
-            .filter(|c| c.quantity.is_of_shells());
-        let mut violated = of_shells.filter_map(|constraint| {
-            let value = self.problem.value_of_shells(constraint.quantity, design);
-            let violation = constraint.violation(value, 1.0);
-            (violation > 0.0).then_some((constraint, value, violation))
-        });
-        let (constraint, value, _) = violated.next()?;
+        let mut all = self.of_shells(design);
+        let (constraint, value, _) = all.find(|(.., violation)| *violation > 0.0)?;
         Some(Witness {
             constraint: constraint.to_string(),
             value_at_rejection: value,
@@ -305,27 +326,45 @@ impl<'a> SizeProblem<'a> {
         Some(violations.all(|(.., violation)| violation == 0.0))
     }
 
-    /// All designs of the grid by rising number of satellites, in the order of the search. Points that are not designs
-    /// are left out.
-    pub fn designs_in_order(&self) -> impl Iterator<Item = Result<(usize, Design), OptimizeError>> {
-        let counts = self.totals().into_iter().flat_map(|satellites| {
-            let all = self.with_total(satellites).into_iter();
-            all.map(move |counts| (satellites, counts))
-        });
-        counts.flat_map(move |(satellites, counts)| {
-            let part = self.part(&counts);
-            let points = part.count();
-            let (last, error) = match points {
-                Ok(points) => (points, None),
-                Err(error) => (0, Some(Err(error))),
-            };
-            let design = move |index| {
-                let genome = self.genome(&part, index).transpose()?;
-                let design =
-                    genome.map(|genome| self.problem.designs().design(&genome).ok().flatten());
-                Some(design.transpose()?.map(|design| (satellites, design)))
-            };
-            error.into_iter().chain((0..last).filter_map(design))
+    /// The vectors of all points of the grid with so many satellites, in the order of the search.
+    pub(super) fn genomes(
+        &self,
+        satellites: usize,
+    ) -> impl Iterator<Item = Result<Vec<f64>, OptimizeError>> {
+        self.with_total(satellites)
+            .into_iter()
+            .flat_map(move |counts| {
+                let part = self.part(&counts);
+                let (last, error) = match part.count() {
+                    Ok(points) => (points, None),
+                    Err(error) => (0, Some(Err(error))),
+                };
+                let genomes = (0..last).filter_map(move |n| self.genome(&part, n).transpose());
+                error.into_iter().chain(genomes)
+            })
+    }
+
+    /// The numbers of satellites that occur in the grid, ascending.
+    #[must_use]
+    pub fn numbers(&self) -> Vec<usize> {
+        self.totals()
+    }
+
+    /// The designs of the grid with so many satellites, in the order of the search. Points that are not designs are left
+    /// out.
+    pub fn designs_of(
+        &self,
+        satellites: usize,
+    ) -> impl Iterator<Item = Result<Design, OptimizeError>> {
+        self.genomes(satellites).filter_map(|genome| match genome {
+            Ok(genome) => self
+                .problem
+                .designs()
+                .design(&genome)
+                .ok()
+                .flatten()
+                .map(Ok),
+            Err(error) => Some(Err(error)),
         })
     }
 

@@ -14,6 +14,9 @@ pub(super) const SUM_MARGIN: f64 = 1e-8;
 /// f64, and its value in f32 is off by up to 1e-6.
 const SINGLE_MARGIN: f64 = 4e-6;
 
+/// How far a violation must be beyond another, relative and absolute: far more than either is rounded.
+const VIOLATION_MARGIN: f64 = 1e-12;
+
 /// A sample that counts against a constraint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum BadSample {
@@ -90,6 +93,30 @@ impl RuleSet {
             };
             set.rules.extend(proofs.into_iter().map(rule));
         }
+        set
+    }
+
+    /// The rules that prove a violation beyond `most` of one constraint or another, so that of all together is beyond it
+    /// too. The part of a violation that unsolved samples are is left out.
+    pub(super) fn beyond(
+        constraints: &[Constraint],
+        most: f64,
+        setup: &Setup,
+        shape: SampleTiles,
+        gnss: usize,
+    ) -> Self {
+        let relaxed: Vec<Constraint> = constraints.iter().map(|one| relaxed(one, most)).collect();
+        let mut set = Self::new(&relaxed, setup, shape, gnss);
+        set.rules.retain(|rule| {
+            let of_unsolved = matches!(
+                rule.proof,
+                Proof::Count {
+                    bad: BadSample::Unsolved,
+                    ..
+                }
+            );
+            !of_unsolved
+        });
         set
     }
 
@@ -196,6 +223,20 @@ impl RuleSet {
     pub(super) fn has_runs(&self) -> bool {
         let of_run = |rule: &SampleRule| matches!(rule.proof, Proof::Run { .. });
         self.rules.iter().any(of_run)
+    }
+}
+
+/// A constraint that every design keeps whose violation of the original is at most `most`.
+fn relaxed(constraint: &Constraint, most: f64) -> Constraint {
+    // The violation and this bound are rounded.
+    let most = most * (1.0 + VIOLATION_MARGIN) + VIOLATION_MARGIN;
+    let by = most * constraint.bound.abs().max(1.0);
+    Constraint {
+        bound: match constraint.relation {
+            Relation::AtMost => constraint.bound + by,
+            Relation::AtLeast => constraint.bound - by,
+        },
+        ..*constraint
     }
 }
 

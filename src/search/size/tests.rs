@@ -1,5 +1,8 @@
 //! Against a sweep of the same grid that evaluates everything.
 
+mod closest;
+mod rules;
+
 use super::*;
 use crate::constellation::gnss::Preset;
 use crate::earth::Surface;

@@ -1,6 +1,6 @@
 //! The walk through the grid, its own checkpoint.
 
-use super::order::Hardness;
+use super::order::{Hardness, SampleOrder};
 use super::problem::{SizeProblem, Tried, TriedVerdict};
 use super::witness::{RejectionBasis, Witness};
 use crate::constellation::Design;
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Designs between which nothing is learnt, at most.
-const BATCH: usize = 1024;
+pub(super) const BATCH: usize = 1024;
 
 /// A batch of so many designs ends with their number of satellites; a smaller one goes on with the next number.
 const SMALL_BATCH: usize = 128;
@@ -23,7 +23,7 @@ const BATCH_TILES: usize = 1 << 26;
 const SCOUT_EVERY: u64 = 1024;
 
 /// Rejected designs that are named for each number of satellites, and kept ones for a number above the fewest.
-const NAMED: usize = 3;
+pub(super) const NAMED: usize = 3;
 
 /// A design that keeps the constraints.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -201,7 +201,7 @@ impl SizeSearch {
     ) -> Result<Vec<(usize, Witness)>, OptimizeError> {
         let totals = problem.totals();
         let (batch, next) = self.batch(problem, &totals)?;
-        let order = self.hardness.as_ref().map(Hardness::order);
+        let order = self.order();
         let tried: Vec<Tried> = batch
             .par_iter()
             .map(|one| problem.tried(&one.genome, order.as_ref(), one.is_scout))
@@ -401,6 +401,11 @@ impl SizeSearch {
         Some((satellites, total - before - self.cursor.point, total))
     }
 
+    /// The order of the samples that was learnt so far.
+    pub(super) fn order(&self) -> Option<SampleOrder> {
+        self.hardness.as_ref().map(Hardness::order)
+    }
+
     /// The further objective.
     #[must_use]
     pub fn objective(&self) -> Option<Quantity> {
@@ -428,6 +433,6 @@ fn kept(
 }
 
 /// How far a value is inside a bound, relative to the bound (absolute for bounds below 1).
-fn margin(constraint: &Constraint, value: f64) -> f64 {
+pub(super) fn margin(constraint: &Constraint, value: f64) -> f64 {
     constraint.inside(value) / constraint.bound.abs().max(1.0)
 }

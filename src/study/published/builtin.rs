@@ -3,7 +3,7 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in study of published numbers.
-const STUDIES: [(&str, &str); 6] = [
+const STUDIES: [(&str, &str); 12] = [
     (
         "gps-sps",
         include_str!("../../../data/studies/gps-sps.toml"),
@@ -25,9 +25,27 @@ const STUDIES: [(&str, &str); 6] = [
         include_str!("../../../data/studies/iridium.toml"),
     ),
     (
+        "kaplan-hegarty",
+        include_str!("../../../data/studies/kaplan-hegarty.toml"),
+    ),
+    (
         "sun-synchronous",
         include_str!("../../../data/studies/sun-synchronous.toml"),
     ),
+    ("skies", include_str!("../../../data/studies/skies.toml")),
+    (
+        "galileo",
+        include_str!("../../../data/studies/galileo.toml"),
+    ),
+    (
+        "glonass",
+        include_str!("../../../data/studies/glonass.toml"),
+    ),
+    (
+        "wang-2019",
+        include_str!("../../../data/studies/wang-2019.toml"),
+    ),
+    ("topex", include_str!("../../../data/studies/topex.toml")),
 ];
 
 /// The names of the built-in studies of published numbers.

@@ -2,7 +2,7 @@
 
 use crate::keyword::{Keyword, UnknownKeyword, keywords, nearest};
 use crate::search::Quantity;
-use crate::stats::{Level, Summary};
+use crate::stats::{Level, Summary, Weighted, weighted_mean, weighted_quantile};
 use std::fmt;
 use std::str::FromStr;
 use thiserror::Error;
@@ -32,14 +32,42 @@ keywords! {
         NodalPeriod = "nodal-period-min",
         /// Kepler's period, minutes.
         KeplerPeriod = "kepler-period-min",
+        /// Revolutions, from node to node, in a turn of the Earth under the plane.
+        RevolutionsPerNodalDay = "revolutions-per-nodal-day",
+        /// Inclination at which an orbit of this size and shape is sun-synchronous, degrees.
+        SunSynchronousInclination = "sun-synchronous-inclination-deg",
+        /// Right ascension of the node of a satellite at the epoch, degrees from 0 to 360.
+        Raan = "raan-deg",
+        /// Mean argument of latitude of a satellite at the epoch, degrees from 0 to 360.
+        ArgLatitude = "arg-latitude-deg",
         /// Largest distance of any place from the nearest sub-satellite point, over all time, degrees.
         CoverageRadius = "coverage-radius-deg",
     }
 }
 
+keywords! {
+    /// A quantity other than a dilution of precision that each sample has.
+    SpreadQuantity {
+        /// Standard deviation of the position, metres.
+        Sigma3dM = "sigma-3d-m",
+        /// Standard deviation of the horizontal position, metres.
+        SigmaHM = "sigma-h-m",
+        /// Standard deviation of the height, metres.
+        SigmaVM = "sigma-v-m",
+        /// PDOP of all observations in a window.
+        InformationPdop = "information-pdop",
+        /// LEO satellites in view.
+        Visible = "visible",
+        /// GNSS satellites in view.
+        GnssVisible = "gnss-visible",
+        /// Satellites in view, LEO and GNSS.
+        TotalVisible = "total-visible",
+    }
+}
+
 /// A statistic over all samples, weighted by point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DilutionStatistic {
+pub enum SampleStatistic {
     /// `mean`
     Mean,
     /// `max`
@@ -52,25 +80,25 @@ pub enum DilutionStatistic {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StudyMetric {
     /// A statistic of a dilution of precision: `p95-hdop`, `max-vdop`.
-    Dilution(DilutionStatistic, DilutionKind),
+    Dilution(SampleStatistic, DilutionKind),
     /// A quantity of a search: `mean-visible`, `coverage-4`.
     Quantity(Quantity),
-    /// Mean visible GNSS satellites.
-    MeanGnssVisible,
+    /// A statistic of another quantity of the samples: `p99-sigma-3d-m`, `p5-visible`.
+    Spread(SampleStatistic, SpreadQuantity),
     /// A quantity of the orbits of the only shell.
     Orbit(OrbitQuantity),
+    /// A dilution of precision of a sky: `pdop`.
+    Sky(DilutionKind),
 }
-
-/// The spelling of [`StudyMetric::MeanGnssVisible`].
-const MEAN_GNSS_VISIBLE: &str = "mean-gnss-visible";
 
 /// Why a text is not a metric.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error(
-    "unknown metric {found:?}{}; expected mean-, max- or pNN- (a quantile, as p95 or p99.9) before {}; or one of {}, \
-     {MEAN_GNSS_VISIBLE}; or a quantity of searches, as mean-visible or coverage-4",
+    "unknown metric {found:?}{}; expected mean-, max- or pNN- (a quantile, as p95 or p99.9) before {}, {}; or one of {}; \
+     or a quantity of searches, as mean-visible or coverage-4; or, of a sky, one of gdop, pdop, hdop, vdop, tdop",
     .nearest.as_ref().map_or_else(String::new, |name| format!(", did you mean {name:?}?")),
     DilutionKind::choices().join(", "),
+    SpreadQuantity::choices().join(", "),
     OrbitQuantity::choices().join(", ")
 )]
 pub struct UnknownMetric {
@@ -81,15 +109,24 @@ pub struct UnknownMetric {
 impl UnknownMetric {
     fn new(found: &str) -> Self {
         let mut known = Quantity::choices();
-        let is_offered = |name: &&str| Quantity::from_keyword(name).is_ok_and(is_always_computed);
+        let is_offered = |name: &&str| Quantity::from_keyword(name).is_ok_and(is_computed);
         known.retain(is_offered);
         known.extend(OrbitQuantity::choices());
-        known.push(MEAN_GNSS_VISIBLE);
-        let dilutions: Vec<String> = DilutionKind::choices()
-            .iter()
-            .flat_map(|name| ["mean", "max", "p95"].map(|statistic| format!("{statistic}-{name}")))
+        let mut sampled = DilutionKind::choices();
+        known.extend(&sampled);
+        sampled.extend(SpreadQuantity::choices());
+        // The statistic as it was written, if it is one.
+        let own = found.split_once('-').map(|(statistic, _)| statistic);
+        let own = own.filter(|statistic| statistic.parse::<SampleStatistic>().is_ok());
+        let statistics = ["mean", "max", "p95"].into_iter().chain(own);
+        let spelled: Vec<String> = statistics
+            .flat_map(|statistic| {
+                sampled
+                    .iter()
+                    .map(move |name| format!("{statistic}-{name}"))
+            })
             .collect();
-        known.extend(dilutions.iter().map(String::as_str));
+        known.extend(spelled.iter().map(String::as_str));
         Self {
             found: found.to_owned(),
             nearest: nearest(found, &known).map(str::to_owned),
@@ -97,17 +134,18 @@ impl UnknownMetric {
     }
 }
 
-fn is_always_computed(quantity: Quantity) -> bool {
+/// Whether a study computes it; failures and gains belong to searches.
+fn is_computed(quantity: Quantity) -> bool {
     let is_of_failures = quantity.is_of_one_lost() || quantity == Quantity::ExpectedAvailability;
-    !quantity.is_on_demand() && !is_of_failures
+    quantity.gain_in().is_none() && !is_of_failures
 }
 
 impl FromStr for StudyMetric {
     type Err = UnknownMetric;
 
     fn from_str(text: &str) -> Result<Self, UnknownMetric> {
-        if text == MEAN_GNSS_VISIBLE {
-            return Ok(Self::MeanGnssVisible);
+        if let Ok(dilution) = DilutionKind::from_keyword(text) {
+            return Ok(Self::Sky(dilution));
         }
         if let Ok(orbit) = OrbitQuantity::from_keyword(text) {
             return Ok(Self::Orbit(orbit));
@@ -119,15 +157,22 @@ impl FromStr for StudyMetric {
             return Ok(Self::Dilution(statistic, dilution));
         }
         let quantity: Result<Quantity, UnknownKeyword> = Quantity::from_keyword(text);
-        match quantity {
-            // What is computed only where a scenario asks for it is not computed here.
-            Ok(quantity) if is_always_computed(quantity) => Ok(Self::Quantity(quantity)),
-            _ => Err(UnknownMetric::new(text)),
+        if let Ok(quantity) = quantity
+            && is_computed(quantity)
+        {
+            return Ok(Self::Quantity(quantity));
         }
+        if let Some((statistic, spread)) = text.split_once('-')
+            && let (Ok(statistic), Ok(spread)) =
+                (statistic.parse(), SpreadQuantity::from_keyword(spread))
+        {
+            return Ok(Self::Spread(statistic, spread));
+        }
+        Err(UnknownMetric::new(text))
     }
 }
 
-impl FromStr for DilutionStatistic {
+impl FromStr for SampleStatistic {
     type Err = ();
 
     fn from_str(text: &str) -> Result<Self, ()> {
@@ -147,11 +192,24 @@ impl StudyMetric {
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Dilution(..) => "",
-            Self::MeanGnssVisible => "satellites",
-            Self::Orbit(OrbitQuantity::NodalRate) => "deg/day",
-            Self::Orbit(OrbitQuantity::CoverageRadius) => "deg",
-            Self::Orbit(OrbitQuantity::NodalPeriod | OrbitQuantity::KeplerPeriod) => "min",
+            Self::Dilution(..) | Self::Sky(_) => "",
+            Self::Spread(_, spread) => match spread {
+                SpreadQuantity::Sigma3dM | SpreadQuantity::SigmaHM | SpreadQuantity::SigmaVM => "m",
+                SpreadQuantity::InformationPdop => "",
+                SpreadQuantity::Visible
+                | SpreadQuantity::GnssVisible
+                | SpreadQuantity::TotalVisible => "satellites",
+            },
+            Self::Orbit(orbit) => match orbit {
+                OrbitQuantity::NodalRate => "deg/day",
+                OrbitQuantity::NodalPeriod | OrbitQuantity::KeplerPeriod => "min",
+                OrbitQuantity::RevolutionsPerNodalDay => "",
+                OrbitQuantity::CoverageRadius
+                | OrbitQuantity::SunSynchronousInclination
+                | OrbitQuantity::Raan
+                | OrbitQuantity::ArgLatitude => "deg",
+            },
+            Self::Quantity(quantity) if quantity.is_in_metres() => "m",
             Self::Quantity(quantity) => match quantity {
                 Quantity::Satellites
                 | Quantity::MeanVisible
@@ -165,7 +223,29 @@ impl StudyMetric {
     }
 }
 
-impl DilutionStatistic {
+impl StudyMetric {
+    /// The key that its scenario needs for it, if any.
+    pub(super) fn needed_key(self) -> Option<&'static str> {
+        const METRES: &str = "[accuracy]";
+        const WINDOW: &str = "metrics.window-min";
+        match self {
+            Self::Quantity(quantity) if quantity.is_in_metres() => Some(METRES),
+            Self::Quantity(quantity) if quantity.is_of_windows() => Some(WINDOW),
+            Self::Spread(_, spread) => match spread {
+                SpreadQuantity::Sigma3dM | SpreadQuantity::SigmaHM | SpreadQuantity::SigmaVM => {
+                    Some(METRES)
+                }
+                SpreadQuantity::InformationPdop => Some(WINDOW),
+                SpreadQuantity::Visible
+                | SpreadQuantity::GnssVisible
+                | SpreadQuantity::TotalVisible => None,
+            },
+            _ => None,
+        }
+    }
+}
+
+impl SampleStatistic {
     /// The statistic, if it is in a summary.
     pub(super) fn of_summary(self, summary: &Summary) -> Option<f64> {
         match self {
@@ -182,22 +262,38 @@ impl DilutionStatistic {
             }
         }
     }
+
+    /// The statistic of some samples; `None` if there are none. Reorders them.
+    pub(super) fn of_samples(self, samples: &mut [Weighted]) -> Option<f64> {
+        match self {
+            Self::Mean => weighted_mean(samples),
+            Self::Max => samples.iter().map(|one| one.value).max_by(f64::total_cmp),
+            Self::Quantile(level) => weighted_quantile(samples, level),
+        }
+    }
 }
 
 impl fmt::Display for StudyMetric {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Dilution(statistic, dilution) => match statistic {
-                DilutionStatistic::Mean => write!(f, "mean-{dilution}"),
-                DilutionStatistic::Max => write!(f, "max-{dilution}"),
-                DilutionStatistic::Quantile(level) => {
-                    let percent = crate::units::round_decimal(100.0 * level.get(), 9);
-                    write!(f, "p{percent}-{dilution}")
-                }
-            },
+            Self::Dilution(statistic, dilution) => write!(f, "{statistic}-{dilution}"),
+            Self::Spread(statistic, spread) => write!(f, "{statistic}-{spread}"),
             Self::Quantity(quantity) => quantity.fmt(f),
-            Self::MeanGnssVisible => f.write_str(MEAN_GNSS_VISIBLE),
             Self::Orbit(orbit) => orbit.fmt(f),
+            Self::Sky(dilution) => dilution.fmt(f),
+        }
+    }
+}
+
+impl fmt::Display for SampleStatistic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mean => f.write_str("mean"),
+            Self::Max => f.write_str("max"),
+            Self::Quantile(level) => {
+                let percent = crate::units::round_decimal(100.0 * level.get(), 9);
+                write!(f, "p{percent}")
+            }
         }
     }
 }
@@ -217,6 +313,11 @@ mod tests {
             "mean-visible",
             "coverage-total-4",
             "mean-gnss-visible",
+            "p5-gnss-visible",
+            "p99-sigma-3d-m",
+            "max-information-pdop",
+            "error95-h-m",
+            "tdop",
             "nodal-rate-deg-per-day",
         ] {
             let metric: StudyMetric = text.parse().unwrap();
@@ -231,7 +332,10 @@ mod tests {
             ("mean-visable", Some("mean-visible")),
             ("p101-hdop", None),
             ("p-hdop", None),
-            ("sigma-h-m", None),
+            ("p99.5-sigma-3m", Some("p99.5-sigma-3d-m")),
+            ("hdopp", Some("hdop")),
+            ("gain-mean-pdop", None),
+            ("n1-max-pdop", None),
             ("", None),
         ] {
             let error = text.parse::<StudyMetric>().unwrap_err();

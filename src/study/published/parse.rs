@@ -1,8 +1,13 @@
 //! A study as written in TOML, checked.
 
-use super::{PublishedStatement, PublishedStudy, StudyAssumption};
+use super::sky::{SkySource, StudySky};
+use super::{
+    OrbitQuantity, PublishedStatement, PublishedStudy, StudyAssumption, StudyKeys, StudyMetric,
+};
+use crate::keyword::nearest;
 use crate::study::judge::{Expected, Provenance};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use toml::{Spanned, Table, Value};
@@ -38,8 +43,9 @@ struct StudyFile {
     source: Spanned<String>,
     #[serde(default)]
     notes: Vec<String>,
+    scenario: Option<Spanned<Table>>,
     #[serde(default)]
-    scenario: Table,
+    skies: BTreeMap<String, Spanned<SkySource>>,
     #[serde(default)]
     assumption: Vec<AssumptionTable>,
     #[serde(default)]
@@ -49,8 +55,8 @@ struct StudyFile {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 struct AssumptionTable {
-    name: String,
-    scenario: Table,
+    name: Spanned<String>,
+    scenario: Spanned<Table>,
 }
 
 #[derive(Deserialize)]
@@ -59,6 +65,7 @@ struct StatementTable {
     name: Spanned<String>,
     #[serde(default = "gnss_only")]
     of: String,
+    satellite: Option<Spanned<String>>,
     metric: Spanned<String>,
     expected: Option<Spanned<f64>>,
     tolerance: Option<Spanned<f64>>,
@@ -70,8 +77,7 @@ struct StatementTable {
     #[serde(default)]
     fitted: bool,
     disagreement: Option<String>,
-    #[serde(default)]
-    scenario: Table,
+    scenario: Option<Spanned<Table>>,
 }
 
 fn gnss_only() -> String {
@@ -90,9 +96,22 @@ struct FileProblems<'t> {
 
 impl FileProblems<'_> {
     fn add(&mut self, span: Range<usize>, what: String) {
-        let before = self.text.get(..span.start).unwrap_or(self.text);
-        let line = before.matches('\n').count() + 1;
+        let line = self.line(&span);
         self.found.push((line, what));
+    }
+
+    /// The line where a span begins, from 1.
+    fn line(&self, span: &Range<usize>) -> usize {
+        let before = self.text.get(..span.start).unwrap_or(self.text);
+        before.matches('\n').count() + 1
+    }
+
+    /// The keys of a scenario with their line.
+    fn keys(&self, scenario: Option<Spanned<Table>>) -> StudyKeys {
+        scenario.map_or_else(StudyKeys::default, |scenario| StudyKeys {
+            line: self.line(&scenario.span()),
+            keys: keys(scenario.get_ref()),
+        })
     }
 }
 
@@ -107,9 +126,10 @@ impl PublishedStudy {
             found: Vec::new(),
         };
         let study = match toml::from_str::<StudyFile>(text) {
-            Ok(file) => study(file, &mut problems),
+            Ok(file) => study(label, file, &mut problems),
             Err(error) => {
                 let what = error.message().lines().collect::<Vec<_>>().join("; ");
+                let what = with_nearest(what);
                 problems.add(error.span().unwrap_or_default(), what);
                 None
             }
@@ -124,7 +144,7 @@ impl PublishedStudy {
     }
 }
 
-fn study(file: StudyFile, problems: &mut FileProblems<'_>) -> Option<PublishedStudy> {
+fn study(label: &str, file: StudyFile, problems: &mut FileProblems<'_>) -> Option<PublishedStudy> {
     for (key, text) in [
         ("name", &file.name),
         ("title", &file.title),
@@ -147,30 +167,81 @@ fn study(file: StudyFile, problems: &mut FileProblems<'_>) -> Option<PublishedSt
             "found no [[statement]], expected at least one".to_owned(),
         );
     }
+    let skies = file.skies.into_iter().map(|(name, table)| StudySky {
+        line: problems.line(&table.span()),
+        table: table.into_inner(),
+        name,
+    });
+    let skies: Vec<StudySky> = skies.collect();
     let mut statements: Vec<PublishedStatement> = Vec::new();
     for table in file.statement {
         let span = table.span();
         if let Some(statement) = statement(table.into_inner(), span.clone(), problems) {
             if statements.iter().any(|known| known.name == statement.name) {
                 let what = format!("name: there are two statements {:?}", statement.name);
+                problems.add(span.clone(), what);
+            }
+            if let Some(what) = no_such_sky(&statement, &skies) {
                 problems.add(span, what);
             }
             statements.push(statement);
         }
     }
-    let assumption = |table: AssumptionTable| StudyAssumption {
-        name: table.name,
-        scenario: keys(&table.scenario),
-    };
+    let mut assumptions: Vec<StudyAssumption> = Vec::new();
+    for AssumptionTable { name, scenario } in file.assumption {
+        if name.get_ref().trim().is_empty() {
+            problems.add(name.span(), "name: found an empty text".to_owned());
+        }
+        if scenario.get_ref().is_empty() {
+            let what = "scenario: found no keys, expected what the assumption changes";
+            problems.add(scenario.span(), what.to_owned());
+        }
+        assumptions.push(StudyAssumption {
+            scenario: problems.keys(Some(scenario)),
+            name: name.into_inner(),
+        });
+    }
     Some(PublishedStudy {
         name: file.name.into_inner(),
         title: file.title.into_inner(),
         source: file.source.into_inner(),
         notes: file.notes,
-        scenario: keys(&file.scenario),
-        assumptions: file.assumption.into_iter().map(assumption).collect(),
+        label: label.to_owned(),
+        scenario: problems.keys(file.scenario),
+        skies,
+        assumptions,
         statements,
     })
+}
+
+/// What is wrong with a statement about a sky that the study does not have.
+fn no_such_sky(statement: &PublishedStatement, skies: &[StudySky]) -> Option<String> {
+    let StudyMetric::Sky(dilution) = statement.metric else {
+        return None;
+    };
+    let known: Vec<&str> = skies.iter().map(|sky| sky.name.as_str()).collect();
+    if known.contains(&statement.of.as_str()) {
+        return None;
+    }
+    let meant = nearest(&statement.of, &known);
+    let meant = meant.map_or_else(String::new, |name| format!(", did you mean {name:?}?"));
+    Some(format!(
+        "of: {dilution} is of a sky, and [skies] has no {:?}{meant}",
+        statement.of
+    ))
+}
+
+/// The message about an unknown key, with the nearest of those that it lists.
+fn with_nearest(message: String) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    let (Some(found), true) = (quoted.next(), message.starts_with("unknown field")) else {
+        return message;
+    };
+    let known: Vec<&str> = quoted.collect();
+    match nearest(found, &known) {
+        Some(name) => format!("{message}; did you mean `{name}`?"),
+        None => message,
+    }
 }
 
 fn is_study_name(name: &str) -> bool {
@@ -183,6 +254,7 @@ fn statement(
     span: Range<usize>,
     problems: &mut FileProblems<'_>,
 ) -> Option<PublishedStatement> {
+    let line = span.clone();
     let metric = match table.metric.get_ref().parse() {
         Ok(metric) => Some(metric),
         Err(error) => {
@@ -222,9 +294,24 @@ fn statement(
             None
         }
     };
+    let has_slot = |metric| {
+        matches!(
+            metric,
+            StudyMetric::Orbit(OrbitQuantity::Raan | OrbitQuantity::ArgLatitude)
+        )
+    };
+    if let (Some(satellite), Some(metric)) = (&table.satellite, metric)
+        && !has_slot(metric)
+    {
+        let what = format!(
+            "satellite: {metric} is not of one satellite; expected raan-deg or arg-latitude-deg"
+        );
+        problems.add(satellite.span(), what);
+    }
     Some(PublishedStatement {
         name: table.name.into_inner(),
         of: table.of,
+        satellite: table.satellite.map(Spanned::into_inner),
         metric: metric?,
         expected: expected?,
         source: source?,
@@ -235,7 +322,8 @@ fn statement(
         },
         is_confirmed: table.confirmed,
         disagreement: table.disagreement,
-        scenario: keys(&table.scenario),
+        scenario: problems.keys(table.scenario),
+        line: problems.line(&line),
     })
 }
 
@@ -323,10 +411,13 @@ source = \"page 2\"
     fn a_study_is_read() {
         let study = PublishedStudy::parse("two.toml", STUDY).unwrap();
         assert_eq!(
-            study.scenario,
+            study.scenario.keys,
             ["time.step-s=600", "gnss.constellations=[\"gps\"]"]
         );
-        assert_eq!(study.assumptions[0].scenario, ["visibility.mask-deg=10"]);
+        assert_eq!(
+            study.assumptions[0].scenario.keys,
+            ["visibility.mask-deg=10"]
+        );
         let [first, second] = study.statements.as_slice() else {
             panic!("{study:?}");
         };
@@ -420,6 +511,31 @@ source = \"page 2\"
                 "two.toml:3: source: found an empty text",
             ),
             ("title = \"Two", "title = Two", "two.toml:2: "),
+            (
+                "scenario = { vis",
+                "scenaro = { vis",
+                "two.toml:9: unknown field `scenaro`, expected `name` or `scenario`; did you mean `scenario`?",
+            ),
+            (
+                "scenario = { visibility = { mask-deg = 10 } }",
+                "scenario = {}",
+                "two.toml:9: scenario: found no keys, expected what the assumption changes",
+            ),
+            (
+                "name = \"another mask\"",
+                "name = \"\"",
+                "two.toml:8: name: found an empty text",
+            ),
+            (
+                "metric = \"p95-hdop\"",
+                "metric = \"hdop\"",
+                "two.toml:10: of: hdop is of a sky, and [skies] has no \"gnss-only\"",
+            ),
+            (
+                "metric = \"mean-visible\"",
+                "metric = \"mean-visible\"\nsatellite = \"NW-P01-S01\"",
+                "two.toml:20: satellite: mean-visible is not of one satellite",
+            ),
         ] {
             let told = told(&STUDY.replace(from, to));
             assert!(told.contains(expected), "{told}");

@@ -1,16 +1,15 @@
 //! A study computed: each statement under its scenario and, if it is not met there, under the assumptions.
 
-use super::metric::{DilutionKind, DilutionStatistic, OrbitQuantity, StudyMetric};
-use super::{PublishedStatement, PublishedStudy};
-use crate::constellation::{Design, Slot, coverage_radius_deg};
-use crate::ephemeris::{Ephemeris, EphemerisError};
-use crate::evaluate::{Evaluator, Metrics};
+use super::measured::{MeasuredConstellation, of_orbit, of_sky};
+use super::metric::{OrbitQuantity, StudyMetric};
+use super::{PublishedStatement, PublishedStudy, StudyAssumption, StudyKeys, StudySky};
+use crate::constellation::{Design, Slot};
+use crate::dop::SkyView;
+use crate::ephemeris::{Ephemeris, EphemerisError, object_name};
+use crate::evaluate::Evaluator;
 use crate::exchange::constellation::{Constellation, ConstellationError, GNSS_ONLY};
-use crate::orbit::j2::SecularRates;
 use crate::scenario::{NoDesign, Place, Problems, Scenario, SetupError};
-use crate::search::CountedSatellites;
 use crate::study::judge::{OtherAssumption, Statement, Verdict, judge};
-use std::f64::consts::TAU;
 use std::io;
 use thiserror::Error;
 
@@ -57,36 +56,28 @@ pub enum StudyRunError {
     #[error("{0}")]
     Scenario(String),
     /// Its scenario cannot be set up.
-    #[error("study {study}: {source}")]
+    #[error("{place}: {source}")]
     Setup {
-        /// The study.
-        study: String,
+        /// The study, and the line of a statement.
+        place: String,
         /// Why.
         source: Box<SetupError>,
     },
     /// A statement names no constellation.
-    #[error("study {study}, statement {statement:?}: {source}")]
+    #[error("{place}: {source}")]
     Constellation {
-        /// The study.
-        study: String,
-        /// The statement.
-        statement: String,
+        /// The study, and the line of the statement.
+        place: String,
         /// Why.
         source: Box<NoDesign>,
     },
-    /// A statement about the orbit of several shells.
-    #[error(
-        "study {study}, statement {statement:?}: {metric} is of one shell, and {of} has others"
-    )]
-    NotOneShell {
-        /// The study.
-        study: String,
-        /// The statement.
-        statement: String,
-        /// What is asked.
-        metric: String,
-        /// The constellation.
-        of: String,
+    /// A statement that cannot be computed, for another reason.
+    #[error("{place}: {reason}")]
+    Statement {
+        /// The study, and the line of the statement.
+        place: String,
+        /// Why.
+        reason: String,
     },
     /// A satellite cannot be propagated.
     #[error(transparent)]
@@ -104,19 +95,13 @@ struct StudyWorld {
     measured: Vec<(String, MeasuredConstellation)>,
 }
 
-/// What was computed of a constellation.
-struct MeasuredConstellation {
-    constellation: Option<Constellation>,
-    ephemeris: Ephemeris,
-    metrics: Metrics,
-}
-
 /// A study that is being computed.
 struct StudyRun<'r> {
     study: &'r PublishedStudy,
     overrides: &'r [String],
     read: &'r dyn Fn(&str) -> io::Result<Vec<u8>>,
     worlds: Vec<StudyWorld>,
+    skies: Vec<SkyView>,
 }
 
 impl PublishedStudy {
@@ -124,18 +109,22 @@ impl PublishedStudy {
     /// written.
     ///
     /// # Errors
-    /// If its scenario is wrong, a statement names no constellation, or a satellite cannot be propagated.
+    /// If its scenario is wrong with any of its assumptions, a statement names no constellation, a file cannot be read,
+    /// or a satellite cannot be propagated.
     pub fn run(
         &self,
         overrides: &[String],
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<JudgedStudy, StudyRunError> {
+        let skies = self.skies.iter().map(|sky| self.sky(sky, read));
         let mut run = StudyRun {
             study: self,
             overrides,
             read,
             worlds: Vec::new(),
+            skies: skies.collect::<Result<_, _>>()?,
         };
+        run.check_scenarios()?;
         let statements = self.statements.iter();
         let statements = statements.map(|statement| run.judged(statement));
         Ok(JudgedStudy {
@@ -146,16 +135,44 @@ impl PublishedStudy {
             statements: statements.collect::<Result<_, _>>()?,
         })
     }
+
+    fn sky(
+        &self,
+        sky: &StudySky,
+        read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<SkyView, StudyRunError> {
+        sky.view(read).map_err(|reason| StudyRunError::Statement {
+            place: self.at(sky.line),
+            reason: format!("skies.{}: {reason}", sky.name),
+        })
+    }
+
+    /// A line of the study.
+    fn at(&self, line: usize) -> String {
+        format!("{}:{line}", self.label)
+    }
 }
 
 impl StudyRun<'_> {
+    /// Fails if the scenario is wrong, alone or with any assumption, also one that no statement needs.
+    fn check_scenarios(&mut self) -> Result<(), StudyRunError> {
+        let study = self.study;
+        let assumed = std::iter::once(None).chain(study.assumptions.iter().map(Some));
+        for assumption in assumed {
+            for statement in &study.statements {
+                self.world(assumption, statement)?;
+            }
+        }
+        Ok(())
+    }
+
     fn judged(&mut self, statement: &PublishedStatement) -> Result<JudgedStatement, StudyRunError> {
-        let ours = self.value(statement, &[])?;
+        let ours = self.value(statement, None)?;
         let holds = ours.is_some_and(|ours| statement.expected.holds(ours));
         let mut others = Vec::new();
         if !holds {
             for assumption in &self.study.assumptions {
-                let found = self.value(statement, &assumption.scenario)?;
+                let found = self.value(statement, Some(assumption))?;
                 others.push(OtherAssumption {
                     assumption: &assumption.name,
                     found,
@@ -185,18 +202,21 @@ impl StudyRun<'_> {
         })
     }
 
-    /// The number of a statement under the scenario of the study with further keys; `None` if it has none.
+    /// The number of a statement under the scenario of the study, perhaps with an assumption; `None` if it has none.
     fn value(
         &mut self,
         statement: &PublishedStatement,
-        assumed: &[String],
+        assumption: Option<&StudyAssumption>,
     ) -> Result<Option<f64>, StudyRunError> {
-        let mut keys = self.study.scenario.clone();
-        keys.extend(assumed.iter().cloned());
-        keys.extend(statement.scenario.iter().cloned());
-        let place = self.world(keys)?;
-        if let StudyMetric::Orbit(quantity) = statement.metric {
-            return self.of_orbit(place, statement, quantity);
+        let place = self.world(assumption, statement)?;
+        match statement.metric {
+            StudyMetric::Orbit(quantity) => return self.of_orbit(place, statement, quantity),
+            StudyMetric::Sky(dilution) => {
+                let mut known = self.study.skies.iter().zip(&self.skies);
+                let sky = known.find(|(sky, _)| sky.name == statement.of);
+                return Ok(sky.and_then(|(_, sky)| of_sky(sky, dilution)));
+            }
+            _ => {}
         }
         let known = |world: &StudyWorld| {
             let mut measured = world.measured.iter();
@@ -211,17 +231,34 @@ impl StudyRun<'_> {
                 world.measured.len() - 1
             }
         };
-        self.worlds[place].value(at, statement.metric)
+        self.require_key(place, statement)?;
+        let world = &self.worlds[place];
+        let (Some((_, measured)), Some(evaluator)) = (world.measured.get(at), &world.evaluator)
+        else {
+            return Ok(None);
+        };
+        Ok(measured.value(evaluator, &world.scenario.goals(), statement.metric)?)
     }
 
-    /// The place of the scenario with these keys.
-    fn world(&mut self, keys: Vec<String>) -> Result<usize, StudyRunError> {
+    /// The place of the scenario of a statement, perhaps with an assumption.
+    fn world(
+        &mut self,
+        assumption: Option<&StudyAssumption>,
+        statement: &PublishedStatement,
+    ) -> Result<usize, StudyRunError> {
+        let parts = [
+            Some(&self.study.scenario),
+            assumption.map(|assumption| &assumption.scenario),
+            Some(&statement.scenario),
+        ];
+        let parts: Vec<&StudyKeys> = parts.into_iter().flatten().collect();
+        let keys: Vec<String> = parts.iter().flat_map(|part| part.keys.clone()).collect();
         if let Some(place) = self.worlds.iter().position(|world| world.keys == keys) {
             return Ok(place);
         }
         let all: Vec<&String> = keys.iter().chain(self.overrides).collect();
         let scenario = Scenario::parse(&self.study.name, b"", &all);
-        let scenario = scenario.map_err(|problems| self.wrong(&problems, keys.len()))?;
+        let scenario = scenario.map_err(|problems| self.wrong(&problems, &parts))?;
         self.worlds.push(StudyWorld {
             keys,
             scenario,
@@ -231,18 +268,23 @@ impl StudyRun<'_> {
         Ok(self.worlds.len() - 1)
     }
 
-    /// The problems of a scenario: those of the study by its key, those of an override as they are.
-    fn wrong(&self, problems: &Problems, own: usize) -> StudyRunError {
-        let told = problems
-            .as_slice()
+    /// The problems of a scenario: those of the study by line and key, those of an override as they are.
+    fn wrong(&self, problems: &Problems, parts: &[&StudyKeys]) -> StudyRunError {
+        let lines = parts
             .iter()
-            .map(|problem| match problem.place {
-                Place::Argument { index, .. } if index >= own => problem.to_string(),
-                _ => format!(
-                    "study {}: scenario.{}: {}",
-                    self.study.name, problem.key, problem.fault
-                ),
-            });
+            .flat_map(|part| part.keys.iter().map(|_| part.line));
+        let lines: Vec<usize> = lines.collect();
+        let told = problems.as_slice().iter().map(|problem| {
+            let line = match problem.place {
+                Place::Argument { index, .. } => match lines.get(index) {
+                    Some(line) => *line,
+                    None => return problem.to_string(),
+                },
+                Place::File { .. } => self.study.scenario.line,
+            };
+            let place = self.study.at(line);
+            format!("{place}: scenario.{}: {}", problem.key, problem.fault)
+        });
         StudyRunError::Scenario(told.collect::<Vec<_>>().join("\n"))
     }
 
@@ -255,8 +297,9 @@ impl StudyRun<'_> {
             GNSS_ONLY => None,
             of => Some(self.constellation(place, statement, of)?),
         };
+        let at = self.study.at(statement.line);
         let failed = |source| StudyRunError::Setup {
-            study: self.study.name.clone(),
+            place: at,
             source: Box::new(source),
         };
         let world = &mut self.worlds[place];
@@ -281,6 +324,34 @@ impl StudyRun<'_> {
         })
     }
 
+    /// Fails if the scenario lacks what the metric of a statement needs.
+    fn require_key(
+        &self,
+        place: usize,
+        statement: &PublishedStatement,
+    ) -> Result<(), StudyRunError> {
+        let setup = self.worlds[place].evaluator.as_ref().map(Evaluator::setup);
+        let Some((setup, key)) = setup.zip(statement.metric.needed_key()) else {
+            return Ok(());
+        };
+        let is_there = match key {
+            "[accuracy]" => setup.accuracy.is_some(),
+            _ => setup.window_s.is_some(),
+        };
+        if is_there {
+            return Ok(());
+        }
+        let metric = statement.metric;
+        Err(self.wrong_statement(statement, format!("{metric} needs {key} in the scenario")))
+    }
+
+    fn wrong_statement(&self, statement: &PublishedStatement, reason: String) -> StudyRunError {
+        StudyRunError::Statement {
+            place: self.study.at(statement.line),
+            reason,
+        }
+    }
+
     fn constellation(
         &self,
         place: usize,
@@ -292,7 +363,7 @@ impl StudyRun<'_> {
             let grid = scenario.time_grid().map_err(SetupError::from);
             let read = grid.and_then(|grid| named.read(self.read, grid));
             let (one, _) = read.map_err(|source| StudyRunError::Setup {
-                study: self.study.name.clone(),
+                place: self.study.at(statement.line),
                 source: Box::new(source),
             })?;
             return Ok(one);
@@ -307,8 +378,7 @@ impl StudyRun<'_> {
     ) -> Result<Design, StudyRunError> {
         let design = self.worlds[place].scenario.design(&statement.of);
         design.map_err(|source| StudyRunError::Constellation {
-            study: self.study.name.clone(),
-            statement: statement.name.clone(),
+            place: self.study.at(statement.line),
             source: Box::new(source),
         })
     }
@@ -320,82 +390,29 @@ impl StudyRun<'_> {
         quantity: OrbitQuantity,
     ) -> Result<Option<f64>, StudyRunError> {
         let design = self.design(place, statement)?;
-        let shell = design
-            .only_shell()
-            .ok_or_else(|| StudyRunError::NotOneShell {
-                study: self.study.name.clone(),
-                statement: statement.name.clone(),
-                metric: statement.metric.to_string(),
-                of: statement.of.clone(),
-            })?;
-        let elements = shell.elements(Slot::FIRST);
-        let rates = SecularRates::j2(&elements);
-        let minutes = |rate_rad_s: f64| TAU / rate_rad_s / 60.0;
-        Ok(Some(match quantity {
-            OrbitQuantity::CoverageRadius => return Ok(coverage_radius_deg(shell)),
-            OrbitQuantity::NodalRate => rates.raan_rad_s.to_degrees() * 86_400.0,
-            OrbitQuantity::NodalPeriod => {
-                minutes(rates.mean_anomaly_rad_s + rates.arg_perigee_rad_s)
-            }
-            OrbitQuantity::KeplerPeriod => minutes(elements.kepler_mean_motion_rad_s()),
-        }))
-    }
-}
-
-impl StudyWorld {
-    /// A number of a constellation that was measured.
-    fn value(&self, at: usize, metric: StudyMetric) -> Result<Option<f64>, StudyRunError> {
-        let (Some((_, measured)), Some(evaluator)) = (self.measured.get(at), &self.evaluator)
-        else {
-            return Ok(None);
+        let Some(shell) = design.only_shell() else {
+            let (metric, of) = (statement.metric, &statement.of);
+            let reason = format!("{metric} is of one shell, and {of} has others");
+            return Err(self.wrong_statement(statement, reason));
         };
-        let metrics = &measured.metrics;
-        Ok(match metric {
-            // Of an orbit, and not of samples.
-            StudyMetric::Orbit(_) => None,
-            StudyMetric::MeanGnssVisible => Some(metrics.mean_gnss_visible),
-            StudyMetric::Quantity(quantity) => {
-                let satellites = match &measured.constellation {
-                    Some(one) => one.counted(None),
-                    None => CountedSatellites::default(),
-                };
-                self.scenario.goals().value(quantity, satellites, metrics)
-            }
-            StudyMetric::Dilution(statistic, dilution) => {
-                dilution_of(evaluator, measured, statistic, dilution)?
-            }
-        })
-    }
-}
-
-fn dilution_of(
-    evaluator: &Evaluator,
-    measured: &MeasuredConstellation,
-    statistic: DilutionStatistic,
-    dilution: DilutionKind,
-) -> Result<Option<f64>, EphemerisError> {
-    let dops = evaluator.dops_beside(&measured.metrics, &measured.ephemeris)?;
-    let named = dops.named();
-    let first = match dilution {
-        DilutionKind::Gdop => 0,
-        DilutionKind::Pdop => 1,
-        DilutionKind::Hdop => 2,
-        DilutionKind::Vdop => 3,
-        // The first clock that has a value.
-        DilutionKind::Tdop => match named.iter().skip(4).position(|(_, of)| of.is_some()) {
-            Some(place) => 4 + place,
-            None => return Ok(None),
-        },
-    };
-    let Some((_, Some(summary))) = named.get(first) else {
-        return Ok(None);
-    };
-    match (statistic.of_summary(summary), statistic) {
-        (None, DilutionStatistic::Quantile(level)) => {
-            let quantiles = evaluator.dop_quantiles(&measured.ephemeris, level)?;
-            Ok(quantiles.get(first).copied().flatten())
+        let Some(name) = &statement.satellite else {
+            return Ok(of_orbit(shell, Slot::FIRST, quantity));
+        };
+        let names: Vec<(Slot, String)> = shell
+            .slots()
+            .map(|slot| (slot, object_name(slot)))
+            .collect();
+        if let Some((slot, _)) = names.iter().find(|(_, one)| one == name) {
+            return Ok(of_orbit(shell, *slot, quantity));
         }
-        (value, _) => Ok(value),
+        let ends =
+            [names.first(), names.last()].map(|end| end.map_or("", |(_, name)| name.as_str()));
+        let [first, last] = ends;
+        let reason = format!(
+            "satellite: {} has no {name:?}, but {first} to {last}",
+            statement.of
+        );
+        Err(self.wrong_statement(statement, reason))
     }
 }
 

@@ -1,9 +1,10 @@
 //! What failures of satellites do to a constellation.
 
 use super::EvaluationContext;
+use super::spares::DRAWS;
+use crate::cli::output;
 use crate::ephemeris::Ephemeris;
-use crate::ephemeris::outages::plane_name;
-use crate::evaluate::Metrics;
+use crate::evaluate::{Metrics, Setup};
 use crate::exchange::constellation::Constellation;
 use crate::report::failures::{FailureCase, FailureCases, FailureSummary};
 use crate::search::Quantity;
@@ -28,32 +29,25 @@ pub(super) fn summary(
     whole: &Metrics,
 ) -> Result<FailureSummary> {
     let satellites = ephemeris.satellites().len();
-    if k >= satellites {
-        bail!(
-            "--failures {k}: {} has {}, and one must be left",
-            one.name,
-            counted(satellites, "satellite")
-        );
-    }
+    require_one_left(&one.name, satellites, k)?;
+    tell_of_evaluations_anew(work.evaluator.setup());
     let mut search = FailureSearch::new(satellites, |sets: &[Vec<usize>]| {
         without_each(work, one, ephemeris, sets)
     });
-    let (draws, seed) = (work.args.draws as usize, work.scenario.optimizer.seed);
-    let most = ALL_UP_TO.max(if k == 1 { satellites } else { 0 });
-    let all = set_count(satellites, k).is_some_and(|count| count <= most);
-    let sets = match all {
-        true => all_sets(satellites, k),
-        false => drawn_sets(satellites, k, draws, seed),
-    };
+    let FailureSets { sets, drawn } = FailureSets::new(
+        satellites,
+        k,
+        (work.args.draws, work.scenario.optimizer.seed),
+    );
     let found = search.without(&sets)?;
     let mut cases = FailureCases {
         k,
         cases: named(ephemeris, sets.iter().zip(&found)),
         searched: Vec::new(),
-        drawn: (!all).then_some((draws, seed)),
+        drawn,
         planes: Vec::new(),
     };
-    if !all {
+    if drawn.is_some() {
         for quantity in SEARCHED {
             search.search(k, |metrics| harm(quantity, metrics))?;
         }
@@ -68,6 +62,60 @@ pub(super) fn summary(
         cases.planes = names.zip(named).collect();
     }
     Ok(FailureSummary::new(&cases, whole))
+}
+
+/// Refuses failures of all satellites.
+pub(crate) fn require_one_left(name: &str, satellites: usize, k: usize) -> Result<()> {
+    if k >= satellites {
+        let has = counted(satellites, "satellite");
+        bail!("--failures {k}: {name} has {has}, and one must be left");
+    }
+    Ok(())
+}
+
+/// Says what is not downdated, and so takes an evaluation for each case.
+fn tell_of_evaluations_anew(setup: &Setup) {
+    let mut anew = Vec::new();
+    if setup.accuracy.is_some() {
+        anew.push("the accuracy in metres");
+    }
+    if setup.window_s.is_some() {
+        anew.push("the PDOP of windows");
+    }
+    if setup.metrics.asks_for_hdop {
+        anew.push("the quantiles of HDOP and VDOP");
+    }
+    if !anew.is_empty() {
+        output::hint(&format!(
+            "--failures: each case takes an evaluation of its own for {}, which slows it many times",
+            anew.join(", ")
+        ));
+    }
+}
+
+/// The sets of satellites that fail together.
+pub(crate) struct FailureSets {
+    pub(crate) sets: Vec<Vec<usize>>,
+    /// Number of draws and their seed; `None` if these are all sets.
+    pub(crate) drawn: Option<(usize, u64)>,
+}
+
+impl FailureSets {
+    /// All sets of `k` satellites if there are few, or if it is one that fails; otherwise draws, as many as given.
+    pub(crate) fn new(satellites: usize, k: usize, (draws, seed): (Option<u32>, u64)) -> Self {
+        let most = ALL_UP_TO.max(if k == 1 { satellites } else { 0 });
+        if set_count(satellites, k).is_some_and(|count| count <= most) {
+            return Self {
+                sets: all_sets(satellites, k),
+                drawn: None,
+            };
+        }
+        let draws = draws.unwrap_or(DRAWS) as usize;
+        Self {
+            sets: drawn_sets(satellites, k, draws, seed),
+            drawn: Some((draws, seed)),
+        }
+    }
 }
 
 fn harm(quantity: Quantity, metrics: &Metrics) -> Harm {
@@ -112,16 +160,7 @@ fn named<'a>(
 
 /// The planes that do not hold all satellites, each with the places of its satellites.
 fn planes(ephemeris: &Ephemeris) -> Vec<(String, Vec<usize>)> {
-    let mut planes: Vec<(String, Vec<usize>)> = Vec::new();
-    for (place, satellite) in ephemeris.satellites().iter().enumerate() {
-        let Some(name) = plane_name(satellite) else {
-            continue;
-        };
-        match planes.last_mut().filter(|(last, _)| last == name) {
-            Some((_, places)) => places.push(place),
-            None => planes.push((name.to_owned(), vec![place])),
-        }
-    }
+    let mut planes = ephemeris.planes();
     planes.retain(|(_, places)| places.len() < ephemeris.satellites().len());
     planes
 }

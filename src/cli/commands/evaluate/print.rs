@@ -72,8 +72,11 @@ impl<'a> Printer<'a> {
             }
             PrintForm::Text(table) => {
                 if let Some(expected) = &entry.evaluated.expected {
-                    let table = single::expected_table(expected);
+                    let table = expected.to_text();
                     self.below += &format!("\n{}:{table}", entry.name);
+                }
+                if let Some(phases) = &entry.evaluated.phases {
+                    self.below += &format!("\n{}:{}", entry.name, phases.to_text());
                 }
                 if let Some(failures) = &entry.evaluated.failures {
                     self.below += &format!("\n{}:{}", entry.name, failures.to_text());
@@ -89,11 +92,13 @@ impl<'a> Printer<'a> {
                 *is_begun = true;
                 output::part(&format!("{before}{}", indented(&entry, 4)?))
             }
-            PrintForm::Csv { columns: None, .. } if entry.evaluated.failures.is_some() => {
-                let failures = entry.evaluated.failures.iter();
-                for failures in failures {
-                    let with_header = !std::mem::replace(&mut self.has_cases, true);
+            PrintForm::Csv { columns: None, .. } if has_cases(&entry) => {
+                let with_header = !std::mem::replace(&mut self.has_cases, true);
+                if let Some(failures) = &entry.evaluated.failures {
                     output::part(&failures.to_csv(&entry.name, with_header)?)?;
+                }
+                if let Some(phases) = &entry.evaluated.phases {
+                    output::part(&phases.to_csv(&entry.name, with_header)?)?;
                 }
                 Ok(())
             }
@@ -134,6 +139,11 @@ impl<'a> Printer<'a> {
             },
         }
     }
+}
+
+/// Whether failures or phases are printed in place of the constellation.
+fn has_cases(entry: &ConstellationEntry) -> bool {
+    entry.evaluated.failures.is_some() || entry.evaluated.phases.is_some()
 }
 
 /// Whether a list may name a constellation with satellites from files.

@@ -3,12 +3,12 @@
 use super::EvaluationContext;
 use crate::cli::args::OutputFormat;
 use crate::cli::output;
-use crate::evaluate::{DopStatistics, ExpectedMetrics, Metrics, OnDemand, SigmaSpread};
+use crate::evaluate::{DopStatistics, Metrics, OnDemand, SigmaSpread};
 use crate::keyword::Keyword;
 use crate::report::failures::FailureSummary;
 use crate::report::{
-    Align, Alone, Assessment, ConstellationEntry, ConstraintCheck, PhaseSpread, Table,
-    on_demand_quantities, quantity_label, shown,
+    Align, Alone, Assessment, ConstellationEntry, ConstraintCheck, DeploymentSummary,
+    ExpectedService, PhaseSpread, Table, on_demand_quantities, quantity_label, shown,
 };
 use crate::scenario::Scenario;
 use crate::search::Quantity;
@@ -58,11 +58,10 @@ pub(super) fn print(work: &EvaluationContext<'_>, entry: ConstellationEntry) -> 
     let text = text(work.scenario, &title, evaluated);
     let phases = evaluated.gnss_phases.as_ref();
     let text = text + &phases.map_or_else(String::new, phases_table);
-    let text = text
-        + &evaluated
-            .expected
-            .as_ref()
-            .map_or_else(String::new, expected_table);
+    let expected = evaluated.expected.as_ref();
+    let text = text + &expected.map_or_else(String::new, ExpectedService::to_text);
+    let phases = evaluated.phases.as_ref();
+    let text = text + &phases.map_or_else(String::new, DeploymentSummary::to_text);
     let failures = evaluated.failures.as_ref();
     let text = text + &failures.map_or_else(String::new, FailureSummary::to_text);
     output::result(&(text + &constraint_lines(&evaluated.constraints)))
@@ -245,29 +244,6 @@ fn phases_table(spread: &PhaseSpread) -> String {
     format!(
         "\nover {} phases of the GNSS, the first of which is that above\n{}",
         spread.phases,
-        table.to_text()
-    )
-}
-
-/// The metrics as expected over failures.
-pub(super) fn expected_table(of: &ExpectedMetrics) -> String {
-    let mut table = Table::new(&[("", Align::Left), ("", Align::Right)]);
-    let rows = [
-        ("mean visible", shown::pdop(Some(of.mean_visible))),
-        ("coverage, at least 4 LEO", shown::share(of.coverage.of(4))),
-        ("mean PDOP", shown::pdop(of.mean_pdop)),
-        ("95 % quantile of PDOP", shown::pdop(of.p95_pdop)),
-        ("CVaR of PDOP", shown::pdop(of.cvar_pdop)),
-        ("solved fraction", shown::share(Some(of.solved_fraction))),
-        ("availability", shown::share(Some(of.availability))),
-    ];
-    for (name, value) in rows {
-        table.row([name.to_owned(), value]);
-    }
-    format!(
-        "\nexpected with each satellite up with probability {} (states left out: at most {:.1e} of a sample)\n{}",
-        crate::units::round_decimal(of.satellite_availability, 5),
-        of.neglected,
         table.to_text()
     )
 }

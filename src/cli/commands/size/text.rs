@@ -1,5 +1,7 @@
 //! The result as text.
 
+mod refinement;
+
 use crate::report::{Align, Table, shown};
 use crate::run::size::{
     BestReached, KeptConstraint, LevelAbove, RejectedLevel, RobustnessRow, SizeFront, SizeResult,
@@ -28,6 +30,7 @@ pub(super) fn of(result: &SizeResult) -> String {
         text += &front_text(front);
     }
     text += &reached(&result.best_reached);
+    text += &refinement::text(result);
     text += &robustness(&result.robustness);
     text += &below(&result.rejected);
     text + &cost(result)
@@ -183,7 +186,7 @@ fn reached(all: &[BestReached]) -> String {
         table.row(row);
     }
     format!(
-        "\nBest that was reached, of the designs that took the most samples to reject{}\n{}",
+        "\nBest that was reached with each number of satellites: the least violation of all designs{}\n{}",
         skipped_text(skipped),
         table.to_text()
     )

@@ -4,14 +4,19 @@ use super::directory::read_certificate;
 use crate::cli::args::{OutputFormat, SizeArgs};
 use crate::cli::study::Study;
 use crate::cli::{Status, files, output};
-use crate::constellation::Design;
 use crate::evaluate::Evaluator;
-use crate::run::size::{SIZE_JSON, SizeResult};
+use crate::run::size::{SIZE_CSV, SIZE_JSON, SizeResult, size_csv};
 use crate::search::size::SizeProblem;
 use crate::units::counted;
 use anyhow::{Context, Result, bail};
+use levels::CertificateLevels;
 use serde::Serialize;
 use std::path::Path;
+
+mod levels;
+
+/// Findings that are printed.
+const MOST_FINDINGS: usize = 100;
 
 /// A finding, or that there is none.
 #[derive(Debug, Serialize)]
@@ -20,7 +25,7 @@ struct SizeVerification {
     designs: u64,
     /// Of those, evaluated in full.
     drawn: usize,
-    /// Designs of the result that were evaluated.
+    /// Designs that keep the constraints by the result, evaluated in full.
     kept: usize,
     /// What is wrong.
     findings: Vec<String>,
@@ -68,91 +73,75 @@ fn verified(
     result: &SizeResult,
     problem: &SizeProblem<'_>,
 ) -> Result<SizeVerification> {
-    let mut findings = Vec::new();
-    let below = |satellites: usize| result.fewest.is_none_or(|fewest| satellites < fewest);
-    // The designs of the grid with fewer satellites, in the order of the certificate.
-    let mut expected = problem.designs_in_order();
-    let mut rejected: Vec<Design> = Vec::new();
-    let certificate = read_certificate(directory, |line| {
-        let Some((satellites, notation)) = certified(line) else {
-            findings.push(format!("not a row of a certificate: {line}"));
-            return Ok(());
-        };
-        let design = notation.parse::<Design>();
-        // Points that are not designs have rows, but no turn.
-        if !below(satellites) || design.is_err() {
-            return Ok(());
-        }
-        let next = expected.next().transpose()?;
-        let is_next = next
-            .as_ref()
-            .is_some_and(|(_, design)| design.to_string() == notation);
-        if !is_next {
-            let next = next.map_or_else(|| "the end".to_owned(), |(_, design)| design.to_string());
-            findings.push(format!(
-                "found {notation}, but the next design of the grid is {next}"
-            ));
-        }
-        rejected.extend(design);
-        Ok(())
-    })?;
-    let missing = expected.next().transpose()?;
-    if let Some((satellites, design)) = missing.filter(|(satellites, _)| below(*satellites)) {
-        findings.push(format!(
-            "{design} with {satellites} satellites has no proof"
-        ));
-    }
+    let seed = study.scenario.optimizer.seed;
+    let rows = usize::try_from(result.certificate.designs).unwrap_or(usize::MAX);
+    let drawn = crate::optimize::drawn(rows, args.draw, seed);
+    let mut levels = CertificateLevels::new(problem, result, drawn);
+    let certificate = read_certificate(directory, |line| levels.see(line))?;
+    let checked = levels.finish()?;
+    let mut findings = checked.findings;
     if certificate != result.certificate {
         findings.push(
             "the checksum or the length of the certificate is not that of the result".to_owned(),
         );
     }
-    let seed = study.scenario.optimizer.seed;
-    let drawn = crate::optimize::drawn(rejected.len(), args.draw, seed);
-    for &n in &drawn {
-        if problem.keeps(&rejected[n]) == Some(true) {
+    let table = files::read_run(&directory.join(SIZE_CSV)).unwrap_or_default();
+    if table != size_csv(result)?.as_bytes() {
+        findings.push(format!(
+            "{SIZE_CSV} does not have the designs of {SIZE_JSON}"
+        ));
+    }
+    for design in &checked.drawn {
+        if problem.keeps(design) == Some(true) {
+            findings.push(format!("{design} is rejected, but keeps the constraints"));
+        }
+    }
+    let unlisted = crate::optimize::drawn(checked.unlisted.len(), args.draw, seed);
+    for design in unlisted.iter().map(|n| &checked.unlisted[*n]) {
+        if problem.keeps(design) != Some(true) {
             findings.push(format!(
-                "{} is rejected, but keeps the constraints",
-                rejected[n]
+                "{design} has no proof, and does not keep the constraints"
             ));
         }
     }
-    for one in &result.designs {
-        let design = one
-            .design
-            .design()
-            .filter(|design| problem.keeps(design) == Some(true));
-        let is_of_fewest =
-            Some(one.design.satellites + problem.satellites_beside()) == result.fewest;
-        if design.is_none() || !is_of_fewest {
-            findings.push(format!(
-                "{} does not keep the constraints",
-                one.design.notation
-            ));
-        }
-    }
-    findings.truncate(100);
+    findings.extend(wrong_designs(result, problem));
+    findings.truncate(MOST_FINDINGS);
     Ok(SizeVerification {
         designs: certificate.designs,
-        drawn: drawn.len(),
-        kept: result.designs.len(),
+        drawn: checked.drawn.len(),
+        kept: result.designs.len() + unlisted.len(),
         passed: findings.is_empty(),
         findings,
     })
 }
 
-/// Satellites and notation of a row.
-fn certified(line: &str) -> Option<(usize, String)> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .from_reader(line.as_bytes());
-    let record = reader.records().next()?.ok()?;
-    Some((record.get(0)?.parse().ok()?, record.get(1)?.to_owned()))
+/// The designs of the result that are not what it says.
+fn wrong_designs(result: &SizeResult, problem: &SizeProblem<'_>) -> Vec<String> {
+    let mut findings = Vec::new();
+    for one in &result.designs {
+        let notation = &one.design.notation;
+        let metrics = one
+            .design
+            .design()
+            .and_then(|design| problem.assessed(&design));
+        let is_of_fewest =
+            Some(one.design.satellites + problem.satellites_beside()) == result.fewest;
+        let keeps = one
+            .design
+            .design()
+            .and_then(|design| problem.keeps(&design));
+        if keeps != Some(true) || !is_of_fewest {
+            findings.push(format!("{notation} does not keep the constraints"));
+        } else if metrics.as_ref() != Some(&one.metrics) {
+            findings.push(format!("{notation} has other metrics than the result says"));
+        }
+    }
+    findings
 }
 
 fn text(of: &SizeVerification) -> String {
     let mut text = format!(
-        "certificate of {}: {} evaluated in full and rejected again, {} of the result kept again\n",
+        "certificate of {}: {} evaluated in full and rejected again, {} that the result keeps kept again\n",
         counted(
             usize::try_from(of.designs).unwrap_or(usize::MAX),
             "rejected design"

@@ -37,10 +37,9 @@ fn every_built_in_study_is_read_and_named() {
         let text = builtin_study(name).unwrap();
         let study = PublishedStudy::parse(name, text).unwrap();
         assert_eq!(study.name, name);
-        assert!(
-            text.lines().filter(|line| !line.trim().is_empty()).count() < 80,
-            "{name}"
-        );
+        // Of notes, skies and statements; each statement is some lines.
+        let most = 25 + 8 * study.statements.len() + 15 * study.skies.len();
+        assert!(text.lines().count() < most, "{name}");
     }
     let unknown = builtin_study("gps").unwrap_err().to_string();
     assert!(unknown.contains("gps-sps"), "{unknown}");
@@ -129,28 +128,160 @@ fn verdicts_are_those_of_the_numbers() {
 }
 
 #[test]
-fn what_is_wrong_in_a_scenario_is_told_by_its_key() {
+fn what_is_wrong_in_a_scenario_is_told_by_line_and_key() {
+    let refused = |text: &str, overrides: &[&str]| run(text, overrides).unwrap_err().to_string();
     let text = one(
         "mean-visible",
         "at-least = 0\nscenario = { time = { stp-s = 60 } }\n",
     );
-    let error = run(&text, &[]).unwrap_err().to_string();
+    let error = refused(&text, &[]);
     assert!(
         error.starts_with(
-            "study small: scenario.time.stp-s: unknown key, did you mean `time.step-s`?"
+            "study.toml:13: scenario.time.stp-s: unknown key, did you mean `time.step-s`?"
         ),
         "{error}"
     );
-    let error = run(&one("mean-visible", "at-least = 0\n"), &["time.step-s=0"]);
-    let error = error.unwrap_err().to_string();
+    let error = refused(&one("mean-visible", "at-least = 0\n"), &["time.step-s=0"]);
     assert!(
         error.starts_with("--set time.step-s=0: time.step-s: found 0"),
         "{error}"
     );
-    let error = run(&one("mean-visible", "of = \"irdium\"\nat-least = 0\n"), &[]);
-    let error = error.unwrap_err().to_string();
+    let error = refused(&one("mean-visible", "of = \"irdium\"\nat-least = 0\n"), &[]);
+    assert!(error.starts_with("study.toml:8: "), "{error}");
+    let missing = "constellations = { mine = { files = [\"none.tle\"] } }\n";
+    let text = one("mean-visible", "of = \"mine\"\nat-least = 0\n")
+        .replace("gnss =", &format!("{missing}gnss ="));
+    let error = refused(&text, &[]);
+    assert!(error.contains("none.tle"), "{error}");
+}
+
+/// An assumption that no number needs is checked as well: here the number is met without it.
+#[test]
+fn typos_in_assumptions_are_found() {
+    for (assumed, told) in [
+        (
+            "visibility = { mask-dge = 10 }",
+            "study.toml:15: scenario.visibility.mask-dge: unknown key, did you mean `visibility.mask-deg`?",
+        ),
+        (
+            "visibility = { mask-deg = 95 }",
+            "study.toml:15: scenario.visibility.mask-deg: ",
+        ),
+    ] {
+        let rest = format!(
+            "at-least = 0\n[[assumption]]\nname = \"another mask\"\nscenario = {{ {assumed} }}\n"
+        );
+        let error = run(&one("mean-visible", &rest), &[])
+            .unwrap_err()
+            .to_string();
+        assert!(error.starts_with(told), "{error}");
+    }
+}
+
+/// With one system of equal range errors, a standard deviation in metres is that error times the dilution, and so are its
+/// quantiles. PDOP is f32 in the summary.
+#[test]
+fn quantiles_of_metres_windows_and_numbers_in_view() {
+    let accurate = |text: String| {
+        text.replace(
+            "gnss =",
+            "accuracy = { gps-m = 2, leo-m = 1 }\nmetrics = { window-min = 30 }\ngnss =",
+        )
+    };
+    let value = |metric: &str| {
+        let text = accurate(one(metric, "at-least = 0\n"));
+        first(&text).statement.ours.unwrap()
+    };
+    for (metres, dilution) in [
+        ("p99-sigma-3d-m", "p99-pdop"),
+        ("p90-sigma-h-m", "p90-hdop"),
+        ("max-sigma-v-m", "max-vdop"),
+        ("mean-sigma-3d-m", "mean-pdop"),
+        ("sigma-3d-m", "mean-pdop"),
+    ] {
+        let ratio = value(metres) / value(dilution);
+        assert!((ratio - 2.0).abs() < 2e-6, "{metres}: {ratio}");
+    }
+    let [p10, p90, max] = ["p10", "p90", "max"].map(|of| value(&format!("{of}-information-pdop")));
+    assert!(p10 < p90 && p90 <= max, "{p10} {p90} {max}");
+    let [least, mean, most] =
+        ["p0.1", "mean", "max"].map(|of| value(&format!("{of}-gnss-visible")));
     assert!(
-        error.starts_with("study small, statement \"n\": "),
-        "{error}"
+        least < mean && mean < most && least.fract() == 0.0,
+        "{least} {mean} {most}"
     );
+    let error = run(&one("p99-sigma-3d-m", "at-least = 0\n"), &[]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "study.toml:8: p99-sigma-3d-m needs [accuracy] in the scenario"
+    );
+    let error = run(&one("p5-information-pdop", "at-least = 0\n"), &[]).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .ends_with("needs metrics.window-min in the scenario")
+    );
+}
+
+#[test]
+fn skies_are_read_from_the_study_or_a_file() {
+    let about = |sky: &str| {
+        format!(
+            "[skies]\nwarsaw = {sky}\n[[statement]]\nname = \"n\"\nof = \"warsaw\"\nmetric = \"hdop\"\nat-least = 0\nsource = \"p\"\n"
+        )
+    };
+    const TABLE: &str = "azimuth_deg,elevation_deg\\n0,5\\n120,5\\n240,5\\n0,90\\n";
+    // 4/(3 cos² 5°), as for three satellites on the horizon but for their elevation.
+    let hdop = (4.0_f64 / 3.0).sqrt() / 5_f64.to_radians().cos();
+    let ours = first(&study(&about(&format!("\"{TABLE}\""))))
+        .statement
+        .ours
+        .unwrap();
+    assert!((ours / hdop - 1.0).abs() < 1e-13, "{ours}");
+    let from_file =
+        PublishedStudy::parse("study.toml", &study(&about("{ file = \"sky.csv\" }"))).unwrap();
+    let read = |name: &str| match name {
+        "sky.csv" => Ok(TABLE.replace("\\n", "\n").into_bytes()),
+        _ => no_files(name),
+    };
+    let judged = from_file.run(&[], &read).unwrap();
+    assert_eq!(judged.statements[0].statement.ours, Some(ours));
+    let told = from_file.run(&[], &no_files).unwrap_err().to_string();
+    assert_eq!(
+        told,
+        "study.toml:9: skies.warsaw: cannot read sky.csv: entity not found"
+    );
+    let wrong = about("\"azimuth_deg,elevation_deg\\n0,95\\n\"");
+    let told = run(&study(&wrong), &[]).unwrap_err().to_string();
+    assert!(
+        told.starts_with("study.toml:9: skies.warsaw: table:2: elevation_deg: found \"95\""),
+        "{told}"
+    );
+}
+
+/// The elements of Walker's slots, worked out by hand: 24/3/1 has planes 120° apart, slots 45° apart and 15° between planes.
+#[test]
+fn validate_the_elements_of_slots() {
+    let value = |metric: &str, satellite: &str| {
+        let rest = format!(
+            "of = \"delta:56:24/3/1@23222,raan=300,u=350\"\nsatellite = \"{satellite}\"\nat-least = 0\n"
+        );
+        run(&one(metric, &rest), &[])
+    };
+    let found = |metric: &str, satellite: &str| {
+        value(metric, satellite).unwrap().statements[0]
+            .statement
+            .ours
+            .unwrap()
+    };
+    for (satellite, raan, arg_latitude) in [
+        ("NW-P01-S01", 300.0, 350.0),
+        ("NW-P02-S03", 60.0, 95.0),
+        ("NW-P03-S08", 180.0, 335.0),
+    ] {
+        assert!((found("raan-deg", satellite) - raan).abs() < 1e-9);
+        assert!((found("arg-latitude-deg", satellite) - arg_latitude).abs() < 1e-9);
+    }
+    let told = value("raan-deg", "NW-P04-S01").unwrap_err().to_string();
+    assert!(told.starts_with("study.toml:8: satellite: delta:56:24/3/1@23222,raan=300,u=350 has no \"NW-P04-S01\", but NW-P01-S01 to NW-P03-S08"), "{told}");
 }

@@ -1,0 +1,44 @@
+//! The native part of the Python module `navwalker`: what the Python files of the package build upon.
+//!
+//! Work goes on without the interpreter's lock, in a thread of its own, so that Ctrl-C is seen while it lasts.
+
+mod columns;
+mod command;
+mod constellation;
+mod custom;
+mod design_columns;
+mod engine;
+mod errors;
+mod interruptible;
+mod search;
+mod sky;
+
+use pyo3::prelude::*;
+
+/// The native part of navwalker.
+#[pymodule(gil_used = false)]
+mod _native {
+    #[pymodule_export]
+    use super::columns::Columns;
+    #[pymodule_export]
+    use super::command::{keys, main, run_command};
+    #[pymodule_export]
+    use super::constellation::NativeConstellation;
+    #[pymodule_export]
+    use super::custom::search_custom;
+    #[pymodule_export]
+    use super::engine::Engine;
+    #[pymodule_export]
+    use super::errors::{DesignError, FileError, NavwalkerError, NavwalkerWarning, ScenarioError};
+    #[pymodule_export]
+    use super::search::{answers, picked, search_space};
+    #[pymodule_export]
+    use super::sky::dilutions;
+
+    /// Adds what is no function or class.
+    #[pymodule_init]
+    fn init(module: &super::Bound<'_, super::PyModule>) -> super::PyResult<()> {
+        use super::PyModuleMethods;
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -1,0 +1,46 @@
+"""Exports, reading back, validation and lint."""
+
+import json
+
+import numpy as np
+import pytest
+
+import navwalker as nw
+
+
+def test_export_and_read(small, tmp_path):
+    hybrid = nw.Constellation("delta:53:12/3/1@1000+star:90:8/4/1@1100", name="hybrid")
+    manifest = hybrid.export(tmp_path / "out", ["tle", "oem"], scenario=small, check=True)
+    assert {one["format"] for one in manifest["files"]} == {"tle", "oem"}
+    back = nw.read(tmp_path / "out" / next(one["path"] for one in manifest["files"] if one["format"] == "tle"))
+    assert back.satellites == 20
+    states = nw.read(tmp_path / "out" / "oem", name="states")
+    # The file has the digits of a metre, and the frame's rotation there and back.
+    np.testing.assert_allclose(small.positions(states), small.positions(hybrid), atol=1e-3)
+    only = nw.read(tmp_path / "out" / "oem", only="NW-A-*")
+    assert only.satellites == 12
+    assert nw.lint(*(tmp_path / "out" / "oem").iterdir()) == []
+    with pytest.raises(nw.FileError, match="not empty|--force"):
+        hybrid.export(tmp_path / "out", "tle", scenario=small)
+
+
+def test_validate(small):
+    found = nw.validate("delta:55:6/3/1@925", against="sgp4", scenario=small)
+    assert found.passed and bool(found) and json.dumps(found.to_dict())
+    assert any(check["gate"] is not None for check in found.checks)
+    with pytest.raises(nw.NavwalkerError, match="sgp4"):
+        nw.validate("delta:55:6/3/1@925", against="sgp5", scenario=small)
+
+
+def test_lint(tmp_path):
+    file = tmp_path / "bad.tle"
+    file.write_text("1 bad\n")
+    (finding,) = nw.lint(file)
+    assert (finding.line, finding.severity, finding.format) == (1, "error", "tle")
+
+
+def test_warnings_are_warnings(tmp_path, small):
+    directory = tmp_path / "mixed"
+    nw.Constellation("delta:53:4/2/1@1000").export(directory, "tle", scenario=small)
+    with pytest.warns(nw.NavwalkerWarning, match="left out: 1 .manifest.json."):
+        nw.read(directory)

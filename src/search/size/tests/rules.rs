@@ -1,0 +1,68 @@
+//! Each rule alone, with a bound that is the very value of a design: a rule that rejects one sample too early, or expects
+//! too much of the samples that are left, rejects that design, which the sweep keeps.
+
+use super::*;
+
+/// Compares with the sweep where the bound is reached exactly.
+fn at_the_bound(evaluator: &Evaluator, quantity: &str, relation: &str) {
+    let bound = value_of_a_design(evaluator, quantity);
+    let constraint = format!("{quantity} {relation} {bound}");
+    let problem =
+        DesignProblem::new(evaluator, space(false), goals(&[constraint.as_str()])).unwrap();
+    let size = SizeProblem::new(&problem);
+    assert!(size.without_rule().is_empty(), "{constraint}");
+    let search = compare(&problem);
+    assert!(search.fewest().is_some(), "{constraint}");
+    let named = search
+        .savings()
+        .iter()
+        .filter(|one| one.constraint == constraint);
+    assert!(named.count() > 0, "{constraint} rejects nothing");
+}
+
+/// The tenth of the values of the designs of [`space`], the best first.
+fn value_of_a_design(evaluator: &Evaluator, quantity: &str) -> f64 {
+    let quantity: Quantity = quantity.parse().unwrap();
+    let problem = DesignProblem::new(evaluator, space(false), goals(&[])).unwrap();
+    let grid = SweepGrid::new(problem.space(), &problem.designs().steps());
+    let mut values: Vec<f64> = (0..grid.count().unwrap())
+        .filter_map(|index| grid.admitted(&problem, grid.genome(index)).unwrap())
+        .map(|genome| {
+            let (design, metrics) = problem.evaluated(&genome).unwrap();
+            quantity.minimised(problem.value(quantity, design.as_ref(), &metrics).unwrap())
+        })
+        .collect();
+    values.sort_by(f64::total_cmp);
+    quantity.minimised(values[9])
+}
+
+macro_rules! rules {
+    ($($name:ident: $quantity:literal $relation:literal;)*) => {
+        $(
+            #[test]
+            fn $name() {
+                let evaluator = Evaluator::new(setup(30, 48, true, 1.6)).unwrap();
+                at_the_bound(&evaluator, $quantity, $relation);
+            }
+        )*
+    };
+}
+
+rules! {
+    the_rule_of_availability: "availability" ">=";
+    the_rule_of_coverage: "coverage-1" ">=";
+    the_rule_of_coverage_with_gnss: "coverage-total-9" ">=";
+    the_rule_of_the_mean: "mean-pdop" "<=";
+    the_rule_of_cvar: "cvar-pdop" "<=";
+    the_rule_of_the_maximum: "max-pdop" "<=";
+    the_rule_of_a_quantile: "p95-pdop" "<=";
+    the_rule_of_j_pos: "j-pos" "<=";
+    the_rule_of_outages: "longest-outage-s" "<=";
+}
+
+/// Of one point and an hour, some designs always show a satellite.
+#[test]
+fn the_rule_of_least_visible() {
+    let evaluator = Evaluator::new(setup(1, 4, true, 1.6)).unwrap();
+    at_the_bound(&evaluator, "least-visible", ">=");
+}
