@@ -189,7 +189,9 @@ fn lanes_equal_the_plain_path() {
             let evaluators = InstructionSet::ALL
                 .map(|set| Evaluator::with_instructions(setup.clone(), set).unwrap());
             let errors = setup.accuracy.as_ref().unwrap();
-            let plain = evaluators[0].position_errors_plain(&ephemeris, errors).unwrap();
+            let plain = evaluators[0]
+                .position_errors_plain(&ephemeris, errors)
+                .unwrap();
             let plain = plain.metrics(evaluators[0].setup().metrics.cvar_level);
             let [fast, others @ ..] = evaluators
                 .each_ref()
