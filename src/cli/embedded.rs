@@ -19,7 +19,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// What a command came to.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Outcome {
+pub struct CommandOutcome {
     /// Its exit status.
     pub status: u8,
     /// What it printed.
@@ -29,11 +29,11 @@ pub struct Outcome {
 /// Runs a command line, which begins with the program name, and keeps what it prints. One runs at a time.
 ///
 /// `--threads` is taken for this command alone.
-pub fn run(args: impl IntoIterator<Item = OsString>) -> Outcome {
+pub fn run(args: impl IntoIterator<Item = OsString>) -> CommandOutcome {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let (status, printed) = output::kept(|| parsed(args));
-    Outcome { status, printed }
+    CommandOutcome { status, printed }
 }
 
 fn parsed(args: impl IntoIterator<Item = OsString>) -> u8 {
