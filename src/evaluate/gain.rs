@@ -219,7 +219,10 @@ impl Evaluator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evaluate::testing::no_metrics;
+    use crate::earth::Surface;
+    use crate::evaluate::testing::{no_metrics, setup};
+    use crate::ground::Site;
+    use crate::time::{Epoch, TimeGrid};
 
     /// GNSS alone minus both, null where the GNSS alone has nothing, and absent where nothing was asked for.
     #[test]
@@ -253,5 +256,29 @@ mod tests {
         assert_eq!(serde_json::from_value::<Gain>(json).unwrap(), gain);
         let names: Vec<&str> = gain.named().into_iter().map(|(name, _)| name).collect();
         assert_eq!(names[11..], ["error95_h_m", "error95_v_m"]);
+    }
+
+    /// By point and by instant too: GNSS alone minus both, which is a gain where LEO satellites are in view.
+    #[test]
+    fn gains_of_a_series_are_alone_minus_combined() {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, 3600.0, 600.0).unwrap();
+        let site = |latitude_deg| Site::new(Surface::Sphere, latitude_deg, 110.0, 1.0).unwrap();
+        let evaluator = Evaluator::new(setup(grid, vec![site(5.0), site(40.0)], 7.0)).unwrap();
+        let design = "delta:55:182/13/1@925".parse().unwrap();
+        let model = evaluator.setup().model;
+        let both = Ephemeris::of_design(&design, model, grid).unwrap();
+        let both = evaluator.series(&both).unwrap();
+        let alone = evaluator.cuts(&evaluator.no_satellites()).unwrap();
+        let difference = |alone: Option<f64>, both: Option<f64>| alone.unwrap() - both.unwrap();
+        for (both, alone) in both.points.iter().zip(&alone.points) {
+            let gain = both.gain_mean_pdop.unwrap();
+            assert_eq!(gain, difference(alone.mean_pdop, both.mean_pdop));
+            assert!(gain > 0.1, "{gain}");
+        }
+        for (both, alone) in both.epochs.iter().zip(&alone.epochs) {
+            let gain = difference(alone.mean_pdop, both.mean_pdop);
+            assert_eq!(both.gain_mean_pdop, Some(gain));
+        }
     }
 }
