@@ -445,12 +445,11 @@ fn positions(
     Ok((all, names.collect(), grid.len()))
 }
 
+/// Azimuths and elevations, each by satellite and in it by instant, degrees.
+type Angles = (Vec<Vec<f64>>, Vec<Vec<f64>>);
+
 /// Azimuths and elevations of every satellite from a ground point, by satellite and in it by instant, degrees.
-fn look_angles(
-    one: &NativeConstellation,
-    setup: &Setup,
-    point: usize,
-) -> anyhow::Result<(Vec<Vec<f64>>, Vec<Vec<f64>>)> {
+fn look_angles(one: &NativeConstellation, setup: &Setup, point: usize) -> anyhow::Result<Angles> {
     let ephemeris = one.propagate(setup)?;
     let fixed = Sampled::new(&ephemeris, EarthFixed);
     let site = setup.sites.get(point).context("there is no such point")?;
