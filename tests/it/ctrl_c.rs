@@ -134,13 +134,18 @@ fn a_repetition_that_is_interrupted_changes_nothing() {
     assert_eq!(ran(place, &optimize(&longer)).status, 0);
     let before = contents(place);
     for shorter in ["optimizer.generations=300", "optimizer.generations=299"] {
-        let mut child = started(place, &talking(&["--out", "run", "--set", shorter]));
-        wait_for(&mut child, &place.join("run/.lock"));
-        interrupt(&child);
-        let (status, stderr) = ended(child);
-        assert_eq!(status, 130, "{stderr}");
-        let kept = "run keeps the results after generation 300 that it had\n";
-        assert!(stderr.ends_with(kept), "{stderr}");
+        // Between the lock and the search, Ctrl-C ends the program at once and without a word.
+        let meets_the_search = || {
+            let mut child = started(place, &talking(&["--out", "run", "--set", shorter]));
+            wait_for(&mut child, &place.join("run/.lock"));
+            interrupt(&child);
+            let (status, stderr) = ended(child);
+            assert_eq!(status, 130, "{stderr}");
+            let kept = "run keeps the results after generation 300 that it had\n";
+            assert!(stderr.is_empty() || stderr.ends_with(kept), "{stderr}");
+            !stderr.is_empty()
+        };
+        assert!((0..20).any(|_| meets_the_search()));
         assert!(contents(place) == before);
     }
     // One that comes to its end replaces the run, checkpoints and all, by what it would be on its own.
