@@ -7,6 +7,7 @@
 
 mod rasters;
 mod sampled;
+mod tables;
 
 use navwalker::exchange::import::{Fleet, ReadFleetError};
 use navwalker::exchange::lint::{self, Format};
@@ -25,6 +26,7 @@ use std::fmt::Debug;
 
 pub use rasters::terrain;
 pub use sampled::{sem, sp3, yuma};
+pub use tables::{skies, tables};
 
 /// Writes and reads again, twice: nothing moves after the first time, which it returns.
 fn settled<T: Debug + PartialEq>(

@@ -175,7 +175,38 @@ fn factors_follow_the_largest_pivot() {
         let permuted = Vector3::from_fn(|i, _| v[axes[i]]);
         let form = (v.transpose() * inverse * v)[0];
         assert!((factor.inverse_form(permuted) - form).abs() < 1e-15);
+        // Numbers below 1, of a matrix with a condition of 3.
+        let solution = inverse * v;
+        let apart = factor.solve(permuted) - Vector3::from_fn(|i, _| solution[axes[i]]);
+        assert!(apart.amax() < 1e-15, "{apart}");
     }
+}
+
+/// The sum of two geometries is the geometry of all groups: three satellites and one with a clock of its own are
+/// too few for five unknowns, and two with that clock are enough.
+#[test]
+fn geometries_add_with_their_clocks() {
+    let own = [5.0, 20.0, 40.0, 80.0]
+        .map(|e| direction(e, 13.0 * e))
+        .to_vec();
+    let other = [30.0, 60.0].map(|e| direction(e, 7.0 * e)).to_vec();
+    for count in [1, 2] {
+        let other = other[..count].to_vec();
+        let mut sum = geometry(std::slice::from_ref(&own[..3].to_vec()));
+        assert!(sum.lacks_satellites());
+        sum += geometry(std::slice::from_ref(&other));
+        let whole = geometry(&[own[..3].to_vec(), other.clone()]);
+        assert_eq!(sum.lacks_satellites(), count == 1, "{count}");
+        assert_eq!(whole.lacks_satellites(), count == 1);
+        // The sums are rounded in another order: some units in the last place, times the condition.
+        let ratio = sum.pdop(1e6).zip(whole.pdop(1e6)).map(|(a, b)| a / b);
+        assert!(
+            ratio.is_none_or(|ratio| (ratio - 1.0).abs() < 1e-13),
+            "{ratio:?}"
+        );
+        assert_eq!(ratio.is_some(), count == 2);
+    }
+    assert!(!geometry(std::slice::from_ref(&own)).lacks_satellites());
 }
 
 fn sky(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Vector3<f64>>> {

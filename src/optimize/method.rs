@@ -193,6 +193,25 @@ mod tests {
         }
     }
 
+    /// The reference point that a search chooses is told, and is the one at which its last hypervolume was measured.
+    #[test]
+    fn the_reference_that_a_search_chooses_is_that_of_its_hypervolume() {
+        let problem = mixed();
+        for method in methods() {
+            let mut search = method.start(&problem, 5).unwrap();
+            assert_eq!(search.chosen_reference(), None);
+            for _ in 0..3 {
+                search.step(&problem).unwrap();
+            }
+            let front = search.front();
+            let points: Vec<&[f64]> = front.iter().map(|one| one.objectives.as_slice()).collect();
+            let volume = hypervolume(&points, search.chosen_reference().unwrap());
+            let last = search.history().last().unwrap();
+            assert!(volume > 0.0);
+            assert_eq!(last.hypervolume, Some(volume));
+        }
+    }
+
     /// Every value of a search that is one shorter, or that is missing, is noticed or does no harm.
     #[test]
     fn a_search_of_other_lengths_is_refused() {

@@ -105,6 +105,18 @@ mod tests {
         }
     }
 
+    /// Perigee at 350° and 30° after it: 20° from the node.
+    #[test]
+    fn the_argument_of_latitude_is_counted_from_the_node() {
+        let elements = MeanElements {
+            arg_perigee_rad: 350_f64.to_radians(),
+            mean_anomaly_rad: 30_f64.to_radians(),
+            ..low()
+        };
+        let degrees = elements.mean_argument_of_latitude_rad().to_degrees();
+        assert!((degrees - 20.0).abs() < 1e-12, "{degrees}");
+    }
+
     #[test]
     fn impossible_orbits_are_named() {
         assert!(low().checked().is_ok());

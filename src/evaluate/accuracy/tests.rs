@@ -156,6 +156,28 @@ fn validate_one_metre_against_the_dops() {
     }
 }
 
+/// Of samples far from every limit none is left to the plain path, whose sums would hide an error of the lanes.
+#[test]
+fn the_lanes_decide_what_is_far_from_a_limit() {
+    let (setup, ephemeris) = study();
+    let ranges = setup.accuracy.clone().unwrap();
+    for clocks in [Clocks::PerSystem, Clocks::Shared] {
+        let evaluator = Evaluator::new(setup.clone().with_clocks(clocks)).unwrap();
+        let (mut solved, mut open) = (0, 0);
+        evaluator
+            .kernel
+            .range_normals(&ephemeris, &ranges, |instant| {
+                for point in &instant.points {
+                    solved += usize::from(matches!(point, RangeNormal::Solved(_)));
+                    open += usize::from(matches!(point, RangeNormal::Open));
+                }
+                Ok(())
+            })
+            .unwrap();
+        assert_eq!((solved, open), (21, 0), "{clocks:?}");
+    }
+}
+
 /// The lanes give what the sums of the plain path give, and the same bits on every instruction set.
 #[test]
 fn lanes_equal_the_plain_path() {

@@ -111,3 +111,31 @@ impl Evaluator {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Weights and sums of a bucket are those of what was added and not taken away; an unsolved sample is in none.
+    #[test]
+    fn samples_are_pooled_by_bucket() {
+        let mut pooled = PooledPdop::default();
+        for (pdop, weight, times) in [
+            (1.5, 2, 3),
+            (4.0, 5, 1),
+            (f64::INFINITY, 7, 1),
+            (1.5, 2, -1),
+            (2.5, 1, 1),
+            (2.5, 1, -1),
+        ] {
+            pooled.add(pdop, weight, times);
+        }
+        let buckets = pooled.buckets();
+        assert_eq!(buckets.len(), bucket_of(4.0) + 1);
+        assert_eq!(buckets[bucket_of(1.5)], (4.0, 6.0));
+        assert_eq!(buckets[bucket_of(4.0)], (5.0, 20.0));
+        assert_eq!(buckets[bucket_of(2.5)], (0.0, 0.0));
+        let whole: f64 = buckets.iter().map(|(weight, _)| weight).sum();
+        assert_eq!(whole, 9.0);
+    }
+}

@@ -160,3 +160,54 @@ impl SightTree {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::earth::Surface;
+    use crate::evaluate::testing::setup;
+    use crate::ground::Site;
+    use crate::time::{Epoch, TimeGrid};
+
+    fn tree() -> SightTree {
+        let epoch = Epoch::from_utc("2025-01-01T00:00:00Z".parse().unwrap());
+        let grid = TimeGrid::new(epoch, 600.0, 60.0).unwrap();
+        let places = (0..60).map(|n| (f64::from(n % 2), f64::from(n)));
+        let site = |(latitude, longitude)| Site::new(Surface::Sphere, latitude, longitude, 1.0);
+        let sites = places.map(|place| site(place).unwrap()).collect();
+        SightTree::new(&setup(grid, sites, 0.0))
+    }
+
+    /// Points along 59° of the equator: a half is a strip of half the length, so that most halves lie beyond the reach of a
+    /// satellite. Divided across the strip, both would be as long as the whole.
+    #[test]
+    fn points_are_divided_along_the_longest_side() {
+        let tree = tree();
+        let radius_deg = |node: usize| tree.nodes[node].cos_radius.acos().to_degrees();
+        assert!((radius_deg(0) - 29.5).abs() < 0.1, "{}", radius_deg(0));
+        for half in [1, tree.nodes[0].second_half.unwrap()] {
+            // 29 steps of a degree, the rows of the latitudes 0 and 1, and the slack.
+            assert!(
+                (radius_deg(half) - 14.5).abs() < 0.1,
+                "{}",
+                radius_deg(half)
+            );
+        }
+    }
+
+    /// A satellite at the radius r is seen from the horizon of a sphere of the radius R at the angle acos(R/r): the cap has
+    /// the share (1 - R/r)/2 of the sphere. From afar it is a half.
+    #[test]
+    fn validate_the_share_of_a_sphere_from_which_a_point_is_seen() {
+        let tree = tree();
+        let radius_km = 6378.137;
+        for distance_km in [7000.0, 10_000.0, 26_560.0] {
+            // The cap is that of a distance larger by REUSED, and wider by the slack.
+            let least = (1.0 - radius_km / (distance_km * REUSED)) / 2.0;
+            let found = tree.share_of_sphere(distance_km);
+            let range = least..least + 2.0 * SLACK_RAD;
+            assert!(range.contains(&found), "{found} in {range:?}");
+        }
+        assert_eq!(tree.share_of_sphere(f64::INFINITY), 0.5);
+    }
+}

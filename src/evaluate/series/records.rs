@@ -185,7 +185,35 @@ fn place(latitude_deg: f64, longitude_deg: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::place;
+    use super::*;
+
+    #[test]
+    fn a_point_is_called_by_its_name_or_its_place() {
+        let point = |name: Option<&str>| PointMetrics {
+            latitude_deg: 48.123_456,
+            longitude_deg: -11.5,
+            weight: 1.0,
+            mean_visible: 0.0,
+            mean_pdop: None,
+            p95_pdop: None,
+            max_pdop: None,
+            solved_fraction: 0.0,
+            availability: 0.0,
+            least_visible: 0,
+            mean_gnss_visible: 0.0,
+            mean_total_visible: 0.0,
+            outages: 0,
+            longest_outage_s: 0.0,
+            total_outage_s: 0.0,
+            outage_cut: false,
+            gain_mean_pdop: None,
+            coverage: Coverage::default(),
+            coverage_total: Coverage::default(),
+            name: name.map(Arc::from),
+        };
+        assert_eq!(point(Some("Munich")).label(), "Munich");
+        assert_eq!(point(None).label(), "48.1235°, -11.5°");
+    }
 
     #[test]
     fn places_have_the_digits_of_the_finest_step() {

@@ -261,12 +261,13 @@ impl StkParser {
                 findings.error(place, "stk-missing", message);
             }
         }
-        let kept = match self.origin() {
+        let origin = self.origin();
+        let kept = match origin {
             Some(origin) => self.kept.map(|at| at.seconds_since(origin)),
             // The file is refused.
             None => KeptStates::None,
         };
-        self.rows = Some(StkRows::new(kept));
+        self.rows = Some(StkRows::new(origin, kept));
         self.part = StkSection::Table;
     }
 
@@ -291,8 +292,7 @@ impl StkParser {
             }
         }
         let [elapsed_s, x, y, z, vx, vy, vz, ..] = values;
-        let (origin, boundaries_s) = (self.origin(), self.boundaries_s.as_slice());
-        let may_follow = |rows: &StkRows| rows.may_be_at(elapsed_s, origin, boundaries_s);
+        let may_follow = |rows: &StkRows| rows.may_be_at(elapsed_s, &self.boundaries_s);
         if !self.rows.as_ref().is_some_and(may_follow) {
             let message = "the time is not after that of the row before";
             findings.error((line.number, 1), "stk-time-order", message);

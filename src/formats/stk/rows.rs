@@ -17,6 +17,8 @@ type StkRow = (f64, State<Frame>);
 
 /// The rows so far.
 pub(super) struct StkRows {
+    /// The scenario epoch, if the file has one.
+    origin: Option<Epoch>,
     keeper: StateKeeper<f64>,
     kept: Vec<StkRow>,
     count: usize,
@@ -38,8 +40,9 @@ pub(super) struct StkSegment {
 }
 
 impl StkRows {
-    pub(super) fn new(kept: KeptStates<f64>) -> Self {
+    pub(super) fn new(origin: Option<Epoch>, kept: KeptStates<f64>) -> Self {
         Self {
+            origin,
             keeper: StateKeeper::new(kept),
             kept: Vec::new(),
             count: 0,
@@ -52,12 +55,7 @@ impl StkRows {
 
     /// Whether a row may have this time: it is after that of the row before, also as an instant, or the same once, at a
     /// boundary.
-    pub(super) fn may_be_at(
-        &self,
-        elapsed_s: f64,
-        epoch: Option<Epoch>,
-        boundaries_s: &[f64],
-    ) -> bool {
+    pub(super) fn may_be_at(&self, elapsed_s: f64, boundaries_s: &[f64]) -> bool {
         let Some((last_s, is_repeated)) = self.last_s else {
             return true;
         };
@@ -66,7 +64,7 @@ impl StkRows {
         }
         // Instants end some hundred thousand years away.
         let is_other = |epoch: Epoch| epoch.plus_seconds(elapsed_s) > epoch.plus_seconds(last_s);
-        elapsed_s - last_s >= LEAST_STEP_S && epoch.is_none_or(is_other)
+        elapsed_s - last_s >= LEAST_STEP_S && self.origin.is_none_or(is_other)
     }
 
     /// Adds a row that may follow.

@@ -3,6 +3,7 @@
 use super::super::limits::Limits;
 use super::decisions::street;
 use super::{Surface, Threshold, setup};
+use std::sync::Arc;
 
 /// The band about a threshold is a relative 1e-6, and what one pivot floor changes: 8 ε n PDOP², for 100 satellites and
 /// a cap of 10⁵ a relative 1.78e-3.
@@ -39,4 +40,11 @@ fn memory_of_what_is_asked_for_is_counted() {
     let table = (2048 * size_of::<u32>()) as u64;
     let more = under_skyline.memory_bytes(1) - setup.memory_bytes(1);
     assert!((table..table + 143 * 1024).contains(&more), "{more}");
+    // A second skyline has a table of its own.
+    let mut under_two = under_skyline.clone();
+    under_two.sites[7].skyline = Some(Arc::new(street()));
+    assert_eq!(
+        under_two.memory_bytes(1) - under_skyline.memory_bytes(1),
+        table
+    );
 }
