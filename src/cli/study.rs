@@ -384,13 +384,18 @@ impl Study {
     /// If a file that the scenario names cannot be read or is wrong, or a GNSS satellite cannot be propagated.
     pub fn evaluator(&self) -> Result<Evaluator> {
         let setup = self.setup()?;
-        if let Some(note) = setup.plain_path_note() {
-            output::hint(&note);
-        }
-        for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
-            output::warning(&note);
-        }
+        say_of_setup(&setup);
         Ok(Evaluator::new(setup)?)
+    }
+}
+
+/// Says what is slow in a scenario, and warns of what has no effect.
+pub(crate) fn say_of_setup(setup: &Setup) {
+    if let Some(note) = setup.plain_path_note() {
+        output::hint(&note);
+    }
+    for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
+        output::warning(&note);
     }
 }
 
