@@ -42,7 +42,7 @@ use std::path::PathBuf;
 pub(crate) struct Cli {
     /// Use this many threads instead of all cores, at most 4 for each core; results do not depend on the
     /// number.
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = thread_count)]
     pub(crate) threads: Option<NonZeroUsize>,
 
     /// Start what is very large: an export of more than 10 GB, an evaluation that needs more memory than is
@@ -423,6 +423,12 @@ pub(crate) struct LintArgs {
     /// Output format.
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: OutputFormat,
+}
+
+/// A number of threads; how many there may be is known when they start.
+fn thread_count(text: &str) -> Result<NonZeroUsize, &'static str> {
+    let found = text.parse();
+    found.map_err(|_| "expected a whole number, at least 1 and at most 4 for each core")
 }
 
 #[cfg(test)]
