@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from navwalker import _native
 from navwalker._constellation import Constellation
+from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
@@ -39,7 +40,9 @@ class CustomRun:
         return Constellation(self.front["notation"][index - 1])
 
 
-def search(scenario: Scenario, seed: int | None, objectives: Sequence[str | Objective]) -> CustomRun:
+def search(
+    scenario: Scenario, seed: int | None, objectives: Sequence[str | Objective], progress: bool
+) -> CustomRun:
     """Searches for designs under some objectives, each a name of a quantity or a function of a table."""
     if not objectives:
         raise _native.NavwalkerError("there is no objective")
@@ -48,7 +51,8 @@ def search(scenario: Scenario, seed: int | None, objectives: Sequence[str | Obje
     if names:
         under = scenario.replace(set={"objectives.minimize": names})
     given = [names.index(one) if isinstance(one, str) else _called(one) for one in objectives]
-    front, values, history = _native.search_custom(under._engine, seed, given)
+    with followed(progress, "generation") as tick:
+        front, values, history = _native.search_custom(under._engine, seed, given, tick)
     named = [one if isinstance(one, str) else getattr(one, "__name__", "objective") for one in objectives]
     return CustomRun(Table(front), values, named, Table(history))
 

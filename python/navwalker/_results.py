@@ -182,12 +182,10 @@ class Samples:
 
     def to_xarray(self) -> xarray.Dataset:
         """A Dataset over ``time`` (seconds since the epoch) and ``point``."""
+        from navwalker._maps import attributes, coordinates_of
+
         xr = needed("xarray", "to_xarray")
         dims = ("time", "point")
-        over_points = {
-            name: ("point", self.points[name], {"units": units})
-            for name, units in [("latitude_deg", "degrees_north"), ("longitude_deg", "degrees_east"), ("weight", "1")]
-        }
         dataset: xarray.Dataset = xr.Dataset(
             {
                 "pdop": (dims, self.pdop, {"long_name": "PDOP", "units": "1"}),
@@ -196,7 +194,8 @@ class Samples:
             },
             coords={
                 "time": ("time", self.elapsed_s, {"long_name": "time since the epoch", "units": "s"}),
-                **over_points,
+                **coordinates_of(self.points),
+                "weight": ("point", self.points["weight"], attributes("weight")),
             },
         )
         return dataset

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from navwalker import _native
 from navwalker._commands import run
 from navwalker._constellation import Constellation, Path
+from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
@@ -109,7 +110,7 @@ class Run:
         return self.front._repr_html_()
 
 
-def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool) -> Run:
+def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool, progress: bool) -> Run:
     """Runs the search of a scenario."""
     temporary = None
     if out is None:
@@ -117,7 +118,9 @@ def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool) 
         out = os.path.join(temporary.name, "run")
     seeds = [] if seed is None else ["--seed", str(seed)]
     switches = ["--force"] if force else []
-    run(["optimize", *scenario._arguments(), *seeds, "--out", os.fspath(out), *switches, "--format", "json"])
+    arguments = ["optimize", *seeds, "--out", os.fspath(out), *switches, "--format", "json"]
+    with followed(progress, "generation") as tick:
+        run(arguments, scenario=scenario, tick=tick)
     found = Run(out)
     found._temporary = temporary
     return found
