@@ -28,11 +28,11 @@ def run(
     """Runs a command, on a scenario if one is given: its status and its result. Its warnings become warnings, a status of
     2 an exception."""
     given = list(arguments)
-    text = None
+    own = None
     if scenario is not None:
-        text = scenario._given_text
+        own = scenario._given_text
         given += scenario._arguments()
-    status, result, messages = _native.run_command(given, text, tick)
+    status, result, messages = _native.run_command(given, own, tick)
     for kind, text in messages:
         if kind == "warning":
             warnings.warn(text, _native.NavwalkerWarning, stacklevel=3)

@@ -60,9 +60,9 @@ def dop(
         raise _native.NavwalkerError(f"an elevation is {elevation[wrong][0]}, expected -90 to 90")
     if np.isinf(azimuth).any() or np.isinf(elevation).any():
         raise _native.NavwalkerError("an azimuth or elevation is infinite")
-    if system is None:
-        systems, clocks = ["all"], labels
-    else:
+    systems: list[object] = ["all"]
+    clocks = labels
+    if system is not None:
         systems, clocks = _distinct(labels)
     skies, satellites = azimuth.shape[:-1], azimuth.shape[-1]
     count = int(np.prod(skies, dtype=np.int64))
