@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from navwalker import _native
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 
 def numbers(name: str, given: npt.ArrayLike) -> npt.NDArray[np.integer | np.floating]:
     """An argument as an array of integers or reals of any shape."""
+    import numpy as np
+
     try:
         array = np.asarray(given)
     except ValueError as error:
@@ -21,6 +26,8 @@ def numbers(name: str, given: npt.ArrayLike) -> npt.NDArray[np.integer | np.floa
 
 def finite(name: str, array: npt.NDArray[np.integer | np.floating]) -> None:
     """Refuses an array with a value that is NaN or infinite."""
+    import numpy as np
+
     wrong = ~np.isfinite(array)
     if wrong.any():
         row = int(np.argmax(wrong.reshape(len(array), -1).any(axis=1)))

@@ -6,18 +6,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker import _native
 from navwalker._constellation import Constellation
 from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from navwalker._scenario import Scenario
 
-Objective = Callable[[Table], npt.ArrayLike]
+    Objective = Callable[[Table], npt.ArrayLike]
 
 
 @dataclass(frozen=True)
@@ -61,6 +61,8 @@ def _called(function: Objective) -> Callable[[_native.Columns], npt.NDArray[np.f
     """A function of a table as the native part calls it."""
     if not callable(function):
         raise _native.NavwalkerError(f"an objective is a name or a function, not {type(function).__name__}")
+
+    import numpy as np
 
     def called(columns: _native.Columns) -> npt.NDArray[np.float64]:
         return np.ascontiguousarray(function(Table(columns)), dtype=np.float64)

@@ -5,13 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker._extras import needed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import xarray
 
 # Columns of tables that are coordinates of Datasets: their names there, which carry no unit since the coordinate does.
@@ -52,6 +51,8 @@ class Lattice:
     @classmethod
     def of(cls, points: Table) -> Lattice | None:
         """The lattice that the points of a table fill, if they do."""
+        import numpy as np
+
         latitudes, longitudes = points["latitude_deg"], points["longitude_deg"]
         rows, row = np.unique(latitudes, return_inverse=True)
         columns, column = np.unique(longitudes, return_inverse=True)
@@ -62,6 +63,8 @@ class Lattice:
 
     def laid_out(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """Values of the points as an array of (latitude, longitude)."""
+        import numpy as np
+
         array = np.empty((len(self.latitudes), len(self.longitudes)), dtype=values.dtype)
         array[self.row, self.column] = values
         return array

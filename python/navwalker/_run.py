@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import tempfile
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +14,8 @@ from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import tempfile
+
     from navwalker._scenario import Scenario
 
 
@@ -88,6 +88,8 @@ class Run:
 
     def save(self, directory: Path) -> Run:
         """Copies the run into a new directory and returns it from there."""
+        import shutil
+
         try:
             shutil.copytree(self._directory, directory)
         except OSError as error:
@@ -112,6 +114,8 @@ class Run:
 
 def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool, progress: bool) -> Run:
     """Runs the search of a scenario."""
+    import tempfile
+
     temporary = None
     if out is None:
         temporary = tempfile.TemporaryDirectory(prefix="navwalker-")

@@ -6,9 +6,6 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker import _native
 from navwalker._arrays import finite, numbers
 from navwalker._constellation import Constellation, Path
@@ -18,16 +15,19 @@ from navwalker._progress import followed
 from navwalker._results import Metrics, Samples, Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import xarray
 
     from navwalker._custom import CustomRun
     from navwalker._plots import Plots
     from navwalker._run import Run
 
+    Objective = Callable[[Table], npt.ArrayLike]
+    Whole = npt.NDArray[np.int64]
+    Real = npt.NDArray[np.float64]
+
 Given = str | Constellation
-Objective = Callable[[Table], npt.ArrayLike]
-Whole = npt.NDArray[np.int64]
-Real = npt.NDArray[np.float64]
 Errors = Literal["raise", "column"]
 
 _COLUMNS = ("planes", "satellites_per_plane", "inclination_deg", "altitude_km", "phasing")
@@ -275,6 +275,8 @@ class Scenario:
         infinite where they have no value; ``violation`` (n), 0 where all constraints are kept; the ``vectors`` as
         evaluated; and the ``notation`` of each design.
         """
+        import numpy as np
+
         given = np.ascontiguousarray(np.atleast_2d(numbers("vectors", vectors)), dtype=np.float64)
         variables, _ = _native.search_space(self._engine)
         if given.ndim != 2 or given.shape[1] != len(variables):
@@ -340,6 +342,8 @@ def _again(
 
 def _columns(given: Mapping[str, Any]) -> tuple[Whole, Whole, Whole, Real, Real]:
     """The columns of shells, in the order in which the native part takes them, of one length."""
+    import numpy as np
+
     missing = [name for name in _COLUMNS if name not in given]
     unknown = [name for name in given if name not in _COLUMNS]
     if unknown:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any
 
 from navwalker import _native
 from navwalker._arrays import numbers
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,8 @@ def dop(
     >>> round(float(sky.pdop), 3)
     2.142
     """
+    import numpy as np
+
     azimuth = numbers("azimuth_deg", azimuth_deg).astype(np.float64)
     elevation = numbers("elevation_deg", elevation_deg).astype(np.float64)
     labels = np.zeros((), dtype=np.int64) if system is None else np.asarray(system)
@@ -81,6 +84,8 @@ def dop(
 
 def _distinct(labels: npt.NDArray[Any]) -> tuple[list[object], npt.NDArray[np.int64]]:
     """The systems, and the number of that of each satellite."""
+    import numpy as np
+
     try:
         systems, clocks = np.unique(labels, return_inverse=True)
     except TypeError:

@@ -87,6 +87,20 @@ def test_threads_of_python(small, design):
     np.testing.assert_array_equal(first.objectives, second.objectives)
 
 
+def test_import():
+    """The module takes less than 100 ms to import, and NumPy, which alone takes that, is imported where it is needed."""
+    script = """
+        import sys, time
+        began = time.process_time()
+        import navwalker
+        assert "numpy" not in sys.modules
+        print(time.process_time() - began)
+    """
+    command = [sys.executable, "-c", textwrap.dedent(script)]
+    runs = [subprocess.run(command, check=True, capture_output=True, text=True) for _ in range(5)]
+    assert min(float(run.stdout) for run in runs) < 0.1
+
+
 INTERRUPTED = """
     import sys, threading
     import navwalker as nw
@@ -112,7 +126,7 @@ INTERRUPTED = """
     ],
 )
 def test_interrupt(work):
-    """SIGINT during work of minutes raises KeyboardInterrupt within 0.2 s; a second covers a loaded machine."""
+    """SIGINT during work of minutes raises KeyboardInterrupt within 0.2 s; three seconds cover a machine under load."""
     script = textwrap.dedent(INTERRUPTED).format(work=work)
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.DEVNULL, "text": True}
     with subprocess.Popen([sys.executable, "-c", script], **pipes) as process:
@@ -121,7 +135,7 @@ def test_interrupt(work):
         began = time.monotonic()
         process.send_signal(signal.SIGINT)
         assert process.stdout.readline() == "interrupted\n"
-        assert time.monotonic() - began < 1.0
+        assert time.monotonic() - began < 3.0
         process.kill()
 
 
