@@ -137,3 +137,10 @@ def test_places(tiny, tmp_path, design):
         nw.lint(tmp_path / "missing.oem")
     with pytest.raises(nw.NavwalkerError, match="not finite"):
         tiny.batch([[np.nan] * len(tiny.search_space())])
+    for wrong in (np.array([1 + 2j]), np.array([True]), np.array(["a"]), np.array([None])):
+        with pytest.raises(nw.NavwalkerError, match="has the type .*, expected numbers"):
+            nw.dop(wrong, [45])
+        with pytest.raises(nw.NavwalkerError, match="has the type .*, expected numbers"):
+            tiny.batch(np.resize(wrong, (1, len(tiny.search_space()))))
+    with pytest.raises(nw.NavwalkerError, match="azimuth_deg is no array"):
+        nw.dop([[1, 2], [3]], [45])
