@@ -158,8 +158,8 @@ fn choose(name: &str, args: &ReproduceArgs) -> Result<Chosen> {
     if name == ReproduceResult::NAME {
         let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
         let study = StudyArgs {
-            scenario: None,
             overrides: args.overrides.clone(),
+            ..StudyArgs::default()
         };
         return Ok(Chosen::Paper(Box::new(Study::load(
             &study,
