@@ -42,7 +42,7 @@ use std::path::PathBuf;
 pub(crate) struct Cli {
     /// Use this many threads instead of all cores, at most 4 for each core; results do not depend on the
     /// number.
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = thread_count)]
     pub(crate) threads: Option<NonZeroUsize>,
 
     /// Start what is very large: an export of more than 10 GB, an evaluation that needs more memory than is
@@ -233,7 +233,7 @@ pub(crate) fn quoted(word: &str) -> String {
 }
 
 /// The study to work on.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario [default: paper].
     #[arg(value_name = "SCENARIO")]
@@ -242,6 +242,21 @@ pub(crate) struct StudyArgs {
     /// Override a scenario key, as in `--set visibility.mask-deg=10`; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+
+    /// The scenario itself, where another program gives its text.
+    #[arg(skip)]
+    pub(crate) text: Option<ScenarioText>,
+}
+
+/// A scenario as a text.
+#[derive(Debug, Clone)]
+pub struct ScenarioText {
+    /// What messages call it.
+    pub label: String,
+    /// The text, TOML.
+    pub text: String,
+    /// The directory to which the files that it names are relative.
+    pub directory: PathBuf,
 }
 
 impl StudyArgs {
@@ -423,6 +438,12 @@ pub(crate) struct LintArgs {
     /// Output format.
     #[arg(long = "format", value_enum, default_value = "text")]
     pub(crate) output: OutputFormat,
+}
+
+/// A number of threads; how many there may be is known when they start.
+fn thread_count(text: &str) -> Result<NonZeroUsize, &'static str> {
+    let found = text.parse();
+    found.map_err(|_| "expected a whole number, at least 1 and at most 4 for each core")
 }
 
 #[cfg(test)]

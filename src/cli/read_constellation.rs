@@ -86,13 +86,8 @@ fn each_by(
     let (files, mut others) = entries(path)?;
     let mut any = false;
     for file in files {
-        let format = match format {
-            Some(format) => Some(format),
-            None => format_of(&file)?,
-        };
-        match format {
-            Some(format) => {
-                let imported = read_one(open, &file, (Some(format), choice))?;
+        match read_any(open, &file, (format, choice)).with_context(|| how_to_go_on(&file, path))? {
+            Some(imported) => {
                 take(file, imported);
                 any = true;
             }
@@ -106,6 +101,29 @@ fn each_by(
         bail!("{} contains no constellation file", shown_path(path));
     }
     Ok(())
+}
+
+/// The contents of a file; `None` if its format is not supported.
+fn read_any(
+    open: Opener<'_>,
+    file: &Path,
+    (format, choice): (Option<Format>, &StateChoice),
+) -> Result<Option<Imported>> {
+    let format = match format {
+        Some(format) => Some(format),
+        None => format_of(file)?,
+    };
+    let read = |format| read_one(open, file, (Some(format), choice));
+    format.map(read).transpose()
+}
+
+/// A damaged file of a directory is not skipped: a constellation without some of its satellites would pass for the whole.
+fn how_to_go_on(file: &Path, directory: &Path) -> String {
+    let (file, directory) = (shown_path(file), shown_path(directory));
+    format!(
+        "{directory} is read whole or not at all: repair {file} (`navwalker lint {file}` lists its errors), or move it \
+         out of {directory} to leave it out"
+    )
 }
 
 /// Warns of the parts of a file that are not read.

@@ -12,6 +12,7 @@ mod choice;
 mod gathered;
 mod inclusion;
 mod merged;
+mod names;
 mod objects;
 mod propagation;
 mod sampling;
@@ -19,6 +20,7 @@ mod sampling;
 pub use choice::StateChoice;
 use gathered::GatheredFleet;
 pub use merged::{Merged, MergedFiles};
+use names::stem;
 pub use objects::{NoSuchSatellite, SatelliteFilter};
 pub use propagation::FleetError;
 pub use sampling::SamplingNote;
@@ -41,7 +43,6 @@ use crate::formats::yuma::Almanac;
 use crate::formats::{ReadError, csv, sem, sp3, stk, tle, yuma};
 use crate::frames::{Frame, State};
 use crate::printable::printable;
-use std::borrow::Cow;
 use std::io::{self, BufRead};
 use thiserror::Error;
 
@@ -115,7 +116,7 @@ impl Fleet {
         Self::read_chosen(input, format, file_name, &StateChoice::default())
     }
 
-    /// The same, in which OEM and SP3 keep the states of `choice`.
+    /// The same, in which OEM, SP3, STK and CZML keep the states of `choice`.
     ///
     /// # Errors
     /// As of [`Self::read`].
@@ -177,11 +178,21 @@ impl Fleet {
                 let file = whole(findings, |findings| sp3::parse_kept(input, findings, &kept))?;
                 Self::of_sp3(file, &kept)
             }
-            Format::Stk => Ok(Self::of_stk(stk::read(input)?, file_name)),
+            Format::Stk => {
+                // The file does not name its satellite, which gets the name of the file.
+                let name = stem(file_name.unwrap_or("satellite"));
+                let kept = choice.kept((name, name), file_name);
+                let file = whole(findings, |findings| stk::parse_kept(input, findings, kept))?;
+                Ok(Self::of_stk(file, name))
+            }
             Format::ElementsCsv => Ok(Self::Elements(csv::read_elements(input)?)),
-            Format::Czml => Ok(Self::Sampled(whole(findings, |findings| {
-                czml::parse(input, findings)
-            })?)),
+            Format::Czml => {
+                let kept = |name: &str| choice.kept((name, name), file_name);
+                let read = whole(findings, |findings| {
+                    czml::parse_kept(input, findings, &kept)
+                })?;
+                Ok(Self::Sampled(read))
+            }
             Format::Yuma => {
                 let almanacs = whole(findings, |findings| yuma::parse(input, findings))?;
                 Ok(Self::of_almanacs(almanacs))
@@ -306,71 +317,14 @@ impl Fleet {
         Ok(Self::Sampled(trajectories))
     }
 
-    /// Names sampled satellites by their position, from 1: for files that each restart their ids, such as
-    /// the parts of a large constellation in SP3.
-    pub fn name_by_place(&mut self) {
-        if let Self::Sampled(trajectories) = self {
-            for (place, trajectory) in (1..).zip(trajectories) {
-                trajectory.name = format!("{place}");
-                trajectory.id.clone_from(&trajectory.name);
-            }
-        }
-    }
-
-    /// The file does not name its satellite, which gets the name of the file.
-    fn of_stk(file: stk::StkEphemeris, file_name: Option<&str>) -> Self {
-        let name = stem(file_name.unwrap_or("satellite"));
-        Self::Sampled(vec![Trajectory {
+    /// Without a finding there is a file.
+    fn of_stk(file: Option<stk::StkEphemeris>, name: &str) -> Self {
+        let trajectory = |file: stk::StkEphemeris| Trajectory {
             name: name.to_owned(),
             id: name.to_owned(),
             arcs: file.into_arcs(),
-        }])
-    }
-
-    /// Names satellites that have no identifier in their file after the file.
-    fn name_after_file(&mut self, file_name: Option<&str>) {
-        let Some(file_name) = file_name else { return };
-        match self {
-            Self::Sampled(trajectories) => {
-                for trajectory in trajectories {
-                    if objects::identity(trajectory).label().is_none() {
-                        trajectory.name = stem(file_name).to_owned();
-                        trajectory.id.clone_from(&trajectory.name);
-                    }
-                }
-            }
-            Self::Mixed(parts) => parts
-                .iter_mut()
-                .for_each(|part| part.name_after_file(Some(file_name))),
-            Self::Sets(_) | Self::Elements(_) | Self::Almanacs(_) => {}
-        }
-    }
-
-    /// Writes names and identifiers as they can be shown.
-    fn make_names_printable(&mut self) {
-        let make = |text: &mut String| {
-            if let Cow::Owned(safe) = printable(text) {
-                *text = safe;
-            }
         };
-        match self {
-            Self::Sets(sets) => {
-                for set in sets {
-                    let texts = [&mut set.object_name, &mut set.international_designator];
-                    texts.into_iter().flatten().for_each(make);
-                }
-            }
-            Self::Elements(rows) => rows.iter_mut().for_each(|row| make(&mut row.name)),
-            Self::Sampled(trajectories) => {
-                for trajectory in trajectories {
-                    make(&mut trajectory.name);
-                    make(&mut trajectory.id);
-                }
-            }
-            // Their names are made from numbers.
-            Self::Almanacs(_) => {}
-            Self::Mixed(parts) => parts.iter_mut().for_each(Self::make_names_printable),
-        }
+        Self::Sampled(file.map(trajectory).into_iter().collect())
     }
 
     /// Adds the satellites of another file. Sampled states of a known satellite continue its states if their
@@ -484,14 +438,6 @@ fn sp3_arc(frame: Frame, run: Vec<sp3::Sp3Sample>) -> Option<Arc> {
         is_open: true,
         ..arc
     })
-}
-
-/// The name of a file without its directory and its last extension.
-fn stem(file_name: &str) -> &str {
-    let file_name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
-    file_name
-        .rsplit_once('.')
-        .map_or(file_name, |(stem, _)| stem)
 }
 
 #[cfg(test)]

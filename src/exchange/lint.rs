@@ -128,10 +128,12 @@ pub fn lint(
         Format::Sp3 => {
             sp3::parse_kept(input, &mut findings, &|_| KeptStates::None).map(drop)?;
         }
-        Format::Czml => czml::parse(input, &mut findings).map(drop)?,
+        Format::Czml => {
+            czml::parse_kept(input, &mut findings, &|_| KeptStates::None).map(drop)?;
+        }
         Format::Yuma => yuma::parse(input, &mut findings).map(drop)?,
         Format::Sem => sem::parse(input, &mut findings).map(drop)?,
-        Format::Stk => stk::parse(input, &mut findings).map(drop)?,
+        Format::Stk => stk::parse_kept(input, &mut findings, KeptStates::None).map(drop)?,
         Format::Opm => opm::parse(input, &mut findings).map(drop)?,
         Format::ElementsCsv => csv::parse_elements(input, &mut findings, |_| ())?,
         Format::StatesCsv => csv::parse_states(input, &mut findings).map(drop)?,

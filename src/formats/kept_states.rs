@@ -29,6 +29,22 @@ impl<I> KeptStates<I> {
     }
 }
 
+impl<I: PartialOrd + Copy> KeptStates<I> {
+    /// Keeps of states in the order of time those of the interval, and the nearest before and after.
+    pub(crate) fn cut<T>(self, states: &mut Vec<T>, at: impl Fn(&T) -> I) {
+        match self {
+            Self::All => {}
+            Self::None => states.clear(),
+            Self::Around(first, last) => {
+                let after = states.partition_point(|state| at(state) <= last);
+                states.truncate(after + MARGIN);
+                let before = states.partition_point(|state| at(state) < first);
+                states.drain(..before.saturating_sub(MARGIN));
+            }
+        }
+    }
+}
+
 /// Takes the states of a satellite in the order of time, and keeps some.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StateKeeper<I> {
@@ -67,6 +83,23 @@ impl<I: PartialOrd + Copy> StateKeeper<I> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Exactly the margin on each side: what was kept of the parts of a track has holes farther away.
+    #[test]
+    fn states_are_cut_to_an_interval_and_its_neighbours() {
+        let margin = MARGIN as u32;
+        for (kept, expected) in [
+            (KeptStates::All, 0..1000),
+            (KeptStates::None, 0..0),
+            (KeptStates::Around(500, 600), 500 - margin..601 + margin),
+            (KeptStates::Around(0, 2000), 0..1000),
+            (KeptStates::Around(2000, 3000), 1000 - margin..1000),
+        ] {
+            let mut states: Vec<u32> = (0..1000).collect();
+            kept.cut(&mut states, |at| *at);
+            assert_eq!(states, Vec::from_iter(expected), "{kept:?}");
+        }
+    }
 
     fn kept(kept: KeptStates<u32>) -> Vec<u32> {
         let mut keeper = StateKeeper::new(kept);

@@ -7,9 +7,10 @@
 
 pub mod connect;
 mod read;
+mod rows;
 
 pub(in crate::formats) use read::calendar_date as parse_calendar_date;
-pub use read::{parse, read};
+pub use read::{parse, parse_kept, read};
 
 use crate::ephemeris::EphemerisSatellite;
 use crate::ephemeris::arc::{Arc, Interpolation, SAME_INSTANT_S};
@@ -59,8 +60,10 @@ pub struct StkEphemeris {
     pub boundaries_s: Vec<f64>,
     /// Frame of the states.
     pub frame: Frame,
-    /// Seconds since the scenario epoch, and the states.
+    /// Seconds since the scenario epoch, and the states; those that are kept of a file that is read.
     pub states: Vec<(f64, State<Frame>)>,
+    /// Seconds since the scenario epoch of the first and the last row of each segment, whether kept or not.
+    pub spans_s: Vec<(f64, f64)>,
 }
 
 impl StkEphemeris {
@@ -86,7 +89,7 @@ impl StkEphemeris {
         write_tail(out)
     }
 
-    /// The states, one arc for each segment.
+    /// The states, one arc for each segment; if none are kept, arcs without states.
     #[must_use]
     pub fn into_arcs(mut self) -> Vec<Arc> {
         let samples_m1 = self.interpolation_samples_m1.unwrap_or(SAMPLES_M1);
@@ -94,6 +97,16 @@ impl StkEphemeris {
             Some(StkInterpolation::Hermite) => Interpolation::Hermite(2 * samples_m1 + 1),
             _ => Interpolation::Lagrange(samples_m1),
         };
+        if self.states.is_empty() {
+            let at =
+                |elapsed_s| Epoch::from_utc(self.scenario_epoch.and_utc()).plus_seconds(elapsed_s);
+            let spans = self
+                .spans_s
+                .iter()
+                .map(|(first_s, last_s)| (at(*first_s), at(*last_s)));
+            let arc = |span| Arc::without_states(self.frame, interpolation, span);
+            return spans.map(arc).collect();
+        }
         let mut arcs = Vec::new();
         for rows in segments(&self.states, &self.boundaries_s).into_iter().rev() {
             let nodes = self.take_nodes(rows);
@@ -126,22 +139,16 @@ impl StkEphemeris {
 /// Rows whose memory is given back at once.
 const ROWS_AT_ONCE: usize = 1 << 16;
 
-/// The rows of each segment. A boundary of one row belongs to both sides; of two, each side has its own.
+/// The rows of each segment.
 fn segments(states: &[(f64, State<Frame>)], boundaries_s: &[f64]) -> Vec<Range<usize>> {
     let mut found = Vec::new();
     let mut from = 0;
-    for (k, (elapsed_s, _)) in states.iter().enumerate() {
-        let next_s = states.get(k + 1).map(|(next_s, _)| *next_s);
-        let at_boundary = is_boundary(boundaries_s, *elapsed_s) && k > from;
-        let before_boundary = next_s.is_some_and(|next_s| {
-            let after = boundaries_s.partition_point(|at| *at <= elapsed_s + SAME_INSTANT_S);
-            boundaries_s
-                .get(after)
-                .is_some_and(|at| *at < next_s - SAME_INSTANT_S)
-        });
-        if at_boundary || before_boundary {
+    for (k, pair) in states.windows(2).enumerate() {
+        let [(elapsed_s, _), (next_s, _)] = pair else {
+            continue;
+        };
+        if let Some(is_shared) = segment_end(boundaries_s, *elapsed_s, *next_s, k == from) {
             found.push(from..k + 1);
-            let is_shared = at_boundary && next_s.is_some_and(|next_s| next_s > *elapsed_s);
             from = if is_shared { k } else { k + 1 };
         }
     }
@@ -149,6 +156,21 @@ fn segments(states: &[(f64, State<Frame>)], boundaries_s: &[f64]) -> Vec<Range<u
         found.push(from..states.len());
     }
     found
+}
+
+/// Whether a segment ends at a row that another one follows, and whether the next segment begins with the same row. A
+/// boundary of one row belongs to both sides; of two, each side has its own.
+fn segment_end(boundaries_s: &[f64], elapsed_s: f64, next_s: f64, is_first: bool) -> Option<bool> {
+    let is_repeated = next_s == elapsed_s;
+    if is_boundary(boundaries_s, elapsed_s) && (!is_first || is_repeated) {
+        return Some(!is_repeated);
+    }
+    let after = boundaries_s.partition_point(|at| *at <= elapsed_s + SAME_INSTANT_S);
+    let is_between = |at: &f64| *at < next_s - SAME_INSTANT_S;
+    boundaries_s
+        .get(after)
+        .is_some_and(is_between)
+        .then_some(false)
 }
 
 /// Writes the states of one satellite on the grid of its ephemeris, line by line.

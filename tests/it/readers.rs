@@ -89,9 +89,16 @@ fn a_directory_is_its_constellation_files_and_the_rest_is_named() {
     fs::write(&packed, bytes).unwrap();
     let damaged = run(directory.path(), &evaluate);
     assert_eq!(damaged.status, 2);
-    for part in ["NW-P02-S01.e.gz", "follows the end of the gzip data"] {
+    for part in [
+        "NW-P02-S01.e.gz",
+        "follows the end of the gzip data",
+        "move it out of mixed to leave it out",
+    ] {
         assert!(damaged.stderr.contains(part), "{}", damaged.stderr);
     }
+    // As it says: without the file the rest is read.
+    fs::remove_file(&packed).unwrap();
+    assert_eq!(run(directory.path(), &evaluate).status, 0);
     let empty = ["evaluate", "--constellation", "mixed/older"];
     let empty = run(directory.path(), &empty);
     assert_eq!(empty.status, 2);

@@ -48,7 +48,8 @@ pub(super) fn file(place: &Path) -> io::Result<(NamedTempFile, Removed)> {
     let prefix = prefix(place);
     builder.prefix(&prefix).rand_bytes(RANDOM);
     permit(&mut builder, 0o666);
-    let file = builder.tempfile_in(parent).map_err(unnamed)?;
+    let file = builder.tempfile_in(parent);
+    let file = file.map_err(|error| unnamed(&error, parent))?;
     // Without locks, nothing is considered stale either.
     let _ = file.as_file().lock();
     let removed = Removed::new(file.path());
@@ -63,22 +64,20 @@ pub(super) fn directory(place: &Path) -> io::Result<(TempDir, Option<File>, Remo
     let prefix = prefix(place);
     builder.prefix(&prefix).rand_bytes(RANDOM);
     permit(&mut builder, 0o777);
-    let directory = builder.tempdir_in(parent).map_err(unnamed)?;
+    let directory = builder.tempdir_in(parent);
+    let directory = directory.map_err(|error| unnamed(&error, parent))?;
     let lock = File::open(directory.path()).ok();
     let lock = lock.filter(|lock| lock.lock().is_ok());
     let removed = Removed::new(directory.path());
     Ok((directory, lock, removed))
 }
 
-/// An error without the staging name that `tempfile` puts around it, which means nothing to a user.
-fn unnamed(error: io::Error) -> io::Error {
-    let own = error.get_ref().and_then(|named| named.source());
-    match own.and_then(|own| own.downcast_ref::<io::Error>()) {
-        Some(own) => own
-            .raw_os_error()
-            .map_or_else(|| own.kind().into(), io::Error::from_raw_os_error),
-        None => error,
-    }
+/// An error with the directory in place of the staging name, which `tempfile` adds to its text and means nothing to a user.
+fn unnamed(error: &io::Error, parent: &Path) -> io::Error {
+    let text = error.to_string();
+    let cause = text.split(" at path \"").next().unwrap_or_default();
+    let message = format!("nothing can be created in {}: {cause}", parent.display());
+    io::Error::new(error.kind(), message)
 }
 
 /// The usual permissions, before the umask is applied.
@@ -126,5 +125,27 @@ fn is_abandoned(path: &Path) -> bool {
     is_free() && {
         std::thread::sleep(UNTIL_LOCKED);
         is_free()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A user knows neither the staging name nor where it comes from.
+    #[test]
+    fn errors_name_the_directory_and_not_the_staging_name() {
+        let directory = tempfile::TempDir::new().unwrap();
+        let place = directory.path().join("missing/result");
+        let errors = [
+            file(&place).err().unwrap(),
+            super::directory(&place).err().unwrap(),
+        ];
+        for error in errors {
+            assert_eq!(error.kind(), io::ErrorKind::NotFound);
+            let text = error.to_string();
+            assert!(!text.contains(MARK), "{text}");
+            assert!(text.contains("missing: No such file"), "{text}");
+        }
     }
 }

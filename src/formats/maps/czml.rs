@@ -14,7 +14,7 @@ mod spacing;
 mod value;
 mod write;
 
-pub use read::{parse, read};
+pub use read::{parse, parse_kept, read};
 pub use write::write;
 
 /// Version of the format.

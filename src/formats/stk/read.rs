@@ -3,10 +3,12 @@
 //! Accelerations and covariances are skipped. Segment boundaries are kept, since nothing may be
 //! interpolated across them, and each may have two rows with the same time.
 
-use super::{MONTHS, StkEphemeris, StkInterpolation, is_boundary, segments};
-use crate::ephemeris::derivative::{velocities, velocity_fault};
+use super::rows::{StkRows, StkSegment};
+use super::{MONTHS, StkEphemeris, StkInterpolation, segments};
+use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
 use crate::formats::ccsds::kvn::words;
+use crate::formats::kept_states::KeptStates;
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::lines::{Line, Lines, keep_comment};
 use crate::formats::text::number;
@@ -16,9 +18,6 @@ use crate::time::Epoch;
 use chrono::{NaiveDate, NaiveDateTime};
 use nalgebra::Vector3;
 use std::io::{self, BufRead};
-
-/// Shortest time between rows, s: instants are held, and written, to a nanosecond.
-const LEAST_STEP_S: f64 = 1e-9;
 
 /// Keywords that do not change what the states mean here.
 const PASSED_OVER: [&str; 9] = [
@@ -49,9 +48,24 @@ pub fn read(input: impl BufRead) -> Result<StkEphemeris, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Option<StkEphemeris>> {
+    parse_kept(input, findings, KeptStates::All)
+}
+
+/// The same, with the states that are to be kept.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_kept(
+    input: impl BufRead,
+    findings: &mut FindingList,
+    kept: KeptStates<Epoch>,
+) -> io::Result<Option<StkEphemeris>> {
     let is_comment = |line: &[u8]| line.trim_ascii_start().starts_with(b"#");
     let mut lines = Lines::with_tabs(input).with_comments(is_comment);
-    let mut parser = StkParser::default();
+    let mut parser = StkParser {
+        kept,
+        ..StkParser::default()
+    };
     while let Some(line) = lines.next(findings)? {
         parser.line(&line, findings);
     }
@@ -115,7 +129,9 @@ struct StkParser {
     unit_km: Option<f64>,
     columns: StkColumns,
     boundaries_s: Vec<f64>,
-    states: Vec<(f64, State<Frame>)>,
+    kept: KeptStates<Epoch>,
+    /// The rows of the table, once it has begun.
+    rows: Option<StkRows>,
 }
 
 impl StkParser {
@@ -245,7 +261,18 @@ impl StkParser {
                 findings.error(place, "stk-missing", message);
             }
         }
+        let kept = match self.origin() {
+            Some(origin) => self.kept.map(|at| at.seconds_since(origin)),
+            // The file is refused.
+            None => KeptStates::None,
+        };
+        self.rows = Some(StkRows::new(kept));
         self.part = StkSection::Table;
+    }
+
+    /// The instant from which the times count.
+    fn origin(&self) -> Option<Epoch> {
+        Some(Epoch::from_utc(self.epoch?.and_utc()))
     }
 
     fn row(&mut self, line: &Line, findings: &mut FindingList) {
@@ -264,11 +291,9 @@ impl StkParser {
             }
         }
         let [elapsed_s, x, y, z, vx, vy, vz, ..] = values;
-        let before_s = self.states.last().map(|(last, _)| *last);
-        if before_s.is_some_and(|before_s| {
-            let later_s = elapsed_s - before_s;
-            later_s < LEAST_STEP_S && !(later_s == 0.0 && self.may_repeat(elapsed_s))
-        }) {
+        let (origin, boundaries_s) = (self.origin(), self.boundaries_s.as_slice());
+        let may_follow = |rows: &StkRows| rows.may_be_at(elapsed_s, origin, boundaries_s);
+        if !self.rows.as_ref().is_some_and(may_follow) {
             let message = "the time is not after that of the row before";
             findings.error((line.number, 1), "stk-time-order", message);
             return;
@@ -285,7 +310,9 @@ impl StkParser {
             findings.error((line.number, 1), "implausible-state", message);
             return;
         }
-        self.states.push((elapsed_s, state));
+        if let Some(rows) = &mut self.rows {
+            rows.push((elapsed_s, state), &self.boundaries_s);
+        }
     }
 
     fn implausible(&self, state: &State<Frame>) -> Option<ImplausibleState> {
@@ -293,13 +320,6 @@ impl StkParser {
             (StkColumns::Pos, _) | (_, None) => check_position(&state.position_km.km()).err(),
             (_, Some(frame)) => check_state(frame, state).err(),
         }
-    }
-
-    /// Whether a row may have the time of the one before: once, at a boundary.
-    fn may_repeat(&self, elapsed_s: f64) -> bool {
-        let rows = self.states.iter().rev();
-        let same = rows.take_while(|(before_s, _)| *before_s == elapsed_s);
-        same.count() == 1 && is_boundary(&self.boundaries_s, elapsed_s)
     }
 
     fn boundaries(&mut self, line: &Line, findings: &mut FindingList) {
@@ -313,72 +333,67 @@ impl StkParser {
         }
     }
 
-    /// Each segment has its own velocities; the row that two share has those of the earlier one.
-    fn derive_velocities(&mut self, number: usize, findings: &mut FindingList) {
-        let Some(epoch) = self.epoch else { return };
-        let epoch = Epoch::from_utc(epoch.and_utc());
-        let mut done = 0;
-        for rows in segments(&self.states, &self.boundaries_s) {
-            let states = &self.states[rows.clone()];
-            let position = |place: usize| {
-                let (elapsed_s, state) = states[place];
-                (epoch.plus_seconds(elapsed_s), state.position_km)
-            };
-            let Some(velocities) = velocities(states.len(), position) else {
-                let message = "the positions have no velocities and are too few to derive them";
-                findings.error((number, 1), "stk-velocity", message);
-                return;
-            };
-            let skipped = done - rows.start;
-            let derived = self.states[rows.start..rows.end].iter_mut().zip(velocities);
-            for ((_, state), velocity_km_s) in derived.skip(skipped) {
-                state.velocity_km_s = velocity_km_s;
-            }
-            done = rows.end;
-        }
-    }
-
-    /// Velocities that are not the derivative of the positions: another unit, or other axes.
-    fn check_velocities(&self, number: usize, findings: &mut FindingList) {
-        let Some(epoch) = self.epoch else { return };
-        let epoch = Epoch::from_utc(epoch.and_utc());
-        let row = |place: usize| {
-            let (elapsed_s, state) = self.states[place];
-            let at = epoch.plus_seconds(elapsed_s);
-            (at, state.position_km, state.velocity_km_s)
-        };
-        if let Some(message) = velocity_fault(self.states.len(), row) {
-            findings.warning((number, 1), "stk-velocity-unit", message);
-        }
-    }
-
     fn end(mut self, number: usize, findings: &mut FindingList) -> Option<StkEphemeris> {
         if self.part != StkSection::After {
             findings.error((number, 1), "stk-truncated", "END Ephemeris is missing");
         }
-        match self.points {
-            Some((points, place)) if points != self.states.len() => {
-                let message = format!(
-                    "NumberOfEphemerisPoints is {points}, but there are {}",
-                    self.states.len()
-                );
-                findings.error(place, "stk-count", message);
-            }
-            _ if self.states.is_empty() => {
-                findings.error((number, 1), "stk-empty", "the table has no points");
-            }
-            _ if self.columns != StkColumns::Pos => self.check_velocities(number, findings),
-            _ => self.derive_velocities(number, findings),
+        let count = self.rows.as_ref().map_or(0, StkRows::count);
+        if let Some((points, place)) = self.points.filter(|(points, _)| *points != count) {
+            let message = format!("NumberOfEphemerisPoints is {points}, but there are {count}");
+            findings.error(place, "stk-count", message);
+        } else if count == 0 {
+            findings.error((number, 1), "stk-empty", "the table has no points");
+        }
+        let (epoch, rows) = (self.epoch?, self.rows.take()?);
+        let origin = Epoch::from_utc(epoch.and_utc());
+        let has_velocities = self.columns != StkColumns::Pos;
+        // Velocities that are not the derivative of the positions: another unit, or other axes.
+        if let Some(message) = rows.velocity_fault(origin).filter(|_| has_velocities) {
+            findings.warning((number, 1), "stk-velocity-unit", message);
+        }
+        let (segments, mut states) = rows.finish();
+        if !has_velocities {
+            check_rows(&segments, number, findings);
+            derive_velocities(origin, &mut states, &self.boundaries_s);
         }
         Some(StkEphemeris {
             comments: self.comments,
-            scenario_epoch: self.epoch?,
+            scenario_epoch: epoch,
             interpolation: self.method,
             interpolation_samples_m1: self.samples_m1.or(self.order),
             boundaries_s: self.boundaries_s,
             frame: self.frame?,
-            states: self.states,
+            states,
+            spans_s: segments.iter().map(|segment| segment.span_s).collect(),
         })
+    }
+}
+
+/// Velocities follow from two positions at least.
+fn check_rows(segments: &[StkSegment], number: usize, findings: &mut FindingList) {
+    if segments.iter().any(|segment| segment.rows < 2) {
+        let message = "the positions have no velocities and are too few to derive them";
+        findings.error((number, 1), "stk-velocity", message);
+    }
+}
+
+/// Each segment has its own velocities; the row that two share has those of the earlier one.
+fn derive_velocities(origin: Epoch, states: &mut [(f64, State<Frame>)], boundaries_s: &[f64]) {
+    let mut done = 0;
+    for rows in segments(states, boundaries_s) {
+        let of_segment = &states[rows.clone()];
+        let position = |place: usize| {
+            let (elapsed_s, state) = of_segment[place];
+            (origin.plus_seconds(elapsed_s), state.position_km)
+        };
+        // A single row that is kept of a segment is far from the interval.
+        let velocities = velocities(of_segment.len(), position).unwrap_or_default();
+        let skipped = done - rows.start;
+        let derived = states[rows.clone()].iter_mut().zip(velocities);
+        for ((_, state), velocity_km_s) in derived.skip(skipped) {
+            state.velocity_km_s = velocity_km_s;
+        }
+        done = rows.end;
     }
 }
 

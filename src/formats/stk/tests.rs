@@ -1,6 +1,7 @@
 use super::*;
 use crate::constellation::Design;
 use crate::ephemeris::Ephemeris;
+use crate::formats::kept_states::KeptStates;
 use crate::formats::metadata::Theory;
 use crate::formats::text::finding::{Finding, FindingList};
 use crate::formats::text::timestamp::TimeSystem;
@@ -27,10 +28,15 @@ EphemerisTimePosVel
 END Ephemeris
 ";
 
+/// The findings, which do not depend on what is kept.
 fn findings(text: impl AsRef<[u8]>) -> Vec<Finding> {
-    let mut findings = FindingList::of_linter(20);
-    parse(text.as_ref(), &mut findings).unwrap();
-    findings.into_vec()
+    let [all, none] = [KeptStates::All, KeptStates::None].map(|kept| {
+        let mut findings = FindingList::of_linter(20);
+        parse_kept(text.as_ref(), &mut findings, kept).unwrap();
+        findings.into_vec()
+    });
+    assert_eq!(all, none);
+    all
 }
 
 fn written(frame: Frame, step_s: f64) -> String {
@@ -122,6 +128,12 @@ fn broken_rules_are_named_with_their_place() {
         ("\n60 ", "\n0 ", (12, 1, "stk-time-order")),
         // Nearer than two instants can be.
         ("\n60 ", "\n1e-320 ", (12, 1, "stk-time-order")),
+        // Instants end before, so that two rows would be at one.
+        (
+            "\n60 ",
+            "\n1e14 6.9e6 0 0 0 7.4e3 0\n2e14 ",
+            (13, 1, "stk-time-order"),
+        ),
         ("\n60 ", "\nNaN ", (12, 1, "stk-number")),
         ("\n60 ", "\n", (12, 1, "stk-fields")),
         ("END Ephemeris\n", "", (12, 1, "stk-truncated")),
@@ -198,6 +210,21 @@ fn segments_are_arcs_of_their_own() {
             file.into_arcs()
         );
     }
+    // A boundary at the first row, which is there twice: a segment of one row, and the others.
+    let twice = row(0.0, 7e6) + &rows(&[]);
+    let arcs = read(changed(block, &twice, "").as_bytes())
+        .unwrap()
+        .into_arcs();
+    let counts: Vec<usize> = arcs.iter().map(|arc| arc.nodes.len()).collect();
+    assert_eq!(counts, [1, 2, 1]);
+    // Without states, an arc tells when it is valid.
+    let mut findings_of_none = FindingList::of_linter(20);
+    let text = changed(block, &twice, "");
+    let none = parse_kept(text.as_bytes(), &mut findings_of_none, KeptStates::None).unwrap();
+    let spans = |arcs: &[Arc]| Vec::from_iter(arcs.iter().map(|arc| arc.useable));
+    let none = none.unwrap().into_arcs();
+    assert_eq!(spans(&none), spans(&arcs));
+    assert!(none.iter().all(|arc| arc.nodes.is_empty()));
     let three = changed(
         block,
         &rows(&[(120.0, 7e6), (120.0, 7e6), (120.0, 7e6)]),

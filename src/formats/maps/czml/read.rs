@@ -2,10 +2,11 @@
 //! packet or several.
 
 use super::packet::{Packet, PositionPacket};
-use super::value::{PositionKind, algorithm, frame, interval, nodes, samples};
+use super::value::{PositionKind, algorithm, each_node, frame, interval, samples};
 use crate::ephemeris::arc::{Arc, Interpolation};
 use crate::ephemeris::derivative::velocities;
 use crate::formats::ReadError;
+use crate::formats::kept_states::{KeptStates, StateKeeper};
 use crate::formats::text::finding::FindingList;
 use crate::formats::text::json::{JsonObject, Objects};
 use crate::formats::trajectory::Trajectory;
@@ -36,6 +37,21 @@ pub fn read(input: impl BufRead) -> Result<Vec<Trajectory>, ReadError> {
 /// # Errors
 /// A failure of the input.
 pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<Trajectory>> {
+    parse_kept(input, findings, &|_| KeptStates::All)
+}
+
+/// Says which states of the object of an id are kept.
+pub(super) type CzmlChoice<'a> = &'a dyn Fn(&str) -> KeptStates<Epoch>;
+
+/// The same, with the states that `choice` keeps of each object.
+///
+/// # Errors
+/// A failure of the input.
+pub fn parse_kept(
+    input: impl BufRead,
+    findings: &mut FindingList,
+    choice: CzmlChoice<'_>,
+) -> io::Result<Vec<Trajectory>> {
     let mut objects = Objects::new(input).up_to(MAX_PACKET);
     let mut document = CzmlDocument::default();
     let mut first = true;
@@ -46,7 +62,7 @@ pub fn parse(input: impl BufRead, findings: &mut FindingList) -> io::Result<Vec<
         let fault = if std::mem::take(&mut first) {
             document_fault(&packet)
         } else {
-            document.add(packet, &object, findings).err()
+            document.add(packet, &object, choice, findings).err()
         };
         if let Some((rule, key, message)) = fault {
             findings.error(object.place_of(key), rule, message);
@@ -90,6 +106,7 @@ struct CzmlObject {
     /// The position that it shares.
     reference: Option<String>,
     availability: Vec<(Epoch, Epoch)>,
+    kept: KeptStates<Epoch>,
 }
 
 /// ArraySamples in one interval, or in all.
@@ -99,7 +116,11 @@ struct Piece {
     algorithm: Option<CzmlAlgorithm>,
     degree: Option<usize>,
     has_velocities: bool,
+    /// The first and the last instant of all samples.
+    span: (Epoch, Epoch),
+    /// The samples that are kept.
     nodes: Vec<(Epoch, State<Frame>)>,
+    kept: KeptStates<Epoch>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -114,6 +135,7 @@ impl CzmlDocument {
         &mut self,
         packet: Packet,
         object: &JsonObject,
+        choice: CzmlChoice<'_>,
         findings: &mut FindingList,
     ) -> Result<(), PacketFault> {
         let place = object.place_of("position");
@@ -147,6 +169,7 @@ impl CzmlDocument {
                 pieces: Vec::new(),
                 reference: None,
                 availability: Vec::new(),
+                kept: choice(&name),
             });
             self.objects.len() - 1
         });
@@ -244,13 +267,25 @@ impl CzmlObject {
             return Ok(());
         }
         let frame = frame(position, kind)?;
-        let nodes = nodes(key, samples, kind, position.epoch.as_deref())?;
-        for (at, state) in &nodes {
-            if let Err(fault) = check_position(&state.position_km.km()) {
-                let message = format!("{} at {at}: {fault}", self.name);
-                return Err(("implausible-state", key, message));
-            }
-        }
+        let mut span: Option<(Epoch, Epoch)> = None;
+        let mut keeper = StateKeeper::new(self.kept);
+        let mut nodes = Vec::new();
+        each_node(
+            key,
+            samples,
+            kind,
+            position.epoch.as_deref(),
+            |at, state| {
+                if let Err(fault) = check_position(&state.position_km.km()) {
+                    let message = format!("{} at {at}: {fault}", self.name);
+                    return Err(("implausible-state", key, message));
+                }
+                span = Some((span.map_or(at, |(first, _)| first), at));
+                keeper.push(&mut nodes, at, (at, state));
+                Ok(())
+            },
+        )?;
+        let Some(span) = span else { return Ok(()) };
         let algorithm = algorithm(position)?;
         let degree = position
             .interpolation_degree
@@ -263,6 +298,7 @@ impl CzmlObject {
             Some(piece) => {
                 piece.algorithm = algorithm.or(piece.algorithm);
                 piece.degree = degree.or(piece.degree);
+                piece.span = (piece.span.0.min(span.0), piece.span.1.max(span.1));
                 piece.nodes.extend(nodes);
             }
             None => self.pieces.push(Piece {
@@ -271,7 +307,9 @@ impl CzmlObject {
                 algorithm,
                 degree,
                 has_velocities,
+                span,
                 nodes,
+                kept: self.kept,
             }),
         }
         Ok(())
@@ -299,6 +337,7 @@ impl Piece {
             self.nodes.sort_by_key(|(at, _)| *at);
             self.nodes.dedup_by_key(|(at, _)| *at);
         }
+        self.kept.cut(&mut self.nodes, |(at, _)| *at);
         if !self.has_velocities {
             let position = |place: usize| {
                 let (at, state) = self.nodes[place];
@@ -317,7 +356,10 @@ impl Piece {
             CzmlAlgorithm::Hermite if self.has_velocities => Interpolation::Hermite(degree),
             CzmlAlgorithm::Hermite | CzmlAlgorithm::Lagrange => Interpolation::Lagrange(degree),
         };
-        let arc = Arc::new(self.frame, interpolation, self.nodes)?;
+        let arc = match self.nodes.is_empty() {
+            true => Arc::without_states(self.frame, interpolation, self.span),
+            false => Arc::new(self.frame, interpolation, self.nodes)?,
+        };
         match self.interval {
             Some(interval) => arc.within(interval),
             None => Some(arc),

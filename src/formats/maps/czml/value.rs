@@ -97,13 +97,14 @@ pub(super) fn frame(position: &PositionPacket, kind: PositionKind) -> Result<Fra
     }
 }
 
-/// The samples, with times as text or in seconds since the epoch.
-pub(super) fn nodes(
+/// Passes each sample to `take`, with times as text or in seconds since the epoch.
+pub(super) fn each_node(
     key: &'static str,
     samples: &ArraySamples,
     kind: PositionKind,
     epoch: Option<&str>,
-) -> Result<Vec<(Epoch, State<Frame>)>, PacketFault> {
+    mut take: impl FnMut(Epoch, State<Frame>) -> Result<(), PacketFault>,
+) -> Result<(), PacketFault> {
     let broken = |message: String| ("czml-samples", key, message);
     let length = kind.numbers() + 1;
     if !samples.numbers.len().is_multiple_of(length) || samples.numbers.is_empty() {
@@ -131,7 +132,7 @@ pub(super) fn nodes(
         })?),
         None => None,
     };
-    let mut nodes: Vec<(Epoch, State<Frame>)> = Vec::with_capacity(samples.numbers.len() / length);
+    let mut last: Option<Epoch> = None;
     for (k, sample) in samples.numbers.chunks_exact(length).enumerate() {
         let at = match (texts.get(&(k * length)), origin) {
             (Some(text), _) => instant(text)
@@ -142,14 +143,15 @@ pub(super) fn nodes(
                 return Err(("czml-epoch", key, message));
             }
         };
-        if nodes.last().is_some_and(|(before, _)| *before > at) {
+        if last.is_some_and(|before| before > at) {
             return Err(broken(
                 "the times of the samples do not increase".to_owned(),
             ));
         }
-        nodes.push((at, kind.state(&sample[1..])));
+        last = Some(at);
+        take(at, kind.state(&sample[1..]))?;
     }
-    Ok(nodes)
+    Ok(())
 }
 
 /// The two instants of `2025-01-01T00:00:00Z/2025-01-02T00:00:00Z`.
