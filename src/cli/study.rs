@@ -279,6 +279,12 @@ impl Study {
         Ok(setup)
     }
 
+    /// The contents of a file that the scenario names.
+    pub(crate) fn named_file(&self, file: &str) -> io::Result<Vec<u8>> {
+        let contents = self.contents().map_err(io::Error::other)?;
+        self.content(file, contents)
+    }
+
     /// The contents of a file that the scenario names, among those of all.
     fn content(&self, file: &str, contents: &[Vec<u8>]) -> io::Result<Vec<u8>> {
         let mut files = self.scenario.files().into_iter();
