@@ -454,6 +454,7 @@ mod tests {
     fn a_proposed_command_can_be_pasted() {
         let study = StudyArgs {
             scenario: Some("my study.toml".to_owned()),
+            text: None,
             overrides: ["time.step-s=60", "gnss.files=['a b.tle']"]
                 .map(str::to_owned)
                 .to_vec(),
