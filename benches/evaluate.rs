@@ -154,12 +154,10 @@ const ADDITIONS: [&str; 9] = [
 /// A skyline of hills: 2° to 13°.
 fn hills() -> MaskTable {
     let hill = |n: u32| {
-        let azimuth_deg = f64::from(n) * 10.0;
-        let (a, b) = (
-            (azimuth_deg * 3.0).to_radians(),
-            (azimuth_deg * 5.0).to_radians(),
-        );
-        (azimuth_deg, 7.5 + 3.5 * a.sin() + 2.0 * b.cos())
+        // The last is the first again, to the bit.
+        let turn_rad = (f64::from(n % 36) * 10.0).to_radians();
+        let height_deg = 7.5 + 3.5 * (3.0 * turn_rad).sin() + 2.0 * (5.0 * turn_rad).cos();
+        (f64::from(n) * 10.0, height_deg)
     };
     MaskTable::new((0..=36).map(hill).collect()).expect(SOUND)
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the wheel, installs it into a clean virtual environment and runs its tests, types, doctests and notebooks.
+# Builds the source distribution and from it the wheel, installs that into a clean virtual environment and runs its tests, types, doctests and
+# notebooks; the reference of the module goes to DIR/reference.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 work="${1:?a directory to work in}"
@@ -8,7 +9,8 @@ python3 -m venv "$work/venv"
 bin="$work/venv/bin"
 "$bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9,<2'
 # What is checked is the module and not the speed of its engine: without LTO the build takes half the time.
-"$bin/maturin" build --quiet --release --locked --config 'profile.release.lto="off"' --manifest-path python/Cargo.toml --out "$work/dist"
+"$bin/maturin" build --quiet --release --locked --config 'profile.release.lto="off"' --sdist \
+    --manifest-path python/Cargo.toml --out "$work/dist"
 "$bin/pip" install --quiet --disable-pip-version-check "$work"/dist/*.whl
 "$bin/python" -c 'import navwalker as nw; print(nw.Scenario("paper", time_step_s=1800).evaluate("delta:55:182/13/1@925").mean_pdop)'
 "$bin/python" -m navwalker --version
@@ -16,6 +18,8 @@ bin="$work/venv/bin"
 "$bin/python" -m pytest --quiet python/tests
 "$bin/python" -m pytest --quiet --doctest-modules --pyargs navwalker
 "$bin/mypy" --strict python/tests/typed_sample.py
+"$bin/basedpyright" --project python/tests/pyrightconfig.json --pythonpath "$bin/python"
+"$bin/python" -W error -m pdoc --no-show-source --no-search --output-directory "$work/reference" navwalker
 for notebook in examples/notebooks/*.ipynb; do
     (cd "$work" && "$bin/jupyter" execute "$OLDPWD/$notebook" --output "$work/$(basename "$notebook")") >"$work/notebook.log" 2>&1 ||
         { cat "$work/notebook.log"; exit 1; }

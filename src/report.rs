@@ -23,14 +23,15 @@ mod orbits;
 pub mod page;
 pub(crate) mod phases;
 pub mod profile;
-mod reproduction;
 mod results;
 mod seeds;
 pub(crate) mod shown;
 mod skies;
 mod studies;
+mod study_files;
 #[cfg(feature = "figures")]
 mod study_page;
+mod study_sections;
 mod table;
 #[cfg(feature = "validate")]
 pub(crate) mod validation;
@@ -50,17 +51,14 @@ pub use from_evaluations::NotEvaluated;
 pub use labels::quantity_label;
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 pub use phases::{PhaseRange, PhaseSpread};
-pub use reproduction::{
-    REPRODUCTION_FILES, ReproduceResult, reproduction_files, reproduction_markdown,
-    reproduction_text,
-};
 pub use results::NoMember;
 pub use seeds::{JointMember, SeedRun, SeedsResult, Spread};
 pub use skies::{SkyClockResult, SkyResult, skies_csv, skies_text};
 pub use studies::{
-    PublishedResult, StatementRecord, StudiesResult, StudyResult, statements_csv, studies_markdown,
+    StatementRecord, StudiesResult, StudyResult, StudyStamp, statements_csv, studies_markdown,
     studies_text,
 };
+pub use study_files::study_tables;
 #[cfg(feature = "figures")]
 pub use study_page::StudyPageError;
 pub use table::{Align, Table};

@@ -12,7 +12,7 @@ pub(crate) mod tables;
 #[cfg(feature = "validate")]
 mod validation;
 
-pub use columns::metric_values;
+pub use columns::{metric_columns, metric_values};
 pub use results::{
     Certificate, DesignSummary, Diagnostic, FixedSummary, FrontMember, Hypervolume, MemberFiles,
     Missed, MissedShell, OptimizeResult, ScenarioStamp, SearchSummary, VolumeAt,

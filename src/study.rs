@@ -1,7 +1,6 @@
 //! Published studies, reproduced: their numbers next to ours, with a computed verdict on each statement.
 
 mod judge;
-pub mod paper;
 pub mod published;
 
 pub use judge::{Expected, Statement, Verdict};

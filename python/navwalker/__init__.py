@@ -18,6 +18,7 @@ from navwalker._native import (
     ScenarioError,
     __version__,
 )
+from navwalker._plots import Plots
 from navwalker._results import Metrics, Samples, Table
 from navwalker._run import Run
 from navwalker._scenario import Scenario
@@ -33,6 +34,7 @@ __all__ = [
     "Metrics",
     "NavwalkerError",
     "NavwalkerWarning",
+    "Plots",
     "Run",
     "Samples",
     "Scenario",

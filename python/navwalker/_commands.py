@@ -14,12 +14,25 @@ from navwalker._constellation import Constellation, Path
 from navwalker._keys import toml_of
 
 if TYPE_CHECKING:
+    from navwalker._progress import Tick
     from navwalker._scenario import Scenario
 
 
-def run(arguments: Sequence[str], error: type[_native.NavwalkerError] = _native.NavwalkerError) -> tuple[int, str]:
-    """Runs a command: its status and its result. Its warnings become warnings, a status of 2 an exception."""
-    status, result, messages = _native.run_command(list(arguments))
+def run(
+    arguments: Sequence[str],
+    error: type[_native.NavwalkerError] = _native.NavwalkerError,
+    *,
+    scenario: Scenario | None = None,
+    tick: Tick | None = None,
+) -> tuple[int, str]:
+    """Runs a command, on a scenario if one is given: its status and its result. Its warnings become warnings, a status of
+    2 an exception."""
+    given = list(arguments)
+    own = None
+    if scenario is not None:
+        own = scenario._given_text
+        given += scenario._arguments()
+    status, result, messages = _native.run_command(given, own, tick)
     for kind, text in messages:
         if kind == "warning":
             warnings.warn(text, _native.NavwalkerWarning, stacklevel=3)
@@ -30,11 +43,11 @@ def run(arguments: Sequence[str], error: type[_native.NavwalkerError] = _native.
     return status, result
 
 
-def arguments_of(constellation: Constellation | str, scenario: Scenario | None) -> list[str]:
-    """The scenario and a constellation as arguments of a command."""
-    given = [] if scenario is None else scenario._arguments()
+def arguments_of(constellation: Constellation | str) -> list[str]:
+    """A constellation as arguments of a command."""
     if isinstance(constellation, str):
-        return [*given, "--design", constellation]
+        return ["--design", constellation]
+    given = []
     if constellation.out_of_service:
         given += ["--set", f"outages.satellites={toml_of(constellation.out_of_service)}"]
     files = constellation._files
@@ -63,8 +76,12 @@ def export(
     more = [part for name, value in options.items() for part in (f"--{name.replace('_', '-')}", str(value))]
     switches = [switch for switch, on in (("--check", check), ("--force", force)) if on]
     place = os.fspath(out)
-    given = arguments_of(constellation, scenario)
-    status, result = run(["export", *given, "--as", products, "--out", place, *switches, *more], _native.FileError)
+    if constellation.out_of_service:
+        names = ", ".join(constellation.out_of_service)
+        text = f"files have every satellite, in service or not; {names} too"
+        warnings.warn(text, _native.NavwalkerWarning, stacklevel=3)
+    arguments = ["export", *arguments_of(constellation), "--as", products, "--out", place, *switches, *more]
+    status, result = run(arguments, _native.FileError, scenario=scenario)
     if status != 0:
         raise _native.FileError(f"what was read back from {place} differs from the constellation:\n{result}")
     with open(os.path.join(place, "manifest.json"), encoding="utf-8") as file:
@@ -103,7 +120,8 @@ def validate(
     """Checks the propagation of a constellation against independent standards (``sgp4``, ``geographiclib``,
     ``numerical``, ``analytic``, ``paper``, ``all``) or the files of other programs."""
     targets = against if isinstance(against, str) else ",".join(os.fspath(one) for one in against)
-    _, result = run(["validate", *arguments_of(constellation, scenario), "--against", targets, "--format", "json"])
+    arguments = ["validate", *arguments_of(constellation), "--against", targets, "--format", "json"]
+    _, result = run(arguments, scenario=scenario)
     whole = json.loads(result)
     return ValidationReport(whole["passed"], whole["checks"], whole)
 

@@ -6,17 +6,18 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker import _native
 from navwalker._constellation import Constellation
+from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from navwalker._scenario import Scenario
 
-Objective = Callable[[Table], npt.ArrayLike]
+    Objective = Callable[[Table], npt.ArrayLike]
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,9 @@ class CustomRun:
         return Constellation(self.front["notation"][index - 1])
 
 
-def search(scenario: Scenario, seed: int | None, objectives: Sequence[str | Objective]) -> CustomRun:
+def search(
+    scenario: Scenario, seed: int | None, objectives: Sequence[str | Objective], progress: bool
+) -> CustomRun:
     """Searches for designs under some objectives, each a name of a quantity or a function of a table."""
     if not objectives:
         raise _native.NavwalkerError("there is no objective")
@@ -48,7 +51,8 @@ def search(scenario: Scenario, seed: int | None, objectives: Sequence[str | Obje
     if names:
         under = scenario.replace(set={"objectives.minimize": names})
     given = [names.index(one) if isinstance(one, str) else _called(one) for one in objectives]
-    front, values, history = _native.search_custom(under._engine, seed, given)
+    with followed(progress, "generation") as tick:
+        front, values, history = _native.search_custom(under._engine, seed, given, tick)
     named = [one if isinstance(one, str) else getattr(one, "__name__", "objective") for one in objectives]
     return CustomRun(Table(front), values, named, Table(history))
 
@@ -57,6 +61,8 @@ def _called(function: Objective) -> Callable[[_native.Columns], npt.NDArray[np.f
     """A function of a table as the native part calls it."""
     if not callable(function):
         raise _native.NavwalkerError(f"an objective is a name or a function, not {type(function).__name__}")
+
+    import numpy as np
 
     def called(columns: _native.Columns) -> npt.NDArray[np.float64]:
         return np.ascontiguousarray(function(Table(columns)), dtype=np.float64)

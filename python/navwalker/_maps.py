@@ -5,19 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker._extras import needed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import xarray
 
-_UNITS = {"latitude_deg": "degrees_north", "longitude_deg": "degrees_east"}
+# Columns of tables that are coordinates of Datasets: their names there, which carry no unit since the coordinate does.
+PLACES = {"latitude_deg": "latitude", "longitude_deg": "longitude"}
+_UNITS = {"latitude": "degrees_north", "longitude": "degrees_east"}
 _NAMES = {
-    "latitude_deg": "latitude",
-    "longitude_deg": "longitude",
     "mean_visible": "mean visible LEO satellites",
     "mean_pdop": "mean PDOP",
     "p95_pdop": "95 % quantile of PDOP",
@@ -34,7 +33,8 @@ _NAMES = {
 }
 
 
-def _attributes(name: str) -> dict[str, str]:
+def attributes(name: str) -> dict[str, str]:
+    """Long name and units of a variable."""
     units = _UNITS.get(name, "s" if name.endswith("_s") else "1")
     return {"long_name": _NAMES.get(name, name.replace("_", " ")), "units": units}
 
@@ -51,6 +51,8 @@ class Lattice:
     @classmethod
     def of(cls, points: Table) -> Lattice | None:
         """The lattice that the points of a table fill, if they do."""
+        import numpy as np
+
         latitudes, longitudes = points["latitude_deg"], points["longitude_deg"]
         rows, row = np.unique(latitudes, return_inverse=True)
         columns, column = np.unique(longitudes, return_inverse=True)
@@ -61,6 +63,8 @@ class Lattice:
 
     def laid_out(self, values: npt.NDArray[Any]) -> npt.NDArray[Any]:
         """Values of the points as an array of (latitude, longitude)."""
+        import numpy as np
+
         array = np.empty((len(self.latitudes), len(self.longitudes)), dtype=values.dtype)
         array[self.row, self.column] = values
         return array
@@ -73,17 +77,20 @@ def dataset_of(points: Table) -> xarray.Dataset:
     variables: dict[str, Any] = {}
     for name in points.columns:
         values = points[name]
-        if name in ("latitude_deg", "longitude_deg") or (name == "name" and all(one is None for one in values)):
+        if name in PLACES or (name == "name" and all(one is None for one in values)):
             continue
         if lattice is None:
-            variables[name] = ("point", values, _attributes(name))
+            variables[name] = ("point", values, attributes(name))
         else:
-            variables[name] = (("latitude_deg", "longitude_deg"), lattice.laid_out(values), _attributes(name))
-    if lattice is None:
-        places = {name: ("point", points[name]) for name in _UNITS}
-    else:
-        places = {"latitude_deg": ("latitude_deg", lattice.latitudes)}
-        places["longitude_deg"] = ("longitude_deg", lattice.longitudes)
-    coordinates = {name: (dimension, values, _attributes(name)) for name, (dimension, values) in places.items()}
-    dataset: xarray.Dataset = xr.Dataset(variables, coords=coordinates)
+            variables[name] = (("latitude", "longitude"), lattice.laid_out(values), attributes(name))
+    places = coordinates_of(points)
+    if lattice is not None:
+        places = {"latitude": ("latitude", lattice.latitudes, attributes("latitude"))}
+        places["longitude"] = ("longitude", lattice.longitudes, attributes("longitude"))
+    dataset: xarray.Dataset = xr.Dataset(variables, coords=places)
     return dataset
+
+
+def coordinates_of(points: Table) -> dict[str, tuple[str, npt.NDArray[Any], dict[str, str]]]:
+    """The places of points as coordinates of the dimension ``point``."""
+    return {name: ("point", points[column], attributes(name)) for column, name in PLACES.items()}

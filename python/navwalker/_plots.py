@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from navwalker._constellation import Constellation
 from navwalker._extras import needed
 from navwalker._maps import Lattice
@@ -65,6 +63,8 @@ class Plots:
 
     def cdf(self, *constellations: Given, ax: Axes | None = None) -> Axes:
         """The cumulative distribution of PDOP over all samples, weighted by point; what is not solved is missing."""
+        import numpy as np
+
         axes = _axes(ax)
         for one in constellations:
             samples = self._scenario.samples(one)
@@ -98,6 +98,8 @@ class Plots:
         ax: Axes | None = None,
     ) -> Axes:
         """Bars of some metrics for several constellations."""
+        import numpy as np
+
         axes = _axes(ax)
         given = list(constellations)
         measures = list(measures)
@@ -112,6 +114,8 @@ class Plots:
 
     def sky(self, constellation: Given, point: int = 0, *, ax: Axes | None = None) -> Axes:
         """The tracks of the satellites of a constellation over a ground point, by azimuth and zenith distance."""
+        import numpy as np
+
         axes: Any = ax if ax is not None else _pyplot().figure().add_subplot(projection="polar")
         azimuth, elevation = self._scenario.look_angles(constellation, point)
         above = np.where(elevation > 0, elevation, np.nan)

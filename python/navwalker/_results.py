@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import difflib
-import html
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-import numpy.typing as npt
 
 from navwalker import _native
 from navwalker._extras import needed
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import pandas
     import polars
     import pyarrow
     import xarray
 
+    Column = npt.NDArray[Any]
+
 Value = float | int | bool | None
-Column = npt.NDArray[Any]
 
 # Rows that a preview shows.
 _SHOWN = 10
@@ -182,12 +180,10 @@ class Samples:
 
     def to_xarray(self) -> xarray.Dataset:
         """A Dataset over ``time`` (seconds since the epoch) and ``point``."""
+        from navwalker._maps import attributes, coordinates_of
+
         xr = needed("xarray", "to_xarray")
         dims = ("time", "point")
-        over_points = {
-            name: ("point", self.points[name], {"units": units})
-            for name, units in [("latitude_deg", "degrees_north"), ("longitude_deg", "degrees_east"), ("weight", "1")]
-        }
         dataset: xarray.Dataset = xr.Dataset(
             {
                 "pdop": (dims, self.pdop, {"long_name": "PDOP", "units": "1"}),
@@ -196,13 +192,16 @@ class Samples:
             },
             coords={
                 "time": ("time", self.elapsed_s, {"long_name": "time since the epoch", "units": "s"}),
-                **over_points,
+                **coordinates_of(self.points),
+                "weight": ("point", self.points["weight"], attributes("weight")),
             },
         )
         return dataset
 
 
 def _no_such(kind: str, name: str, known: Sequence[str]) -> str:
+    import difflib
+
     near = difflib.get_close_matches(name, known, n=1)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     return f"there is no {kind} '{name}'{hint}"
@@ -211,6 +210,8 @@ def _no_such(kind: str, name: str, known: Sequence[str]) -> str:
 def _shown(value: object) -> str:
     if value is None or (isinstance(value, float) and value != value):
         return "-"
+    import numpy as np
+
     if isinstance(value, (bool, np.bool_)):
         return "yes" if value else "no"
     if isinstance(value, (float, np.floating)):
@@ -219,6 +220,8 @@ def _shown(value: object) -> str:
 
 
 def _html_table(header: Sequence[str], rows: Any) -> str:
+    import html
+
     cell = "<td>{}</td>".format
     head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
     body = "".join("<tr>" + "".join(cell(html.escape(one)) for one in row) + "</tr>" for row in rows)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import tempfile
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
 from navwalker import _native
 from navwalker._commands import run
 from navwalker._constellation import Constellation, Path
+from navwalker._progress import followed
 from navwalker._results import Table
 
 if TYPE_CHECKING:
+    import tempfile
+
     from navwalker._scenario import Scenario
 
 
@@ -87,6 +88,8 @@ class Run:
 
     def save(self, directory: Path) -> Run:
         """Copies the run into a new directory and returns it from there."""
+        import shutil
+
         try:
             shutil.copytree(self._directory, directory)
         except OSError as error:
@@ -109,15 +112,19 @@ class Run:
         return self.front._repr_html_()
 
 
-def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool) -> Run:
+def search(scenario: Scenario, seed: int | None, out: Path | None, force: bool, progress: bool) -> Run:
     """Runs the search of a scenario."""
+    import tempfile
+
     temporary = None
     if out is None:
         temporary = tempfile.TemporaryDirectory(prefix="navwalker-")
         out = os.path.join(temporary.name, "run")
     seeds = [] if seed is None else ["--seed", str(seed)]
     switches = ["--force"] if force else []
-    run(["optimize", *scenario._arguments(), *seeds, "--out", os.fspath(out), *switches, "--format", "json"])
+    arguments = ["optimize", *seeds, "--out", os.fspath(out), *switches, "--format", "json"]
+    with followed(progress, "generation") as tick:
+        run(arguments, scenario=scenario, tick=tick)
     found = Run(out)
     found._temporary = temporary
     return found

@@ -6,26 +6,28 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-import numpy as np
-import numpy.typing as npt
-
 from navwalker import _native
+from navwalker._arrays import finite, numbers
 from navwalker._constellation import Constellation, Path
 from navwalker._extras import needed
 from navwalker._keys import overrides
+from navwalker._progress import followed
 from navwalker._results import Metrics, Samples, Table
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
     import xarray
 
     from navwalker._custom import CustomRun
     from navwalker._plots import Plots
     from navwalker._run import Run
 
+    Objective = Callable[[Table], npt.ArrayLike]
+    Whole = npt.NDArray[np.int64]
+    Real = npt.NDArray[np.float64]
+
 Given = str | Constellation
-Objective = Callable[[Table], npt.ArrayLike]
-Whole = npt.NDArray[np.int64]
-Real = npt.NDArray[np.float64]
 Errors = Literal["raise", "column"]
 
 _COLUMNS = ("planes", "satellites_per_plane", "inclination_deg", "altitude_km", "phasing")
@@ -115,16 +117,19 @@ class Scenario:
 
     @overload
     def evaluate(  # type: ignore[overload-overlap]  # a text is a notation, although it is an iterable of texts too
-        self, constellations: Given, *, errors: Errors = "raise"
+        self, constellations: Given, *, errors: Errors = "raise", progress: bool = False
     ) -> Metrics: ...
     @overload
-    def evaluate(self, constellations: Iterable[Given], *, errors: Errors = "raise") -> Table: ...
+    def evaluate(
+        self, constellations: Iterable[Given], *, errors: Errors = "raise", progress: bool = False
+    ) -> Table: ...
     @overload
     def evaluate(
         self,
         constellations: None = None,
         *,
         errors: Errors = "raise",
+        progress: bool = False,
         pattern: str = "delta",
         planes: npt.ArrayLike,
         satellites_per_plane: npt.ArrayLike,
@@ -138,6 +143,7 @@ class Scenario:
         constellations: Given | Iterable[Given] | None = None,
         *,
         errors: Errors = "raise",
+        progress: bool = False,
         pattern: str = "delta",
         **columns: Any,
     ) -> Metrics | Table:
@@ -147,13 +153,15 @@ class Scenario:
         these, or shells as columns of numbers that broadcast to one length: ``planes``, ``satellites_per_plane``,
         ``inclination_deg``, ``altitude_km`` and ``phasing``, with one ``pattern``. A constellation that cannot be
         evaluated raises :class:`DesignError`; with ``errors="column"`` its row has no metrics and says why in the
-        column ``error``.
+        column ``error``. ``progress`` says on stderr how many of several are done.
         """
         if errors not in ("raise", "column"):
             raise _native.NavwalkerError(f"errors is {errors!r}, expected 'raise' or 'column'")
         keeps = errors == "column"
         if constellations is None:
-            return Table(self._engine.evaluate_columns(pattern, *_columns(columns), keeps))
+            arrays = _columns(columns)
+            with followed(progress, "design") as tick:
+                return Table(self._engine.evaluate_columns(pattern, *arrays, keeps, tick))
         if columns:
             raise _native.NavwalkerError("give constellations or columns, not both")
         if isinstance(constellations, (str, Constellation)):
@@ -163,9 +171,10 @@ class Scenario:
         if not given:
             raise _native.NavwalkerError("there is no constellation to evaluate")
         texts = [one for one in given if isinstance(one, str)]
-        if len(texts) == len(given):
-            return Table(self._engine.evaluate_texts(texts, keeps))
-        return Table(self._engine.evaluate_all([self._native_of(one) for one in given], keeps))
+        with followed(progress, "design") as tick:
+            if len(texts) == len(given):
+                return Table(self._engine.evaluate_texts(texts, keeps, tick))
+            return Table(self._engine.evaluate_all([self._native_of(one) for one in given], keeps, tick))
 
     def gnss_only(self) -> Metrics | None:
         """The metrics of the GNSS alone; None without GNSS."""
@@ -181,7 +190,7 @@ class Scenario:
         return Table(self._engine.series(self._native_of(constellation))[1])
 
     def maps(self, constellation: Given) -> xarray.Dataset:
-        """The metrics by ground point as a Dataset: over ``latitude_deg`` and ``longitude_deg`` where the points fill a
+        """The metrics by ground point as a Dataset: over ``latitude`` and ``longitude``, degrees, where the points fill a
         lattice, or else over ``point``. Needs xarray."""
         from navwalker._maps import dataset_of
 
@@ -215,9 +224,13 @@ class Scenario:
         return self._engine.look_angles(self._native_of(constellation), point)
 
     @overload
-    def optimize(self, *, seed: int | None = None, out: Path | None = None, force: bool = False) -> Run: ...
+    def optimize(
+        self, *, seed: int | None = None, out: Path | None = None, force: bool = False, progress: bool = False
+    ) -> Run: ...
     @overload
-    def optimize(self, *, seed: int | None = None, objectives: Sequence[str | Objective]) -> CustomRun: ...
+    def optimize(
+        self, *, seed: int | None = None, objectives: Sequence[str | Objective], progress: bool = False
+    ) -> CustomRun: ...
 
     def optimize(
         self,
@@ -226,6 +239,7 @@ class Scenario:
         out: Path | None = None,
         force: bool = False,
         objectives: Sequence[str | Objective] | None = None,
+        progress: bool = False,
     ) -> Run | CustomRun:
         """Searches for the Pareto set as the scenario says.
 
@@ -235,16 +249,18 @@ class Scenario:
         ``objectives`` replace those of the scenario: names of quantities (``"satellites"``), and functions that take the
         :class:`Table` of a generation's designs and return an array with one number to minimise for each. Such a search
         is a :class:`CustomRun`, which is not kept in files.
+
+        ``progress`` says on stderr how far the search is, as a line that terminals and notebooks rewrite.
         """
         if objectives is not None:
             from navwalker._custom import search as custom
 
             if out is not None:
                 raise _native.NavwalkerError("a search with objectives of your own is not kept in files; omit out")
-            return custom(self, seed, objectives)
+            return custom(self, seed, objectives, progress)
         from navwalker._run import search
 
-        return search(self, seed, out, force)
+        return search(self, seed, out, force, progress)
 
     def problem(self) -> Any:
         """The search of the scenario as a pymoo Problem of real variables, which rounds those that are whole."""
@@ -259,10 +275,13 @@ class Scenario:
         infinite where they have no value; ``violation`` (n), 0 where all constraints are kept; the ``vectors`` as
         evaluated; and the ``notation`` of each design.
         """
-        given = np.ascontiguousarray(np.atleast_2d(np.asarray(vectors, dtype=np.float64)))
+        import numpy as np
+
+        given = np.ascontiguousarray(np.atleast_2d(numbers("vectors", vectors)), dtype=np.float64)
         variables, _ = _native.search_space(self._engine)
         if given.ndim != 2 or given.shape[1] != len(variables):
             raise _native.NavwalkerError(f"vectors have shape {given.shape}, expected (n, {len(variables)})")
+        finite("vectors", given)
         objectives, violation, evaluated, notation = _native.answers(self._engine, given)
         return {"objectives": objectives, "violation": violation, "vectors": evaluated, "notation": notation}
 
@@ -281,15 +300,17 @@ class Scenario:
             return self._engine.constellation(given)
         raise _native.DesignError(f"a constellation is a notation or a Constellation, not {type(given).__name__}")
 
+    @property
+    def _given_text(self) -> tuple[str, str] | None:
+        """Its text and the directory of its files, if it was given as a text."""
+        return None if self._text is None else (self._text, self._directory)
+
     def _arguments(self) -> list[str]:
-        """The scenario as arguments of a command."""
-        if self._text is not None:
-            raise _native.ScenarioError(
-                "this needs a scenario in a file: write scenario.to_toml() to one, since its files are named from there"
-            )
+        """The scenario as arguments of a command, without its text."""
+        source = [self._source] if self._text is None else []
         sets = [part for one in self._overrides for part in ("--set", one)]
         threads = [] if self._threads is None else ["--threads", str(self._threads)]
-        return [self._source, *sets, *threads]
+        return [*sets, *threads, *source]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (self._source, self._overrides, self._threads, self._directory, self._text is not None)
@@ -321,20 +342,19 @@ def _again(
 
 def _columns(given: Mapping[str, Any]) -> tuple[Whole, Whole, Whole, Real, Real]:
     """The columns of shells, in the order in which the native part takes them, of one length."""
+    import numpy as np
+
     missing = [name for name in _COLUMNS if name not in given]
     unknown = [name for name in given if name not in _COLUMNS]
     if unknown:
         raise TypeError(f"unknown argument {unknown[0]!r}; the columns are {', '.join(_COLUMNS)}")
     if missing:
         raise TypeError(f"columns need {', '.join(missing)} too")
-    arrays = [np.atleast_1d(np.asarray(given[name])) for name in _COLUMNS]
+    arrays = [np.atleast_1d(numbers(name, given[name])) for name in _COLUMNS]
     for name, array in zip(_COLUMNS, arrays, strict=True):
-        if array.dtype.kind not in "iuf":
-            raise _native.NavwalkerError(f"{name} has the type {array.dtype}, expected numbers")
         if array.ndim != 1:
             raise _native.NavwalkerError(f"{name} has the shape {array.shape}, expected one dimension")
-        if not np.isfinite(array).all():
-            raise _native.NavwalkerError(f"{name} has a value that is not finite in row {np.argmin(np.isfinite(array))}")
+        finite(name, array)
     try:
         planes, per_plane, inclination, altitude, phasing = np.broadcast_arrays(*arrays)
     except ValueError:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING, Any
 
 from navwalker import _native
+from navwalker._arrays import numbers
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 
 @dataclass(frozen=True)
@@ -43,8 +46,10 @@ def dop(
     >>> round(float(sky.pdop), 3)
     2.142
     """
-    azimuth = np.asarray(azimuth_deg, dtype=np.float64)
-    elevation = np.asarray(elevation_deg, dtype=np.float64)
+    import numpy as np
+
+    azimuth = numbers("azimuth_deg", azimuth_deg).astype(np.float64)
+    elevation = numbers("elevation_deg", elevation_deg).astype(np.float64)
     labels = np.zeros((), dtype=np.int64) if system is None else np.asarray(system)
     try:
         azimuth, elevation, labels = np.broadcast_arrays(azimuth, elevation, labels)
@@ -58,16 +63,31 @@ def dop(
         raise _native.NavwalkerError(f"an elevation is {elevation[wrong][0]}, expected -90 to 90")
     if np.isinf(azimuth).any() or np.isinf(elevation).any():
         raise _native.NavwalkerError("an azimuth or elevation is infinite")
-    systems, numbers = np.unique(labels, return_inverse=True)
+    systems: list[object] = ["all"]
+    clocks = labels
+    if system is not None:
+        systems, clocks = _distinct(labels)
     skies, satellites = azimuth.shape[:-1], azimuth.shape[-1]
-    rows = (int(np.prod(skies, dtype=np.int64)), satellites)
+    count = int(np.prod(skies, dtype=np.int64))
+    rows = (count, satellites)
     found = _native.dilutions(
         np.ascontiguousarray(azimuth.reshape(rows)),
         np.ascontiguousarray(elevation.reshape(rows)),
-        np.ascontiguousarray(numbers.astype(np.int64).reshape(rows)),
+        np.ascontiguousarray(clocks.reshape(rows), dtype=np.int64),
         len(systems),
         mask_deg,
-    )
+    ).reshape(count, 4 + len(systems))
     gdop, pdop, hdop, vdop = (found[:, place].reshape(skies) for place in range(4))
     tdop = found[:, 4:].reshape((*skies, len(systems)))
-    return Dops(gdop, pdop, hdop, vdop, tdop, systems.tolist() if system is not None else ["all"])
+    return Dops(gdop, pdop, hdop, vdop, tdop, systems)
+
+
+def _distinct(labels: npt.NDArray[Any]) -> tuple[list[object], npt.NDArray[np.int64]]:
+    """The systems, and the number of that of each satellite."""
+    import numpy as np
+
+    try:
+        systems, clocks = np.unique(labels, return_inverse=True)
+    except TypeError:
+        raise _native.NavwalkerError("system has labels that cannot be compared; give texts or numbers") from None
+    return systems.tolist(), clocks.astype(np.int64).reshape(labels.shape)

@@ -1,6 +1,7 @@
 //! Constellations.
 
 use crate::errors;
+use crate::interruptible::{Shared, on_pool};
 use navwalker::cli::embedded;
 use navwalker::constellation::Design;
 use navwalker::ephemeris::Ephemeris;
@@ -68,8 +69,8 @@ impl NativeConstellation {
         let format = format.map(embedded::format).transpose();
         let format = format.map_err(|error| errors::file(&error))?;
         let filter = SatelliteFilter { only, exclude };
-        let read = || embedded::noting(|| embedded::read(&paths, format, &filter));
-        let (found, printed) = py.detach(read);
+        let read = move |_: &Shared| embedded::noting(|| embedded::read(&paths, format, &filter));
+        let (found, printed) = on_pool(py, None, None, read)?;
         errors::warn(py, &printed)?;
         Ok(Self::new(found.map_err(|error| errors::file(&error))?))
     }

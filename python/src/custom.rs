@@ -4,15 +4,19 @@ use crate::columns::Columns;
 use crate::design_columns::{self, Evaluated};
 use crate::engine::Engine;
 use crate::errors::{self, NavwalkerError};
-use crate::interruptible::{Stop, interruptible};
+use crate::interruptible::{Shared, in_thread};
+use crate::pools::pool;
+use navwalker::cli::embedded::{Reached, Study};
+use navwalker::evaluate::Evaluator;
 use navwalker::optimize::{Evaluation, Problem, Space, Strategy};
 use navwalker::run::history_csv;
 use navwalker::search::DesignProblem;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// An objective: that of the scenario with this number, or a function of the table.
 enum Objective {
@@ -25,7 +29,8 @@ struct CustomProblem<'a> {
     designs: DesignProblem<'a>,
     objectives: Vec<Objective>,
     names: Vec<String>,
-    stop: &'a Stop,
+    shared: &'a Shared,
+    pool: Arc<ThreadPool>,
     /// What was evaluated, by the bits of the vector.
     known: Mutex<BTreeMap<Vec<u64>, Evaluated>>,
     /// Why a function failed, which ends the search.
@@ -39,7 +44,7 @@ fn bits(genome: &[f64]) -> Vec<u64> {
 impl CustomProblem<'_> {
     /// A design with its metrics, and what the scenario's own objectives and constraints say of it.
     fn one(&self, genome: &[f64]) -> Option<(Evaluated, Evaluation)> {
-        if self.stop.is_asked() {
+        if self.shared.is_asked_to_stop() {
             return None;
         }
         let found = self.designs.evaluated(genome);
@@ -119,7 +124,8 @@ impl Problem for CustomProblem<'_> {
             objectives: vec![f64::INFINITY; self.objectives.len()],
             violation: 2.0,
         };
-        let found: Vec<_> = batch.par_iter().map(|genome| self.one(genome)).collect();
+        let all = || batch.par_iter().map(|genome| self.one(genome)).collect();
+        let found: Vec<_> = self.pool.install(all);
         let table: Vec<Evaluated> = found.iter().flatten().map(|(one, _)| one.clone()).collect();
         let mut failure = self.failure.lock().unwrap_or_else(PoisonError::into_inner);
         if failure.is_some() || table.is_empty() {
@@ -169,6 +175,7 @@ pub(crate) fn search_custom<'py>(
     engine: &Engine,
     seed: Option<u64>,
     objectives: Vec<Bound<'py, PyAny>>,
+    tick: Option<Bound<'py, PyAny>>,
 ) -> PyResult<(Columns, Bound<'py, PyArray2<f64>>, Columns)> {
     let evaluator = engine.evaluator(py)?;
     let study = engine.study().clone();
@@ -177,19 +184,22 @@ pub(crate) fn search_custom<'py>(
         Err(_) => Objective::Function(one.clone().unbind()),
     };
     let objectives: Vec<Objective> = objectives.iter().map(objective).collect();
-    let work = move |stop: &Stop| -> PyResult<_> {
+    let pool = pool(engine.threads)?;
+    let work = move |shared: &Shared| -> PyResult<_> {
         let wrong = |error: anyhow::Error| errors::scenario(&error);
+        let mut scenario = study.scenario.clone();
+        let designs = pool.install(|| own(study, &evaluator));
         let problem = CustomProblem {
-            designs: study.problem(&evaluator).map_err(wrong)?,
+            designs: designs.map_err(wrong)?,
             names: (0..objectives.len())
                 .map(|place| place.to_string())
                 .collect(),
             objectives,
-            stop,
+            shared,
+            pool,
             known: Mutex::default(),
             failure: Mutex::default(),
         };
-        let mut scenario = study.scenario.clone();
         // That of the scenario is for its own objectives; the search takes one from its first generation.
         scenario.objectives.hypervolume_reference = None;
         let seed = seed.unwrap_or(scenario.optimizer.seed);
@@ -197,7 +207,8 @@ pub(crate) fn search_custom<'py>(
         let mut search = method
             .start(&problem, seed)
             .map_err(|error| wrong(error.into()))?;
-        while !search.is_done() && !stop.is_asked() {
+        while !search.is_done() && !shared.is_asked_to_stop() {
+            shared.progress.set(Reached::of(&search));
             search.step(&problem).map_err(|error| wrong(error.into()))?;
             let failure = problem
                 .failure
@@ -208,6 +219,7 @@ pub(crate) fn search_custom<'py>(
                 return Err(failure);
             }
         }
+        shared.progress.set(Reached::of(&search));
         let front = search.front();
         let known = problem.known.lock().unwrap_or_else(PoisonError::into_inner);
         let designs = front
@@ -221,6 +233,11 @@ pub(crate) fn search_custom<'py>(
         let values: Vec<Vec<f64>> = front.into_iter().map(|one| one.objectives).collect();
         Ok((table, values, history))
     };
-    let (table, values, history) = interruptible(py, engine.threads, || {}, work)??;
+    let (table, values, history) = in_thread(py, tick.as_ref(), || {}, work)??;
     Ok((table, PyArray2::from_vec2(py, &values)?, history))
+}
+
+/// The search of a study, which goes with the thread that makes it.
+fn own(study: Study, evaluator: &Evaluator) -> anyhow::Result<DesignProblem<'_>> {
+    study.problem(evaluator)
 }

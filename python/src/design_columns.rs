@@ -3,7 +3,8 @@
 use crate::columns::{Columns, Kind};
 use navwalker::constellation::Design;
 use navwalker::evaluate::Metrics;
-use navwalker::run::{DesignSummary, metric_values};
+use navwalker::run::{DesignSummary, metric_columns, metric_values};
+use rayon::prelude::*;
 use serde_json::Value;
 
 /// A constellation, and its metrics or why it has none.
@@ -18,14 +19,20 @@ pub(crate) struct Evaluated {
 /// The table of evaluated constellations; with `errors` it has a column of them, null where there is none.
 pub(crate) fn table(all: &[Evaluated], errors: bool) -> serde_json::Result<Columns> {
     let first = all.iter().find_map(|one| one.metrics.as_ref().ok());
-    let metrics = first.map(metric_values).transpose()?.unwrap_or_default();
+    let metrics: Vec<String> = match first {
+        Some(first) => metric_values(first)?
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect(),
+        None => metric_columns().into_iter().map(str::to_owned).collect(),
+    };
     let mut names = vec!["name".to_owned()];
     names.extend(
         DesignSummary::columns()
             .iter()
             .map(|name| (*name).to_owned()),
     );
-    names.extend(metrics.into_iter().map(|(name, _)| name));
+    names.extend(metrics);
     if errors {
         names.push("error".to_owned());
     }
@@ -33,10 +40,8 @@ pub(crate) fn table(all: &[Evaluated], errors: bool) -> serde_json::Result<Colum
         .into_iter()
         .map(|name| (name.clone(), Kind::of(&name)));
     let columns: Vec<(String, Kind)> = kinds.collect();
-    let mut rows = Vec::with_capacity(all.len());
-    for one in all {
-        rows.push(row(one, &columns, errors)?);
-    }
+    let rows = all.par_iter().map(|one| row(one, &columns, errors));
+    let rows = rows.collect::<serde_json::Result<Vec<_>>>()?;
     Ok(Columns::new(columns, &rows))
 }
 

@@ -4,14 +4,13 @@ use crate::columns::{Columns, Kind};
 use crate::constellation::NativeConstellation;
 use crate::design_columns::{self, Evaluated};
 use crate::errors::{self, DesignError, NavwalkerError};
-use crate::interruptible::{Stop, interruptible};
-use anyhow::Context;
-use navwalker::cli::embedded::{self, Study, error_text};
+use crate::interruptible::{Shared, Tick, on_pool};
+use crate::states;
+use navwalker::cli::embedded::{self, ScenarioText, Study, error_text};
 use navwalker::constellation::{Pattern, Shell, ShellParameters};
-use navwalker::ephemeris::sampled::Sampled;
-use navwalker::evaluate::{Evaluator, Metrics, Setup};
+use navwalker::evaluate::{Evaluator, Metrics};
 use navwalker::exchange::constellation::Constellation;
-use navwalker::frames::{EarthFixed, Frame};
+use navwalker::frames::Frame;
 use navwalker::ground::Site;
 use navwalker::report::records_csv;
 use navwalker::run::metric_values;
@@ -50,8 +49,9 @@ impl Engine {
         if let Some(known) = self.evaluator.get() {
             return Ok(Arc::clone(known));
         }
-        let make = || embedded::noting(|| self.study().evaluator());
-        let (made, printed) = py.detach(make);
+        let study = self.study().clone();
+        let make = move |_: &Shared| embedded::noting(|| study.evaluator());
+        let (made, printed) = on_pool(py, self.threads, None, make)?;
         errors::warn(py, &printed)?;
         let made = Arc::new(made.map_err(|error| errors::scenario(&error))?);
         Ok(Arc::clone(self.evaluator.get_or_init(|| made)))
@@ -63,19 +63,21 @@ impl Engine {
         py: Python<'_>,
         all: Vec<Result<NativeConstellation, (String, String)>>,
         keeps_errors: bool,
+        tick: Tick<'_, '_>,
     ) -> PyResult<Columns> {
         let evaluator = self.evaluator(py)?;
-        let work = move |stop: &Stop| {
-            let one = |given| evaluated(&evaluator, given, stop);
-            all.into_par_iter().map(one).collect::<Vec<_>>()
+        let work = move |shared: &Shared| {
+            shared.begin(all.len());
+            let one = |given| evaluated(&evaluator, given, shared);
+            let found: Vec<_> = all.into_par_iter().map(one).collect();
+            let first = found.iter().find_map(|one| one.metrics.as_ref().err());
+            match first.filter(|_| !keeps_errors) {
+                Some(why) => Err(why.clone()),
+                None => Ok(design_columns::table(&found, keeps_errors)),
+            }
         };
-        let found = interruptible(py, self.threads, || {}, work)?;
-        if !keeps_errors && let Some(why) = found.iter().find_map(|one| one.metrics.as_ref().err())
-        {
-            return Err(DesignError::new_err(why.clone()));
-        }
-        py.detach(|| design_columns::table(&found, keeps_errors))
-            .map_err(|error| NavwalkerError::new_err(error.to_string()))
+        let found = on_pool(py, self.threads, tick, work)?.map_err(DesignError::new_err)?;
+        found.map_err(|error| NavwalkerError::new_err(error.to_string()))
     }
 }
 
@@ -83,14 +85,14 @@ impl Engine {
 fn evaluated(
     evaluator: &Evaluator,
     given: Result<NativeConstellation, (String, String)>,
-    stop: &Stop,
+    shared: &Shared,
 ) -> Evaluated {
-    match given {
+    let found = match given {
         Ok(one) => Evaluated {
             name: one.all.name.clone(),
             design: one.all.design.clone(),
             satellites: one.all.satellite_count(),
-            metrics: if stop.is_asked() {
+            metrics: if shared.is_asked_to_stop() {
                 Err("interrupted".to_owned())
             } else {
                 let metrics = metrics(evaluator, &one);
@@ -103,7 +105,9 @@ fn evaluated(
             satellites: 0,
             metrics: Err(why),
         },
-    }
+    };
+    shared.progress.one_more();
+    found
 }
 
 fn metrics(evaluator: &Evaluator, one: &NativeConstellation) -> anyhow::Result<Metrics> {
@@ -124,7 +128,14 @@ impl Engine {
         threads: Option<usize>,
     ) -> PyResult<Self> {
         let study = match text {
-            Some(text) => Study::of_text(source, text, &directory, &overrides),
+            Some(text) => {
+                let of = ScenarioText {
+                    label: source.to_owned(),
+                    text: text.to_owned(),
+                    directory,
+                };
+                Study::of_text(&of, &overrides)
+            }
             None => Study::open(source, &overrides),
         };
         Ok(Self {
@@ -230,8 +241,8 @@ impl Engine {
     ) -> PyResult<Bound<'py, PyDict>> {
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
-        let work = move |_: &Stop| embedded::noting(|| metrics(&evaluator, &one));
-        let (found, printed) = interruptible(py, self.threads, || {}, work)?;
+        let work = move |_: &Shared| embedded::noting(|| metrics(&evaluator, &one));
+        let (found, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
         let found = found.map_err(|error| errors::design(&error))?;
         dictionary(py, &found)
@@ -240,12 +251,8 @@ impl Engine {
     /// The metrics of the GNSS alone; None without GNSS.
     fn gnss_only<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let evaluator = self.evaluator(py)?;
-        let found = interruptible(
-            py,
-            self.threads,
-            || {},
-            move |_: &Stop| evaluator.gnss_only().map(Option::<&Metrics>::copied),
-        )?;
+        let work = move |_: &Shared| evaluator.gnss_only().map(Option::<&Metrics>::copied);
+        let found = on_pool(py, self.threads, None, work)?;
         let found = found.map_err(|error| errors::scenario(&error.into()))?;
         found.map(|metrics| dictionary(py, &metrics)).transpose()
     }
@@ -256,9 +263,10 @@ impl Engine {
         py: Python<'_>,
         all: Vec<PyRef<'_, NativeConstellation>>,
         keeps_errors: bool,
+        tick: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Columns> {
         let all = all.iter().map(|one| Ok(NativeConstellation::clone(one)));
-        self.evaluated(py, all.collect(), keeps_errors)
+        self.evaluated(py, all.collect(), keeps_errors, tick.as_ref())
     }
 
     /// The table of several notations or names of the scenario.
@@ -267,6 +275,7 @@ impl Engine {
         py: Python<'_>,
         texts: Vec<String>,
         keeps_errors: bool,
+        tick: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Columns> {
         let all = py.detach(|| {
             let study = self.study();
@@ -277,7 +286,7 @@ impl Engine {
             };
             texts.into_iter().map(read).collect()
         });
-        self.evaluated(py, all, keeps_errors)
+        self.evaluated(py, all, keeps_errors, tick.as_ref())
     }
 
     /// The table of shells by columns of one length.
@@ -292,6 +301,7 @@ impl Engine {
         inclination_deg: PyReadonlyArray1<'_, f64>,
         altitude_km: PyReadonlyArray1<'_, f64>,
         keeps_errors: bool,
+        tick: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Columns> {
         let pattern: Pattern = pattern
             .parse()
@@ -326,14 +336,14 @@ impl Engine {
             })
         };
         let all = py.detach(|| (0..rows).map(shell).collect());
-        self.evaluated(py, all, keeps_errors)
+        self.evaluated(py, all, keeps_errors, tick.as_ref())
     }
 
     /// The tables of instants and of points.
     fn series(&self, py: Python<'_>, one: &NativeConstellation) -> PyResult<(Columns, Columns)> {
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
-        let work = move |_: &Stop| {
+        let work = move |_: &Shared| {
             embedded::noting(|| -> anyhow::Result<_> {
                 let series = evaluator.series(&one.propagate(evaluator.setup())?)?;
                 let table = |csv: std::io::Result<String>| -> anyhow::Result<Columns> {
@@ -343,7 +353,7 @@ impl Engine {
                 Ok((epochs, table(records_csv(&series.points))?))
             })
         };
-        let (found, printed) = interruptible(py, self.threads, || {}, work)?;
+        let (found, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
         found.map_err(|error| errors::design(&error))
     }
@@ -356,7 +366,7 @@ impl Engine {
     ) -> PyResult<SampleArrays<'py>> {
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
-        let work = move |_: &Stop| {
+        let work = move |_: &Shared| {
             embedded::noting(|| -> anyhow::Result<_> {
                 let samples = evaluator.samples(&one.propagate(evaluator.setup())?)?;
                 let pdop = samples.pdop.iter().map(|one| one.unwrap_or(f32::NAN));
@@ -367,7 +377,7 @@ impl Engine {
                 ))
             })
         };
-        let (found, printed) = interruptible(py, self.threads, || {}, work)?;
+        let (found, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
         let (pdop, visible, gnss) = found.map_err(|error| errors::design(&error))?;
         Ok((
@@ -387,8 +397,10 @@ impl Engine {
     ) -> PyResult<LookAngles<'py>> {
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
-        let work = move |_: &Stop| embedded::noting(|| look_angles(&one, evaluator.setup(), point));
-        let (found, printed) = interruptible(py, self.threads, || {}, work)?;
+        let work = move |_: &Shared| {
+            embedded::noting(|| states::look_angles(&one, evaluator.setup(), point))
+        };
+        let (found, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
         let (azimuths, elevations) = found.map_err(|error| errors::design(&error))?;
         Ok((
@@ -409,72 +421,16 @@ impl Engine {
             .map_err(|error| NavwalkerError::new_err(format!("frame: {error}")))?;
         let evaluator = self.evaluator(py)?;
         let one = one.clone();
-        let work = move |_: &Stop| embedded::noting(|| positions(&one, evaluator.setup(), frame));
-        let (found, printed) = interruptible(py, self.threads, || {}, work)?;
+        let work = move |_: &Shared| {
+            embedded::noting(|| states::positions(&one, evaluator.setup(), frame))
+        };
+        let (found, printed) = on_pool(py, self.threads, None, work)?;
         errors::warn(py, &printed)?;
         let (all, names, instants) = found.map_err(|error| errors::design(&error))?;
         let array = PyArray1::from_vec(py, all);
         let array = numpy::PyArrayMethods::reshape(&array, [names.len(), instants, 3])?;
         Ok((array, names))
     }
-}
-
-/// Positions by satellite, in it by instant, km; the names of the satellites; and the number of instants.
-fn positions(
-    one: &NativeConstellation,
-    setup: &Setup,
-    frame: Frame,
-) -> anyhow::Result<(Vec<f64>, Vec<String>, usize)> {
-    let ephemeris = one.propagate(setup)?;
-    let sampled = Sampled::new(&ephemeris, frame);
-    let grid = sampled.grid();
-    let of_satellite = |satellite| -> anyhow::Result<Vec<f64>> {
-        let mut all = Vec::with_capacity(3 * grid.len());
-        for (k, elapsed_s) in grid.iter().enumerate() {
-            let state = ephemeris.state_or_gap(satellite, elapsed_s)?;
-            match state.map(|teme| sampled.rotated(k, teme)) {
-                Some(state) => all.extend(state.position_km.km().iter()),
-                None => all.extend([f64::NAN; 3]),
-            }
-        }
-        Ok(all)
-    };
-    let all = ephemeris.satellites().par_iter().map(of_satellite);
-    let all = all.collect::<anyhow::Result<Vec<_>>>()?.concat();
-    let names = ephemeris.satellites().iter().map(|one| one.name.clone());
-    Ok((all, names.collect(), grid.len()))
-}
-
-/// Azimuths and elevations, each by satellite and in it by instant, degrees.
-type Angles = (Vec<Vec<f64>>, Vec<Vec<f64>>);
-
-/// Azimuths and elevations of every satellite from a ground point, by satellite and in it by instant, degrees.
-fn look_angles(one: &NativeConstellation, setup: &Setup, point: usize) -> anyhow::Result<Angles> {
-    let ephemeris = one.propagate(setup)?;
-    let fixed = Sampled::new(&ephemeris, EarthFixed);
-    let site = setup.sites.get(point).context("there is no such point")?;
-    let (mut azimuths, mut elevations) = (Vec::new(), Vec::new());
-    for satellite in ephemeris.satellites() {
-        let mut angles = Vec::with_capacity(setup.grid.len());
-        for (k, elapsed_s) in setup.grid.iter().enumerate() {
-            let state = ephemeris.state_or_gap(satellite, elapsed_s)?;
-            let seen = state.map(|teme| site.local.look_angles(fixed.rotated(k, teme).position_km));
-            angles.push(seen.unwrap_or((f64::NAN, f64::NAN)));
-        }
-        azimuths.push(
-            angles
-                .iter()
-                .map(|(_, azimuth)| azimuth.to_degrees())
-                .collect(),
-        );
-        elevations.push(
-            angles
-                .iter()
-                .map(|(elevation, _)| elevation.to_degrees())
-                .collect(),
-        );
-    }
-    Ok((azimuths, elevations))
 }
 
 /// Metrics as a dictionary; a metric without a value is None.

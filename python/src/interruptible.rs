@@ -1,71 +1,117 @@
-//! Work that Ctrl-C ends.
+//! Work that Ctrl-C ends, and that says how far it is.
 
+use crate::pools::pool;
+use navwalker::cli::embedded::{Reached, SharedProgress};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// How often signals are looked at.
+/// How often signals and progress are looked at.
 const EVERY: Duration = Duration::from_millis(50);
 
-/// Whether work that is asked to stop goes on; looked at between designs and generations.
+/// What work and the one who waits for it share.
 #[derive(Clone, Default)]
-pub(crate) struct Stop(Arc<AtomicBool>);
+pub(crate) struct Shared {
+    stop: Arc<AtomicBool>,
+    pub(crate) progress: SharedProgress,
+}
 
-impl Stop {
-    pub(crate) fn is_asked(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+impl Shared {
+    /// Whether the work is asked to stop; looked at between designs and generations.
+    pub(crate) fn is_asked_to_stop(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Begins work on so many designs.
+    pub(crate) fn begin(&self, designs: usize) {
+        self.progress.set(Reached {
+            steps: designs as u64,
+            ..Reached::default()
+        });
     }
 }
 
-/// Does some work in a thread of its own, on at most `threads` cores, without the lock of the interpreter. At Ctrl-C the
-/// exception is raised at once; the work is asked to stop, and what it finds is dropped.
-pub(crate) fn interruptible<T: Send + 'static>(
+/// A function of Python that is told how far work is, if there is one: steps done, all steps, evaluations, hypervolume.
+pub(crate) type Tick<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+/// Does some work on the threads of the module, at most so many if a number is given, without the interpreter's lock.
+/// At Ctrl-C the exception is raised at once; the work is asked to stop, and what it finds is dropped.
+///
+/// The work may not wait for other work of the module, since it may occupy the thread that is to do it.
+pub(crate) fn on_pool<T: Send + 'static>(
     py: Python<'_>,
     threads: Option<usize>,
-    on_stop: fn(),
-    work: impl FnOnce(&Stop) -> T + Send + 'static,
+    tick: Tick<'_, '_>,
+    work: impl FnOnce(&Shared) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let stop = Stop::default();
-    let own = stop.clone();
+    let shared = Shared::default();
+    let own = shared.clone();
     let (sender, receiver) = sync_channel(1);
-    let pool = threads.map(pool).transpose()?;
-    let run = move || match pool {
-        Some(pool) => pool.install(|| work(&own)),
-        None => work(&own),
-    };
     // If nobody waits any more, the result is of no use.
-    thread::spawn(move || sender.send(run()));
+    pool(threads)?.spawn(move || drop(sender.send(work(&own))));
+    awaited(py, receiver, &shared, tick, || {})
+}
+
+/// The same in a thread of its own: for work that calls Python, or that only one does at a time.
+pub(crate) fn in_thread<T: Send + 'static>(
+    py: Python<'_>,
+    tick: Tick<'_, '_>,
+    on_stop: fn(),
+    work: impl FnOnce(&Shared) -> T + Send + 'static,
+) -> PyResult<T> {
+    let shared = Shared::default();
+    let own = shared.clone();
+    let (sender, receiver) = sync_channel(1);
+    thread::spawn(move || sender.send(work(&own)));
+    awaited(py, receiver, &shared, tick, on_stop)
+}
+
+fn awaited<T: Send>(
+    py: Python<'_>,
+    receiver: Receiver<T>,
+    shared: &Shared,
+    tick: Tick<'_, '_>,
+    on_stop: fn(),
+) -> PyResult<T> {
     let receiver = Mutex::new(receiver);
     let wait = || {
         let receiver = receiver.lock().unwrap_or_else(PoisonError::into_inner);
         receiver.recv_timeout(EVERY)
     };
     loop {
-        match py.detach(wait) {
-            Ok(found) => return Ok(found),
-            Err(RecvTimeoutError::Timeout) => {}
+        let found = match py.detach(wait) {
+            Ok(found) => Some(found),
+            Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => {
                 return Err(PyRuntimeError::new_err("the work ended without a result"));
             }
-        }
-        if let Err(signal) = py.check_signals() {
-            stop.0.store(true, Ordering::Relaxed);
+        };
+        let looked = py
+            .check_signals()
+            .and_then(|()| told(tick, shared.progress.reached()));
+        if let Err(error) = looked {
+            shared.stop.store(true, Ordering::Relaxed);
             on_stop();
-            return Err(signal);
+            return Err(error);
+        }
+        if let Some(found) = found {
+            return Ok(found);
         }
     }
 }
 
-fn pool(threads: usize) -> PyResult<rayon::ThreadPool> {
-    let most = 4 * thread::available_parallelism().map_or(1, usize::from);
-    if !(1..=most).contains(&threads) {
-        let why = format!("threads is {threads}, expected 1 to {most}, four for each core");
-        return Err(super::errors::NavwalkerError::new_err(why));
-    }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))
+fn told(tick: Tick<'_, '_>, reached: Reached) -> PyResult<()> {
+    let Some(tick) = tick else { return Ok(()) };
+    let Reached {
+        step,
+        steps,
+        evaluations,
+        hypervolume,
+    } = reached;
+    tick.call1((step, steps, evaluations, hypervolume))?;
+    Ok(())
 }

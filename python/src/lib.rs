@@ -1,6 +1,6 @@
 //! The native part of the Python module `navwalker`: what the Python files of the package build upon.
 //!
-//! Work goes on without the interpreter's lock, in a thread of its own, so that Ctrl-C is seen while it lasts.
+//! Work goes on without the interpreter's lock, in other threads, so that Ctrl-C is seen while it lasts.
 
 mod columns;
 mod command;
@@ -10,8 +10,10 @@ mod design_columns;
 mod engine;
 mod errors;
 mod interruptible;
+mod pools;
 mod search;
 mod sky;
+mod states;
 
 use pyo3::prelude::*;
 

@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::errors;
-use crate::interruptible::{Stop, interruptible};
+use crate::interruptible::{Shared, on_pool};
 use navwalker::optimize::{Evaluation, Pick, Problem, VariableKind};
 use navwalker::run::FrontMember;
 use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
@@ -27,21 +27,24 @@ pub(crate) fn search_space(
     engine: &Engine,
 ) -> PyResult<(Vec<Variable>, Vec<String>)> {
     let evaluator = engine.evaluator(py)?;
-    let study = engine.study();
-    let problem = study
-        .problem(&evaluator)
-        .map_err(|error| errors::scenario(&error))?;
-    let variable = |one: &navwalker::optimize::Variable| {
-        let kind = match one.kind {
-            VariableKind::Integer { .. } => "integer",
-            VariableKind::Real { .. } => "real",
-            VariableKind::Category { .. } => "category",
-        };
-        let (lo, hi) = one.kind.bounds();
-        (one.name.clone(), kind, lo, hi)
+    let study = engine.study().clone();
+    let work = move |_: &Shared| -> anyhow::Result<_> {
+        let problem = study.problem(&evaluator)?;
+        let variables = problem.space().variables().iter().map(variable).collect();
+        Ok((variables, problem.objective_names().to_vec()))
     };
-    let variables = problem.space().variables().iter().map(variable).collect();
-    Ok((variables, problem.objective_names().to_vec()))
+    let found = on_pool(py, engine.threads, None, work)?;
+    found.map_err(|error| errors::scenario(&error))
+}
+
+fn variable(one: &navwalker::optimize::Variable) -> Variable {
+    let kind = match one.kind {
+        VariableKind::Integer { .. } => "integer",
+        VariableKind::Real { .. } => "real",
+        VariableKind::Category { .. } => "category",
+    };
+    let (lo, hi) = one.kind.bounds();
+    (one.name.clone(), kind, lo, hi)
 }
 
 /// Evaluates vectors of the space: each value is moved to the nearest that its variable can take. Objectives are as
@@ -60,7 +63,7 @@ pub(crate) fn answers<'py>(
         .into_iter()
         .map(|row| row.to_vec())
         .collect();
-    let work = move |stop: &Stop| -> anyhow::Result<_> {
+    let work = move |shared: &Shared| -> anyhow::Result<_> {
         let problem = study.problem(&evaluator)?;
         let nearest = |mut genome: Vec<f64>| {
             problem.space().clamp(&mut genome);
@@ -69,7 +72,7 @@ pub(crate) fn answers<'py>(
         };
         let rows: Vec<Vec<f64>> = rows.into_iter().map(nearest).collect();
         let answer = |genome: &Vec<f64>| -> Option<Evaluation> {
-            if stop.is_asked() {
+            if shared.is_asked_to_stop() {
                 return None;
             }
             problem.evaluate(std::slice::from_ref(genome)).pop()
@@ -82,7 +85,7 @@ pub(crate) fn answers<'py>(
         let notations: Vec<_> = rows.iter().map(notation).collect();
         Ok((rows, answers, notations, problem.objective_names().len()))
     };
-    let found = interruptible(py, engine.threads, || {}, work)?;
+    let found = on_pool(py, engine.threads, None, work)?;
     let (rows, answers, notations, objectives) = found.map_err(|error| errors::scenario(&error))?;
     let (mut all, mut violations) = (Vec::new(), Vec::new());
     for answer in answers {

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+import navwalker as nw
+
 pytest.importorskip("matplotlib").use("Agg")
 
 
@@ -29,3 +31,15 @@ def test_axes_of_the_caller(small, design):
 
     _, axes = pyplot.subplots()
     assert small.plot.series(design, ax=axes) is axes
+
+
+def test_front():
+    scenario = nw.Scenario(
+        "paper", time_step_s=1800, region_step_deg=20, optimizer_population=8, optimizer_generations=2
+    )
+    run = scenario.optimize(seed=1)
+    front, chosen = scenario.plot.front(run).lines
+    np.testing.assert_array_equal(front.get_xdata(), run.front["j_pos"])
+    np.testing.assert_array_equal(front.get_ydata(), run.front["j_cost"])
+    place = list(run.front["notation"]).index(run.pick("fuzzy").notation)
+    assert chosen.get_xdata() == [run.front["j_pos"][place]]

@@ -30,10 +30,10 @@ def test_polars_and_arrow_take_the_stream(table):
 def test_xarray(small, design):
     pytest.importorskip("xarray")
     maps = small.maps(design)
-    assert maps["mean_pdop"].dims == ("latitude_deg", "longitude_deg")
+    assert maps["mean_pdop"].dims == ("latitude", "longitude")
     assert maps["mean_pdop"].attrs == {"long_name": "mean PDOP", "units": "1"}
     points = small.by_point(design)
-    at = maps["mean_pdop"].sel(latitude_deg=points["latitude_deg"][5], longitude_deg=points["longitude_deg"][5])
+    at = maps["mean_pdop"].sel(latitude=points["latitude_deg"][5], longitude=points["longitude_deg"][5])
     assert float(at) == points["mean_pdop"][5]
     samples = small.samples(design).to_xarray()
     assert samples["pdop"].shape == (len(small.elapsed_s), len(small.points))

@@ -25,3 +25,16 @@ def first_elevation(scenario: nw.Scenario) -> float:
     azimuth, elevation = scenario.look_angles("delta:55:6/3/1@925", 0)
     dops: nw.Dops = nw.dop(azimuth[:, 0], elevation[:, 0])
     return float(elevation[0, 0]) + float(dops.pdop)
+
+
+def costs(scenario: nw.Scenario) -> npt.NDArray[np.float64]:
+    """Objectives of a search with a cost of the caller's."""
+
+    def launches(table: nw.Table) -> npt.ArrayLike:
+        return 3.0 * table["planes"]
+
+    run: nw.CustomRun = scenario.optimize(objectives=["satellites", launches], progress=True)
+    table: nw.Table = scenario.evaluate(
+        planes=[3, 4], satellites_per_plane=4, inclination_deg=55, altitude_km=925.0, phasing=np.ones(2), progress=True
+    )
+    return run.objectives * len(table)

@@ -233,7 +233,7 @@ pub(crate) fn quoted(word: &str) -> String {
 }
 
 /// The study to work on.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct StudyArgs {
     /// A scenario file, or the name of a built-in scenario [default: paper].
     #[arg(value_name = "SCENARIO")]
@@ -242,6 +242,21 @@ pub(crate) struct StudyArgs {
     /// Override a scenario key, as in `--set visibility.mask-deg=10`; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+
+    /// The scenario itself, where another program gives its text.
+    #[arg(skip)]
+    pub(crate) text: Option<ScenarioText>,
+}
+
+/// A scenario as a text.
+#[derive(Debug, Clone)]
+pub struct ScenarioText {
+    /// What messages call it.
+    pub label: String,
+    /// The text, TOML.
+    pub text: String,
+    /// The directory to which the files that it names are relative.
+    pub directory: PathBuf,
 }
 
 impl StudyArgs {
@@ -439,6 +454,7 @@ mod tests {
     fn a_proposed_command_can_be_pasted() {
         let study = StudyArgs {
             scenario: Some("my study.toml".to_owned()),
+            text: None,
             overrides: ["time.step-s=60", "gnss.files=['a b.tle']"]
                 .map(str::to_owned)
                 .to_vec(),

@@ -344,7 +344,7 @@ mod tests {
         fs::write(place.join("a.csv"), ELEMENTS).unwrap();
         let args = StudyArgs {
             scenario: Some(place.join("study.toml").to_string_lossy().into_owned()),
-            overrides: Vec::new(),
+            ..StudyArgs::default()
         };
         Study::load(&args, &[]).unwrap()
     }

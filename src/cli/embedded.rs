@@ -1,11 +1,15 @@
 //! The program inside another one, such as the Python module: its commands and the way it reads scenarios and
 //! constellations, with what they print kept instead of printed.
 
+pub use super::args::ScenarioText;
 pub use super::output::{Message, MessageKind, Transcript};
+pub use super::progress::{Reached, SharedProgress};
 pub use super::study::Study;
 
-use super::args::Cli;
-use super::{Status, coincidence, constellations, interrupt, limits, output, read_constellation};
+use super::args::{Cli, Command, StudyArgs};
+use super::{
+    Status, coincidence, constellations, interrupt, limits, output, progress, read_constellation,
+};
 use crate::ephemeris::Ephemeris;
 use crate::evaluate::Setup;
 use crate::exchange::constellation::{Constellation, FileSatellites};
@@ -26,18 +30,27 @@ pub struct CommandOutcome {
     pub printed: Transcript,
 }
 
+/// What a command has beside its arguments.
+#[derive(Debug)]
+pub struct CommandHost<'a> {
+    /// The threads of its parallel work, unless it has `--threads`.
+    pub pool: &'a rayon::ThreadPool,
+    /// Where its search says how far it is.
+    pub progress: &'a SharedProgress,
+    /// The scenario that it works on, in place of one that is named.
+    pub scenario: Option<ScenarioText>,
+}
+
 /// Runs a command line, which begins with the program name, and keeps what it prints. One runs at a time.
-///
-/// `--threads` is taken for this command alone.
-pub fn run(args: impl IntoIterator<Item = OsString>) -> CommandOutcome {
+pub fn run(args: impl IntoIterator<Item = OsString>, host: CommandHost<'_>) -> CommandOutcome {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    let (status, printed) = output::kept(|| parsed(args));
+    let (status, printed) = output::kept(|| parsed(args, host));
     CommandOutcome { status, printed }
 }
 
-fn parsed(args: impl IntoIterator<Item = OsString>) -> u8 {
-    let cli = match Cli::try_parse_from(args) {
+fn parsed(args: impl IntoIterator<Item = OsString>, host: CommandHost<'_>) -> u8 {
+    let mut cli = match Cli::try_parse_from(args) {
         Ok(cli) => cli,
         Err(message) if message.use_stderr() => {
             let text = message.render().to_string();
@@ -51,7 +64,10 @@ fn parsed(args: impl IntoIterator<Item = OsString>) -> u8 {
             return Status::Done as u8;
         }
     };
-    match on_threads(cli) {
+    if let Some(study) = study_of(&mut cli.command) {
+        study.text = host.scenario;
+    }
+    match on_threads(cli, host.pool, host.progress) {
         Ok(status) => status as u8,
         Err(error) => {
             output::error(&error);
@@ -60,15 +76,29 @@ fn parsed(args: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Runs a command in this thread, and its parallel work on as many others as it asks for.
-fn on_threads(cli: Cli) -> Result<Status> {
-    let Some(threads) = cli.threads else {
-        return super::command(cli);
+/// The arguments of a command that name its scenario.
+fn study_of(command: &mut Command) -> Option<&mut StudyArgs> {
+    match command {
+        Command::Optimize(args) => Some(&mut args.study),
+        Command::Evaluate(args) => Some(&mut args.study),
+        Command::Export(args) => Some(&mut args.study),
+        Command::Validate(args) => Some(&mut args.study),
+        _ => None,
+    }
+}
+
+/// Runs a command on the threads of its host, or on as many others as it asks for.
+fn on_threads(cli: Cli, pool: &rayon::ThreadPool, progress: &SharedProgress) -> Result<Status> {
+    let own = match cli.threads {
+        Some(threads) => {
+            limits::check_threads(threads)?;
+            let own = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
+            Some(own.build()?)
+        }
+        None => None,
     };
-    limits::check_threads(threads)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
-    let pool = pool.build()?;
-    let (status, printed) = pool.install(|| output::kept(|| super::command(cli)));
+    let command = || progress::followed(progress, || output::kept(|| super::command(cli)));
+    let (status, printed) = own.as_ref().unwrap_or(pool).install(command);
     output::say_again(printed);
     status
 }

@@ -5,47 +5,124 @@ use crate::optimize::Strategy;
 use crate::report::shown;
 use crate::search::size::{SizeProblem, SizeSearch};
 use indicatif::{ProgressBar, ProgressStyle};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A progress bar, or nothing if stderr is not a terminal.
-pub(crate) struct SearchBar(Option<ProgressBar>);
+/// How far some work is.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Reached {
+    /// Steps done: generations, iterations, batches or designs.
+    pub step: u64,
+    /// All steps.
+    pub steps: u64,
+    /// Designs evaluated.
+    pub evaluations: u64,
+    /// Hypervolume of the front, if it has one.
+    pub hypervolume: Option<f64>,
+}
+
+impl Reached {
+    /// How far a search is.
+    pub fn of(search: &impl Strategy) -> Self {
+        let progress = search.progress();
+        let last = search.history().last();
+        Self {
+            step: progress.step,
+            steps: progress.steps,
+            evaluations: progress.evaluations,
+            hypervolume: last
+                .and_then(|record| record.hypervolume_at_chosen.or(record.hypervolume)),
+        }
+    }
+}
+
+/// Where work says how far it is, for another thread to look at.
+#[derive(Debug, Clone, Default)]
+pub struct SharedProgress(Arc<Mutex<Reached>>);
+
+impl SharedProgress {
+    fn lock(&self) -> MutexGuard<'_, Reached> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// How far the work is.
+    #[must_use]
+    pub fn reached(&self) -> Reached {
+        *self.lock()
+    }
+
+    /// Says how far the work is.
+    pub fn set(&self, reached: Reached) {
+        *self.lock() = reached;
+    }
+
+    /// Counts one more design, which is a step by itself.
+    pub fn one_more(&self) {
+        let mut reached = self.lock();
+        reached.step += 1;
+        reached.evaluations += 1;
+    }
+}
+
+/// What follows the searches of the command that runs, if another program runs it.
+static FOLLOWED_BY: Mutex<Option<SharedProgress>> = Mutex::new(None);
+
+/// Does some work, whose searches say in `progress` how far they are. One at a time.
+pub(crate) fn followed<T>(progress: &SharedProgress, work: impl FnOnce() -> T) -> T {
+    let follow = |by| *FOLLOWED_BY.lock().unwrap_or_else(PoisonError::into_inner) = by;
+    follow(Some(progress.clone()));
+    let done = work();
+    follow(None);
+    done
+}
+
+/// A progress bar, or nothing if stderr is not a terminal; and what follows the search.
+pub(crate) struct SearchBar {
+    bar: Option<ProgressBar>,
+    followed_by: Option<SharedProgress>,
+}
 
 impl SearchBar {
     /// A bar for a search that may have been resumed.
     pub(crate) fn new(search: &impl Strategy) -> Self {
-        if !output::shows_progress() {
-            return Self(None);
-        }
-        let progress = search.progress();
-        let bar = ProgressBar::new(progress.steps).with_position(progress.step);
-        let template = "generation {pos}/{len} {wide_bar} {msg} ETA {eta}";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.tick();
-        Self(Some(bar))
+        let followed_by = FOLLOWED_BY.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = Self {
+            bar: output::shows_progress().then(|| search_bar(Reached::of(search))),
+            followed_by: followed_by.clone(),
+        };
+        new.show(search);
+        new
     }
 
     /// Shows the progress of the search.
     pub(crate) fn show(&self, search: &impl Strategy) {
-        let Some(bar) = &self.0 else { return };
-        let progress = search.progress();
-        let hypervolume = search
-            .history()
-            .last()
-            .and_then(|record| record.hypervolume_at_chosen.or(record.hypervolume));
-        let hypervolume = hypervolume.map_or(String::new(), |value| {
+        let reached = Reached::of(search);
+        if let Some(follower) = &self.followed_by {
+            follower.set(reached);
+        }
+        let Some(bar) = &self.bar else { return };
+        let hypervolume = reached.hypervolume.map_or(String::new(), |value| {
             format!(", hypervolume {}", shown::significant(value))
         });
-        bar.set_message(format!("{} evaluations{hypervolume}", progress.evaluations));
-        bar.set_position(progress.step);
+        bar.set_message(format!("{} evaluations{hypervolume}", reached.evaluations));
+        bar.set_position(reached.step);
     }
 
     /// Removes the bar.
     pub(crate) fn finish(&self) {
-        if let Some(bar) = &self.0 {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }
+}
+
+fn search_bar(reached: Reached) -> ProgressBar {
+    let bar = ProgressBar::new(reached.steps).with_position(reached.step);
+    let template = "generation {pos}/{len} {wide_bar} {msg} ETA {eta}";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.tick();
+    bar
 }
 
 /// The progress of a search for the fewest satellites, or nothing if stderr is not a terminal.

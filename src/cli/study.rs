@@ -1,6 +1,6 @@
 //! From the command line to a scenario and its inputs.
 
-use crate::cli::args::StudyArgs;
+use crate::cli::args::{ScenarioText, StudyArgs};
 use crate::cli::{files, limits, output};
 use crate::constellation::Design;
 use crate::evaluate::{Evaluator, Setup};
@@ -46,7 +46,10 @@ impl Study {
     /// The scenario named on the command line, with its overrides.
     pub(crate) fn load(args: &StudyArgs, further: &[String]) -> Result<Self> {
         let overrides: Vec<String> = args.overrides.iter().chain(further).cloned().collect();
-        Self::open(args.name(), &overrides)
+        match &args.text {
+            Some(of) => Self::of_text(of, &overrides),
+            None => Self::open(args.name(), &overrides),
+        }
     }
 
     /// The built-in scenario of a name, or that in a file, with overrides such as `region.step-deg=2`.
@@ -59,18 +62,13 @@ impl Study {
         Self::parse(written, directory, None)
     }
 
-    /// The scenario of a text, called `label` in messages, whose files are relative to a directory.
+    /// The scenario of a text.
     ///
     /// # Errors
     /// If a key or value is wrong.
-    pub fn of_text(
-        label: &str,
-        text: &str,
-        directory: &Path,
-        overrides: &[String],
-    ) -> Result<Self> {
-        let written = Written::new(label, text.as_bytes().to_vec(), overrides, &[]);
-        Self::parse(written, directory.to_owned(), None)
+    pub fn of_text(of: &ScenarioText, overrides: &[String]) -> Result<Self> {
+        let written = Written::new(&of.label, of.text.as_bytes().to_vec(), overrides, &[]);
+        Self::parse(written, of.directory.clone(), None)
     }
 
     /// The same with further satellites out of service throughout.
@@ -281,6 +279,12 @@ impl Study {
         Ok(setup)
     }
 
+    /// The contents of a file that the scenario names.
+    pub(crate) fn named_file(&self, file: &str) -> io::Result<Vec<u8>> {
+        let contents = self.contents().map_err(io::Error::other)?;
+        self.content(file, contents)
+    }
+
     /// The contents of a file that the scenario names, among those of all.
     fn content(&self, file: &str, contents: &[Vec<u8>]) -> io::Result<Vec<u8>> {
         let mut files = self.scenario.files().into_iter();
@@ -384,13 +388,18 @@ impl Study {
     /// If a file that the scenario names cannot be read or is wrong, or a GNSS satellite cannot be propagated.
     pub fn evaluator(&self) -> Result<Evaluator> {
         let setup = self.setup()?;
-        if let Some(note) = setup.plain_path_note() {
-            output::hint(&note);
-        }
-        for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
-            output::warning(&note);
-        }
+        say_of_setup(&setup);
         Ok(Evaluator::new(setup)?)
+    }
+}
+
+/// Says what is slow in a scenario, and warns of what has no effect.
+pub(crate) fn say_of_setup(setup: &Setup) {
+    if let Some(note) = setup.plain_path_note() {
+        output::hint(&note);
+    }
+    for note in setup.outages.iter().filter_map(|one| one.note(setup.grid)) {
+        output::warning(&note);
     }
 }
 

@@ -25,7 +25,7 @@ pub use histogram::histogram;
 pub use map::map;
 pub use outages::timeline;
 pub use phases::{NamedPhases, phases};
-pub use study::{NamedChart, PAPER_FIGURES, deviations_name, study_figures};
+pub use study::{NamedChart, deviations_name, study_figures};
 
 pub(in crate::report) use curves::at_epoch;
 pub(in crate::report) use front::earlier;

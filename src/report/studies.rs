@@ -1,13 +1,16 @@
 //! Studies of published numbers: their statements with verdicts, as text, Markdown, CSV and JSON.
 
-use super::reproduction::{ReproduceResult, round};
+use super::study_sections::{StudySectionTable, sections};
 use super::{Align, Table};
 use crate::keyword::Keyword;
 use crate::printable::{markdown, printable};
-use crate::run::VERSION;
 use crate::run::columns::optional;
 use crate::run::tables::text;
-use crate::study::published::{JudgedStatement, JudgedStudy};
+use crate::run::{ScenarioStamp, VERSION};
+use crate::study::published::{
+    ComputedValue, FigureData, FoundFigure, FoundFit, FoundSet, JudgedStatement, JudgedStudy,
+    MeasuredTable,
+};
 use crate::study::{Expected, Statement, Verdict};
 use ::csv::Writer;
 use serde::Serialize;
@@ -25,17 +28,7 @@ pub struct StudiesResult {
 
 /// One study of an output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
-pub enum StudyResult {
-    /// The paper's, with its tables, searches and figures.
-    Paper(Box<ReproduceResult>),
-    /// One of published numbers.
-    Published(PublishedResult),
-}
-
-/// A study of published numbers, judged.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PublishedResult {
+pub struct StudyResult {
     /// Its name.
     pub name: String,
     /// What it is.
@@ -45,10 +38,40 @@ pub struct PublishedResult {
     /// What is known about them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
-    /// SHA-256 of the study and the overrides of its scenario, hex.
-    pub sha256: String,
+    /// What identifies it.
+    #[serde(flatten)]
+    pub stamp: StudyStamp,
     /// The statements.
     pub statements: Vec<StatementRecord>,
+    /// What the numbers of tables imply.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fits: Vec<FoundFit>,
+    /// Tables with ours beside what is printed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub tables: Vec<MeasuredTable>,
+    /// Numbers that are not judged.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub values: Vec<ComputedValue>,
+    /// The searches.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub searches: Vec<FoundSet>,
+    /// Stems of the figures and tables beside the report.
+    pub files: Vec<String>,
+    /// The data of the figures, which are files of their own.
+    #[serde(skip)]
+    pub figures: Vec<FoundFigure>,
+}
+
+/// What identifies a study and its results.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StudyStamp {
+    /// Its scenario.
+    pub scenario: ScenarioStamp,
+    /// Seed of its searches; `None` without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// SHA-256 of the study and the overrides of its scenario, hex.
+    pub sha256: String,
 }
 
 /// A statement of a study with its verdict.
@@ -56,12 +79,13 @@ pub struct PublishedResult {
 pub struct StatementRecord {
     /// What is stated.
     pub name: String,
-    /// The constellation; the paper's statements name it in words.
+    /// The constellation.
+    pub of: String,
+    /// What it is compared with.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub of: Option<String>,
+    pub compared_with: Option<String>,
     /// What is computed.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub metric: Option<String>,
+    pub metric: String,
     /// The published number.
     pub expected: f64,
     /// `within` the tolerance, `at-least` or `more-than`.
@@ -88,12 +112,13 @@ pub struct StatementRecord {
 }
 
 /// A text of a study as it is shown everywhere.
-fn shown(text: &str) -> String {
+pub(super) fn shown(text: &str) -> String {
     printable(text).into_owned()
 }
 
-impl From<&Statement> for StatementRecord {
-    fn from(statement: &Statement) -> Self {
+impl From<&JudgedStatement> for StatementRecord {
+    fn from(judged: &JudgedStatement) -> Self {
+        let statement: &Statement = &judged.statement;
         let (expected, relation, tolerance) = match statement.expected {
             Expected::Value { value, tolerance } => (value, "within", Some(tolerance)),
             Expected::AtLeast(bound) => (bound, "at-least", None),
@@ -102,8 +127,9 @@ impl From<&Statement> for StatementRecord {
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         Self {
             name: shown(&statement.statement),
-            of: None,
-            metric: None,
+            of: shown(&judged.of),
+            compared_with: judged.compared_with.as_deref().map(shown),
+            metric: judged.metric.to_string(),
             expected,
             relation,
             tolerance,
@@ -113,7 +139,7 @@ impl From<&Statement> for StatementRecord {
             verdict: statement.verdict,
             assumption: statement.assumption.as_deref().map(shown),
             computed_there: finite(statement.ours_there),
-            disagreement: None,
+            disagreement: judged.disagreement.as_deref().map(shown),
         }
     }
 }
@@ -135,76 +161,93 @@ impl StatementRecord {
     }
 }
 
-impl From<&JudgedStatement> for StatementRecord {
-    fn from(judged: &JudgedStatement) -> Self {
-        Self {
-            of: Some(shown(&judged.of)),
-            metric: Some(judged.metric.to_string()),
-            disagreement: judged.disagreement.as_deref().map(shown),
-            ..Self::from(&judged.statement)
-        }
-    }
-}
-
-impl PublishedResult {
-    /// The result of a study, which `sha256` identifies.
+impl StudyResult {
+    /// The result of a study.
     #[must_use]
-    pub fn new(study: &JudgedStudy, sha256: String) -> Self {
-        Self {
-            name: study.name.clone(),
+    pub fn new(study: JudgedStudy, stamp: StudyStamp) -> Self {
+        let mut result = Self {
             title: shown(&study.title),
             source: shown(&study.source),
             notes: study.notes.iter().map(|note| shown(note)).collect(),
-            sha256,
+            stamp,
             statements: study.statements.iter().map(Into::into).collect(),
-        }
-    }
-}
-
-impl StudyResult {
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Paper(paper) => paper.name,
-            Self::Published(study) => &study.name,
-        }
-    }
-
-    /// The statements.
-    #[must_use]
-    pub fn statements(&self) -> &[StatementRecord] {
-        match self {
-            Self::Paper(paper) => &paper.statements,
-            Self::Published(study) => &study.statements,
-        }
+            name: study.name,
+            fits: study.fits,
+            tables: study.tables,
+            values: study.values,
+            searches: study.searches,
+            figures: study.figures,
+            files: Vec::new(),
+        };
+        result.make_printable();
+        let tables = result.tables.iter().flat_map(|table| table.stems());
+        let figures = result.figures.iter().map(|figure| figure.name.clone());
+        result.files = tables.chain(figures).collect();
+        result
     }
 
-    /// What it is.
-    pub(super) fn title(&self) -> &str {
-        match self {
-            Self::Paper(_) => {
-                "The paper that this program implements; alone, it prints its tables too"
+    /// Escapes what a terminal would obey in the texts of the study.
+    fn make_printable(&mut self) {
+        let safe = |text: &mut String| *text = shown(text);
+        for fit in &mut self.fits {
+            safe(&mut fit.name);
+            fit.assumption.iter_mut().for_each(safe);
+            fit.rows.iter_mut().for_each(|row| safe(&mut row.row));
+        }
+        for table in &mut self.tables {
+            safe(&mut table.name);
+            table
+                .columns
+                .iter_mut()
+                .for_each(|column| safe(&mut column.name));
+            table.shown.iter_mut().for_each(safe);
+            table
+                .sensitivity
+                .iter_mut()
+                .for_each(|one| safe(&mut one.assumption));
+            for row in &mut table.rows {
+                safe(&mut row.name);
+                safe(&mut row.design);
             }
-            Self::Published(study) => &study.title,
+        }
+        for value in &mut self.values {
+            safe(&mut value.name);
+            safe(&mut value.of);
+        }
+        self.searches
+            .iter_mut()
+            .for_each(|search| safe(&mut search.name));
+        for figure in &mut self.figures {
+            safe(&mut figure.title);
+            match &mut figure.data {
+                FigureData::Objectives { places, .. } => {
+                    for place in places {
+                        safe(&mut place.scheme);
+                        place.table.iter_mut().for_each(safe);
+                        safe(&mut place.design);
+                    }
+                }
+                FigureData::VisibleDistribution(curves) | FigureData::MaxPdopCourse(curves) => {
+                    for curve in curves {
+                        safe(&mut curve.name);
+                        safe(&mut curve.design);
+                    }
+                }
+            }
         }
     }
 
-    /// Where its numbers are from, and what is known of them.
-    pub(super) fn source_and_notes(&self) -> (Option<&str>, &[String]) {
-        match self {
-            Self::Paper(_) => (None, &[]),
-            Self::Published(study) => (Some(&study.source), &study.notes),
-        }
+    /// What is shown of it beside its statements.
+    pub(super) fn sections(&self) -> Vec<StudySectionTable> {
+        sections(self)
     }
 
     /// What is said of the numbers that disagree, or that nothing is known of them.
     pub(super) fn disagreements(&self) -> Vec<String> {
-        let published = matches!(self, Self::Published(_));
-        let told = self.statements().iter().filter_map(|one| {
+        let told = self.statements.iter().filter_map(|one| {
             let known = one.disagreement.as_deref();
             match (one.verdict, known) {
-                (Verdict::NotMet, None) if published => {
+                (Verdict::NotMet, None) => {
                     Some(format!("{}: not met, and not explained", one.name))
                 }
                 (Verdict::NotMet | Verdict::MetUnderAssumption, Some(known)) => {
@@ -218,7 +261,7 @@ impl StudyResult {
 
     /// Number of statements with each verdict, in the order of [`Verdict::ALL`].
     pub(super) fn counts(&self) -> Vec<(Verdict, usize)> {
-        let statements = self.statements().iter();
+        let statements = self.statements.iter();
         let count = |verdict: &Verdict| {
             let with = statements.clone().filter(|one| one.verdict == *verdict);
             (*verdict, with.count())
@@ -239,13 +282,13 @@ fn statements_table(study: &StudyResult) -> Table {
         ("unit", LEFT),
         ("source", LEFT),
     ];
-    let mut statements = study.statements().iter();
+    let mut statements = study.statements.iter();
     if statements.any(|one| one.assumption.is_some()) {
         columns.push(("assumption under which it is met", LEFT));
         columns.push(("computed under it", RIGHT));
     }
     let mut table = Table::new(&columns);
-    for one in study.statements() {
+    for one in &study.statements {
         table.row(one.cells());
     }
     table
@@ -253,7 +296,11 @@ fn statements_table(study: &StudyResult) -> Table {
 
 /// The published number, and three digits of its tolerance.
 fn expected(one: &StatementRecord) -> String {
-    let value = crate::units::round_decimal(one.expected, 8);
+    // What a fit implies has more digits than it is good for.
+    let digits = one
+        .tolerance
+        .map_or(8, |tolerance| decimals(tolerance).max(4));
+    let value = crate::units::round_decimal(one.expected, digits);
     match (one.tolerance, one.relation) {
         (Some(tolerance), _) => format!("{value} ± {}", three_digits(tolerance)),
         (None, MORE_THAN) => format!("> {value}"),
@@ -273,12 +320,24 @@ const MORE_THAN: &str = "more-than";
 fn computed(value: f64, one: &StatementRecord) -> String {
     match one.tolerance {
         Some(tolerance) if tolerance < 1e-2 => {
-            let digits = (2.0 - tolerance.log10().floor()).clamp(0.0, 12.0) as usize;
+            let digits = decimals(tolerance);
             format!("{value:.digits$}")
         }
         Some(_) => round(value),
+        None if one.unit == "%" => round(value),
         None => format!("{}", crate::units::round_decimal(value, 8)),
     }
+}
+
+/// Decimals of a number that is good to a tolerance, and two more.
+fn decimals(tolerance: f64) -> usize {
+    (2.0 - tolerance.log10().floor()).clamp(0.0, 12.0) as usize
+}
+
+/// At most four decimals, without trailing zeros.
+pub(super) fn round(value: f64) -> String {
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// How many statements of each study have which verdict.
@@ -288,10 +347,7 @@ fn summary_table(result: &StudiesResult) -> Table {
     let mut table = Table::new(&columns);
     for study in &result.studies {
         let counts = study.counts().into_iter();
-        let mut cells = vec![
-            study.name().to_owned(),
-            study.statements().len().to_string(),
-        ];
+        let mut cells = vec![study.name.clone(), study.statements.len().to_string()];
         cells.extend(counts.map(|(_, count)| count.to_string()));
         table.row(cells);
     }
@@ -303,16 +359,27 @@ fn summary_table(result: &StudiesResult) -> Table {
 pub fn studies_text(result: &StudiesResult) -> String {
     let mut text = String::new();
     for study in &result.studies {
-        let _ = writeln!(text, "{}: {}", study.name(), study.title());
-        let (source, notes) = study.source_and_notes();
-        if let Some(source) = source {
-            let _ = writeln!(text, "{source}");
-        }
+        let _ = writeln!(text, "{}: {}\n{}", study.name, study.title, study.source);
         let _ = write!(text, "\n{}\n", statements_table(study).to_text());
-        for note in notes.iter().chain(&study.disagreements()) {
+        for note in study.notes.iter().chain(&study.disagreements()) {
             let _ = writeln!(text, "note: {note}");
         }
         text.push('\n');
+        if result.studies.len() == 1 {
+            for StudySectionTable {
+                title,
+                caption,
+                table,
+            } in study.sections()
+            {
+                let _ = writeln!(text, "{title}. {caption}\n{}", table.to_text());
+            }
+        } else if !study.sections().is_empty() {
+            let _ = writeln!(
+                text,
+                "note: its tables, fits and searches are printed when it is run alone\n"
+            );
+        }
     }
     if result.studies.len() > 1 {
         text += &summary_table(result).to_text();
@@ -329,15 +396,35 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
         summary_table(result).to_markdown()
     );
     for study in &result.studies {
-        let title = markdown(study.title());
-        let _ = write!(text, "\n## {}\n\n{title}.\n", study.name());
-        let (source, notes) = study.source_and_notes();
-        if let Some(source) = source {
-            let _ = writeln!(text, "\nSource: {}.", markdown(source));
+        let title = markdown(&study.title);
+        let _ = write!(text, "\n## {}\n\n{title}.\n", study.name);
+        let scenario = &study.stamp.scenario;
+        let _ = write!(
+            text,
+            "\nSource: {}.\n\nScenario {} (`{}`)",
+            markdown(&study.source),
+            markdown(&scenario.name),
+            scenario.hash
+        );
+        if let Some(seed) = study.stamp.seed {
+            let _ = write!(text, ", seed {seed}");
         }
+        text.push_str(".\n");
         let _ = write!(text, "\n{}\n", statements_table(study).to_markdown());
-        for note in notes.iter().chain(&study.disagreements()) {
+        for note in study.notes.iter().chain(&study.disagreements()) {
             let _ = writeln!(text, "- {}", markdown(note));
+        }
+        if result.studies.len() == 1 {
+            for StudySectionTable {
+                title,
+                caption,
+                table,
+            } in study.sections()
+            {
+                let (title, caption) = (markdown(&title), markdown(&caption));
+                let table = table.to_markdown();
+                let _ = write!(text, "\n## {title}\n\n{caption}\n\n{table}");
+            }
         }
     }
     text
@@ -348,17 +435,6 @@ pub fn studies_markdown(result: &StudiesResult) -> String {
 /// # Errors
 /// Never for a table in memory.
 pub fn statements_csv(studies: &[StudyResult]) -> io::Result<String> {
-    let rows = studies.iter().flat_map(|study| {
-        let statements = study.statements().iter();
-        statements.map(|one| (study.name(), one))
-    });
-    rows_csv(rows)
-}
-
-/// The same of one study.
-pub(super) fn rows_csv<'s>(
-    rows: impl Iterator<Item = (&'s str, &'s StatementRecord)>,
-) -> io::Result<String> {
     let mut writer = Writer::from_writer(Vec::new());
     writer.write_record([
         "study",
@@ -373,9 +449,13 @@ pub(super) fn rows_csv<'s>(
         "assumption",
         "computed_there",
     ])?;
+    let rows = studies.iter().flat_map(|study| {
+        let statements = study.statements.iter();
+        statements.map(|one| (&study.name, one))
+    });
     for (study, one) in rows {
         writer.write_record([
-            study.to_owned(),
+            study.clone(),
             one.name.clone(),
             one.expected.to_string(),
             one.relation.to_owned(),

@@ -2,6 +2,7 @@
 
 use super::figures::draw::{DrawError, svg};
 use super::figures::study_figures;
+use super::study_sections::StudySectionTable;
 use super::{StudiesResult, StudyResult};
 use crate::keyword::Keyword;
 use crate::study::Verdict;
@@ -34,13 +35,39 @@ struct StudiesHtml<'a> {
 struct StudySection<'a> {
     name: &'a str,
     title: &'a str,
-    source: Option<&'a str>,
+    source: &'a str,
     counts: Vec<usize>,
     /// The cells of each statement, and whether they are numbers.
     rows: Vec<Vec<(String, bool)>>,
     notes: Vec<String>,
+    /// What is shown beside the statements.
+    sections: Vec<PageTable>,
     /// Name and SVG of each figure.
     figures: Vec<(String, String)>,
+}
+
+/// A table of a study in the page: headings and cells, and whether they are numbers.
+struct PageTable {
+    title: String,
+    caption: String,
+    headings: Vec<(String, bool)>,
+    rows: Vec<Vec<(String, bool)>>,
+}
+
+impl From<StudySectionTable> for PageTable {
+    fn from(section: StudySectionTable) -> Self {
+        let are_numbers: Vec<bool> = section.table.are_numbers().collect();
+        let headings = section.table.headings().map(str::to_owned);
+        let rows = section.table.cells();
+        Self {
+            title: section.title,
+            caption: section.caption,
+            headings: headings.zip(are_numbers.clone()).collect(),
+            rows: rows
+                .map(|row| row.iter().cloned().zip(are_numbers.clone()).collect())
+                .collect(),
+        }
+    }
 }
 
 /// Which of the cells of a statement are numbers.
@@ -71,17 +98,17 @@ fn section(study: &StudyResult) -> Result<StudySection<'_>, DrawError> {
         Ok((name, String::from_utf8_lossy(&bytes).into_owned()))
     };
     let figures = study_figures(study).into_iter().map(draw);
-    let (source, notes) = study.source_and_notes();
-    let rows = study.statements().iter();
+    let rows = study.statements.iter();
     Ok(StudySection {
-        name: study.name(),
-        title: study.title(),
-        source,
+        name: &study.name,
+        title: &study.title,
+        source: &study.source,
         counts: study.counts().into_iter().map(|(_, count)| count).collect(),
         rows: rows
             .map(|one| one.cells().into_iter().zip(NUMBERS).collect())
             .collect(),
-        notes: [notes, study.disagreements().as_slice()].concat(),
+        sections: study.sections().into_iter().map(Into::into).collect(),
+        notes: [study.notes.as_slice(), study.disagreements().as_slice()].concat(),
         figures: figures.collect::<Result<_, DrawError>>()?,
     })
 }

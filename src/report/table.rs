@@ -43,6 +43,21 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// The heading of each column.
+    pub fn headings(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|(name, _)| name.as_str())
+    }
+
+    /// Whether the cells of each column are numbers.
+    pub fn are_numbers(&self) -> impl Iterator<Item = bool> {
+        self.columns.iter().map(|(_, align)| *align == Align::Right)
+    }
+
+    /// The cells, row by row.
+    pub fn cells(&self) -> impl Iterator<Item = &[String]> {
+        self.rows.iter().map(Vec::as_slice)
+    }
+
     /// Aligned columns for a terminal.
     #[must_use]
     pub fn to_text(&self) -> String {

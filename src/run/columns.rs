@@ -44,7 +44,8 @@ impl<'de> Deserializer<'de> for Listener<'_> {
 
 /// The columns of the metrics that every scenario has: their fields, and of a coverage the share of each number of
 /// satellites.
-pub(crate) fn metric_columns() -> Vec<&'static str> {
+#[must_use]
+pub fn metric_columns() -> Vec<&'static str> {
     let columns = |name: &&'static str| match *name {
         "coverage" => COVERAGE_COLUMNS.to_vec(),
         "coverage_total" => COVERAGE_TOTAL_COLUMNS.to_vec(),

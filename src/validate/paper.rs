@@ -1,68 +1,88 @@
-//! The paper's Table II as checks with gates: the numbers and verdicts of `reproduce`.
+//! The paper's tables as checks with gates: the numbers and verdicts of `reproduce`.
 
 use super::{Check, CheckedQuantity, Findings};
-use crate::evaluate::Setup;
+use crate::scenario::Scenario;
 use crate::study::Statement;
-use crate::study::paper::{self, JudgedRow, PaperError, Scheme};
+use crate::study::published::{
+    JudgedRow, PublishedStudy, StudyFileError, StudyRunError, builtin_study,
+};
+use std::io;
+use thiserror::Error;
 
-/// Table II compared with the paper, each row as printed.
+/// The study with the tables.
+const STUDY: &str = "paper";
+
+/// Why the tables cannot be compared.
+#[derive(Debug, Error)]
+pub enum PaperError {
+    /// The built-in study is not there.
+    #[error(transparent)]
+    Unknown(#[from] crate::keyword::UnknownKeyword),
+    /// The built-in study cannot be read.
+    #[error(transparent)]
+    File(#[from] StudyFileError),
+    /// It cannot be computed under the scenario.
+    #[error(transparent)]
+    Run(#[from] StudyRunError),
+}
+
+/// The paper's table of designs compared with ours under a scenario, each row as printed; `read` gives the bytes of a
+/// file that the scenario names.
 ///
-/// Gates apply to what is known to be reproduced: N̄ of the rows whose inclination is not misprinted,
-/// and mean PDOP of the paper's own designs. The rest is reported with the verdict of the study.
+/// Gates apply to what the study says is known to be reproduced. The rest is reported with its verdict.
 ///
 /// # Errors
-/// If a design cannot be propagated under the given setup.
-pub fn against_paper(setup: &Setup) -> Result<Findings, PaperError> {
-    let rows = paper::judged_table2(setup)?;
-    let checks = rows.iter().flat_map(|judged| {
-        let visible = Some(visible_check(judged));
-        visible.into_iter().chain(pdop_check(judged))
-    });
+/// If a design cannot be propagated under the scenario.
+pub fn against_paper(
+    scenario: &Scenario,
+    read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
+) -> Result<Findings, PaperError> {
+    let study = PublishedStudy::parse(STUDY, builtin_study(STUDY)?)?;
+    let rows = study.judged_rows(scenario, read)?;
     Ok(Findings {
-        checks: checks.collect(),
+        checks: rows.iter().filter_map(check).collect(),
         ..Findings::default()
     })
 }
 
-fn visible_check(judged: &JudgedRow) -> Check {
-    let row = &judged.row;
-    let as_printed = row.fitting_inclination_deg.is_none();
-    let reason = if as_printed {
-        "half a digit of Table II, plus the effect of the epoch and time step, which the paper does not state; one mask, fitted to this column, reproduces six of its rows".to_owned()
-    } else {
-        reported(&judged.mean_visible)
+/// The check of a number; `None` if we have none, and none is gated.
+fn check(judged: &JudgedRow) -> Option<Check> {
+    let ours = judged.statement.ours;
+    if ours.is_none() && !judged.is_gated {
+        return None;
+    }
+    let ours = ours.unwrap_or(f64::NAN);
+    let column = &judged.column;
+    let (quantity, value, gate, unit, statistic) = match judged.tolerance_percent {
+        Some(percent) => (
+            format!("{column} as printed, over the paper's, minus 1"),
+            100.0 * (ours / judged.published - 1.0),
+            percent,
+            "%",
+            "relative difference",
+        ),
+        None => (
+            format!("{column} as printed, minus the paper's"),
+            ours - judged.published,
+            judged.tolerance,
+            "1",
+            "difference",
+        ),
     };
-    Check::new(
-        &format!("paper/{}/mean-visible", row.name()),
-        CheckedQuantity {
-            quantity: "mean visible satellites as printed, minus the paper's",
-            unit: "1",
-            statistic: "difference",
-        },
-        judged.mean_visible.ours.unwrap_or(f64::NAN) - row.mean_visible,
-        as_printed.then_some(paper::VISIBLE_TOLERANCE),
-        &reason,
-    )
-}
-
-fn pdop_check(judged: &JudgedRow) -> Option<Check> {
-    let row = &judged.row;
-    let mean_pdop = judged.mean_pdop.ours?;
-    let own = row.scheme == Scheme::Proposed;
-    let reason = if own {
-        "effect of the GNSS slots and the epoch, which the paper does not state".to_owned()
-    } else {
-        reported(&judged.mean_pdop)
+    let reason = match (&judged.reason, judged.is_gated) {
+        (Some(reason), true) => reason.clone(),
+        (None, true) => "the tolerance of the study".to_owned(),
+        _ => reported(&judged.statement),
     };
     Some(Check::new(
-        &format!("paper/{}/mean-pdop", row.name()),
+        &format!("{STUDY}/{}/{}", judged.row, judged.metric),
         CheckedQuantity {
-            quantity: "mean PDOP as printed, over the paper's, minus 1",
-            unit: "%",
-            statistic: "relative difference",
+            quantity: &quantity,
+            unit,
+            statistic,
         },
-        100.0 * (mean_pdop / row.mean_pdop - 1.0),
-        own.then_some(paper::PDOP_TOLERANCE_PERCENT),
+        value,
+        judged.is_gated.then_some(gate),
         &reason,
     ))
 }
@@ -87,10 +107,10 @@ mod tests {
         // Ten-minute samples give N̄ within 0.003 of one-minute samples.
         let overrides = [&["time.step-s=600"], overrides].concat();
         let scenario = Scenario::parse("paper", text.as_bytes(), &overrides).unwrap();
-        let setup = scenario
-            .setup(&|_| unreachable!("the paper's scenario names no file"))
-            .unwrap();
-        against_paper(&setup).unwrap()
+        against_paper(&scenario, &|_| {
+            unreachable!("the paper's scenario names no file")
+        })
+        .unwrap()
     }
 
     fn of_quantity<'a>(

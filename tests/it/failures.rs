@@ -457,6 +457,36 @@ fn outages_without_effect_are_warned_of() {
     );
 }
 
+/// Searches warn of them, too, where they are of the GNSS.
+#[test]
+fn searches_warn_of_outages_without_effect() {
+    let place = TempDir::new().unwrap();
+    let intervals =
+        "satellite,start_utc,end_utc\nGEO-2,2024-12-31T00:00:00Z,2025-01-01T01:00:00Z\n";
+    fs::write(place.path().join("odd.csv"), intervals).unwrap();
+    let few = [
+        "optimizer.population=4",
+        "optimizer.generations=1",
+        "search.planes=[2, 3]",
+        "search.satellites-per-plane=[2, 3]",
+        "objectives.constraints=[\"mean-pdop <= 9\"]",
+        "outages.file=odd.csv",
+    ];
+    let settings: Vec<&str> = few.iter().flat_map(|&key| ["--set", key]).collect();
+    for command in ["optimize", "size"] {
+        let arguments = [&[command, "--out", command], &settings[..]].concat();
+        let warned = ran(place.path(), &with(&arguments));
+        assert_eq!(warned.status, 0, "{}", warned.stderr);
+        let expected = "odd.csv, line 2: GEO-2 is out of service from 2024-12-31T00:00:00Z to 2025-01-01T01:00:00Z, of which only what";
+        assert_eq!(
+            warned.stderr.matches(expected).count(),
+            1,
+            "{}",
+            warned.stderr
+        );
+    }
+}
+
 /// What `--without` does in the other commands: what is shown is without the satellites, and what writes all says so.
 #[test]
 fn other_commands_take_or_refuse_without() {

@@ -277,7 +277,7 @@ const ROWS: &[Row] = &[
     Row(
         "reproduce",
         "force",
-        "reproduce --out out LITTLE --seed 3 | --out out LITTLE",
+        "reproduce sun-synchronous --out out | --out out LITTLE",
         "--force",
         Status,
     ),

@@ -355,7 +355,7 @@ fn the_paper_is_repeated_into_a_directory() {
     let value: Value = serde_json::from_str(&one.stdout).unwrap();
     let value = &value["studies"][0];
     assert_eq!(value["name"], "paper");
-    assert_eq!(value["rows"].as_array().unwrap().len(), 11);
+    assert_eq!(value["tables"][0]["rows"].as_array().unwrap().len(), 11);
     let verdicts = [
         "met",
         "met-under-assumption",
@@ -381,7 +381,8 @@ fn the_paper_is_repeated_into_a_directory() {
     ] {
         assert_eq!(read(name).lines().count(), rows + 1, "{name}");
     }
-    assert!(read("report.md").starts_with("# Reproduction of the paper"));
+    assert!(read("report.md").contains("\n## Table II\n"));
+    assert_eq!(read("statements.csv").lines().count(), 49 + 1);
     let page = read("report.html");
     for figure in [
         "deviations-paper",
@@ -588,6 +589,151 @@ fn the_example_study_runs() {
     );
 }
 
+/// The example with a table, a fit and a search is short, and each of its steps is in what it writes.
+#[test]
+fn the_example_study_with_steps_runs() {
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/studies.md")).unwrap();
+    let study = text.split("```toml\n").nth(2).unwrap();
+    let (study, _) = study.split_once("```").unwrap();
+    assert!(study.lines().count() < 40, "{study}");
+    fs::write(place.join("other.toml"), study).unwrap();
+    let with = |further: &[&str]| {
+        let arguments = ["reproduce", "other.toml", "--quiet", "--format", "json"];
+        ran(place, &[&arguments[..], further].concat())
+    };
+    let one = with(&[]);
+    assert_eq!(one.status, 0, "{}{}", one.stdout, one.stderr);
+    let value: Value = serde_json::from_str(&one.stdout).unwrap();
+    let study = &value["studies"][0];
+    let verdicts: Vec<&str> = study["statements"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["verdict"].as_str().unwrap())
+        .collect();
+    assert_eq!(verdicts, ["fitted", "fitted", "fitted", "met"]);
+    let number = |value: &Value| value.as_f64().unwrap();
+    let fit = &study["fits"][0];
+    let median = number(&fit["median"]);
+    assert_eq!(
+        (&fit["vary"], number(&study["statements"][2]["expected"])),
+        (&"visibility.mask-deg".into(), median)
+    );
+    // A lower mask sees more: with the median of the two as the mask, that row has its number.
+    let mask = format!("visibility.mask-deg={median}");
+    let there = with(&["--out", "there", "--set", &mask]);
+    let there: Value = serde_json::from_str(&there.stdout).unwrap();
+    let rows = there["studies"][0]["statements"].as_array().unwrap()[..2].iter();
+    let off = rows.map(|one| (number(&one["computed"]) - number(&one["expected"])).abs());
+    let least = off.fold(f64::INFINITY, f64::min);
+    // A fit stops at a thirtieth of the tolerance.
+    assert!(least < 0.05 / 30.0, "{least}");
+    let search = &study["searches"][0];
+    assert!(number(&search["evaluations"]) > 8.0);
+    let pick = &search["members"][search["chosen"].as_u64().unwrap() as usize];
+    let own = number(&pick["metrics"]["mean_visible"]);
+    let of_b = number(&study["tables"][0]["rows"][1]["computed"][0]);
+    let stated = number(&study["statements"][3]["computed"]);
+    assert!((stated - 100.0 * (own / of_b - 1.0)).abs() < 1e-9);
+    for (name, lines) in [("table2.csv", 3), ("statements.csv", 5)] {
+        let path = place.join("runs/reproduce/other").join(name);
+        assert_eq!(fs::read_to_string(path).unwrap().lines().count(), lines);
+    }
+    let other = with(&["--out", "seed", "--seed", "2"]);
+    let other: Value = serde_json::from_str(&other.stdout).unwrap();
+    assert_eq!(
+        (&other["studies"][0]["seed"], &study["seed"]),
+        (&2.into(), &1.into())
+    );
+    assert!(other["studies"][0]["searches"] != study["searches"]);
+    assert_eq!(other["studies"][0]["fits"], study["fits"]);
+}
+
+/// What is wrong with a step is told with its line and the nearest name, and nothing is left behind.
+#[test]
+fn steps_that_are_wrong_are_refused() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/studies.md")).unwrap();
+    let study = text.split("```toml\n").nth(2).unwrap();
+    let (study, _) = study.split_once("```").unwrap();
+    let directory = TempDir::new().unwrap();
+    let place = directory.path();
+    for (from, to, told) in [
+        (
+            "search:own",
+            "search:owns",
+            "other.toml:30: search:owns: the study has no search \"owns\", did you mean \"own\"?",
+        ),
+        (
+            "fit:mask",
+            "fit:msk",
+            "other.toml:23: fit:msk: the study has no fit \"msk\", did you mean \"mask\"?",
+        ),
+        (
+            "vary = \"visibility.mask-deg\"",
+            "vary = \"visibility.mask-dge\"",
+            "other.toml:8: scenario.visibility.mask-dge: unknown key, did you mean `visibility.mask-deg`?",
+        ),
+        (
+            "vary = \"visibility.mask-deg\"",
+            "vary = \"inclination\"",
+            "other.toml:10: vary: found \"inclination\", did you mean \"inclination-deg\"?",
+        ),
+        (
+            "range = [0, 30]",
+            "range = [30, 0]",
+            "other.toml:12: range: found [30.0, 0.0], expected two numbers, the lower first",
+        ),
+        ("range = [0, 30]", "rang = [0, 30]", "unknown field `rang`"),
+        (
+            "to = \"mean-visible\"",
+            "to = \"mean-pdop\"",
+            "other.toml:11: to: no table has a column of mean-pdop",
+        ),
+        (
+            "tolerance = 0.05",
+            "tolerance = 0",
+            "other.toml:18: tolerance: found 0, expected a number above 0",
+        ),
+        (
+            "values = [2.25]",
+            "values = [2.25, 2]",
+            "other.toml:20: row \"A\": values: found 2, expected 1 finite numbers",
+        ),
+        (
+            "{ name = \"B\"",
+            "{ name = \"A\"",
+            "name: there are two rows \"A\"",
+        ),
+        (
+            "file = \"table2\"",
+            "file = \"report\"",
+            "other.toml:17: file: \"report\" is another file",
+        ),
+        (
+            "metric = \"implied\"",
+            "metric = \"impleid\"",
+            "other.toml:26: metric: unknown metric \"impleid\", did you mean \"implied\"?",
+        ),
+        (
+            "percent-above = \"B\"",
+            "against = \"B\"",
+            "mean-visible is of one constellation, and compares with none; leave out against",
+        ),
+    ] {
+        assert!(study.contains(from), "{from}");
+        fs::write(place.join("other.toml"), study.replacen(from, to, 1)).unwrap();
+        let found = ran(place, &["reproduce", "other.toml"]);
+        assert_eq!(found.status, 2, "{told}");
+        assert!(found.stderr.contains(told), "{}", found.stderr);
+    }
+    let left: Vec<_> = fs::read_dir(place).unwrap().collect();
+    assert_eq!(left.len(), 1, "{left:?}");
+}
+
 #[test]
 fn a_study_that_is_wrong_is_refused() {
     let directory = TempDir::new().unwrap();
@@ -600,7 +746,7 @@ fn a_study_that_is_wrong_is_refused() {
     for (arguments, told) in [
         (
             vec!["reproduce", "wrong.toml"],
-            "wrong.toml:1: found no [[statement]], expected at least one",
+            "wrong.toml:1: found no [[statement]] or [[table]], expected at least one",
         ),
         (
             vec!["reproduce", "missing.toml"],
@@ -616,7 +762,7 @@ fn a_study_that_is_wrong_is_refused() {
         ),
         (
             vec!["reproduce", "gps-sps", "--seed", "2"],
-            "--seed 2 is of the searches of the paper's study",
+            "--seed 2 is of searches, and study gps-sps has none",
         ),
         (
             vec!["reproduce", "sun-synchronous", "--set", "time.stp-s=60"],

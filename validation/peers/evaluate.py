@@ -22,6 +22,7 @@ GMST_RATE, GEO_RADIUS = 7.2921158553e-5, 42164.17
 EPOCH_JULIAN_CENTURIES = (2460676.5 - 2451545.0) / 36525.0  # 2025-01-01T00:00:00
 SAMPLES, STEP_S, MASK_DEG, LEVEL, WEIGHT = 1440, 60.0, 7.0, 0.95, 0.5
 DESIGN = "delta:55:182/13/1@925"
+PARAMETERS = 182, 13, 1, 55.0, 925.0  # satellites, planes, phasing, inclination (deg), altitude (km)
 
 
 def gmst(elapsed_s):
@@ -122,12 +123,12 @@ def statistics(pdop, count):
 
 
 def evaluate_numpy(fixed, up, times, sidereal):
-    normal, counts = numpy_normal(walker(182, 13, 1, 55.0, 925.0, times, sidereal), up)
+    normal, counts = numpy_normal(walker(*PARAMETERS, times, sidereal), up)
     pdop = np.sqrt(np.trace(np.linalg.inv(normal + fixed), axis1=-2, axis2=-1))
     return statistics(pdop, counts.sum())
 
 
-@numba.njit(cache=False, fastmath=True)
+@numba.njit(cache=False, fastmath=True, nogil=True)
 def numba_pdop(positions, up, fixed, sine, pdop):
     visible = 0
     for k in range(positions.shape[0]):
@@ -170,8 +171,8 @@ def numba_pdop(positions, up, fixed, sine, pdop):
     return visible
 
 
-def evaluate_numba(fixed, up, times, sidereal):
-    positions = walker(182, 13, 1, 55.0, 925.0, times, sidereal)
+def evaluate_numba(fixed, up, times, sidereal, parameters=PARAMETERS):
+    positions = walker(*parameters, times, sidereal)
     pdop = np.empty((len(times), len(up)))
     visible = numba_pdop(positions, up, fixed, math.sin(math.radians(MASK_DEG)), pdop)
     return statistics(pdop, visible)
@@ -192,15 +193,20 @@ def fastest(function, repeats):
     return min(times) * 1e3, sorted(times)[len(times) // 2] * 1e3
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--navwalker", help="the program to compare the metrics with")
-    binary = parser.parse_args().navwalker
+def inputs():
+    """What every evaluation takes: the sums over BeiDou, the points, the instants and their sidereal times."""
     times = np.arange(SAMPLES) * STEP_S
     sidereal = gmst(times)
     up = points()
     fixed, _ = numpy_normal(beidou(times, sidereal), up)
-    arguments = (fixed, up, times, sidereal)
+    return fixed, up, times, sidereal
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--navwalker", help="the program to compare the metrics with")
+    binary = parser.parse_args().navwalker
+    arguments = inputs()
     first, second = evaluate_numpy(*arguments), evaluate_numba(*arguments)
     agree(second, first, "numba")
     if binary:

@@ -48,6 +48,7 @@ impl ViewArgs {
         StudyArgs {
             scenario: self.subject.clone(),
             overrides: self.overrides.clone(),
+            text: None,
         }
     }
 }

@@ -8,7 +8,7 @@ use crate::cli::interrupt::Stoppable;
 use crate::cli::limits::shown_time;
 use crate::cli::progress::SearchBar;
 use crate::cli::run::{Placed, RunDirectory};
-use crate::cli::study::{Study, read_manifest};
+use crate::cli::study::{Study, read_manifest, say_of_setup};
 use crate::cli::{Status, chart, coincidence, constellations, evaluations, output};
 use crate::evaluate::{Evaluator, Setup};
 use crate::optimize::{Exhaustive, Pick, Problem, Search, Strategy};
@@ -110,9 +110,7 @@ pub(super) fn warn_of_space(study: &Study, setup: &Setup) -> Result<()> {
     for repetition in study.scenario.design_space().repetitions() {
         output::warning(&repetition);
     }
-    if let Some(note) = setup.plain_path_note() {
-        output::hint(&note);
-    }
+    say_of_setup(setup);
     if let Some(outage) = setup.outage_of_constellation() {
         bail!(
             "{}: '{}' is no GNSS satellite; the designs of a search have no satellites that can be named",

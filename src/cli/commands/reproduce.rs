@@ -1,48 +1,43 @@
-//! `navwalker reproduce`: published numbers next to ours, those of the paper with its tables and figures.
+//! `navwalker reproduce`: published numbers next to ours, with the tables and figures of their studies.
 
-use crate::cli::args::{ReproduceArgs, StudyArgs, StudyFormat};
-use crate::cli::study::Study;
-use crate::cli::{Status, files, output};
+use crate::cli::args::{ReproduceArgs, StudyFormat};
+use crate::cli::{Status, files, limits, output};
 use crate::keyword::nearest;
 use crate::printable::printable;
 use crate::report::figures::draw::{png, svg};
-use crate::report::figures::{PAPER_FIGURES, deviations_name, study_figures};
+use crate::report::figures::{deviations_name, study_figures};
 use crate::report::{
-    Align, PublishedResult, REPRODUCTION_FILES, ReproduceResult, StudiesResult, StudyResult, Table,
-    reproduction_files, reproduction_markdown, reproduction_text, statements_csv, studies_markdown,
-    studies_text,
+    Align, StudiesResult, StudyResult, StudyStamp, Table, statements_csv, studies_markdown,
+    studies_text, study_tables,
 };
 use crate::run::checkpoint::hex_sha256;
 use crate::run::{SCENARIO, ScenarioStamp, VERSION};
 use crate::scenario::Scenario;
-use crate::search::ShellSpace;
-use crate::study::paper::{PaperStudy, reproduce};
 use crate::study::published::{JudgedStudy, PublishedStudy, builtin_studies, builtin_study};
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use std::collections::BTreeSet;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The report that identifies the studies in a directory.
 const REPORT: &str = "report.json";
 /// The files beside the tables and figures.
-const OTHERS: [&str; 4] = [SCENARIO, REPORT, "report.md", "report.html"];
+const OTHERS: [&str; 5] = [SCENARIO, REPORT, "report.md", "report.html", STATEMENTS];
+/// All statements.
+const STATEMENTS: &str = "statements.csv";
 /// The forms of a figure.
 const FORMS: [&str; 2] = ["svg", "png"];
+/// The study that is run if none is named.
+const DEFAULT: &str = "paper";
 /// Below it a study, or several, have their directory unless another is given.
 const DEFAULT_PLACE: &str = "runs/reproduce";
-
-/// A study that was asked for.
-enum Chosen {
-    /// The paper's, under a scenario.
-    Paper(Box<Study>),
-    /// One of published numbers.
-    Published(Box<ChosenStudy>),
-}
 
 /// A study of published numbers, from a file or built in.
 struct ChosenStudy {
     study: PublishedStudy,
+    /// Keys of its scenario by `--set` and `--seed`.
+    overrides: Vec<String>,
     /// SHA-256 of its text and the overrides.
     sha256: String,
     /// The file; `None` if it is built in.
@@ -57,39 +52,34 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     if let ([_, _, ..], Some(key)) = (names.as_slice(), args.overrides.first()) {
         bail!("--set {key}: several studies have several scenarios; give one study");
     }
-    if let (Some(seed), false) = (args.seed, names == [ReproduceResult::NAME]) {
-        bail!("--seed {seed} is of the searches of the paper's study; give no other");
+    if let (Some(seed), [_, _, ..]) = (args.seed, names.as_slice()) {
+        bail!("--seed {seed} is of the searches of one study; give one study");
     }
     let chosen = names.iter().map(|name| choose(name, args));
-    let chosen: Vec<Chosen> = chosen.collect::<Result<_>>()?;
+    let chosen: Vec<ChosenStudy> = chosen.collect::<Result<_>>()?;
     require_different(&chosen)?;
     let place = StudyPlace::new(args, &chosen)?;
     let staged = files::StagedDirectory::new(&place.directory)?;
-    let mut written: Vec<(String, Vec<u8>)> = Vec::new();
     let mut studies = Vec::new();
     let mut status = Status::Done;
+    let mut scenarios = Vec::new();
     for one in chosen {
-        match one {
-            Chosen::Paper(study) => {
-                let result = paper(&study)?;
-                let tables = reproduction_files(&result)?.into_iter();
-                written.extend(tables.map(|(name, text)| (name.to_owned(), text.into_bytes())));
-                written.push((SCENARIO.to_owned(), study.scenario.to_toml().into_bytes()));
-                studies.push(StudyResult::Paper(Box::new(result)));
-            }
-            Chosen::Published(one) => {
-                let judged = one.run(&args.overrides)?;
-                if judged.statements.iter().any(|one| one.is_unexpected()) {
-                    status = Status::Failed;
-                }
-                let result = PublishedResult::new(&judged, one.sha256);
-                studies.push(StudyResult::Published(result));
-            }
+        let judged = one.run()?;
+        if judged.statements.iter().any(|one| one.is_unexpected()) {
+            status = Status::Failed;
         }
+        scenarios.push(judged.scenario.to_toml());
+        let stamp = one.stamp(&judged.scenario)?;
+        studies.push(StudyResult::new(judged, stamp));
     }
     let result = StudiesResult::new(studies);
+    let mut written = tables(&result)?;
+    if let [scenario] = scenarios.as_slice() {
+        written.push((SCENARIO.to_owned(), scenario.clone().into_bytes()));
+    }
     written.extend(reports(&result)?);
     written.extend(drawn(&result)?);
+    require_apart(&written)?;
     for (name, bytes) in &written {
         files::write_atomically(&staged.path().join(name), bytes)?;
     }
@@ -102,11 +92,33 @@ pub(crate) fn run(args: &ReproduceArgs) -> Result<Status> {
     Ok(status)
 }
 
+/// The tables of some studies, with that of all statements.
+fn tables(result: &StudiesResult) -> Result<Vec<(String, Vec<u8>)>> {
+    let statements = statements_csv(&result.studies)?;
+    let mut files = vec![(STATEMENTS.to_owned(), statements.into_bytes())];
+    for study in &result.studies {
+        let tables = study_tables(study)?.into_iter();
+        files.extend(tables.map(|(name, text)| (name, text.into_bytes())));
+    }
+    Ok(files)
+}
+
+/// Fails if two studies write the same file.
+fn require_apart(written: &[(String, Vec<u8>)]) -> Result<()> {
+    let mut known = BTreeSet::new();
+    for (name, _) in written {
+        if !known.insert(name) {
+            bail!("two of the studies write {name}; run them one at a time");
+        }
+    }
+    Ok(())
+}
+
 /// The reports of some studies: as JSON, Markdown and a page.
 fn reports(result: &StudiesResult) -> Result<[(String, Vec<u8>); 3]> {
     let mut page = Vec::new();
     result.write_page(&mut page)?;
-    let [_, json, markdown, html] = OTHERS.map(str::to_owned);
+    let [_, json, markdown, html, _] = OTHERS.map(str::to_owned);
     Ok([
         (json, render(result, StudyFormat::Json)?.into_bytes()),
         (
@@ -131,11 +143,11 @@ fn drawn(result: &StudiesResult) -> Result<Vec<(String, Vec<u8>)>> {
 }
 
 /// Fails if two studies have the same name: so have their figures.
-fn require_different(chosen: &[Chosen]) -> Result<()> {
+fn require_different(chosen: &[ChosenStudy]) -> Result<()> {
     let mut known = BTreeSet::new();
     for one in chosen {
-        if !known.insert(one.name()) {
-            bail!("study {} is given twice", one.name());
+        if !known.insert(&one.study.name) {
+            bail!("study {} is given twice", one.study.name);
         }
     }
     Ok(())
@@ -144,28 +156,15 @@ fn require_different(chosen: &[Chosen]) -> Result<()> {
 /// The names of the studies that are asked for.
 fn names(args: &ReproduceArgs) -> Vec<String> {
     if args.all {
-        let published = builtin_studies().into_iter();
-        let all = std::iter::once(ReproduceResult::NAME).chain(published);
-        return all.map(str::to_owned).collect();
+        return builtin_studies().into_iter().map(str::to_owned).collect();
     }
     if args.studies.is_empty() {
-        return vec![ReproduceResult::NAME.to_owned()];
+        return vec![DEFAULT.to_owned()];
     }
     args.studies.clone()
 }
 
-fn choose(name: &str, args: &ReproduceArgs) -> Result<Chosen> {
-    if name == ReproduceResult::NAME {
-        let seed = args.seed.map(|seed| format!("optimizer.seed={seed}"));
-        let study = StudyArgs {
-            scenario: None,
-            overrides: args.overrides.clone(),
-        };
-        return Ok(Chosen::Paper(Box::new(Study::load(
-            &study,
-            seed.as_slice(),
-        )?)));
-    }
+fn choose(name: &str, args: &ReproduceArgs) -> Result<ChosenStudy> {
     let is_file = name.contains(['/', '\\']) || Path::new(name).extension().is_some();
     let (label, text, file) = if is_file {
         let path = PathBuf::from(name);
@@ -177,18 +176,28 @@ fn choose(name: &str, args: &ReproduceArgs) -> Result<Chosen> {
         (name, text.to_owned(), None)
     };
     let study = PublishedStudy::parse(label, &text)?;
-    let identified = [&[text], args.overrides.as_slice()].concat().join("\n");
-    Ok(Chosen::Published(Box::new(ChosenStudy {
+    let mut overrides = args.overrides.clone();
+    if let Some(seed) = args.seed {
+        if !study.has_searches() {
+            bail!(
+                "--seed {seed} is of searches, and study {} has none",
+                study.name
+            );
+        }
+        overrides.push(format!("optimizer.seed={seed}"));
+    }
+    let identified = [&[text], overrides.as_slice()].concat().join("\n");
+    Ok(ChosenStudy {
         study,
+        overrides,
         sha256: hex_sha256(identified.as_bytes()),
         file,
-    })))
+    })
 }
 
 /// The error for a name that no built-in study has.
 fn no_such(name: &str) -> anyhow::Error {
-    let mut known = vec![ReproduceResult::NAME];
-    known.extend(builtin_studies());
+    let known = builtin_studies();
     let meant = nearest(name, &known);
     let meant = meant.map_or_else(String::new, |name| format!(", did you mean '{name}'?"));
     anyhow::anyhow!(
@@ -198,38 +207,39 @@ fn no_such(name: &str) -> anyhow::Error {
     )
 }
 
-impl Chosen {
-    /// Its name.
-    fn name(&self) -> &str {
-        match self {
-            Self::Paper(_) => ReproduceResult::NAME,
-            Self::Published(study) => &study.study.name,
+impl ChosenStudy {
+    /// The bytes of a file that it names, relative to its own.
+    fn read(&self, file: &str) -> io::Result<Vec<u8>> {
+        let directory = self.file.as_deref().and_then(Path::parent);
+        let directory = directory.map_or_else(PathBuf::new, Path::to_owned);
+        files::read_whole(&directory.join(file))
+    }
+
+    fn run(&self) -> Result<JudgedStudy> {
+        let read = |file: &str| self.read(file);
+        // Also what is wrong in the scenario is told before a search begins.
+        if let Ok(setup) = self.study.scenario(&self.overrides)?.setup(&read) {
+            limits::check_memory(&setup)?;
         }
+        if self.study.has_searches() {
+            output::hint("running the searches of the study; this takes seconds to minutes");
+        }
+        Ok(self.study.run(&self.overrides, &read)?)
     }
 
     /// What identifies its results.
-    fn identity(&self) -> Result<String> {
-        match self {
-            Self::Paper(study) => study.hash(),
-            Self::Published(study) => Ok(study.sha256.clone()),
-        }
-    }
-
-    /// The files that it reads.
-    fn inputs(&self) -> Vec<PathBuf> {
-        match self {
-            Self::Paper(study) => study.inputs(),
-            Self::Published(study) => study.file.iter().cloned().collect(),
-        }
-    }
-}
-
-impl ChosenStudy {
-    fn run(&self, overrides: &[String]) -> Result<JudgedStudy> {
-        let directory = self.file.as_deref().and_then(Path::parent);
-        let directory = directory.map_or_else(PathBuf::new, Path::to_owned);
-        let read = |file: &str| files::read_whole(&directory.join(file));
-        Ok(self.study.run(overrides, &read)?)
+    fn stamp(&self, scenario: &Scenario) -> Result<StudyStamp> {
+        let contents = scenario.files().into_iter().map(|file| self.read(file));
+        let contents: Vec<Vec<u8>> = contents.collect::<io::Result<_>>()?;
+        let contents: Vec<&[u8]> = contents.iter().map(Vec::as_slice).collect();
+        Ok(StudyStamp {
+            scenario: ScenarioStamp {
+                name: scenario.name.clone(),
+                hash: scenario.hash(&contents),
+            },
+            seed: self.study.has_searches().then_some(scenario.optimizer.seed),
+            sha256: self.sha256.clone(),
+        })
     }
 }
 
@@ -245,9 +255,9 @@ impl StudyPlace {
     ///
     /// # Errors
     /// If the results may not be written there.
-    fn new(args: &ReproduceArgs, chosen: &[Chosen]) -> Result<Self> {
+    fn new(args: &ReproduceArgs, chosen: &[ChosenStudy]) -> Result<Self> {
         let directory = args.out.clone().unwrap_or_else(|| {
-            let names: Vec<&str> = chosen.iter().map(Chosen::name).collect();
+            let names: Vec<&str> = chosen.iter().map(|one| one.study.name.as_str()).collect();
             let name = if args.all {
                 "all".to_owned()
             } else {
@@ -256,11 +266,9 @@ impl StudyPlace {
             Path::new(DEFAULT_PLACE).join(name)
         });
         let stored = stored(&directory);
-        let before = stored.iter().flat_map(|stored| &stored.studies);
-        let before = before.map(|study| study.name.as_str());
-        let own = own(chosen.iter().map(Chosen::name).chain(before));
-        let identities = chosen.iter().map(Chosen::identity);
-        let identities: Vec<String> = identities.collect::<Result<_>>()?;
+        let mut own = own(chosen.iter().map(|one| &one.study));
+        own.extend(stored.iter().flat_map(StoredReport::files));
+        let identities: Vec<&str> = chosen.iter().map(|one| one.sha256.as_str()).collect();
         if !stored.is_some_and(|stored| stored.holds(&identities)) {
             if !args.force && !files::is_vacant(&directory)? {
                 bail!(
@@ -268,7 +276,8 @@ impl StudyPlace {
                     directory.display()
                 );
             }
-            let inputs: Vec<PathBuf> = chosen.iter().flat_map(Chosen::inputs).collect();
+            let inputs = chosen.iter().filter_map(|one| one.file.clone());
+            let inputs: Vec<PathBuf> = inputs.collect();
             files::refuse_inputs(&directory, inputs)?;
             files::require_replaceable(&directory, args.force, &own)?;
         }
@@ -276,36 +285,9 @@ impl StudyPlace {
     }
 }
 
-/// The paper's study under its scenario.
-fn paper(study: &Study) -> Result<ReproduceResult> {
-    let scenario = &study.scenario;
-    let designs = only_shell(scenario)?;
-    output::hint("reproducing the paper; this takes seconds to minutes");
-    let repeated = reproduce(&PaperStudy {
-        setup: study.setup()?,
-        designs,
-        nsga2: scenario.nsga2(),
-        seed: scenario.optimizer.seed,
-    })?;
-    Ok(ReproduceResult::new(repeated, scenario, study.stamp()?))
-}
-
-/// The one shell of the search, since that of the paper is one.
-fn only_shell(scenario: &Scenario) -> Result<ShellSpace> {
-    match scenario.search.shells.as_slice() {
-        [shell] if scenario.search.fixed.is_none() => Ok(shell.clone()),
-        _ => bail!(
-            "reproduce repeats the paper's search among designs of one shell; leave out search.shells and search.fixed"
-        ),
-    }
-}
-
 /// Prints the built-in studies.
 fn list(format: StudyFormat) -> Result<Status> {
-    let mut studies = vec![(
-        ReproduceResult::NAME.to_owned(),
-        "The paper that this program implements: tables, searches and figures".to_owned(),
-    )];
+    let mut studies = Vec::new();
     for name in builtin_studies() {
         let study = PublishedStudy::parse(name, builtin_study(name)?)?;
         studies.push((study.name, study.title));
@@ -331,19 +313,17 @@ fn list(format: StudyFormat) -> Result<Status> {
 }
 
 fn render(result: &StudiesResult, format: StudyFormat) -> Result<String> {
-    Ok(match (format, result.studies.as_slice()) {
-        (StudyFormat::Json, _) => crate::printable::json(result)? + "\n",
-        (StudyFormat::Csv, studies) => statements_csv(studies)?,
-        (StudyFormat::Text, [StudyResult::Paper(paper)]) => reproduction_text(paper),
-        (StudyFormat::Markdown, [StudyResult::Paper(paper)]) => reproduction_markdown(paper),
-        (StudyFormat::Text, _) => studies_text(result),
-        (StudyFormat::Markdown, _) => studies_markdown(result),
+    Ok(match format {
+        StudyFormat::Json => crate::printable::json(result)? + "\n",
+        StudyFormat::Csv => statements_csv(&result.studies)?,
+        StudyFormat::Text => studies_text(result),
+        StudyFormat::Markdown => studies_markdown(result),
     })
 }
 
 /// The part of a report that identifies its studies.
 #[derive(Deserialize)]
-struct Stored {
+struct StoredReport {
     studies: Vec<StoredStudy>,
     version: String,
 }
@@ -351,31 +331,50 @@ struct Stored {
 #[derive(Deserialize)]
 struct StoredStudy {
     name: String,
-    scenario: Option<ScenarioStamp>,
-    sha256: Option<String>,
+    sha256: String,
+    #[serde(default)]
+    files: Vec<String>,
 }
 
-impl Stored {
+impl StoredReport {
     /// Whether these are its studies, by this version.
-    fn holds(self, identities: &[String]) -> bool {
-        let of = |one: StoredStudy| one.sha256.or(one.scenario.map(|stamp| stamp.hash));
-        let held: Option<Vec<String>> = self.studies.into_iter().map(of).collect();
-        held.is_some_and(|held| held == identities) && self.version == VERSION
+    fn holds(self, identities: &[&str]) -> bool {
+        let held = self.studies.iter().map(|one| one.sha256.as_str());
+        held.eq(identities.iter().copied()) && self.version == VERSION
+    }
+
+    /// The files that it says are beside it.
+    fn files(&self) -> Vec<String> {
+        let figures = self.studies.iter().map(|one| deviations_name(&one.name));
+        let stems = self.studies.iter().flat_map(|one| &one.files);
+        // Stems of studies, not whatever a file may say.
+        let is_stem = |stem: &&String| {
+            let mut characters = stem.chars();
+            characters.all(|c| c.is_ascii_alphanumeric() || c == '-')
+        };
+        let stems = stems.filter(is_stem).cloned();
+        stems.chain(figures).flat_map(in_forms).collect()
     }
 }
 
 /// The report in a directory, if there is one.
-fn stored(directory: &Path) -> Option<Stored> {
+fn stored(directory: &Path) -> Option<StoredReport> {
     let bytes = files::read_run(&directory.join(REPORT)).ok()?;
     serde_json::from_slice(&bytes).ok()
 }
 
+/// A table or figure with each of its endings.
+fn in_forms(stem: String) -> Vec<String> {
+    let forms = FORMS.into_iter().chain(["csv"]);
+    forms.map(|form| format!("{stem}.{form}")).collect()
+}
+
 /// What the reproduction of these studies writes in its directory.
-fn own<'n>(studies: impl Iterator<Item = &'n str>) -> BTreeSet<String> {
-    let tables = REPRODUCTION_FILES.into_iter().chain(OTHERS);
-    let tables = tables.map(str::to_owned);
-    let figures = PAPER_FIGURES.into_iter().map(str::to_owned);
-    let figures = figures.chain(studies.map(deviations_name));
-    let figures = figures.flat_map(|name| FORMS.map(|form| format!("{name}.{form}")));
-    tables.chain(figures).collect()
+fn own<'s>(studies: impl Iterator<Item = &'s PublishedStudy>) -> BTreeSet<String> {
+    let stems = studies.flat_map(|study| {
+        let stems = study.stems();
+        stems.into_iter().chain([deviations_name(&study.name)])
+    });
+    let others = OTHERS.map(str::to_owned).into_iter();
+    others.chain(stems.flat_map(in_forms)).collect()
 }

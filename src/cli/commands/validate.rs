@@ -151,7 +151,8 @@ impl Subjects<'_> {
         let mut findings = Findings::default();
         for target in self.standards()? {
             if target == Target::Paper {
-                findings.append(against_paper(self.evaluator.setup())?);
+                let read = |file: &str| self.study.named_file(file);
+                findings.append(against_paper(&self.study.scenario, &read)?);
             }
         }
         Ok(findings)

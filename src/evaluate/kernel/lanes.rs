@@ -225,6 +225,7 @@ impl<R: Real> SightLine<R> {
 }
 
 /// The lines from the points of a tile.
+#[derive(Debug, Clone)]
 pub(super) struct LineLanes<R> {
     to: [Lanes<R>; 3],
     inverse: Lanes<R>,

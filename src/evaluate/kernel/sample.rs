@@ -7,7 +7,7 @@ use super::lanes::{LANES, Lanes, MaskTerms, SightLine, SineWeights, Sums, UnitWe
 use super::limits::Limits;
 use super::normal::{FixedTile, NormalLanes};
 use super::propagation::{BLOCK, PatternPropagator, Positions, Turn};
-use super::skylines::{SeenLanes, SightSlack, Skyward, UNSEEN};
+use super::skylines::{SeenLanes, Sight, SightSlack, Skyward, UNSEEN};
 use super::tiles::{Group, Horizon, TILES_IN_GROUP, Tile, Tiles};
 use crate::dop::ObservationWeights;
 use crate::visibility::Mask;
@@ -134,6 +134,8 @@ pub(super) struct SampleOutcome {
     pub(super) doubts: Vec<Undecided>,
     /// The points of the last tile with skylines that see each of its candidates.
     seen: Vec<SeenLanes>,
+    /// The satellites of the last block at the points of such a tile.
+    sights: Vec<Sight<f32>>,
 }
 
 impl SampleOutcome {
@@ -144,6 +146,7 @@ impl SampleOutcome {
             doubled: 0,
             doubts: Vec::new(),
             seen: Vec::new(),
+            sights: vec![Sight::nowhere(); BLOCK],
         }
     }
 }
@@ -256,8 +259,7 @@ impl<'a> Begun<'a> {
                     mask: &self.mask,
                     slack: self.slack,
                 };
-                let seen = &mut out.seen;
-                let sums = candidates.sums_skyward::<W>(&points, tile, &judging, seen);
+                let sums = candidates.sums_skyward::<W>(&points, tile, &judging, out);
                 judging.judge::<W>(&sums, out);
             }
         }
@@ -351,25 +353,27 @@ impl<'a> TileCandidates<'a> {
         all
     }
 
-    /// The same under the skylines of the points, which `seen` remembers.
+    /// The same under the skylines of the points; the outcome remembers who sees each of the satellites.
     #[inline(always)]
     fn sums_skyward<W: Weighting>(
         &self,
         points: &Skyward<'_, f32>,
         tile: &Tile,
         judging: &Judging<'_>,
-        seen: &mut Vec<SeenLanes>,
+        out: &mut SampleOutcome,
     ) -> Sums<f32> {
         let (mask, positions) = (judging.scene.mask, judging.positions);
-        seen.clear();
+        out.seen.clear();
         let mut all = Sums::zero();
         for (block, &word) in self.blocks.iter().zip(self.words) {
+            let sights = &mut out.sights[..word.count_ones() as usize];
+            let places = bits(word).map(|n| block.position_from(tile.middle, n));
+            points.look_at(places, sights);
             let mut sums = Sums::zero();
-            for n in bits(word) {
+            for (n, sight) in bits(word).zip(sights) {
                 let satellite = || positions.at(block.index(n));
                 let decide = |lane: usize| points.sky.surely_sees(lane, satellite(), mask);
-                let place = block.position_from(tile.middle, n);
-                seen.push(points.add::<W>(&mut sums, place, decide));
+                out.seen.push(sight.add::<W>(&mut sums, decide));
             }
             all.merge::<W>(&sums);
         }

@@ -15,6 +15,9 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+/// The bins of a skyline.
+type SkyTable = Arc<[SineBounds; BINS]>;
+
 /// Bins of a table.
 const BINS: usize = 2048;
 
@@ -59,12 +62,13 @@ impl SightSlack {
     }
 }
 
-/// The tables of all skylines, one after the other; the first is that of points without one.
+/// The tables of all skylines.
 #[derive(Debug)]
 pub(super) struct SkyTables {
-    bounds: Arc<[SineBounds]>,
-    /// The first bin of each skyline, by its address.
-    first: BTreeMap<usize, u32>,
+    /// That of points without a skyline.
+    open: SkyTable,
+    /// The others, by the address of the skyline.
+    tables: BTreeMap<usize, SkyTable>,
 }
 
 fn address(skyline: &Arc<MaskTable>) -> usize {
@@ -73,18 +77,15 @@ fn address(skyline: &Arc<MaskTable>) -> usize {
 
 impl SkyTables {
     pub(super) fn new(sites: &[Site]) -> Self {
-        let mut bounds = vec![0; BINS];
-        let mut first = BTreeMap::new();
+        let mut tables = BTreeMap::new();
         for skyline in sites.iter().filter_map(|site| site.skyline.as_ref()) {
-            first.entry(address(skyline)).or_insert_with(|| {
-                let place = bounds.len() as u32;
-                bounds.extend((0..BINS).map(|bin| bounds_of(skyline, bin)));
-                place
-            });
+            tables
+                .entry(address(skyline))
+                .or_insert_with(|| Arc::new(std::array::from_fn(|bin| bounds_of(skyline, bin))));
         }
         Self {
-            bounds: bounds.into(),
-            first,
+            open: Arc::new([0; BINS]),
+            tables,
         }
     }
 
@@ -99,39 +100,33 @@ impl SkyTables {
         tables + points * (size_of::<Site>() + size_of::<TileSky>() / LANES)
     }
 
+    fn table(&self, site: &Site) -> &SkyTable {
+        let own = |skyline| self.tables.get(&address(skyline));
+        site.skyline.as_ref().and_then(own).unwrap_or(&self.open)
+    }
+
     /// The skylines of the points of a tile; `None` if none has one.
     pub(super) fn tile(&self, sites: &[Site], members: &[u32]) -> Option<TileSky> {
         let points: Vec<Site> = members.iter().map(|&m| sites[m as usize].clone()).collect();
         points.iter().find(|site| site.skyline.is_some())?;
-        let first = |l: usize| {
-            let skyline = points.get(l).and_then(|site| site.skyline.as_ref());
-            skyline.and_then(|skyline| self.first.get(&address(skyline)))
-        };
         let lanes = |axis: fn(&Site) -> Vector3<f64>| {
             [0, 1, 2].map(|n| {
                 let component = |l: usize| points.get(l).map_or(0.0, |site| axis(site)[n] as f32);
                 Lanes(std::array::from_fn(component))
             })
         };
-        let first = std::array::from_fn(|l| first(l).copied().unwrap_or(0));
-        let bins = (0..points.len()).flat_map(|l| {
-            let first: usize = first[l] as usize;
-            self.bounds
-                .iter()
-                .skip(first)
-                .take(BINS)
-                .map(|&of| sines_of(of))
-        });
-        let (lowest, highest) = bins.fold((1.0, 0.0), |(lowest, highest), (low, high)| {
+        let bins = points.iter().flat_map(|site| self.table(site).iter());
+        let bounds = bins.map(|&bounds| sines_of(bounds));
+        let (lowest, highest) = bounds.fold((1.0, 0.0), |(lowest, highest), (low, high)| {
             (low.min(lowest), high.max(highest))
         });
+        let table = |l: usize| points.get(l).map_or(&self.open, |site| self.table(site));
         Some(TileSky {
             east: lanes(|site| site.local.east),
             north: lanes(|site| site.local.north),
-            first: Lanes(first),
+            tables: std::array::from_fn(|l| Arc::clone(table(l))),
             lowest,
             highest,
-            bounds: Arc::clone(&self.bounds),
             points,
         })
     }
@@ -175,12 +170,11 @@ fn sines_of(bounds: SineBounds) -> (f32, f32) {
 pub(super) struct TileSky {
     east: [Lanes<f32>; 3],
     north: [Lanes<f32>; 3],
-    /// The first bin of each point.
-    first: Lanes<u32>,
-    /// Bounds of all its bins.
+    /// The bins of each point.
+    tables: [SkyTable; LANES],
+    /// Bounds of all bins.
     lowest: f32,
     highest: f32,
-    bounds: Arc<[SineBounds]>,
     points: Vec<Site>,
 }
 
@@ -199,6 +193,18 @@ impl TileSky {
         let place = if north >= 0.0 { side } else { 2.0 - side };
         let bin = (place * (BINS as f32 / 4.0) + WHOLE).to_bits() % BINS as u32;
         (bin, level >= slack.least_level_km)
+    }
+
+    /// Puts the bounds in the bins of each satellite among `sights` where their numbers were.
+    ///
+    /// For itself, because what comes next in one place would gather them into a vector one by one.
+    #[inline(never)]
+    fn fetch<R>(&self, sights: &mut [Sight<R>]) {
+        for sight in sights.iter_mut().filter(|sight| sight.among) {
+            for (bin, table) in sight.bins.0.iter_mut().zip(&self.tables) {
+                *bin = table[*bin as usize % BINS];
+            }
+        }
     }
 
     /// Visibility from the point in a lane by the definition.
@@ -236,6 +242,82 @@ impl TileSky {
     }
 }
 
+/// A satellite seen from the points of a tile; flags are 0 or 1.
+#[derive(Debug, Clone)]
+pub(super) struct Sight<R> {
+    lines: LineLanes<R>,
+    /// The sines of the elevations as they are compared with the tables.
+    sines: Lanes<f32>,
+    seen: Lanes<u32>,
+    possible: Lanes<u32>,
+    /// Whether it is above the lowest skyline of a point.
+    above: bool,
+    /// Whether it is neither below nor above all skylines.
+    among: bool,
+    /// Numbers of the bins, and then the bounds in them.
+    bins: Lanes<u32>,
+    /// Whether the azimuth is good enough for that.
+    firm: Lanes<u32>,
+}
+
+impl<R: Real> Sight<R> {
+    pub(super) fn nowhere() -> Self {
+        let zero = Lanes([0; LANES]);
+        Self {
+            lines: LineLanes::nowhere(),
+            sines: Lanes([0.0; LANES]),
+            seen: zero,
+            possible: zero,
+            above: false,
+            among: false,
+            bins: zero,
+            firm: zero,
+        }
+    }
+
+    /// Decides for the lanes that the tables leave open, where `decide` can.
+    #[inline(always)]
+    fn settle(&mut self, decide: impl Fn(usize) -> Option<bool>) {
+        let (seen, possible) = (&mut self.seen.0, &mut self.possible.0);
+        let open = (0..LANES).fold(0, |open, l| open | (possible[l] & (1 - seen[l])));
+        if open == 0 {
+            return;
+        }
+        for l in 0..LANES {
+            let is_open = possible[l] > seen[l];
+            if let Some(is_seen) = is_open.then(|| decide(l)).flatten() {
+                (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_seen));
+            }
+        }
+    }
+
+    /// Passes the lines to `add`, lane by lane, with whether the satellite is visible and whether it may be, unless it is
+    /// visible nowhere.
+    #[inline(always)]
+    fn pass(&self, mut add: impl FnMut(usize, &SightLine<R>, bool, bool)) {
+        if self.above {
+            for l in 0..LANES {
+                let (seen, possible) = (self.seen.0[l], self.possible.0[l]);
+                add(l, &self.lines.get(l), seen != 0, possible != 0);
+            }
+        }
+    }
+
+    /// Adds the satellite where it is visible, once `decide` has decided, and returns where that is.
+    #[inline(always)]
+    pub(super) fn add<W: Weighting>(
+        &mut self,
+        sums: &mut Sums<R>,
+        decide: impl Fn(usize) -> Option<bool>,
+    ) -> SeenLanes {
+        if self.among {
+            self.settle(decide);
+        }
+        self.pass(|l, line, seen, possible| sums.add_line::<W>(line, seen, possible, l));
+        self.seen.0.map(|seen| seen as u8)
+    }
+}
+
 /// The points of a tile under their skylines.
 #[derive(Clone, Copy)]
 pub(super) struct Skyward<'a, R> {
@@ -246,90 +328,83 @@ pub(super) struct Skyward<'a, R> {
 }
 
 impl<R: Real> Skyward<'_, R> {
-    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible and whether it may be, unless it is
-    /// visible nowhere; and returns where it is. `decide` decides for a lane, if it can.
+    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible, unless it is visible nowhere.
+    /// `decide` decides for a lane.
     #[inline(always)]
     pub(super) fn look(
         &self,
         satellite: [R; 3],
         decide: impl Fn(usize) -> Option<bool>,
-        mut add: impl FnMut(usize, &SightLine<R>, bool, bool),
-    ) -> SeenLanes {
-        let (mut seen, mut possible) = ([0_u32; LANES], [0_u32; LANES]);
-        let mut sines = [0.0_f32; LANES];
-        let mut lines = LineLanes::nowhere();
+        mut add: impl FnMut(usize, &SightLine<R>, bool),
+    ) {
+        let mut sight = [Sight::nowhere()];
+        self.look_at([satellite].into_iter(), &mut sight);
+        let [mut sight] = sight;
+        if sight.among {
+            sight.settle(decide);
+        }
+        sight.pass(|l, line, seen, _| add(l, line, seen));
+    }
+
+    /// Compares satellites with the skylines.
+    ///
+    /// In passes over all of them: what one waits for, a root or a table, the next ones hide.
+    #[inline(always)]
+    pub(super) fn look_at(
+        &self,
+        satellites: impl Iterator<Item = [R; 3]>,
+        sights: &mut [Sight<R>],
+    ) {
+        for (satellite, sight) in satellites.zip(sights.iter_mut()) {
+            self.sight(satellite, sight);
+        }
+        for sight in sights.iter_mut().filter(|sight| sight.among) {
+            self.locate(sight);
+        }
+        self.sky.fetch(sights);
+        for sight in sights.iter_mut().filter(|sight| sight.among) {
+            self.compare(sight);
+        }
+    }
+
+    /// The lines to a satellite, and how it compares with all skylines together.
+    #[inline(always)]
+    fn sight(&self, satellite: [R; 3], sight: &mut Sight<R>) {
         let (mut above, mut among) = (0, 0);
         for l in 0..LANES {
             let (line, is_seen, is_possible) = self.sites.line(satellite, self.mask, l);
-            lines.set(l, &line);
-            sines[l] = line.sine.single();
-            let is_above = is_possible & (sines[l] >= self.sky.lowest - self.slack.sine);
-            (seen[l], possible[l]) = (u32::from(is_seen & is_above), u32::from(is_above));
-            let is_clear = sines[l] >= self.sky.highest + self.slack.sine;
-            above |= possible[l];
-            among |= possible[l] & (1 - u32::from(is_clear));
+            sight.lines.set(l, &line);
+            let sine = line.sine.single();
+            let is_above = is_possible & (sine >= self.sky.lowest - self.slack.sine);
+            let is_clear = sine >= self.sky.highest + self.slack.sine;
+            sight.sines.0[l] = sine;
+            sight.seen.0[l] = u32::from(is_seen & is_above);
+            sight.possible.0[l] = u32::from(is_above);
+            above |= u32::from(is_above);
+            among |= u32::from(is_above & !is_clear);
         }
-        if above == 0 {
-            return UNSEEN;
-        }
-        if among != 0 {
-            self.look_up(&lines, &sines, &mut seen, &mut possible);
-            let open = (0..LANES).fold(0, |open, l| open | (possible[l] & (1 - seen[l])));
-            if open != 0 {
-                for l in 0..LANES {
-                    let is_open = possible[l] > seen[l];
-                    if let Some(is_seen) = is_open.then(|| decide(l)).flatten() {
-                        (seen[l], possible[l]) = (u32::from(is_seen), u32::from(is_seen));
-                    }
-                }
-            }
-        }
-        for l in 0..LANES {
-            add(l, &lines.get(l), seen[l] != 0, possible[l] != 0);
-        }
-        seen.map(|seen| seen as u8)
+        (sight.above, sight.among) = (above != 0, among != 0);
     }
 
-    /// Adds a satellite where it is visible, and returns where that is.
+    /// Finds the bins.
     #[inline(always)]
-    pub(super) fn add<W: Weighting>(
-        &self,
-        sums: &mut Sums<R>,
-        satellite: [R; 3],
-        decide: impl Fn(usize) -> Option<bool>,
-    ) -> SeenLanes {
-        self.look(satellite, decide, |l, line, seen, possible| {
-            sums.add_line::<W>(line, seen, possible, l);
-        })
+    fn locate(&self, sight: &mut Sight<R>) {
+        for l in 0..LANES {
+            let (bin, is_firm) = self.sky.bin(&sight.lines.get(l), self.slack, l);
+            (sight.bins.0[l], sight.firm.0[l]) = (bin, u32::from(is_firm));
+        }
     }
 
-    /// Compares with the skylines where the satellite may be visible.
+    /// Compares with the bounds in the bins.
     #[inline(always)]
-    fn look_up(
-        &self,
-        lines: &LineLanes<R>,
-        sines: &[f32; LANES],
-        seen: &mut [u32; LANES],
-        possible: &mut [u32; LANES],
-    ) {
-        let (mut places, mut firm) = ([0_u32; LANES], [0_u32; LANES]);
+    fn compare(&self, sight: &mut Sight<R>) {
         for l in 0..LANES {
-            let (bin, is_firm) = self.sky.bin(&lines.get(l), self.slack, l);
-            places[l] = self.sky.first.0[l] + bin;
-            firm[l] = u32::from(is_firm);
-        }
-        let mut bounds: [SineBounds; LANES] = [0; LANES];
-        for l in 0..LANES {
-            // There is such a place.
-            let of = self.sky.bounds.get(places[l] as usize);
-            bounds[l] = of.copied().unwrap_or(0);
-        }
-        for l in 0..LANES {
-            let (low, high) = sines_of(bounds[l]);
-            let clear = u32::from(sines[l] >= high + self.slack.sine) & firm[l];
-            let blocked = u32::from(sines[l] < low - self.slack.sine) & firm[l];
-            seen[l] &= clear;
-            possible[l] &= 1 - blocked;
+            let (low, high) = sines_of(sight.bins.0[l]);
+            let (sine, firm) = (sight.sines.0[l], sight.firm.0[l]);
+            let clear = u32::from(sine >= high + self.slack.sine) & firm;
+            let blocked = u32::from(sine < low - self.slack.sine) & firm;
+            sight.seen.0[l] &= clear;
+            sight.possible.0[l] &= 1 - blocked;
         }
     }
 }

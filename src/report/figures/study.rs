@@ -1,43 +1,35 @@
-//! The figures of studies: how far each number is from the published one, and those of the paper.
+//! The figures of studies: how far each number is from the published one, and those that the study asks for.
 
 use super::{Chart, DeviationChart, DeviationRow, Layer, PlaneChart, Style};
 use crate::evaluate::EpochMetrics;
-use crate::report::{StatementRecord, StudyResult};
+use crate::report::{StatementRecord, StudyResult, quantity_label};
 use crate::study::Verdict;
-use crate::study::paper::{Curve, Figures};
+use crate::study::published::{Curve, FigureData, PlacedDesign};
 use crate::units::SECONDS_PER_HOUR;
 
 /// A figure of a study with the name of its file. The numbers behind it are in the tables of the study.
 pub type NamedChart = (String, Chart);
 
-/// The names of the figures of the paper.
-pub const PAPER_FIGURES: [&str; 5] = [
-    "figure-2",
-    "figure-3a",
-    "figure-3b",
-    "figure-4a",
-    "figure-4b",
-];
-
-/// The figures of a study: the deviations of its numbers, if any has a tolerance, and of the paper figures 2 to 4.
+/// The figures of a study: the deviations of its numbers, if any has a tolerance, and its own.
 #[must_use]
 pub fn study_figures(study: &StudyResult) -> Vec<NamedChart> {
     let mut charts: Vec<NamedChart> = deviations(study)
         .into_iter()
-        .map(|chart| (deviations_name(study.name()), chart))
+        .map(|chart| (deviations_name(&study.name), chart))
         .collect();
-    if let StudyResult::Paper(paper) = study {
-        let figures = &paper.study.figures;
-        let own = [
-            places(figures),
-            distribution(&figures.constellations),
-            course(&figures.constellations),
-            distribution(&figures.strategies),
-            course(&figures.strategies),
-        ];
-        let names = PAPER_FIGURES.map(str::to_owned);
-        charts.extend(names.into_iter().zip(own));
-    }
+    let own = study.figures.iter().map(|figure| {
+        let title = figure.title.as_str();
+        let chart = match &figure.data {
+            FigureData::Objectives { objectives, places } => {
+                let labels = objectives.map(|objective| quantity_label(&objective.to_string()));
+                plane(title, labels, placed(places))
+            }
+            FigureData::VisibleDistribution(curves) => distribution(title, curves),
+            FigureData::MaxPdopCourse(curves) => course(title, curves),
+        };
+        (figure.name.clone(), chart)
+    });
+    charts.extend(own);
     charts
 }
 
@@ -68,10 +60,10 @@ fn deviations(study: &StudyResult) -> Option<Chart> {
             colour: colour(one.verdict),
         })
     };
-    let rows: Vec<DeviationRow> = study.statements().iter().filter_map(row).collect();
+    let rows: Vec<DeviationRow> = study.statements.iter().filter_map(row).collect();
     (!rows.is_empty()).then(|| {
         Chart::Deviations(DeviationChart {
-            title: format!("{}: computed minus published", study.name()),
+            title: format!("{}: computed minus published", study.name),
             x: "deviation (tolerances)".to_owned(),
             rows,
         })
@@ -87,25 +79,29 @@ fn shortened(name: &str) -> String {
     name.chars().take(MOST - 1).chain(['…']).collect()
 }
 
-fn plane(title: &str, [x, y]: [&str; 2], layers: Vec<Layer>) -> Chart {
+fn plane(title: &str, [x, y]: [String; 2], layers: Vec<Layer>) -> Chart {
     Chart::Plane(PlaneChart {
         title: title.to_owned(),
-        x: x.to_owned(),
-        y: y.to_owned(),
+        x,
+        y,
         layers,
     })
 }
 
-/// Figure 2a: the rows of Table II as marks, the sets found here as dots.
-fn places(figures: &Figures) -> Chart {
+/// The designs that are stated as marks, those found by searches as dots.
+fn placed(places: &[PlacedDesign]) -> Vec<Layer> {
     let mut layers: Vec<(bool, Layer)> = Vec::new();
-    for place in &figures.places {
+    for place in places {
         let is_row = place.set == "table";
         let name = match is_row {
-            true => format!("{}, Table II", place.scheme),
+            true => match &place.table {
+                Some(table) => format!("{}, {table}", place.scheme),
+                None => place.scheme.clone(),
+            },
             false => format!("{}, found here", place.scheme),
         };
-        let point = (place.j_pos, place.j_cost);
+        let [x, y] = place.objectives;
+        let point = (x, y);
         match layers.iter_mut().find(|(_, layer)| layer.name == name) {
             Some((_, layer)) => layer.points.push(point),
             None => {
@@ -130,16 +126,11 @@ fn places(figures: &Figures) -> Chart {
             }
         }
     }
-    let layers = layers.into_iter().map(|(_, layer)| layer).collect();
-    plane(
-        "Figure 2: the plane of the objectives",
-        ["J_pos", "J_cost"],
-        layers,
-    )
+    layers.into_iter().map(|(_, layer)| layer).collect()
 }
 
-/// Figures 3a and 4a: the distribution of the mean visible satellites over the instants.
-fn distribution(curves: &[Curve]) -> Chart {
+/// The distribution of the mean visible satellites over the instants.
+fn distribution(title: &str, curves: &[Curve]) -> Chart {
     let points = |curve: &Curve| -> Vec<(f64, f64)> {
         let sorted = curve.sorted_visible();
         let count = sorted.len() as f64;
@@ -149,18 +140,18 @@ fn distribution(curves: &[Curve]) -> Chart {
             .collect()
     };
     plane(
-        "Distribution of the mean visible satellites",
-        ["E_g(N_visible)", "fraction of the instants at or below"],
+        title,
+        ["E_g(N_visible)", "fraction of the instants at or below"].map(str::to_owned),
         layers(curves, points),
     )
 }
 
-/// Figures 3b and 4b: the maximum PDOP over time.
-fn course(curves: &[Curve]) -> Chart {
+/// The maximum PDOP over time.
+fn course(title: &str, curves: &[Curve]) -> Chart {
     let at = |epoch: &EpochMetrics| Some((epoch.elapsed_s / SECONDS_PER_HOUR, epoch.max_pdop?));
     plane(
-        "Maximum PDOP over the points",
-        ["time (h)", "maximum PDOP"],
+        title,
+        ["time (h)", "maximum PDOP"].map(str::to_owned),
         layers(curves, |curve| curve.epochs.iter().filter_map(at).collect()),
     )
 }

@@ -3,7 +3,8 @@
 use crate::keyword::UnknownKeyword;
 
 /// Name and text of every built-in study of published numbers.
-const STUDIES: [(&str, &str); 12] = [
+const STUDIES: [(&str, &str); 13] = [
+    ("paper", include_str!("../../../data/studies/paper.toml")),
     (
         "gps-sps",
         include_str!("../../../data/studies/gps-sps.toml"),

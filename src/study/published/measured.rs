@@ -34,8 +34,12 @@ impl MeasuredConstellation {
         metric: StudyMetric,
     ) -> Result<Option<f64>, EphemerisError> {
         match metric {
-            // Of an orbit or a sky, and not of samples.
-            StudyMetric::Orbit(_) | StudyMetric::Sky(_) => Ok(None),
+            // Not of samples.
+            StudyMetric::Orbit(_)
+            | StudyMetric::Sky(_)
+            | StudyMetric::Plane(_)
+            | StudyMetric::Sets(_)
+            | StudyMetric::Implied => Ok(None),
             StudyMetric::Quantity(quantity) => {
                 let satellites = match &self.constellation {
                     Some(one) => one.counted(None),

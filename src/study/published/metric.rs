@@ -65,6 +65,32 @@ keywords! {
     }
 }
 
+keywords! {
+    /// A quantity of the first of some GNSS satellites, at the epoch.
+    PlaneQuantity {
+        /// Inclination of the plane of its state, degrees.
+        Inclination = "plane-inclination-deg",
+        /// Height over the equatorial radius, km.
+        Height = "height-km",
+    }
+}
+
+keywords! {
+    /// What is computed of two sets of designs.
+    SetComparison {
+        /// Percentage of the designs that one of the others dominates in the objectives of the scenario.
+        Dominated = "dominated-percent",
+        /// Percentage of the designs that none of the others dominates.
+        Undominated = "undominated-percent",
+        /// Highest worst-case fuzzy membership minus that of the others, over both sets together.
+        MembershipLead = "membership-lead",
+        /// Percentage of the quantiles, over the instants, at which its mean visible is above that of all others.
+        MostVisible = "most-visible-percent",
+        /// Percentage of the instants at which its maximum PDOP is below that of all others.
+        LowestMaxPdop = "lowest-max-pdop-percent",
+    }
+}
+
 /// A statistic over all samples, weighted by point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SampleStatistic {
@@ -89,17 +115,28 @@ pub enum StudyMetric {
     Orbit(OrbitQuantity),
     /// A dilution of precision of a sky: `pdop`.
     Sky(DilutionKind),
+    /// A quantity of some GNSS satellites.
+    Plane(PlaneQuantity),
+    /// Of two sets of designs.
+    Sets(SetComparison),
+    /// What a fit implies.
+    Implied,
 }
+
+/// The metric of statements about a fit.
+const IMPLIED: &str = "implied";
 
 /// Why a text is not a metric.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error(
-    "unknown metric {found:?}{}; expected mean-, max- or pNN- (a quantile, as p95 or p99.9) before {}, {}; or one of {}; \
+    "unknown metric {found:?}{}; expected mean-, max- or pNN- (a quantile, as p95 or p99.9) before {}, {}; or one of {}, {}, {}, implied; \
      or a quantity of searches, as mean-visible or coverage-4; or, of a sky, one of gdop, pdop, hdop, vdop, tdop",
     .nearest.as_ref().map_or_else(String::new, |name| format!(", did you mean {name:?}?")),
     DilutionKind::choices().join(", "),
     SpreadQuantity::choices().join(", "),
-    OrbitQuantity::choices().join(", ")
+    OrbitQuantity::choices().join(", "),
+    PlaneQuantity::choices().join(", "),
+    SetComparison::choices().join(", ")
 )]
 pub struct UnknownMetric {
     found: String,
@@ -112,6 +149,9 @@ impl UnknownMetric {
         let is_offered = |name: &&str| Quantity::from_keyword(name).is_ok_and(is_computed);
         known.retain(is_offered);
         known.extend(OrbitQuantity::choices());
+        known.extend(PlaneQuantity::choices());
+        known.extend(SetComparison::choices());
+        known.push(IMPLIED);
         let mut sampled = DilutionKind::choices();
         known.extend(&sampled);
         sampled.extend(SpreadQuantity::choices());
@@ -150,6 +190,15 @@ impl FromStr for StudyMetric {
         if let Ok(orbit) = OrbitQuantity::from_keyword(text) {
             return Ok(Self::Orbit(orbit));
         }
+        if let Ok(plane) = PlaneQuantity::from_keyword(text) {
+            return Ok(Self::Plane(plane));
+        }
+        if let Ok(sets) = SetComparison::from_keyword(text) {
+            return Ok(Self::Sets(sets));
+        }
+        if text == IMPLIED {
+            return Ok(Self::Implied);
+        }
         if let Some((statistic, dilution)) = text.split_once('-')
             && let (Ok(statistic), Ok(dilution)) =
                 (statistic.parse(), DilutionKind::from_keyword(dilution))
@@ -187,12 +236,19 @@ impl FromStr for SampleStatistic {
     }
 }
 
+/// The unit of shares and changes.
+pub(super) const PERCENT: &str = "%";
+
 impl StudyMetric {
     /// The unit, in words; empty for a number without one.
     #[must_use]
     pub fn unit(self) -> &'static str {
         match self {
-            Self::Dilution(..) | Self::Sky(_) => "",
+            Self::Dilution(..) | Self::Sky(_) | Self::Implied => "",
+            Self::Plane(PlaneQuantity::Inclination) => "deg",
+            Self::Plane(PlaneQuantity::Height) => "km",
+            Self::Sets(SetComparison::MembershipLead) => "",
+            Self::Sets(_) => PERCENT,
             Self::Spread(_, spread) => match spread {
                 SpreadQuantity::Sigma3dM | SpreadQuantity::SigmaHM | SpreadQuantity::SigmaVM => "m",
                 SpreadQuantity::InformationPdop => "",
@@ -281,6 +337,9 @@ impl fmt::Display for StudyMetric {
             Self::Quantity(quantity) => quantity.fmt(f),
             Self::Orbit(orbit) => orbit.fmt(f),
             Self::Sky(dilution) => dilution.fmt(f),
+            Self::Plane(plane) => plane.fmt(f),
+            Self::Sets(sets) => sets.fmt(f),
+            Self::Implied => f.write_str(IMPLIED),
         }
     }
 }
@@ -318,6 +377,9 @@ mod tests {
             "max-information-pdop",
             "error95-h-m",
             "tdop",
+            "height-km",
+            "dominated-percent",
+            "implied",
             "nodal-rate-deg-per-day",
         ] {
             let metric: StudyMetric = text.parse().unwrap();
@@ -334,6 +396,7 @@ mod tests {
             ("p-hdop", None),
             ("p99.5-sigma-3m", Some("p99.5-sigma-3d-m")),
             ("hdopp", Some("hdop")),
+            ("lowest-max-pdop-percnt", Some("lowest-max-pdop-percent")),
             ("gain-mean-pdop", None),
             ("n1-max-pdop", None),
             ("", None),

@@ -1,10 +1,16 @@
 //! A study as written in TOML, checked.
 
+mod references;
+mod steps;
+mod tables;
+
 use super::sky::{SkySource, StudySky};
 use super::{
-    OrbitQuantity, PublishedStatement, PublishedStudy, StudyAssumption, StudyKeys, StudyMetric,
+    OrbitQuantity, PublishedNumber, PublishedStatement, PublishedStudy, StatementComparison,
+    StudyKeys, StudyMetric,
 };
 use crate::keyword::nearest;
+use crate::scenario::builtin;
 use crate::study::judge::{Expected, Provenance};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -43,20 +49,24 @@ struct StudyFile {
     source: Spanned<String>,
     #[serde(default)]
     notes: Vec<String>,
+    base: Option<Spanned<String>>,
     scenario: Option<Spanned<Table>>,
     #[serde(default)]
     skies: BTreeMap<String, Spanned<SkySource>>,
     #[serde(default)]
-    assumption: Vec<AssumptionTable>,
+    assumption: Vec<Spanned<steps::WrittenAssumption>>,
+    #[serde(default)]
+    fit: Vec<Spanned<steps::WrittenFit>>,
+    #[serde(default)]
+    search: Vec<Spanned<steps::WrittenSearch>>,
+    #[serde(default)]
+    table: Vec<Spanned<tables::WrittenTable>>,
+    #[serde(default)]
+    value: Vec<Spanned<steps::WrittenValue>>,
+    #[serde(default)]
+    figure: Vec<Spanned<steps::WrittenFigure>>,
     #[serde(default)]
     statement: Vec<Spanned<StatementTable>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct AssumptionTable {
-    name: Spanned<String>,
-    scenario: Spanned<Table>,
 }
 
 #[derive(Deserialize)]
@@ -65,6 +75,9 @@ struct StatementTable {
     name: Spanned<String>,
     #[serde(default = "gnss_only")]
     of: String,
+    against: Option<String>,
+    percent_above: Option<String>,
+    percent_below: Option<String>,
     satellite: Option<Spanned<String>>,
     metric: Spanned<String>,
     expected: Option<Spanned<f64>>,
@@ -76,7 +89,10 @@ struct StatementTable {
     confirmed: bool,
     #[serde(default)]
     fitted: bool,
+    #[serde(default)]
+    input: bool,
     disagreement: Option<String>,
+    assumptions: Option<Vec<String>>,
     scenario: Option<Spanned<Table>>,
 }
 
@@ -92,11 +108,17 @@ fn confirmed() -> bool {
 struct FileProblems<'t> {
     text: &'t str,
     found: Vec<(usize, String)>,
+    /// Stems of the files of the study.
+    stems: Vec<String>,
 }
 
 impl FileProblems<'_> {
     fn add(&mut self, span: Range<usize>, what: String) {
         let line = self.line(&span);
+        self.add_at(line, what);
+    }
+
+    fn add_at(&mut self, line: usize, what: String) {
         self.found.push((line, what));
     }
 
@@ -124,6 +146,7 @@ impl PublishedStudy {
         let mut problems = FileProblems {
             text,
             found: Vec::new(),
+            stems: Vec::new(),
         };
         let study = match toml::from_str::<StudyFile>(text) {
             Ok(file) => study(label, file, &mut problems),
@@ -162,11 +185,10 @@ fn study(label: &str, file: StudyFile, problems: &mut FileProblems<'_>) -> Optio
         );
         problems.add(file.name.span(), what);
     }
-    if file.statement.is_empty() {
-        problems.add(
-            0..0,
-            "found no [[statement]], expected at least one".to_owned(),
-        );
+    if let Some(base) = &file.base
+        && let Err(error) = builtin(base.get_ref())
+    {
+        problems.add(base.span(), format!("base: {error}"));
     }
     let skies = file.skies.into_iter().map(|(name, table)| StudySky {
         line: problems.line(&table.span()),
@@ -174,45 +196,65 @@ fn study(label: &str, file: StudyFile, problems: &mut FileProblems<'_>) -> Optio
         name,
     });
     let skies: Vec<StudySky> = skies.collect();
-    let mut statements: Vec<PublishedStatement> = Vec::new();
-    for table in file.statement {
-        let span = table.span();
-        if let Some(statement) = statement(table.into_inner(), span.clone(), problems) {
-            if statements.iter().any(|known| known.name == statement.name) {
-                let what = format!("name: there are two statements {:?}", statement.name);
-                problems.add(span.clone(), what);
-            }
-            if let Some(what) = no_such_sky(&statement, &skies) {
-                problems.add(span, what);
-            }
-            statements.push(statement);
-        }
-    }
-    let mut assumptions: Vec<StudyAssumption> = Vec::new();
-    for AssumptionTable { name, scenario } in file.assumption {
-        if name.get_ref().trim().is_empty() {
-            problems.add(name.span(), "name: found an empty text".to_owned());
-        }
-        if scenario.get_ref().is_empty() {
-            let what = "scenario: found no keys, expected what the assumption changes";
-            problems.add(scenario.span(), what.to_owned());
-        }
-        assumptions.push(StudyAssumption {
-            scenario: problems.keys(Some(scenario)),
-            name: name.into_inner(),
-        });
-    }
-    Some(PublishedStudy {
+    let assumptions = steps::assumptions(file.assumption, problems);
+    let searches = steps::searches(file.search, problems);
+    let (tables, of_tables) = tables::tables(file.table, problems);
+    let fits = steps::fits(file.fit, &tables, problems);
+    let values = steps::values(file.value, problems);
+    let figures = steps::figures(file.figure, problems);
+    let statements = statements(file.statement, of_tables, &skies, problems);
+    let study = PublishedStudy {
         name: file.name.into_inner(),
         title: file.title.into_inner(),
         source: file.source.into_inner(),
         notes: file.notes,
         label: label.to_owned(),
+        base: file.base.map(Spanned::into_inner),
         scenario: problems.keys(file.scenario),
         skies,
         assumptions,
+        fits,
+        searches,
+        tables,
+        values,
+        figures,
         statements,
-    })
+    };
+    references::check(&study, problems);
+    Some(study)
+}
+
+/// The statements by themselves and those of tables, in the order of the file.
+fn statements(
+    written: Vec<Spanned<StatementTable>>,
+    of_tables: Vec<(usize, PublishedStatement)>,
+    skies: &[StudySky],
+    problems: &mut FileProblems<'_>,
+) -> Vec<PublishedStatement> {
+    if written.is_empty() && of_tables.is_empty() {
+        let what = "found no [[statement]] or [[table]], expected at least one";
+        problems.add(0..0, what.to_owned());
+    }
+    let mut all = of_tables;
+    for table in written {
+        let span = table.span();
+        if let Some(statement) = statement(table.into_inner(), span.clone(), problems) {
+            if let Some(what) = no_such_sky(&statement, skies) {
+                problems.add(span.clone(), what);
+            }
+            all.push((span.start, statement));
+        }
+    }
+    all.sort_by_key(|(start, _)| *start);
+    let mut statements: Vec<PublishedStatement> = Vec::new();
+    for (_, statement) in all {
+        if statements.iter().any(|known| known.name == statement.name) {
+            let what = format!("name: there are two statements {:?}", statement.name);
+            problems.add_at(statement.line, what);
+        }
+        statements.push(statement);
+    }
+    statements
 }
 
 /// What is wrong with a statement about a sky that the study does not have.
@@ -256,13 +298,9 @@ fn statement(
     problems: &mut FileProblems<'_>,
 ) -> Option<PublishedStatement> {
     let line = span.clone();
-    let metric = match table.metric.get_ref().parse() {
-        Ok(metric) => Some(metric),
-        Err(error) => {
-            problems.add(table.metric.span(), format!("metric: {error}"));
-            None
-        }
-    };
+    let metric = problems.metric("metric", &table.metric);
+    let comparison = comparison(&table, &span, problems);
+    let expected = number(&table, metric, &span, problems);
     let source = match table.source {
         Some(source) if !source.get_ref().trim().is_empty() => Some(source.into_inner()),
         Some(source) => {
@@ -275,23 +313,6 @@ fn statement(
                 table.name.get_ref()
             );
             problems.add(span.clone(), what);
-            None
-        }
-    };
-    let expected = match (table.expected, table.at_least, table.more_than) {
-        (Some(value), None, None) => within(value, table.tolerance, &span, problems),
-        (None, Some(bound), None) if table.tolerance.is_none() && bound.is_finite() => {
-            Some(Expected::AtLeast(bound))
-        }
-        (None, None, Some(bound)) if table.tolerance.is_none() && bound.is_finite() => {
-            Some(Expected::MoreThan(bound))
-        }
-        _ => {
-            let what = format!(
-                "statement {:?} needs expected with tolerance, or one finite bound without: at-least or more-than",
-                table.name.get_ref()
-            );
-            problems.add(span, what);
             None
         }
     };
@@ -312,26 +333,91 @@ fn statement(
     Some(PublishedStatement {
         name: table.name.into_inner(),
         of: table.of,
+        comparison,
         satellite: table.satellite.map(Spanned::into_inner),
         metric: metric?,
         expected: expected?,
         source: source?,
-        provenance: if table.fitted {
-            Provenance::Fitted
-        } else {
-            Provenance::Computed
+        provenance: match (table.input, table.fitted) {
+            (true, _) => Provenance::Input,
+            (_, true) => Provenance::Fitted,
+            _ => Provenance::Computed,
         },
         is_confirmed: table.confirmed,
         disagreement: table.disagreement,
+        tried: table.assumptions,
         scenario: problems.keys(table.scenario),
         line: problems.line(&line),
     })
 }
 
+/// What the number of a statement is compared with.
+fn comparison(
+    table: &StatementTable,
+    span: &Range<usize>,
+    problems: &mut FileProblems<'_>,
+) -> Option<StatementComparison> {
+    let written = [
+        table.against.clone().map(StatementComparison::Against),
+        (table.percent_above.clone()).map(StatementComparison::PercentAbove),
+        (table.percent_below.clone()).map(StatementComparison::PercentBelow),
+    ];
+    let mut written = written.into_iter().flatten();
+    let first = written.next();
+    if written.next().is_some() {
+        let what = format!(
+            "statement {:?}: expected one of against, percent-above and percent-below",
+            table.name.get_ref()
+        );
+        problems.add(span.clone(), what);
+    }
+    first
+}
+
+/// The number or bound that is stated; of a fit the tolerance.
+fn number(
+    table: &StatementTable,
+    metric: Option<StudyMetric>,
+    span: &Range<usize>,
+    problems: &mut FileProblems<'_>,
+) -> Option<PublishedNumber> {
+    let stated = (&table.expected, table.at_least, table.more_than);
+    if metric == Some(StudyMetric::Implied) {
+        if let (Some(tolerance), (None, None, None)) = (&table.tolerance, stated) {
+            let tolerance = problems.positive("tolerance", tolerance)?;
+            return Some(PublishedNumber::OfFit { tolerance });
+        }
+        let what = format!(
+            "statement {:?} needs tolerance alone: its number is that of the fit",
+            table.name.get_ref()
+        );
+        problems.add(span.clone(), what);
+        return None;
+    }
+    let expected = match stated {
+        (Some(value), None, None) => within(value, table.tolerance.as_ref(), span, problems),
+        (None, Some(bound), None) if table.tolerance.is_none() && bound.is_finite() => {
+            Some(Expected::AtLeast(bound))
+        }
+        (None, None, Some(bound)) if table.tolerance.is_none() && bound.is_finite() => {
+            Some(Expected::MoreThan(bound))
+        }
+        _ => {
+            let what = format!(
+                "statement {:?} needs expected with tolerance, or one finite bound without: at-least or more-than",
+                table.name.get_ref()
+            );
+            problems.add(span.clone(), what);
+            None
+        }
+    };
+    expected.map(PublishedNumber::Stated)
+}
+
 /// A number with its tolerance, which is above 0.
 fn within(
-    value: Spanned<f64>,
-    tolerance: Option<Spanned<f64>>,
+    value: &Spanned<f64>,
+    tolerance: Option<&Spanned<f64>>,
     statement: &Range<usize>,
     problems: &mut FileProblems<'_>,
 ) -> Option<Expected> {
@@ -348,15 +434,9 @@ fn within(
         problems.add(value.span(), what);
         return None;
     }
-    let (span, tolerance) = (tolerance.span(), tolerance.into_inner());
-    if !(tolerance > 0.0 && tolerance.is_finite()) {
-        let what = format!("tolerance: found {tolerance}, expected a number above 0");
-        problems.add(span, what);
-        return None;
-    }
     Some(Expected::Value {
-        value: value.into_inner(),
-        tolerance,
+        value: *value.get_ref(),
+        tolerance: problems.positive("tolerance", tolerance)?,
     })
 }
 
@@ -427,8 +507,9 @@ source = \"page 2\"
             value: 1.25,
             tolerance: 0.01,
         };
-        assert_eq!(first.expected, expected);
-        assert_eq!(second.expected, Expected::AtLeast(0.5));
+        assert_eq!(first.expected, PublishedNumber::Stated(expected));
+        let bound = PublishedNumber::Stated(Expected::AtLeast(0.5));
+        assert_eq!(second.expected, bound);
         assert!(first.is_confirmed);
     }
 
@@ -515,7 +596,7 @@ source = \"page 2\"
             (
                 "scenario = { vis",
                 "scenaro = { vis",
-                "two.toml:9: unknown field `scenaro`, expected `name` or `scenario`; did you mean `scenario`?",
+                "two.toml:9: unknown field `scenaro`, expected one of `name`, `scenario`, `gnss`, `epoch-shift-h`, `instead`; did you mean `scenario`?",
             ),
             (
                 "scenario = { visibility = { mask-deg = 10 } }",
@@ -542,7 +623,8 @@ source = \"page 2\"
             assert!(told.contains(expected), "{told}");
         }
         assert!(
-            told("name = \"a\"\ntitle = \"b\"\nsource = \"c\"").contains("found no [[statement]]")
+            told("name = \"a\"\ntitle = \"b\"\nsource = \"c\"")
+                .contains("found no [[statement]] or [[table]]")
         );
     }
 }

@@ -1,17 +1,36 @@
 //! A study computed: each statement under its scenario and, if it is not met there, under the assumptions.
 
-use super::measured::{MeasuredConstellation, of_orbit, of_sky};
-use super::metric::{OrbitQuantity, StudyMetric};
-use super::{PublishedStatement, PublishedStudy, StudyAssumption, StudyKeys, StudySky};
-use crate::constellation::{Design, Slot};
+mod figures;
+mod fits;
+mod gnss;
+mod numbers;
+mod searches;
+mod sets;
+mod tables;
+mod worlds;
+
+pub use figures::{Curve, FigureData, FoundFigure, PlacedDesign};
+pub use fits::{FittedRow, FoundFit};
+pub use searches::{FoundMember, FoundSet};
+pub use tables::{
+    ComputedValue, JudgedRow, MeasuredColumn, MeasuredRow, MeasuredTable, RowAtFit, RowsUnder,
+};
+
+use super::metric::StudyMetric;
+use super::steps::StudyReference;
+use super::{
+    PublishedNumber, PublishedStatement, PublishedStudy, StudyAssumption, StudyKeys, StudySky,
+};
 use crate::dop::SkyView;
-use crate::ephemeris::{Ephemeris, EphemerisError, object_name};
-use crate::evaluate::Evaluator;
-use crate::exchange::constellation::{Constellation, ConstellationError, GNSS_ONLY};
-use crate::scenario::{NoDesign, Place, Problems, Scenario, SetupError};
-use crate::study::judge::{OtherAssumption, Statement, Verdict, judge};
+use crate::ephemeris::EphemerisError;
+use crate::exchange::constellation::ConstellationError;
+use crate::optimize::{DecisionError, OptimizeError};
+use crate::scenario::{NoDesign, Scenario, SetupError, builtin};
+use crate::study::judge::{Expected, OtherAssumption, Statement, Verdict, judge};
+use fits::FitMoves;
 use std::io;
 use thiserror::Error;
+use worlds::StudyWorld;
 
 /// A study with a verdict on each statement.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +43,20 @@ pub struct JudgedStudy {
     pub source: String,
     /// What is known about the numbers and the assumptions.
     pub notes: Vec<String>,
+    /// The scenario, with the overrides.
+    pub scenario: Scenario,
     /// The statements.
     pub statements: Vec<JudgedStatement>,
+    /// What the numbers of tables imply.
+    pub fits: Vec<FoundFit>,
+    /// The tables that have a file.
+    pub tables: Vec<MeasuredTable>,
+    /// Numbers that are not judged.
+    pub values: Vec<ComputedValue>,
+    /// The searches.
+    pub searches: Vec<FoundSet>,
+    /// The data of the figures.
+    pub figures: Vec<FoundFigure>,
 }
 
 /// A statement with its verdict.
@@ -35,6 +66,8 @@ pub struct JudgedStatement {
     pub statement: Statement,
     /// The constellation.
     pub of: String,
+    /// What it is compared with.
+    pub compared_with: Option<String>,
     /// What was computed.
     pub metric: StudyMetric,
     /// What is known of a disagreement.
@@ -85,23 +118,39 @@ pub enum StudyRunError {
     /// A constellation cannot be propagated.
     #[error(transparent)]
     Propagation(Box<ConstellationError>),
-}
-
-/// A scenario that statements share.
-struct StudyWorld {
-    keys: Vec<String>,
-    scenario: Scenario,
-    evaluator: Option<Evaluator>,
-    measured: Vec<(String, MeasuredConstellation)>,
+    /// A search cannot run.
+    #[error(transparent)]
+    Search(#[from] OptimizeError),
+    /// No design of a set can be picked.
+    #[error(transparent)]
+    Decision(#[from] DecisionError),
 }
 
 /// A study that is being computed.
 struct StudyRun<'r> {
     study: &'r PublishedStudy,
+    /// The scenario that `keys` change.
+    base: &'r str,
+    keys: &'r StudyKeys,
     overrides: &'r [String],
     read: &'r dyn Fn(&str) -> io::Result<Vec<u8>>,
     worlds: Vec<StudyWorld>,
     skies: Vec<SkyView>,
+    fits: Vec<FoundFit>,
+    /// The designs that each fit moves.
+    moves: Vec<FitMoves>,
+    searches: Vec<FoundSet>,
+}
+
+/// What a number is computed under.
+#[derive(Clone, Copy)]
+enum Under<'a> {
+    /// The scenario.
+    Scenario,
+    /// The scenario with an assumption.
+    Assumption(&'a StudyAssumption),
+    /// The scenario, with the designs that the fit of this place moves.
+    Fit(usize),
 }
 
 impl PublishedStudy {
@@ -109,31 +158,84 @@ impl PublishedStudy {
     /// written.
     ///
     /// # Errors
-    /// If its scenario is wrong with any of its assumptions, a statement names no constellation, a file cannot be read,
-    /// or a satellite cannot be propagated.
+    /// If its scenario is wrong with any of its assumptions, fits or searches, a statement names no constellation, a
+    /// file cannot be read, or a satellite cannot be propagated.
     pub fn run(
         &self,
         overrides: &[String],
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<JudgedStudy, StudyRunError> {
-        let skies = self.skies.iter().map(|sky| self.sky(sky, read));
-        let mut run = StudyRun {
-            study: self,
-            overrides,
-            read,
-            worlds: Vec::new(),
-            skies: skies.collect::<Result<_, _>>()?,
-        };
+        let mut run = self.begin(self.base_text(), &self.scenario, overrides, read)?;
+        let own = &StudyKeys::default();
+        let place = run.world(None, own)?;
         run.check_scenarios()?;
+        run.fit()?;
+        run.search()?;
+        run.measure_rows()?;
         let statements = self.statements.iter();
         let statements = statements.map(|statement| run.judged(statement));
+        let statements: Vec<Option<JudgedStatement>> = statements.collect::<Result<_, _>>()?;
         Ok(JudgedStudy {
             name: self.name.clone(),
             title: self.title.clone(),
             source: self.source.clone(),
             notes: self.notes.clone(),
-            statements: statements.collect::<Result<_, _>>()?,
+            statements: statements.into_iter().flatten().collect(),
+            tables: run.tables()?,
+            values: run.values()?,
+            figures: run.figures()?,
+            scenario: run.worlds.swap_remove(place).scenario,
+            fits: run.fits,
+            searches: run.searches,
         })
+    }
+
+    /// The scenario of the study, with the overrides.
+    ///
+    /// # Errors
+    /// If it is wrong.
+    pub fn scenario(&self, overrides: &[String]) -> Result<Scenario, StudyRunError> {
+        let no_file = |_: &str| Err(io::ErrorKind::NotFound.into());
+        let mut run = StudyRun::new(self, self.base_text(), &self.scenario, overrides, &no_file);
+        let place = run.world(None, &StudyKeys::default())?;
+        Ok(run.worlds.swap_remove(place).scenario)
+    }
+
+    /// The stems of its tables and figures.
+    #[must_use]
+    pub fn stems(&self) -> Vec<String> {
+        let tables = self.tables.iter().filter_map(|table| table.file.as_ref());
+        let tables = tables.flat_map(|file| [file.clone(), format!("{file}-sensitivity")]);
+        let figures = self.figures.iter().map(|figure| figure.name.clone());
+        tables.chain(figures).collect()
+    }
+
+    /// Whether it has searches.
+    #[must_use]
+    pub fn has_searches(&self) -> bool {
+        !self.searches.is_empty()
+    }
+
+    fn begin<'r>(
+        &'r self,
+        base: &'r str,
+        keys: &'r StudyKeys,
+        overrides: &'r [String],
+        read: &'r dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Result<StudyRun<'r>, StudyRunError> {
+        let mut run = StudyRun::new(self, base, keys, overrides, read);
+        let skies = self.skies.iter().map(|sky| self.sky(sky, read));
+        run.skies = skies.collect::<Result<_, _>>()?;
+        Ok(run)
+    }
+
+    /// The text of the built-in scenario that it begins with.
+    fn base_text(&self) -> &'static str {
+        // The name is known since the study was read.
+        self.base
+            .as_deref()
+            .and_then(|name| builtin(name).ok())
+            .unwrap_or_default()
     }
 
     fn sky(
@@ -141,278 +243,163 @@ impl PublishedStudy {
         sky: &StudySky,
         read: &dyn Fn(&str) -> io::Result<Vec<u8>>,
     ) -> Result<SkyView, StudyRunError> {
-        sky.view(read).map_err(|reason| StudyRunError::Statement {
-            place: self.at(sky.line),
-            reason: format!("skies.{}: {reason}", sky.name),
-        })
+        sky.view(read)
+            .map_err(|reason| self.wrong_at(sky.line, format!("skies.{}: {reason}", sky.name)))
     }
 
     /// A line of the study.
     fn at(&self, line: usize) -> String {
         format!("{}:{line}", self.label)
     }
+
+    fn wrong_at(&self, line: usize, reason: String) -> StudyRunError {
+        StudyRunError::Statement {
+            place: self.at(line),
+            reason,
+        }
+    }
 }
 
-impl StudyRun<'_> {
-    /// Fails if the scenario is wrong, alone or with any assumption, also one that no statement needs.
+impl<'r> StudyRun<'r> {
+    fn new(
+        study: &'r PublishedStudy,
+        base: &'r str,
+        keys: &'r StudyKeys,
+        overrides: &'r [String],
+        read: &'r dyn Fn(&str) -> io::Result<Vec<u8>>,
+    ) -> Self {
+        Self {
+            study,
+            base,
+            keys,
+            overrides,
+            read,
+            worlds: Vec::new(),
+            skies: Vec::new(),
+            fits: Vec::new(),
+            moves: Vec::new(),
+            searches: Vec::new(),
+        }
+    }
+
+    /// Fails if the scenario is wrong, alone or with any assumption, fit or search, also one that no statement needs.
     fn check_scenarios(&mut self) -> Result<(), StudyRunError> {
         let study = self.study;
         let assumed = std::iter::once(None).chain(study.assumptions.iter().map(Some));
         for assumption in assumed {
             for statement in &study.statements {
-                self.world(assumption, statement)?;
+                self.world(assumption, &statement.scenario)?;
             }
+        }
+        for search in &study.searches {
+            self.with_keys(&search.scenario)?;
+        }
+        for fit in &study.fits {
+            fits::check(self, fit)?;
         }
         Ok(())
     }
 
-    fn judged(&mut self, statement: &PublishedStatement) -> Result<JudgedStatement, StudyRunError> {
-        let ours = self.value(statement, None)?;
-        let holds = ours.is_some_and(|ours| statement.expected.holds(ours));
+    /// A statement with its verdict; `None` if it is of a fit that implies nothing.
+    fn judged(
+        &mut self,
+        statement: &PublishedStatement,
+    ) -> Result<Option<JudgedStatement>, StudyRunError> {
+        let expected = match statement.expected {
+            PublishedNumber::Stated(expected) => expected,
+            PublishedNumber::OfFit { tolerance } => {
+                let Some(value) = self.found_fit(&statement.of).and_then(|fit| fit.median) else {
+                    return Ok(None);
+                };
+                Expected::Value { value, tolerance }
+            }
+        };
+        let ours = self.value(statement, Under::Scenario)?;
+        let holds = ours.is_some_and(|ours| expected.holds(ours));
         let mut others = Vec::new();
         if !holds {
-            for assumption in &self.study.assumptions {
-                let found = self.value(statement, Some(assumption))?;
-                others.push(OtherAssumption {
-                    assumption: &assumption.name,
-                    found,
-                });
+            for under in self.others(statement)? {
+                let name = self.name_of(under, statement);
+                others.push((name, self.value(statement, under)?));
             }
         }
+        let others = others.iter().map(|(assumption, found)| OtherAssumption {
+            assumption,
+            found: *found,
+        });
         let texts = [
             statement.source.as_str(),
             statement.name.as_str(),
-            statement.metric.unit(),
+            self.unit(statement),
         ];
-        let mut judged = judge(
-            texts,
-            statement.provenance,
-            statement.expected,
-            ours,
-            &others,
-        );
+        let others: Vec<OtherAssumption<'_>> = others.collect();
+        let mut judged = judge(texts, statement.provenance, expected, ours, &others);
         if !statement.is_confirmed {
             judged.verdict = Verdict::Unconfirmed;
         }
-        Ok(JudgedStatement {
+        Ok(Some(JudgedStatement {
             statement: judged,
             of: statement.of.clone(),
+            compared_with: (statement.comparison.as_ref()).map(|other| other.with().to_owned()),
             metric: statement.metric,
             disagreement: statement.disagreement.clone(),
-        })
+        }))
     }
 
-    /// The number of a statement under the scenario of the study, perhaps with an assumption; `None` if it has none.
-    fn value(
-        &mut self,
-        statement: &PublishedStatement,
-        assumption: Option<&StudyAssumption>,
-    ) -> Result<Option<f64>, StudyRunError> {
-        let place = self.world(assumption, statement)?;
-        match statement.metric {
-            StudyMetric::Orbit(quantity) => return self.of_orbit(place, statement, quantity),
-            StudyMetric::Sky(dilution) => {
-                let mut known = self.study.skies.iter().zip(&self.skies);
-                let sky = known.find(|(sky, _)| sky.name == statement.of);
-                return Ok(sky.and_then(|(_, sky)| of_sky(sky, dilution)));
+    /// What a statement may be met under if it is not under the scenario: the fits, then the assumptions.
+    fn others(&mut self, statement: &PublishedStatement) -> Result<Vec<Under<'r>>, StudyRunError> {
+        let mut others = Vec::new();
+        for (n, moves) in self.moves.iter().enumerate() {
+            if moves.concern(&self.study.tables, statement) {
+                others.push(Under::Fit(n));
             }
-            _ => {}
         }
-        let known = |world: &StudyWorld| {
-            let mut measured = world.measured.iter();
-            measured.position(|(of, _)| *of == statement.of)
-        };
-        let at = match known(&self.worlds[place]) {
-            Some(at) => at,
-            None => {
-                let measured = self.measure(place, statement)?;
-                let world = &mut self.worlds[place];
-                world.measured.push((statement.of.clone(), measured));
-                world.measured.len() - 1
-            }
-        };
-        self.require_key(place, statement)?;
-        let world = &self.worlds[place];
-        let (Some((_, measured)), Some(evaluator)) = (world.measured.get(at), &world.evaluator)
-        else {
-            return Ok(None);
-        };
-        Ok(measured.value(evaluator, &world.scenario.goals(), statement.metric)?)
-    }
-
-    /// The place of the scenario of a statement, perhaps with an assumption.
-    fn world(
-        &mut self,
-        assumption: Option<&StudyAssumption>,
-        statement: &PublishedStatement,
-    ) -> Result<usize, StudyRunError> {
-        let parts = [
-            Some(&self.study.scenario),
-            assumption.map(|assumption| &assumption.scenario),
-            Some(&statement.scenario),
-        ];
-        let parts: Vec<&StudyKeys> = parts.into_iter().flatten().collect();
-        let keys: Vec<String> = parts.iter().flat_map(|part| part.keys.clone()).collect();
-        if let Some(place) = self.worlds.iter().position(|world| world.keys == keys) {
-            return Ok(place);
-        }
-        let all: Vec<&String> = keys.iter().chain(self.overrides).collect();
-        let scenario = Scenario::parse(&self.study.name, b"", &all);
-        let scenario = scenario.map_err(|problems| self.wrong(&problems, &parts))?;
-        self.worlds.push(StudyWorld {
-            keys,
-            scenario,
-            evaluator: None,
-            measured: Vec::new(),
-        });
-        Ok(self.worlds.len() - 1)
-    }
-
-    /// The problems of a scenario: those of the study by line and key, those of an override as they are.
-    fn wrong(&self, problems: &Problems, parts: &[&StudyKeys]) -> StudyRunError {
-        let lines = parts
-            .iter()
-            .flat_map(|part| part.keys.iter().map(|_| part.line));
-        let lines: Vec<usize> = lines.collect();
-        let told = problems.as_slice().iter().map(|problem| {
-            let line = match problem.place {
-                Place::Argument { index, .. } => match lines.get(index) {
-                    Some(line) => *line,
-                    None => return problem.to_string(),
-                },
-                Place::File { .. } => self.study.scenario.line,
+        let mut references = statement.references();
+        let is_searched =
+            references.any(|text| matches!(StudyReference::of(text), StudyReference::Search(_)));
+        for assumption in &self.study.assumptions {
+            let applies = if assumption.instead.is_empty() {
+                // What a search found belongs to its scenario.
+                !is_searched
+                    && statement.metric != StudyMetric::Implied
+                    && self.is_changed(assumption, &statement.scenario)?
+            } else {
+                let mut references = statement.references();
+                references.any(|text| assumption.instead.contains_key(text))
             };
-            let place = self.study.at(line);
-            format!("{place}: scenario.{}: {}", problem.key, problem.fault)
-        });
-        StudyRunError::Scenario(told.collect::<Vec<_>>().join("\n"))
-    }
-
-    fn measure(
-        &mut self,
-        place: usize,
-        statement: &PublishedStatement,
-    ) -> Result<MeasuredConstellation, StudyRunError> {
-        let constellation = match statement.of.as_str() {
-            GNSS_ONLY => None,
-            of => Some(self.constellation(place, statement, of)?),
-        };
-        let at = self.study.at(statement.line);
-        let failed = |source| StudyRunError::Setup {
-            place: at,
-            source: Box::new(source),
-        };
-        let world = &mut self.worlds[place];
-        let evaluator = match world.evaluator.take() {
-            Some(evaluator) => evaluator,
-            None => Evaluator::new(world.scenario.setup(self.read).map_err(failed)?)?,
-        };
-        let setup = evaluator.setup();
-        let ephemeris = match &constellation {
-            Some(one) => {
-                let ephemeris = one.ephemeris(setup.grid, setup.model);
-                ephemeris.map_err(|error| StudyRunError::Propagation(Box::new(error)))?
+            if applies {
+                others.push(Under::Assumption(assumption));
             }
-            None => Ephemeris::new(setup.grid, Vec::new()),
-        };
-        let metrics = evaluator.evaluate_ephemeris(&ephemeris)?;
-        world.evaluator = Some(evaluator);
-        Ok(MeasuredConstellation {
-            constellation,
-            ephemeris,
-            metrics,
-        })
-    }
-
-    /// Fails if the scenario lacks what the metric of a statement needs.
-    fn require_key(
-        &self,
-        place: usize,
-        statement: &PublishedStatement,
-    ) -> Result<(), StudyRunError> {
-        let setup = self.worlds[place].evaluator.as_ref().map(Evaluator::setup);
-        let Some((setup, key)) = setup.zip(statement.metric.needed_key()) else {
-            return Ok(());
-        };
-        let is_there = match key {
-            "[accuracy]" => setup.accuracy.is_some(),
-            _ => setup.window_s.is_some(),
-        };
-        if is_there {
-            return Ok(());
         }
-        let metric = statement.metric;
-        Err(self.wrong_statement(statement, format!("{metric} needs {key} in the scenario")))
+        if let Some(tried) = &statement.tried {
+            others.retain(|under| tried.iter().any(|name| name == self.words_of(*under)));
+        }
+        Ok(others)
     }
 
-    fn wrong_statement(&self, statement: &PublishedStatement, reason: String) -> StudyRunError {
-        StudyRunError::Statement {
-            place: self.study.at(statement.line),
-            reason,
+    /// An assumption in the words of the study.
+    fn words_of<'a>(&'a self, under: Under<'a>) -> &'a str {
+        match under {
+            Under::Scenario => "as in the scenario",
+            Under::Assumption(assumption) => &assumption.name,
+            Under::Fit(n) => &self.moves[n].assumption,
         }
     }
 
-    fn constellation(
-        &self,
-        place: usize,
-        statement: &PublishedStatement,
-        of: &str,
-    ) -> Result<Constellation, StudyRunError> {
-        let scenario = &self.worlds[place].scenario;
-        if let Some(named) = scenario.constellation(of) {
-            let grid = scenario.time_grid().map_err(SetupError::from);
-            let read = grid.and_then(|grid| named.read(self.read, grid));
-            let (one, _) = read.map_err(|source| StudyRunError::Setup {
-                place: self.study.at(statement.line),
-                source: Box::new(source),
-            })?;
-            return Ok(one);
-        }
-        Ok(Constellation::of_design(self.design(place, statement)?))
+    /// The same, and of a fit that concerns one row alone its value there.
+    fn name_of(&self, under: Under<'_>, statement: &PublishedStatement) -> String {
+        let of_one = match under {
+            Under::Fit(n) if statement.comparison.is_none() => self.moves[n].of_row(&statement.of),
+            _ => None,
+        };
+        of_one.unwrap_or_else(|| self.words_of(under).to_owned())
     }
 
-    fn design(
-        &self,
-        place: usize,
-        statement: &PublishedStatement,
-    ) -> Result<Design, StudyRunError> {
-        let design = self.worlds[place].scenario.design(&statement.of);
-        design.map_err(|source| StudyRunError::Constellation {
-            place: self.study.at(statement.line),
-            source: Box::new(source),
-        })
-    }
-
-    fn of_orbit(
-        &self,
-        place: usize,
-        statement: &PublishedStatement,
-        quantity: OrbitQuantity,
-    ) -> Result<Option<f64>, StudyRunError> {
-        let design = self.design(place, statement)?;
-        let Some(shell) = design.only_shell() else {
-            let (metric, of) = (statement.metric, &statement.of);
-            let reason = format!("{metric} is of one shell, and {of} has others");
-            return Err(self.wrong_statement(statement, reason));
-        };
-        let Some(name) = &statement.satellite else {
-            return Ok(of_orbit(shell, Slot::FIRST, quantity));
-        };
-        let names: Vec<(Slot, String)> = shell
-            .slots()
-            .map(|slot| (slot, object_name(slot)))
-            .collect();
-        if let Some((slot, _)) = names.iter().find(|(_, one)| one == name) {
-            return Ok(of_orbit(shell, *slot, quantity));
+    fn found_fit(&self, text: &str) -> Option<&FoundFit> {
+        match StudyReference::of(text) {
+            StudyReference::Fit(name) => self.fits.iter().find(|fit| fit.name == name),
+            _ => None,
         }
-        let ends =
-            [names.first(), names.last()].map(|end| end.map_or("", |(_, name)| name.as_str()));
-        let [first, last] = ends;
-        let reason = format!(
-            "satellite: {} has no {name:?}, but {first} to {last}",
-            statement.of
-        );
-        Err(self.wrong_statement(statement, reason))
     }
 }
 

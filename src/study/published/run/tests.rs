@@ -1,3 +1,5 @@
+mod paper;
+
 use super::*;
 use crate::study::judge::Expected;
 use crate::study::published::{builtin_studies, builtin_study};
