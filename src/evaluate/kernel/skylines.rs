@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The bins of a skyline.
-type SkyTable = Arc<[SineBounds; BINS]>;
+type BinTable = Arc<[SineBounds; BINS]>;
 
 /// Bins of a table.
 const BINS: usize = 2048;
@@ -66,9 +66,9 @@ impl SightSlack {
 #[derive(Debug)]
 pub(super) struct SkyTables {
     /// That of points without a skyline.
-    open: SkyTable,
+    open: BinTable,
     /// The others, by the address of the skyline.
-    tables: BTreeMap<usize, SkyTable>,
+    tables: BTreeMap<usize, BinTable>,
 }
 
 fn address(skyline: &Arc<MaskTable>) -> usize {
@@ -100,7 +100,7 @@ impl SkyTables {
         tables + points * (size_of::<Site>() + size_of::<TileSky>() / LANES)
     }
 
-    fn table(&self, site: &Site) -> &SkyTable {
+    fn table(&self, site: &Site) -> &BinTable {
         let own = |skyline| self.tables.get(&address(skyline));
         site.skyline.as_ref().and_then(own).unwrap_or(&self.open)
     }
@@ -171,7 +171,7 @@ pub(super) struct TileSky {
     east: [Lanes<f32>; 3],
     north: [Lanes<f32>; 3],
     /// The bins of each point.
-    tables: [SkyTable; LANES],
+    tables: [BinTable; LANES],
     /// Bounds of all bins.
     lowest: f32,
     highest: f32,
