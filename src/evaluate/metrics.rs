@@ -180,7 +180,7 @@ impl Metrics {
     }
 
     /// The statistics of PDOP; `None` without solved samples.
-    pub(super) fn pdop_summary(&self) -> Option<Summary> {
+    pub(crate) fn pdop_summary(&self) -> Option<Summary> {
         Some(Summary {
             mean: self.mean_pdop?,
             p50: self.p50_pdop?,

@@ -60,6 +60,12 @@ impl MeasuredConstellation {
         statistic: SampleStatistic,
         dilution: DilutionKind,
     ) -> Result<Option<f64>, EphemerisError> {
+        // The metrics have PDOP; the other dilutions take several times as long.
+        let known = self.metrics.pdop_summary();
+        let known = known.and_then(|summary| statistic.of_summary(&summary));
+        if let (DilutionKind::Pdop, Some(known)) = (dilution, known) {
+            return Ok(Some(known));
+        }
         let dops = evaluator.dops_beside(&self.metrics, &self.ephemeris)?;
         let named = dops.named();
         let first = match dilution {
