@@ -2,7 +2,6 @@
 
 use csv::Writer;
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 use std::io;
 
 /// What a column holds.
@@ -145,29 +144,6 @@ impl ColumnValues {
             Self::Integer(of) => shown(of[row].as_ref()),
             Self::Truth(of) => shown(of[row].as_ref()),
             Self::Text(of) => of[row].clone().unwrap_or_default(),
-        }
-    }
-
-    fn hash(&self, hash: &mut Sha256) {
-        fn each<T>(hash: &mut Sha256, of: &[Option<T>], bytes: impl Fn(&T) -> Vec<u8>) {
-            for value in of {
-                match value {
-                    None => hash.update([0]),
-                    Some(value) => {
-                        hash.update([1]);
-                        hash.update(bytes(value));
-                    }
-                }
-            }
-        }
-        match self {
-            Self::Real(of) => each(hash, of, |value| value.to_bits().to_le_bytes().to_vec()),
-            Self::Integer(of) => each(hash, of, |value| value.to_le_bytes().to_vec()),
-            Self::Truth(of) => each(hash, of, |value| vec![u8::from(*value)]),
-            Self::Text(of) => each(hash, of, |value| {
-                let length = (value.len() as u64).to_le_bytes();
-                length.into_iter().chain(value.bytes()).collect()
-            }),
         }
     }
 
@@ -332,20 +308,6 @@ impl TypedColumns {
         }
     }
 
-    /// SHA-256, hex, of names, kinds and values: the same for the same table in whatever format it is kept.
-    #[must_use]
-    pub fn digest(&self) -> String {
-        let mut hash = Sha256::new();
-        hash.update((self.rows as u64).to_le_bytes());
-        for (name, values) in self.names.iter().zip(&self.values) {
-            hash.update((name.len() as u64).to_le_bytes());
-            hash.update(name);
-            hash.update([values.kind() as u8]);
-            values.hash(&mut hash);
-        }
-        super::checkpoint::hex(&hash.finalize())
-    }
-
     /// The heading as CSV.
     ///
     /// # Errors
@@ -391,22 +353,6 @@ mod tests {
         let text = table.csv_heading().unwrap() + &table.csv_rows().unwrap() + "# a comment\n";
         let read = TypedColumns::of_csv(&text).unwrap();
         assert_eq!(read, table);
-        assert_eq!(read.digest(), table.digest());
-    }
-
-    #[test]
-    fn the_digest_sees_every_bit_and_what_is_missing() {
-        let table = table();
-        let mut near = table.clone();
-        if let ColumnValues::Real(of) = &mut near.values[2] {
-            of[0] = of[0].map(f64::next_up);
-        }
-        let mut zero = table.clone();
-        if let ColumnValues::Integer(of) = &mut zero.values[1] {
-            of[1] = Some(0);
-        }
-        assert_ne!(near.digest(), table.digest());
-        assert_ne!(zero.digest(), table.digest());
     }
 
     #[test]

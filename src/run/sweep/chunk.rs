@@ -4,7 +4,7 @@ use super::designs::SweptDesign;
 use super::format::{TableFormat, read_table, table_bytes};
 use super::{SweepPlan, SweepSource};
 use crate::keyword::Keyword;
-use crate::run::checkpoint::hex;
+use crate::run::checkpoint::{hex, hex_sha256};
 use crate::run::typed_columns::TypedColumns;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -76,21 +76,61 @@ pub enum ChunkError {
     /// The result of another chunk.
     #[error("it is the result of another chunk")]
     Other,
-    /// Its values are not those that were written.
-    #[error("it is damaged: its values do not match its checksum")]
+    /// Its bytes are not those that were written.
+    #[error("it is damaged: it does not match its checksum")]
     Checksum,
 }
 
 const CHUNK_NOTE: &str = "navwalker.chunk";
-const DIGEST_NOTE: &str = "navwalker.sha256";
+/// The SHA-256 of the file with zeros in place of its digits: both formats keep notes as plain text, so that it is checked
+/// before anything is parsed.
+const SEAL_NOTE: &str = "navwalker.sha256";
+/// Hexadecimal digits of a SHA-256.
+const SEAL_DIGITS: usize = 64;
+/// Most bytes between the key of a note and its value.
+const SEAL_DISTANCE: usize = 8;
 
-/// The result of a chunk as a file: its table, with the name of the chunk and a checksum of the values.
+/// The result of a chunk as a file: its table, with the name of the chunk and a checksum of the file.
 ///
 /// # Errors
 /// Never for a table in memory.
 pub fn write_chunk(format: TableFormat, name: &str, table: TypedColumns) -> io::Result<Vec<u8>> {
-    let notes = [(CHUNK_NOTE, name.to_owned()), (DIGEST_NOTE, table.digest())];
-    table_bytes(format, table, &notes)
+    let notes = [
+        (CHUNK_NOTE, name.to_owned()),
+        (SEAL_NOTE, "0".repeat(SEAL_DIGITS)),
+    ];
+    let mut bytes = table_bytes(format, table, &notes)?;
+    let seal = hex_sha256(&bytes);
+    let place = seal_place(&bytes).ok_or_else(|| io::Error::other("no place for a checksum"))?;
+    bytes[place..place + SEAL_DIGITS].copy_from_slice(seal.as_bytes());
+    Ok(bytes)
+}
+
+/// Where the digits of the checksum begin.
+fn seal_place(bytes: &[u8]) -> Option<usize> {
+    let key = SEAL_NOTE.as_bytes();
+    let at = bytes.windows(key.len()).rposition(|window| window == key)?;
+    let after = at + key.len();
+    let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+    (after..=after + SEAL_DISTANCE).find(|place| {
+        let digits = bytes.get(*place..place + SEAL_DIGITS);
+        digits.is_some_and(|digits| digits.iter().all(is_digit))
+    })
+}
+
+/// Checks that a file is as it was written.
+fn check_seal(bytes: &[u8]) -> Result<(), ChunkError> {
+    let place = seal_place(bytes).ok_or_else(|| ChunkError::Damaged {
+        reason: "its checksum is missing, so that it may be cut short".to_owned(),
+    })?;
+    let mut unsealed = bytes.to_vec();
+    let digits = &mut unsealed[place..place + SEAL_DIGITS];
+    let found = digits.to_vec();
+    digits.fill(b'0');
+    if hex_sha256(&unsealed).as_bytes() == found {
+        return Ok(());
+    }
+    Err(ChunkError::Checksum)
 }
 
 /// The table in the result of a chunk.
@@ -102,20 +142,12 @@ pub fn read_chunk(
     name: &str,
     bytes: Vec<u8>,
 ) -> Result<TypedColumns, ChunkError> {
+    check_seal(&bytes)?;
     let (table, notes) =
         read_table(format, bytes).map_err(|reason| ChunkError::Damaged { reason })?;
-    let note = |key: &str| {
-        let found = notes.iter().find(|(one, _)| one == key);
-        let missing = || ChunkError::Damaged {
-            reason: "its end is missing".to_owned(),
-        };
-        found.map(|(_, value)| value.as_str()).ok_or_else(missing)
-    };
-    if note(CHUNK_NOTE)? != name {
+    let mut own = notes.iter().filter(|(key, _)| key == CHUNK_NOTE);
+    if own.next().is_none_or(|(_, found)| found != name) {
         return Err(ChunkError::Other);
-    }
-    if note(DIGEST_NOTE)? != table.digest() {
-        return Err(ChunkError::Checksum);
     }
     Ok(table)
 }

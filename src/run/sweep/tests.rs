@@ -160,17 +160,15 @@ fn damaged_results_are_refused() {
             read_chunk(format, "another", bytes.clone()),
             Err(ChunkError::Other)
         );
-        for length in 0..bytes.len() - 1 {
+        for length in 0..bytes.len() {
             let cut = read_chunk(format, "a chunk", bytes[..length].to_vec());
             assert!(cut.is_err(), "{format} of {length} bytes");
         }
         for place in 0..bytes.len() {
             let mut changed = bytes.clone();
             changed[place] ^= 1;
-            // Statistics and other metadata of Parquet may change, the table may not.
-            if let Ok(table) = read_chunk(format, "a chunk", changed) {
-                assert_eq!(table, small_table(), "{format} at {place}");
-            }
+            let read = read_chunk(format, "a chunk", changed);
+            assert!(read.is_err(), "{format} at {place}");
         }
     }
 }
