@@ -24,6 +24,7 @@ mod read_constellation;
 mod run;
 mod run_view;
 mod study;
+mod sweep_store;
 
 use crate::printable::printable_lines;
 use args::{Cli, Command};
@@ -104,6 +105,7 @@ fn command(cli: Cli) -> anyhow::Result<Status> {
     match cli.command {
         Command::Optimize(args) => commands::optimize::run(&args),
         Command::Size(args) => commands::size::run(&args),
+        Command::Sweep(args) => commands::sweep::run(&args),
         Command::Evaluate(args) => commands::evaluate::run(&args),
         Command::Reproduce(args) => commands::reproduce::run(&args),
         Command::Dop(args) => commands::dop::run(&args),

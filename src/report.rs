@@ -47,7 +47,7 @@ pub use evaluated::{
     ConstraintCheck, EvaluateResult,
 };
 pub use expected::{ExpectedService, SpareService};
-pub use from_evaluations::NotEvaluated;
+pub use from_evaluations::{EvaluatedFront, EvaluationSource, NotEvaluated};
 pub use labels::quantity_label;
 pub use orbits::{OrbitResult, RepeatResult, orbits_csv, orbits_text};
 pub use phases::{PhaseRange, PhaseSpread};

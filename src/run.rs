@@ -8,7 +8,10 @@ pub mod evaluations;
 pub mod inputs;
 mod results;
 pub mod size;
+#[cfg(feature = "sweep")]
+pub mod sweep;
 pub(crate) mod tables;
+pub mod typed_columns;
 #[cfg(feature = "validate")]
 mod validation;
 

@@ -141,14 +141,22 @@ impl<'a> DesignProblem<'a> {
     #[must_use]
     pub fn evaluated(&self, genome: &[f64]) -> Option<(Option<Design>, Metrics)> {
         let design = self.designs.design(genome).ok()?;
-        let metrics = match &design {
+        let metrics = self.metrics(design.as_ref())?;
+        Some((design, metrics))
+    }
+
+    /// The metrics of a design of the space, its fixed shells included, with the satellites that are fixed beside it; `None`
+    /// if it cannot be propagated or there is no satellite.
+    #[must_use]
+    pub fn metrics(&self, design: Option<&Design>) -> Option<Metrics> {
+        let metrics = match design {
             Some(design) if self.fixed.is_empty() => self.evaluator.evaluate(design),
             _ => {
-                let all = self.with_fixed(design.as_ref())?;
+                let all = self.with_fixed(design)?;
                 self.evaluator.evaluate_ephemeris(&all)
             }
         };
-        Some((design, self.with_gain(metrics.ok()?).ok()?))
+        self.with_gain(metrics.ok()?).ok()
     }
 
     /// The satellites of a design and those that are fixed beside it; `None` if there are none.

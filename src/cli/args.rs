@@ -10,6 +10,7 @@ mod satellites;
 mod scenario;
 mod size;
 mod sky;
+mod sweep;
 
 pub(crate) use evaluate::EvaluateArgs;
 pub(crate) use export::ExportArgs;
@@ -20,6 +21,7 @@ pub(crate) use satellites::SatelliteArgs;
 pub(crate) use scenario::{ScenarioAction, ScenarioArgs};
 pub(crate) use size::SizeArgs;
 pub(crate) use sky::{DopArgs, OrbitArgs};
+pub(crate) use sweep::SweepArgs;
 
 use crate::cli::constellations::Named;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -46,7 +48,7 @@ pub(crate) struct Cli {
     pub(crate) threads: Option<NonZeroUsize>,
 
     /// Start what is very large: an export of more than 10 GB, an evaluation that needs more memory than is
-    /// available, a search for the fewest satellites among more than 1e9 designs.
+    /// available, a search for the fewest satellites among more than 1e9 designs, a sweep whose table has more than 10 GB.
     #[arg(long, global = true)]
     pub(crate) allow_large: bool,
 
@@ -88,6 +90,18 @@ pub(crate) enum Command {
     ///            --set 'objectives.constraints=["availability >= 0.999"]'
     #[command(verbatim_doc_comment)]
     Size(SizeArgs),
+
+    /// Evaluate every design of a search space or a list, and keep every metric, in chunks that can be computed anywhere.
+    ///
+    /// DIR gets the result of each chunk and, at the end, one table of all designs (Parquet, or CSV by `--as csv`)
+    /// with an index of checksums. Its bytes do not depend on threads, machines or the order of the work. Ctrl-C keeps the
+    /// chunks that are done; `--resume` continues. `--shard I/N` evaluates a part in a job array over one
+    /// directory, and `--merge` ends it. `navwalker optimize --from DIR` takes the front from the table.
+    ///
+    /// Examples: navwalker sweep --set search.inclination-step-deg=2 --out sweep
+    ///           navwalker sweep --designs designs.csv --shard $SLURM_ARRAY_TASK_ID/100 --out sweep
+    #[command(verbatim_doc_comment)]
+    Sweep(SweepArgs),
 
     /// Compute visibility, PDOP with its tail, and cost of constellations: designs, or satellites from files.
     ///

@@ -12,4 +12,5 @@ pub(crate) mod report;
 pub(crate) mod reproduce;
 pub(crate) mod scenario;
 pub(crate) mod size;
+pub(crate) mod sweep;
 pub(crate) mod validate;

@@ -4,7 +4,8 @@
 pub use super::args::ScenarioText;
 pub use super::output::{Message, MessageKind, Transcript};
 pub use super::progress::{Reached, SharedProgress};
-pub use super::study::Study;
+pub use super::study::{PackedStudy, Study};
+pub use super::sweep_store::{ChunkState, SweepStore, sweep_chunk};
 
 use super::args::{Cli, Command, StudyArgs};
 use super::{

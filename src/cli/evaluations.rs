@@ -3,14 +3,17 @@
 use crate::cli::args::{OptimizeArgs, OutputFormat};
 use crate::cli::commands::optimize;
 use crate::cli::study::Study;
+use crate::cli::sweep_store::SweepStore;
 use crate::cli::{Status, files, output};
 use crate::evaluate::Evaluator;
 use crate::optimize::{Search, Strategy};
+use crate::report::{EvaluatedFront, EvaluationSource};
 use crate::run::checkpoint::hex_sha256;
 use crate::run::evaluations::{
     EVALUATIONS_CSV, EVALUATIONS_JSON, EVALUATIONS_PARTIAL, EvaluationColumns, EvaluationsStamp,
     read_evaluations,
 };
+use crate::run::sweep::{SWEEP_JSON, SweepDesigns, SweepSource};
 use crate::run::{OptimizeResult, VERSION, front_csv};
 use crate::search::{DesignProblem, RecordingProblem};
 use anyhow::{Context, Result, bail};
@@ -121,19 +124,51 @@ pub(crate) fn front(args: &OptimizeArgs, directory: &Path) -> Result<Status> {
     let own = Study::of_run(directory, &[])?;
     let study = Study::of_run(directory, &args.study.overrides)?;
     check_goals_alone(&own, &study)?;
-    let bytes = table(directory, &own)?;
     let evaluator = Evaluator::new(study.setup()?)?;
     let problem = study.problem(&evaluator)?;
-    let evaluations = read_evaluations(&bytes, &problem)
-        .with_context(|| format!("cannot read {}", directory.join(EVALUATIONS_CSV).display()))?;
-    let scenario = &study.scenario;
-    let result = OptimizeResult::of_evaluations(&problem, &evaluations, scenario, study.stamp()?)?;
+    let (scenario, stamp) = (&study.scenario, study.stamp()?);
+    let result = if directory.join(SWEEP_JSON).exists() {
+        front_of_sweep(directory, &problem)?.result(&problem, scenario, stamp)
+    } else {
+        let bytes = table(directory, &own)?;
+        let place = directory.join(EVALUATIONS_CSV);
+        let evaluations = read_evaluations(&bytes, &problem)
+            .with_context(|| format!("cannot read {}", place.display()))?;
+        OptimizeResult::of_evaluations(&problem, &evaluations, scenario, stamp)?
+    };
     output::result(&match args.format {
         OutputFormat::Text => optimize::text_from_evaluations(&result, &scenario.name),
         OutputFormat::Json => crate::printable::json(&result)?,
         OutputFormat::Csv => front_csv(&result.front)?,
     })?;
     Ok(optimize::status(&result))
+}
+
+/// The front of a sweep, chunk by chunk; every chunk must be done.
+fn front_of_sweep(directory: &Path, problem: &DesignProblem<'_>) -> Result<EvaluatedFront> {
+    let store = SweepStore::read(directory)?;
+    let (designs, source) = match store.plan().source {
+        SweepSource::Space => (SweepDesigns::of_space(problem), EvaluationSource::Space),
+        SweepSource::List => (SweepDesigns::List(store.list()?), EvaluationSource::List),
+    };
+    let mut front = EvaluatedFront::new(source);
+    for number in 0..store.chunks().len() {
+        let cannot = || {
+            let place = directory.display();
+            format!(
+                "chunk {} of {place} cannot be used; sweep --resume completes it",
+                number + 1
+            )
+        };
+        let table = store.table(number).with_context(cannot)?;
+        let points = store.plan().points_of(number as u64);
+        let evaluations = designs.evaluations(points, &table, problem);
+        let evaluations = evaluations
+            .map_err(anyhow::Error::msg)
+            .with_context(cannot)?;
+        front.offer(problem, &evaluations)?;
+    }
+    Ok(front)
 }
 
 /// Keys that evaluations do not depend on.

@@ -91,23 +91,30 @@ impl StagedFile {
     /// Moves the file with these contents to its destination. If that fails, the staged file is kept
     /// and the error names it.
     pub(crate) fn commit(self, bytes: &[u8]) -> Result<()> {
+        self.commit_written(|file| file.write_all(bytes))
+    }
+
+    /// The same with what `write` writes, piece by piece.
+    pub(crate) fn commit_written<T>(
+        self,
+        write: impl FnOnce(&mut File) -> io::Result<T>,
+    ) -> Result<T> {
         let cannot = format!("cannot write {}", self.place.display());
         let Some((mut file, _removed)) = self.staged else {
             let stream = File::options().write(true).open(&self.place);
             return stream
-                .and_then(|mut stream| stream.write_all(bytes))
+                .and_then(|mut stream| write(&mut stream))
                 .context(cannot);
         };
-        let written = file.write_all(bytes);
-        written
-            .and_then(|()| file.as_file().sync_all())
-            .with_context(|| cannot.clone())?;
+        let written = write(file.as_file_mut());
+        let written = written.and_then(|of| file.as_file().sync_all().map(|()| of));
+        let written = written.with_context(|| cannot.clone())?;
         let persisted = {
             let _held = interrupt::held();
             file.persist(&self.place)
         };
         match persisted {
-            Ok(_) => Ok(()),
+            Ok(_) => Ok(written),
             Err(PersistError { error, file }) => {
                 let kept = file.into_temp_path().keep();
                 let kept = kept.map_err(io::Error::from).map(|path| kept_beside(&path));
@@ -199,6 +206,21 @@ impl StagedDirectory {
     /// Where to write.
     pub(crate) fn path(&self) -> &Path {
         self.staging.path()
+    }
+
+    /// Moves the directory into place unless another process has put one there meanwhile, which is kept.
+    pub(crate) fn commit_if_vacant(mut self) -> Result<()> {
+        let (staging, place) = (self.staging.path(), self.place.as_path());
+        let _held = interrupt::held();
+        // An empty directory is replaced, any other is not.
+        match fs::rename(staging, place) {
+            Ok(()) => self.made.clear(),
+            Err(_) if !is_vacant(place)? => {}
+            Err(error) => {
+                return Err(error).with_context(|| format!("cannot write {}", place.display()));
+            }
+        }
+        Ok(())
     }
 
     /// Moves the directory into place, replacing what is there.

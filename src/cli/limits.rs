@@ -24,6 +24,8 @@ const LARGE_SEARCH: f64 = 1e9;
 const TOLD_SEARCH_S: f64 = 10.0;
 /// Speed of full evaluations on one thread, samples per second: the paper's 205 920 in about 6 ms.
 const SAMPLES_PER_S: f64 = 35e6;
+/// Size of a design in the table of a sweep, bytes: some sixty numbers and its notation.
+const SWEPT_DESIGN_BYTES: f64 = 500.0;
 /// Memory taken for granted where the system does not say what is available, bytes.
 const ASSUMED_MEMORY_BYTES: u64 = 8 << 30;
 
@@ -124,6 +126,28 @@ pub(crate) fn check_designs(designs: f64, samples: f64) -> Result<()> {
     }
     if sweep_s > TOLD_SEARCH_S {
         output::hint(&format!("the grid of the search has at most {told}"));
+    }
+    Ok(())
+}
+
+/// Says how large a sweep is and what it would take, and refuses a very large one.
+pub(crate) fn check_sweep(designs: f64, one_thread_s: f64) -> Result<()> {
+    let bytes = (designs * SWEPT_DESIGN_BYTES) as u64;
+    let time_s = one_thread_s / rayon::current_num_threads() as f64;
+    let told = format!(
+        "{} designs, a table of about {}, in about {} here",
+        shown_count(designs),
+        shown_bytes(bytes),
+        shown_time(time_s as u64)
+    );
+    if bytes > LARGE_EXPORT_BYTES && !allows_large() {
+        bail!(
+            "the sweep would have {told}; more than {} needs --allow-large, or use larger steps or intervals in [search]",
+            shown_bytes(LARGE_EXPORT_BYTES)
+        );
+    }
+    if time_s > TOLD_SEARCH_S {
+        output::hint(&format!("sweep of {told}"));
     }
     Ok(())
 }

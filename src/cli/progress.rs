@@ -57,9 +57,14 @@ impl SharedProgress {
 
     /// Counts one more design, which is a step by itself.
     pub fn one_more(&self) {
+        self.add(1);
+    }
+
+    /// Counts more designs, each a step by itself.
+    pub fn add(&self, designs: u64) {
         let mut reached = self.lock();
-        reached.step += 1;
-        reached.evaluations += 1;
+        reached.step += designs;
+        reached.evaluations += designs;
     }
 }
 
@@ -158,6 +163,44 @@ impl SizeBar {
     /// Removes the bar.
     pub(crate) fn finish(&self) {
         if let Some(bar) = &self.0 {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// The progress of designs that several threads evaluate.
+pub(crate) struct DesignBar {
+    bar: Option<ProgressBar>,
+    followed_by: Option<SharedProgress>,
+}
+
+impl DesignBar {
+    pub(crate) fn new(designs: u64) -> Self {
+        let followed_by = FOLLOWED_BY.lock().unwrap_or_else(PoisonError::into_inner);
+        let new = Self {
+            bar: output::shows_progress().then(|| ProgressBar::new(designs)),
+            followed_by: followed_by.clone(),
+        };
+        let template = "{wide_bar} {pos}/{len} designs, {per_sec}, ETA {eta}";
+        if let (Some(bar), Ok(style)) = (&new.bar, ProgressStyle::with_template(template)) {
+            bar.set_style(style);
+        }
+        new
+    }
+
+    /// Counts designs that are done.
+    pub(crate) fn add(&self, designs: u64) {
+        if let Some(bar) = &self.bar {
+            bar.inc(designs);
+        }
+        if let Some(follower) = &self.followed_by {
+            follower.add(designs);
+        }
+    }
+
+    /// Removes the bar.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
     }

@@ -34,6 +34,15 @@ pub struct Study {
     named_in_files: RefCell<Vec<PathBuf>>,
 }
 
+/// A scenario with the contents of its files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PackedStudy {
+    /// The scenario with every key.
+    pub toml: String,
+    /// The contents of the files that it names, in its order.
+    pub contents: Vec<Vec<u8>>,
+}
+
 /// A scenario as written, to locate errors in it.
 #[derive(Clone)]
 struct Written {
@@ -118,6 +127,39 @@ impl Study {
         let mut other = self.clone();
         other.scenario.optimizer.algorithm = algorithm;
         other
+    }
+
+    /// The same study with the default optimiser, on which no metric depends.
+    ///
+    /// # Errors
+    /// Never: the defaults are valid.
+    pub fn for_sweep(&self) -> Result<Self> {
+        let defaults = Scenario::parse("defaults", b"", &[] as &[&str])?;
+        let mut other = self.clone();
+        other.scenario.optimizer = defaults.optimizer;
+        Ok(other)
+    }
+
+    /// All that another process needs to compute the same, wherever its files are.
+    ///
+    /// # Errors
+    /// If a file that the scenario names cannot be read.
+    pub fn packed(&self) -> Result<PackedStudy> {
+        let contents = self.contents()?.to_vec();
+        let paths = copy_paths(&self.scenario.files());
+        let toml = self.scenario.with_files(&paths).to_toml();
+        Ok(PackedStudy { toml, contents })
+    }
+
+    /// The study of such a pack.
+    ///
+    /// # Errors
+    /// If it is none.
+    pub fn unpacked(pack: PackedStudy) -> Result<Self> {
+        let written = Written::new("scenario", pack.toml.into_bytes(), &[], &[]);
+        let mut study = Self::parse(written, PathBuf::new(), None)?;
+        study.contents = OnceCell::from(pack.contents);
+        Ok(study)
     }
 
     /// The same study with further constellations, with the contents of their files.

@@ -9,6 +9,7 @@ mod rivals;
 pub use bounds::at_bounds;
 pub use rivals::{dominated_by, seed_spread};
 
+use super::from_evaluations::EvaluationSource;
 use crate::optimize::{Individual, Search, Strategy};
 use crate::run::{Diagnostic, FrontMember};
 use crate::search::DesignProblem;
@@ -22,7 +23,8 @@ pub fn diagnose(
     front: &[FrontMember],
     individuals: &[Individual],
 ) -> Vec<Diagnostic> {
-    let mut found = diagnose_front(problem, front, individuals);
+    let source = EvaluationSource::Search;
+    let mut found = diagnose_front(problem, front, individuals, source);
     let chosen = front.iter().position(|member| member.chosen);
     if let Some(chosen) = chosen.and_then(|n| individuals.get(n)) {
         found.extend(dependence::independent(problem, chosen));
@@ -42,8 +44,13 @@ pub(super) fn diagnose_front(
     problem: &DesignProblem<'_>,
     front: &[FrontMember],
     individuals: &[Individual],
+    source: EvaluationSource,
 ) -> Vec<Diagnostic> {
-    let mut found = at_bounds(front, problem.designs());
+    let mut found = match source {
+        // The designs of a list have nothing to do with the bounds of the search.
+        EvaluationSource::List => Vec::new(),
+        _ => at_bounds(front, problem.designs()),
+    };
     found.extend(conflict::without_conflict(
         individuals,
         &problem.goals().objectives,

@@ -38,17 +38,87 @@ impl OptimizeResult {
         scenario: &Scenario,
         stamp: ScenarioStamp,
     ) -> Result<Self, NotEvaluated> {
-        check_values(problem, evaluations)?;
-        let candidates: Vec<Individual> =
-            evaluations.iter().map(|one| judged(problem, one)).collect();
-        let individuals = front_of(candidates.iter().cloned());
-        let of_member = |member: &Individual| {
-            let place = candidates
-                .iter()
-                .position(|one| one.genome == member.genome)?;
-            evaluations[place].evaluated.clone()
+        let mut front = EvaluatedFront::new(EvaluationSource::Search);
+        front.offer(problem, evaluations)?;
+        Ok(front.result(problem, scenario, stamp))
+    }
+}
+
+/// Where evaluations come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum EvaluationSource {
+    /// A search for goals of its own.
+    Search,
+    /// A sweep of the search space.
+    Space,
+    /// A sweep of a list, whose designs have numbers in place of vectors of the search space.
+    List,
+}
+
+/// The front of evaluations that come in parts.
+#[derive(Debug, Clone)]
+pub struct EvaluatedFront {
+    source: EvaluationSource,
+    evaluations: usize,
+    candidates: Vec<(Individual, RecordedEvaluation)>,
+}
+
+impl EvaluatedFront {
+    /// The front of no evaluations yet.
+    #[must_use]
+    pub fn new(source: EvaluationSource) -> Self {
+        Self {
+            source,
+            evaluations: 0,
+            candidates: Vec::new(),
+        }
+    }
+
+    /// Takes the next evaluations, of which those that are not dominated are kept.
+    ///
+    /// # Errors
+    /// If no evaluation of the first part has a value of a quantity that is optimised or bounded.
+    pub fn offer(
+        &mut self,
+        problem: &DesignProblem<'_>,
+        evaluations: &[RecordedEvaluation],
+    ) -> Result<(), NotEvaluated> {
+        if self.evaluations == 0 {
+            check_values(problem, evaluations)?;
+        }
+        self.evaluations += evaluations.len();
+        let judged = |one: &RecordedEvaluation| {
+            let mut individual = judged(problem, one);
+            if self.source != EvaluationSource::List {
+                // The vector that stands for the design.
+                problem.unify(&mut individual.genome);
+            }
+            (individual, one.clone())
         };
-        let evaluated = individuals.iter().map(of_member).collect();
+        let further: Vec<_> = evaluations.iter().map(judged).collect();
+        let mut all = std::mem::take(&mut self.candidates);
+        all.extend(further);
+        let members = front_of(all.iter().map(|(individual, _)| individual.clone()));
+        let of_member = |member: Individual| {
+            let found = all.iter().find(|(one, _)| one.genome == member.genome)?;
+            Some((member, found.1.clone()))
+        };
+        self.candidates = members.into_iter().filter_map(of_member).collect();
+        Ok(())
+    }
+
+    /// The result, for the goals of `problem`.
+    #[must_use]
+    pub fn result(
+        self,
+        problem: &DesignProblem<'_>,
+        scenario: &Scenario,
+        stamp: ScenarioStamp,
+    ) -> OptimizeResult {
+        let (source, evaluations) = (self.source, self.evaluations);
+        let (individuals, records): (Vec<Individual>, Vec<RecordedEvaluation>) =
+            self.candidates.into_iter().unzip();
+        let evaluated = records.into_iter().map(|one| one.evaluated).collect();
         let points: Vec<&[f64]> = individuals
             .iter()
             .map(|a| a.objectives.as_slice())
@@ -57,12 +127,12 @@ impl OptimizeResult {
         let objectives = &scenario.objectives.minimize;
         let hypervolume = Hypervolume::of(&points, written.as_deref(), None, objectives);
         let front = front_members(problem, &individuals, &points, evaluated);
-        let mut diagnostics = vec![of_other_goals(evaluations.len())];
-        diagnostics.extend(diagnose_front(problem, &front, &individuals));
+        let mut diagnostics = vec![told_source(source, evaluations)];
+        diagnostics.extend(diagnose_front(problem, &front, &individuals, source));
         diagnostics.extend(shown::unused_reference(&hypervolume));
-        Ok(Self {
+        OptimizeResult {
             search: SearchSummary {
-                evaluations: evaluations.len() as u64,
+                evaluations: evaluations as u64,
                 hypervolume,
                 seed: scenario.optimizer.seed,
                 algorithm: scenario.optimizer.algorithm.to_string(),
@@ -76,17 +146,15 @@ impl OptimizeResult {
             front,
             history: Vec::new(),
             chosen_reference: None,
-        })
+        }
     }
 }
 
-/// An evaluation as the optimisers see it, its vector the one that stands for its design.
+/// An evaluation as the optimisers see it.
 fn judged(problem: &DesignProblem<'_>, one: &RecordedEvaluation) -> Individual {
     let evaluation = problem.evaluation(one.evaluated.as_ref());
-    let mut genome = one.genome.clone();
-    problem.unify(&mut genome);
     Individual {
-        genome,
+        genome: one.genome.clone(),
         objectives: evaluation.objectives,
         violation: evaluation.violation,
     }
@@ -116,12 +184,20 @@ fn check_values(
     }
 }
 
-fn of_other_goals(evaluations: usize) -> Diagnostic {
-    Diagnostic::new(
-        "from-evaluations",
-        format!(
+fn told_source(source: EvaluationSource, evaluations: usize) -> Diagnostic {
+    let text = match source {
+        EvaluationSource::Search => format!(
             "the front of {} that a search made for the goals of its own scenario; a search for these may find better designs",
             counted(evaluations, "evaluation")
         ),
-    )
+        EvaluationSource::Space => format!(
+            "the front of all {} of a sweep: exact for its grid",
+            counted(evaluations, "design")
+        ),
+        EvaluationSource::List => format!(
+            "the front of the {} of a list",
+            counted(evaluations, "design")
+        ),
+    };
+    Diagnostic::new("from-evaluations", text)
 }

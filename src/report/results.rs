@@ -270,7 +270,8 @@ pub(super) fn front_members(
 
 /// The shells of a vector in the order of the search; none where one shell is the whole design.
 fn shells(space: &DesignSpace, genome: &[f64]) -> Vec<Option<DesignSummary>> {
-    if space.is_of_one_shell() {
+    // The designs of a list have numbers in place of vectors.
+    if space.is_of_one_shell() || space.variable_count() != genome.len() {
         return Vec::new();
     }
     let shells = space.shells_of(genome).unwrap_or_default().into_iter();

@@ -275,41 +275,14 @@ impl EvaluationRow<'_> {
 
     /// The metrics; `None` where there are none.
     fn metrics(&self) -> Result<Option<Metrics>, EvaluationsError> {
-        let mut all = Map::new();
-        let mut has_value = false;
+        let mut cells = Vec::new();
         for (place, column) in self.heading.iter().enumerate() {
-            let Some((field, part)) = field_of(column) else {
-                continue;
-            };
-            let value = self.value(place)?;
-            has_value |= !value.is_null();
-            let Some(part) = part else {
-                all.insert(field.to_owned(), value);
-                continue;
-            };
-            let whole = all
-                .entry(field)
-                .or_insert_with(|| Value::Object(Map::new()));
-            if let Some(whole) = whole.as_object_mut() {
-                whole.insert(part.to_owned(), value);
-            }
-        }
-        if !has_value {
-            return Ok(None);
-        }
-        for whole in all.values_mut() {
-            // The parts of a metric without a value have none.
-            let parts = whole
-                .as_object()
-                .map(|parts| parts.values().all(Value::is_null));
-            if parts == Some(true) {
-                *whole = Value::Null;
+            if field_of(column).is_some() {
+                cells.push((column, self.value(place)?));
             }
         }
         let line = self.line();
-        serde_json::from_value(Value::Object(all))
-            .map(Some)
-            .map_err(|source| EvaluationsError::Metrics { line, source })
+        metrics_of_cells(cells).map_err(|source| EvaluationsError::Metrics { line, source })
     }
 
     fn value(&self, place: usize) -> Result<Value, EvaluationsError> {
@@ -321,6 +294,46 @@ impl EvaluationRow<'_> {
         let value = serde_json::from_str(text).ok().filter(is_value);
         value.ok_or_else(|| self.wrong(place))
     }
+}
+
+/// The metrics in the cells of a row, by column; `None` where all are empty. Other columns are passed over.
+///
+/// # Errors
+/// If the metrics are not complete.
+pub(crate) fn metrics_of_cells<'a>(
+    cells: impl IntoIterator<Item = (&'a str, Value)>,
+) -> serde_json::Result<Option<Metrics>> {
+    let mut all = Map::new();
+    let mut has_value = false;
+    for (column, value) in cells {
+        let Some((field, part)) = field_of(column) else {
+            continue;
+        };
+        has_value |= !value.is_null();
+        let Some(part) = part else {
+            all.insert(field.to_owned(), value);
+            continue;
+        };
+        let whole = all
+            .entry(field)
+            .or_insert_with(|| Value::Object(Map::new()));
+        if let Some(whole) = whole.as_object_mut() {
+            whole.insert(part.to_owned(), value);
+        }
+    }
+    if !has_value {
+        return Ok(None);
+    }
+    for whole in all.values_mut() {
+        // The parts of a metric without a value have none.
+        let parts = whole
+            .as_object()
+            .map(|parts| parts.values().all(Value::is_null));
+        if parts == Some(true) {
+            *whole = Value::Null;
+        }
+    }
+    serde_json::from_value(Value::Object(all)).map(Some)
 }
 
 /// The field of the metrics that a column is, or is a part of.

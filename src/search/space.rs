@@ -41,6 +41,13 @@ impl DesignSpace {
         Space::new(variables.collect())
     }
 
+    /// Number of variables of a vector.
+    #[must_use]
+    pub fn variable_count(&self) -> usize {
+        let shells = self.shells.iter();
+        shells.map(|shell| shell.variables().count()).sum()
+    }
+
     /// The steps of a sweep, in the order of the vectors; 1 for counts and patterns.
     #[must_use]
     pub fn steps(&self) -> Vec<f64> {

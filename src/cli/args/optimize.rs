@@ -48,7 +48,7 @@ pub(crate) struct OptimizeArgs {
     #[arg(long)]
     pub(crate) evaluations: bool,
 
-    /// Print the front of the evaluations that a run in DIR wrote with --evaluations, for other objectives or
+    /// Print the front of the evaluations that a run in DIR wrote with --evaluations, or of a sweep in DIR, for other objectives or
     /// constraints, as in --set objectives.minimize=["satellites","max-pdop"]. Nothing is evaluated, and nothing is
     /// written.
     #[arg(

@@ -1,7 +1,7 @@
 //! `navwalker evaluate`.
 
 pub(super) mod deployment;
-mod designs;
+pub(super) mod designs;
 pub(super) mod failures;
 mod given_run;
 mod phases;

@@ -7,6 +7,7 @@ use crate::cli::{Status, output};
 use crate::ephemeris::Ephemeris;
 use crate::exchange::constellation::{Constellation, GNSS_ONLY};
 use crate::report::ConstellationEntry;
+use crate::run::sweep::SweptDesign;
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -26,7 +27,7 @@ const NOTATION_COLUMNS: [&str; 2] = ["design", "notation"];
 const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// A list of designs that is being read.
-pub(super) struct DesignList {
+pub(in crate::cli::commands) struct DesignList {
     /// Its name in messages.
     label: String,
     input: BufReader<Box<dyn Read>>,
@@ -54,7 +55,7 @@ type NumberedLine = (usize, Result<String, String>);
 
 impl DesignList {
     /// The list in a file, or in stdin for `-`.
-    pub(super) fn open(path: &Path) -> Result<Self> {
+    pub(in crate::cli::commands) fn open(path: &Path) -> Result<Self> {
         let (label, input): (_, Box<dyn Read>) = if path == Path::new("-") {
             ("stdin".to_owned(), Box::new(io::stdin()))
         } else {
@@ -82,6 +83,35 @@ impl DesignList {
             list.first = first;
         }
         Ok(list)
+    }
+
+    /// All designs of the list, as a sweep needs them before it begins.
+    pub(in crate::cli::commands) fn swept(mut self, study: &Study) -> Result<Vec<SweptDesign>> {
+        let mut known = NamedConstellations {
+            study,
+            read: BTreeMap::new(),
+        };
+        let mut all = Vec::new();
+        while let Some((number, line)) = self.next_line()? {
+            let one = line.and_then(|line| self.layout.constellation(&line, &mut known));
+            let one = one.map_err(|why| anyhow::anyhow!("{}:{number}: {why}", self.label))?;
+            let Some(design) = one.only_design() else {
+                bail!(
+                    "{}:{number}: {} has satellites from files, and a sweep is of designs",
+                    self.label,
+                    one.name
+                );
+            };
+            let notation = design.to_string();
+            all.push(SweptDesign {
+                name: Some(one.name).filter(|name| *name != notation),
+                notation,
+            });
+        }
+        if all.is_empty() {
+            bail!("{} contains no design", self.label);
+        }
+        Ok(all)
     }
 
     /// Whether its designs may have names.
