@@ -12,7 +12,7 @@ from pathlib import Path
 
 import navwalker as nw
 
-# About 80 chunks of a quarter of a second on one thread.
+# Some 60 chunks.
 KEYS = {
     "time_step_s": 120,
     "search_planes": [3, 6],
@@ -20,7 +20,7 @@ KEYS = {
     "search_inclination_step_deg": 2.5,
     "search_altitude_step_km": 200,
 }
-CHUNK = 30
+CHUNK = 10
 # A worker that says nothing for so long is given up.
 ENVIRONMENT = {
     **os.environ,
