@@ -163,6 +163,12 @@ CASES = [
         before=[*FINISHED, [*VALIDATE, "--pick", "1", "--set", "region.step-deg=20"]],
         results=[["run/validation"]],
     ),
+    Case(
+        "sweep",
+        ["sweep", "--out", "store", "--chunk", "3", *SMALL],
+        then=["--resume"],
+        results=[["store/table.parquet"], ["store/index.json"]],
+    ),
     Case("evaluate --series", [*SERIES, "delta:55:4/2/1@925"], then=["--force"], results=[["out"]]),
     Case(
         "evaluate --series, by force",

@@ -22,7 +22,7 @@ use Seen::{Out, Status, Stderr, Stdout};
 struct Row(&'static str, &'static str, &'static str, &'static str, Seen);
 
 /// In place of these words stand the arguments of a small study.
-const SHORTHANDS: [(&str, &str); 6] = [
+const SHORTHANDS: [(&str, &str); 7] = [
     (
         "SMALL",
         "--set region.step-deg=25 --set time.step-s=1200 --set time.duration-h=4",
@@ -37,6 +37,11 @@ const SHORTHANDS: [(&str, &str); 6] = [
         "FEWEST",
         "--set region.step-deg=30 --set time.step-s=7200 --set objectives.constraints=[\"availability>=0.85\"] \
          --set objectives.availability-pdop=1.6 --set search.planes=[4,6] --set search.satellites-per-plane=[4,8] \
+         --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
+    ),
+    (
+        "SWEPT",
+        "--set region.step-deg=30 --set time.step-s=7200 --set search.planes=[4,5] --set search.satellites-per-plane=[4,4] \
          --set search.inclination-step-deg=20 --set search.altitude-step-km=600",
     ),
     (
@@ -157,6 +162,53 @@ const ROWS: &[Row] = &[
         Status,
     ),
     Row("size", "format", "--out out FEWEST", "--format csv", Stdout),
+    Row(
+        "sweep",
+        "set",
+        "--out out SWEPT",
+        "--set visibility.mask-deg=20",
+        Stdout,
+    ),
+    Row("sweep", "out", "SWEPT", "--out out", Out),
+    Row(
+        "sweep",
+        "designs",
+        "--out out SWEPT",
+        "--designs list.txt",
+        Stdout,
+    ),
+    Row("sweep", "as", "--out out SWEPT", "--as csv", Out),
+    Row("sweep", "chunk", "--out out SWEPT", "--chunk 2", Stdout),
+    Row("sweep", "shard", "--out out SWEPT", "--shard 1/2", Stdout),
+    Row(
+        "sweep",
+        "merge",
+        "sweep --out out SWEPT --shard 1/1 |",
+        "--out out --merge",
+        Out,
+    ),
+    Row(
+        "sweep",
+        "status",
+        "sweep --out out SWEPT |",
+        "--out out --status",
+        Stdout,
+    ),
+    Row(
+        "sweep",
+        "resume",
+        "sweep --out out SWEPT | --out out SWEPT",
+        "--resume",
+        Status,
+    ),
+    Row(
+        "sweep",
+        "force",
+        "optimize --out out LITTLE | --out out SWEPT",
+        "--force",
+        Status,
+    ),
+    Row("sweep", "format", "--out out SWEPT", "--format csv", Stdout),
     Row(
         "evaluate",
         "set",

@@ -33,5 +33,6 @@ mod singular;
 mod size;
 mod skies;
 mod study;
+mod sweep;
 mod tidy;
 mod trust;
