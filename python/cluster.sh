@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sweeps on what takes the place of a cluster on one machine: MPI ranks, a scheduler that is restarted, full disks, a worker without the
+# Sweeps on what takes the place of a cluster on one machine: MPI ranks, a scheduler that is restarted, a worker without the
 # package, and three hosts as network namespaces of which one is cut off. What the machine does not allow is skipped with the reason.
 #
 #     bash python/cluster.sh PYTHON [NAME…]
@@ -9,7 +9,7 @@ set -euo pipefail
 cd "$(dirname "$0")/cluster"
 python="$(realpath -s "${1:?an interpreter with navwalker and distributed}")"
 shift
-[ $# -gt 0 ] || set -- restart disk package mpi network
+[ $# -gt 0 ] || set -- restart package mpi network
 failed=0
 for name in "$@"; do
     began=$SECONDS

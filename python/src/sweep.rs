@@ -212,6 +212,10 @@ impl NativeSweep {
 
 /// The table of the sweep in a store, from the results of its chunks.
 #[pyfunction]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "the module reads stores; only the library opens no path"
+)]
 pub(crate) fn read_sweep(py: Python<'_>, store: PathBuf) -> PyResult<Columns> {
     let read = move || -> anyhow::Result<Option<TypedColumns>> {
         let store = SweepStore::read(&store)?;
