@@ -23,6 +23,7 @@ from navwalker._results import Metrics, Samples, Table
 from navwalker._run import Run
 from navwalker._scenario import Scenario
 from navwalker._sky import Dops, dop
+from navwalker._sweep import Sweep, SweepError
 
 __all__ = [
     "Constellation",
@@ -39,6 +40,8 @@ __all__ = [
     "Samples",
     "Scenario",
     "ScenarioError",
+    "Sweep",
+    "SweepError",
     "Table",
     "ValidationReport",
     "__version__",

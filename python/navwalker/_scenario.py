@@ -20,8 +20,10 @@ if TYPE_CHECKING:
     import xarray
 
     from navwalker._custom import CustomRun
+    from navwalker._engines import Executor
     from navwalker._plots import Plots
     from navwalker._run import Run
+    from navwalker._sweep import Sweep
 
     Objective = Callable[[Table], npt.ArrayLike]
     Whole = npt.NDArray[np.int64]
@@ -261,6 +263,35 @@ class Scenario:
         from navwalker._run import search
 
         return search(self, seed, out, force, progress)
+
+    def sweep(
+        self,
+        designs: Iterable[Given] | None = None,
+        *,
+        store: Path,
+        executor: Executor | None = None,
+        chunk: int | None = None,
+        format: Literal["parquet", "csv"] | None = None,
+        force: bool = False,
+        allow_large: bool = False,
+        progress: bool = False,
+    ) -> Sweep:
+        """Evaluates every design of the search space, on the steps of its grid, or those of a list, and keeps every metric
+        in one table in the directory ``store``, with the same bytes wherever the designs were evaluated.
+
+        The work is cut into chunks, of ``chunk`` designs or of some seconds on one thread. Each is kept as it is done: a
+        store that holds this sweep is continued, after Ctrl-C or a failure too, and another one is replaced with ``force``
+        alone. ``executor`` evaluates the chunks elsewhere: a ``Client`` of Dask, or an executor like those of
+        ``concurrent.futures``, of loky or of ``mpi4py.futures``; without it they are evaluated here, on all threads.
+        A sweep that cannot be finished raises :class:`SweepError`, which says what is missing; one of more than 20 million
+        designs begins with ``allow_large`` alone.
+
+        A process of an executor evaluates on one thread, unless the scenario has ``threads``; a worker of Dask on its own.
+        """
+        from navwalker._sweep import sweep
+
+        options = {"chunk": chunk, "format": format, "force": force, "allow_large": allow_large}
+        return sweep(self, designs, store, executor, options, progress)
 
     def problem(self) -> Any:
         """The search of the scenario as a pymoo Problem of real variables, which rounds those that are whole."""

@@ -1,8 +1,9 @@
 //! The columns of evaluated constellations, named as in CSV.
 
-use crate::columns::{Columns, Kind};
+use crate::columns::Columns;
 use navwalker::constellation::Design;
 use navwalker::evaluate::Metrics;
+use navwalker::run::typed_columns::{ColumnKind, TypedColumns};
 use navwalker::run::{DesignSummary, metric_columns, metric_values};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -38,16 +39,16 @@ pub(crate) fn table(all: &[Evaluated], errors: bool) -> serde_json::Result<Colum
     }
     let kinds = names
         .into_iter()
-        .map(|name| (name.clone(), Kind::of(&name)));
-    let columns: Vec<(String, Kind)> = kinds.collect();
+        .map(|name| (name.clone(), ColumnKind::of(&name)));
+    let columns: Vec<(String, ColumnKind)> = kinds.collect();
     let rows = all.par_iter().map(|one| row(one, &columns, errors));
     let rows = rows.collect::<serde_json::Result<Vec<_>>>()?;
-    Ok(Columns::new(columns, &rows))
+    Ok(Columns::new(TypedColumns::new(&columns, &rows)))
 }
 
 fn row(
     one: &Evaluated,
-    columns: &[(String, Kind)],
+    columns: &[(String, ColumnKind)],
     errors: bool,
 ) -> serde_json::Result<Vec<Value>> {
     let mut cells = vec![Value::from(one.name.as_str())];

@@ -1,12 +1,12 @@
 //! A scenario, ready to evaluate constellations.
 
-use crate::columns::{Columns, Kind};
+use crate::columns::Columns;
 use crate::constellation::NativeConstellation;
 use crate::design_columns::{self, Evaluated};
 use crate::errors::{self, DesignError, NavwalkerError};
 use crate::interruptible::{Shared, Tick, on_pool};
 use crate::states;
-use navwalker::cli::embedded::{self, ScenarioText, Study, error_text};
+use navwalker::cli::embedded::{self, PackedStudy, ScenarioText, Study, error_text};
 use navwalker::constellation::{Pattern, Shell, ShellParameters};
 use navwalker::evaluate::{Evaluator, Metrics};
 use navwalker::exchange::constellation::Constellation;
@@ -14,9 +14,10 @@ use navwalker::frames::Frame;
 use navwalker::ground::Site;
 use navwalker::report::records_csv;
 use navwalker::run::metric_values;
+use navwalker::run::typed_columns::{ColumnKind, TypedColumns};
 use numpy::{PyArray1, PyArray2, PyArray3, PyReadonlyArray1};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -31,6 +32,9 @@ type SampleArrays<'py> = (
 
 /// Azimuths and elevations, by satellite and in it by instant.
 type LookAngles<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
+
+/// A scenario with every key, and the contents of its files.
+type Pack<'py> = (String, Vec<Bound<'py, PyBytes>>);
 
 /// A scenario and its evaluator, which is made when it is first needed.
 #[pyclass(frozen, module = "navwalker._native")]
@@ -145,6 +149,35 @@ impl Engine {
         })
     }
 
+    /// The scenario of a pack, as [`Engine::packed`] gives it.
+    #[staticmethod]
+    fn unpacked(toml: String, contents: Vec<Vec<u8>>, threads: Option<usize>) -> PyResult<Self> {
+        let study = Study::unpacked(PackedStudy { toml, contents });
+        Ok(Self {
+            study: Mutex::new(study.map_err(|error| errors::scenario(&error))?),
+            evaluator: OnceLock::new(),
+            threads,
+        })
+    }
+
+    /// All that the metrics depend on, for another process: the scenario with every key, and the contents of its files.
+    fn packed<'py>(&self, py: Python<'py>) -> PyResult<Pack<'py>> {
+        let pack = py.detach(|| self.study().for_sweep()?.packed());
+        let pack = pack.map_err(|error| errors::scenario(&error))?;
+        let contents = pack.contents.iter().map(|bytes| PyBytes::new(py, bytes));
+        Ok((pack.toml, contents.collect()))
+    }
+
+    /// Makes what does not depend on a constellation, unless it is there.
+    fn prepare(&self, py: Python<'_>) -> PyResult<()> {
+        self.evaluator(py).map(drop)
+    }
+
+    #[getter]
+    fn threads(&self) -> Option<usize> {
+        self.threads
+    }
+
     #[getter]
     fn name(&self) -> String {
         self.study().scenario.name.clone()
@@ -195,7 +228,7 @@ impl Engine {
             "weight",
             "name",
         ];
-        let columns = names.map(|name| (name.to_owned(), Kind::of(name)));
+        let columns = names.map(|name| (name.to_owned(), ColumnKind::of(name)));
         let row = |site: &Site| {
             let numbers = [
                 site.latitude_deg,
@@ -207,7 +240,7 @@ impl Engine {
             numbers.map(Value::from).into_iter().chain([name]).collect()
         };
         let rows: Vec<Vec<Value>> = evaluator.setup().sites.iter().map(row).collect();
-        Ok(Columns::new(columns.to_vec(), &rows))
+        Ok(Columns::new(TypedColumns::new(&columns, &rows)))
     }
 
     /// The borders of the region, as closed lines of longitudes and latitudes, degrees.

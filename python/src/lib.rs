@@ -14,6 +14,7 @@ mod pools;
 mod search;
 mod sky;
 mod states;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -36,6 +37,8 @@ mod _native {
     use super::search::{answers, picked, search_space};
     #[pymodule_export]
     use super::sky::dilutions;
+    #[pymodule_export]
+    use super::sweep::{NativeSweep, begin_sweep, read_sweep, run_chunk};
 
     /// Adds what is no function or class.
     #[pymodule_init]

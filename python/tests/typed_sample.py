@@ -1,5 +1,7 @@
 """A program that type checkers see: what comes back has the types that it says."""
 
+from concurrent.futures import ProcessPoolExecutor
+
 import numpy as np
 import numpy.typing as npt
 
@@ -38,3 +40,13 @@ def costs(scenario: nw.Scenario) -> npt.NDArray[np.float64]:
         planes=[3, 4], satellites_per_plane=4, inclination_deg=55, altitude_km=925.0, phasing=np.ones(2), progress=True
     )
     return run.objectives * len(table)
+
+
+def swept(scenario: nw.Scenario) -> list[int]:
+    """What is missing of a sweep by processes; nothing if it is whole."""
+    with ProcessPoolExecutor(2) as executor:
+        try:
+            sweep: nw.Sweep = scenario.sweep(["delta:55:182/13/1@925"], store="sweep", executor=executor, format="csv")
+        except nw.SweepError as error:
+            return error.missing
+    return [] if len(sweep.table()) == sweep.designs else [1]

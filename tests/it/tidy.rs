@@ -215,10 +215,11 @@ fn validation_cases_are_listed_with_their_checksums() {
     check_manifest("validation", &["cases"]);
 }
 
-/// Data of others that the program carries.
+/// Data of others that the program and its examples carry.
 #[test]
-fn built_in_data_are_listed_with_their_checksums() {
-    check_manifest("data", &["coastline", "countries", "earth-rotation"]);
+fn data_of_others_are_listed_with_their_checksums() {
+    let folders = ["almanacs", "coastline", "countries", "earth-rotation"];
+    check_manifest("data", &folders);
 }
 
 /// Holds the files of folders against the manifest above them.
