@@ -43,9 +43,9 @@ const APART_RAD: f64 = 1e-11;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SightSlack {
     /// Of the sine of an elevation.
-    sine: f32,
+    pub(super) sine: f32,
     /// |e| + |n| below which the azimuth is not good enough, km.
-    least_level_km: f32,
+    pub(super) least_level_km: f32,
 }
 
 impl SightSlack {
