@@ -184,7 +184,8 @@ impl TileSky {
     fn bin<R: Real>(&self, line: &SightLine<R>, slack: SightSlack, l: usize) -> (u32, bool) {
         // Adding this leaves a whole number in the last bits of the fraction, also of negative numbers.
         const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
-        let [dx, dy, dz] = line.to.map(R::single);
+        let [dx, dy, dz] = line.to;
+        let (dx, dy, dz) = (dx.single(), dy.single(), dz.single());
         let along =
             |axis: &[Lanes<f32>; 3]| dx * axis[0].0[l] + dy * axis[1].0[l] + dz * axis[2].0[l];
         let (east, north) = (along(&self.east), along(&self.north));
@@ -314,7 +315,11 @@ impl<R: Real> Sight<R> {
             self.settle(decide);
         }
         self.pass(|l, line, seen, possible| sums.add_line::<W>(line, seen, possible, l));
-        self.seen.0.map(|seen| seen as u8)
+        let mut lanes = UNSEEN;
+        for (lane, seen) in lanes.iter_mut().zip(&self.seen.0) {
+            *lane = *seen as u8;
+        }
+        lanes
     }
 }
 

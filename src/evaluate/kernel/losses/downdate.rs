@@ -1,7 +1,7 @@
 //! The geometry of a tile, from which satellites are taken away.
 
 use super::super::lanes::{LANES, Lanes, Sums, Weighting};
-use super::super::normal::{FixedTile, NormalLanes};
+use super::super::normal::{FixedTile, NormalLanes, at};
 use super::super::sample::POSITION_STATES;
 use super::LaneSight;
 
@@ -110,7 +110,7 @@ impl TileGeometry {
             let (theirs, mean, count) = match fixed.shared {
                 Some(shared) => (
                     shared.weight::<f64>(l),
-                    [0, 1, 2].map(|axis| shared.mean::<f64>(axis, l)),
+                    [shared.mean(0, l), shared.mean(1, l), shared.mean(2, l)],
                     f64::from(shared.count.0[l]),
                 ),
                 None => (0.0, [0.0; 3], 0.0),
@@ -208,9 +208,12 @@ impl TileGeometry {
 
     #[inline(always)]
     fn removal(&self, one: &LaneSight, l: usize) -> Removal {
-        let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|n| self.inverse[n].0[l]);
-        let delta: [f64; 3] = std::array::from_fn(|n| one.unit[n].0[l] - self.mean[n].0[l]);
-        let [x, y, z] = delta;
+        let [xx, yy, zz, xy, xz, yz] = at(&self.inverse, l);
+        let [unit, mean] = [&one.unit, &self.mean];
+        let x = unit[0].0[l] - mean[0].0[l];
+        let y = unit[1].0[l] - mean[1].0[l];
+        let z = unit[2].0[l] - mean[2].0[l];
+        let delta = [x, y, z];
         let along = [
             xx * x + xy * y + xz * z,
             xy * x + yy * y + yz * z,
