@@ -140,6 +140,36 @@ fn each_satellite_is_lost_as_if_evaluated_anew() {
     }
 }
 
+/// The maximum, the availability and what is solved, to the last bit as from the list of all samples that change; and
+/// each counts, also where a loss leaves samples unsolved.
+#[test]
+fn the_worst_is_that_of_all_samples() {
+    let mut unsolved = 0;
+    for (setup, design, satellites) in studies() {
+        let evaluator = Evaluator::new(setup.clone()).unwrap();
+        let whole = propagated(&setup, design);
+        let mut sets = each(satellites);
+        sets.push((0..satellites).collect());
+        sets.push((0..satellites / 2).collect());
+        sets.push(Vec::new());
+        let ours = evaluator.worst_without_each(&whole, &sets).unwrap();
+        let all = evaluator.without_each(&whole, &sets).unwrap();
+        for ((ours, all), set) in ours.iter().zip(&all).zip(&sets) {
+            assert_eq!(ours.max_pdop, all.max_pdop, "{design} without {set:?}");
+            assert_eq!(
+                ours.availability, all.availability,
+                "{design} without {set:?}"
+            );
+            assert_eq!(
+                ours.solved_fraction, all.solved_fraction,
+                "{design} without {set:?}"
+            );
+            unsolved += usize::from(ours.solved_fraction < 1.0);
+        }
+    }
+    assert!(unsolved > 100, "{unsolved}");
+}
+
 /// Planes, pairs, sets that overlap, all satellites and none.
 #[test]
 fn sets_are_lost_as_if_evaluated_anew() {

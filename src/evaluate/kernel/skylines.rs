@@ -333,14 +333,14 @@ pub(super) struct Skyward<'a, R> {
 }
 
 impl<R: Real> Skyward<'_, R> {
-    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible, unless it is visible nowhere.
-    /// `decide` decides for a lane.
+    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible and whether it may be, unless it is
+    /// visible nowhere. `decide` decides for a lane, where it can.
     #[inline(always)]
     pub(super) fn look(
         &self,
         satellite: [R; 3],
         decide: impl Fn(usize) -> Option<bool>,
-        mut add: impl FnMut(usize, &SightLine<R>, bool),
+        add: impl FnMut(usize, &SightLine<R>, bool, bool),
     ) {
         let mut sight = [Sight::nowhere()];
         self.look_at([satellite].into_iter(), &mut sight);
@@ -348,7 +348,7 @@ impl<R: Real> Skyward<'_, R> {
         if sight.among {
             sight.settle(decide);
         }
-        sight.pass(|l, line, seen, _| add(l, line, seen));
+        sight.pass(add);
     }
 
     /// Compares satellites with the skylines.

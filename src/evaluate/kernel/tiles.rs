@@ -423,7 +423,7 @@ impl Tile {
             slack,
         };
         let decide = |lane: usize| Some(sky.sees(lane, satellite, mask));
-        points.look(satellite, decide, add);
+        points.look(satellite, decide, |l, line, seen, _| add(l, line, seen));
     }
 
     /// Largest distance of a point from the middle, km.

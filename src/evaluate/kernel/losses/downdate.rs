@@ -31,6 +31,12 @@ impl LossLimits {
         }
     }
 
+    /// Whether a sample whose square the lanes decide is available.
+    #[inline(always)]
+    pub(super) fn is_available(&self, square: f64) -> bool {
+        square <= self.available
+    }
+
     #[inline(always)]
     fn decide(&self, square: f64) -> bool {
         (square <= self.up_to) & ((square - self.available).abs() > self.available * NEAR)
@@ -143,26 +149,40 @@ impl TileGeometry {
     pub(super) fn pdop_without(&self, one: &LaneSight, limits: &LossLimits) -> Lanes<f64> {
         let mut pdop = Lanes([0.0; LANES]);
         for l in 0..LANES {
-            let removal = self.removal(one, l);
-            let [x, y, z] = removal.along;
-            let rise = removal.gain * (x * x + y * y + z * z) / removal.left;
-            let rise = if removal.is_idle { 0.0 } else { rise };
-            let least = self.least_share.0[l];
-            let (left, whole) = if removal.is_idle {
-                (1.0, 1.0)
-            } else {
-                (removal.left, removal.rest)
-            };
-            let gone = if removal.is_idle { 0.0 } else { removal.used };
-            let enough = self.surplus.0[l] - gone >= f64::from(POSITION_STATES);
-            pdop.0[l] = verdict(
-                self.square.0[l] + rise,
-                left > least * whole,
-                enough,
-                limits,
-            );
+            let (square, is_good, enough) = self.without(one, l);
+            pdop.0[l] = verdict(square, is_good, enough, limits);
         }
         pdop
+    }
+
+    /// The square of that where the lanes decide and the sample is solved; elsewhere 0.
+    #[inline(always)]
+    pub(super) fn square_without(&self, one: &LaneSight, limits: &LossLimits) -> Lanes<f64> {
+        let mut squares = Lanes([0.0; LANES]);
+        for l in 0..LANES {
+            let (square, is_good, enough) = self.without(one, l);
+            let is_decided = is_good & enough & limits.decide(square);
+            squares.0[l] = if is_decided { square } else { 0.0 };
+        }
+        squares
+    }
+
+    /// The square of PDOP without a satellite, whether the geometry is still good, and whether there are enough satellites.
+    #[inline(always)]
+    fn without(&self, one: &LaneSight, l: usize) -> (f64, bool, bool) {
+        let removal = self.removal(one, l);
+        let [x, y, z] = removal.along;
+        let rise = removal.gain * (x * x + y * y + z * z) / removal.left;
+        let rise = if removal.is_idle { 0.0 } else { rise };
+        let least = self.least_share.0[l];
+        let (left, whole) = if removal.is_idle {
+            (1.0, 1.0)
+        } else {
+            (removal.left, removal.rest)
+        };
+        let gone = if removal.is_idle { 0.0 } else { removal.used };
+        let enough = self.surplus.0[l] - gone >= f64::from(POSITION_STATES);
+        (self.square.0[l] + rise, left > least * whole, enough)
     }
 
     /// Takes a satellite away.
