@@ -12,7 +12,7 @@ use std::sync::OnceLock;
 
 impl Evaluator {
     /// The worst without each of some sets of satellites, given by their places; that of [`Evaluator::without_each`] but
-    /// for the CVaR, in a third of the time.
+    /// for the CVaR, in less than half of the time.
     pub(super) fn worst_without_each(
         &self,
         ephemeris: &Ephemeris,
