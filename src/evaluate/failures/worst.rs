@@ -23,7 +23,7 @@ impl Evaluator {
         for batch in self.batches(ephemeris, sets)? {
             let of_batch = Sets::new(self, ephemeris, batch).tallied();
             let pieces = pass::pass(self, &tree, &of_batch)?;
-            let whole = Whole::new(self, &pieces);
+            let whole = AllSamples::new(self, &pieces);
             let cases = (0..batch.len())
                 .into_par_iter()
                 .map(|set| whole.without(set));
@@ -34,10 +34,10 @@ impl Evaluator {
 }
 
 /// The samples with all satellites.
-struct Whole<'a> {
+struct AllSamples<'a> {
     evaluator: &'a Evaluator,
     pieces: &'a [SampleLosses],
-    totals: Totals,
+    totals: SolvedTotals,
     /// The largest PDOP of the solved samples.
     largest: f64,
     /// The solved samples with their PDOP, the largest first, once they are wanted.
@@ -45,7 +45,7 @@ struct Whole<'a> {
 }
 
 #[derive(Clone, Copy, Default)]
-struct Totals {
+struct SolvedTotals {
     /// Number of solved samples.
     number: u64,
     /// Weight of the solved samples.
@@ -54,7 +54,7 @@ struct Totals {
     available: u64,
 }
 
-impl Totals {
+impl SolvedTotals {
     fn add(&mut self, pdop: f64, weight: u64, available_up_to: f64) {
         if pdop.is_finite() {
             self.number += 1;
@@ -72,10 +72,10 @@ impl Totals {
     }
 }
 
-impl<'a> Whole<'a> {
+impl<'a> AllSamples<'a> {
     fn new(evaluator: &'a Evaluator, pieces: &'a [SampleLosses]) -> Self {
         let available_up_to = evaluator.setup().metrics.availability_pdop;
-        let (mut totals, mut largest) = (Totals::default(), 0.0_f64);
+        let (mut totals, mut largest) = (SolvedTotals::default(), 0.0_f64);
         for one in pieces.iter().flat_map(|piece| &piece.whole) {
             let weight = evaluator.weights.of(one.site as usize);
             totals.add(one.pdop, weight, available_up_to);
