@@ -8,19 +8,20 @@
 use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant, at_most_u16};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, SightLine, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, SineWeights, Sums, UnitWeights, Weighting};
 use super::losses::downdate::{LossLimits, TileGeometry};
+use super::losses::sky::{LaneSky, OpenSky};
 use super::losses::worst::BegunTile;
 use super::normal::FixedTile;
 use super::propagation::{PatternPropagator, Propagation};
 use super::sample::{SampleContext, Workspace};
-use super::skylines::{SightSlack, Skyward, TileSky};
 use super::tiles::{Group, Tile};
 use crate::dop::ObservationWeights;
 use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::Range;
 
 mod downdate;
+mod sky;
 mod worst;
 
 pub(in crate::evaluate) use worst::LossTally;
@@ -124,7 +125,7 @@ impl Kernel {
         let propagation = Propagation::new(ephemeris);
         let mut work = Workspace::new(ephemeris.satellites().len());
         let mut scratch = FixedTiles::default();
-        let (mut sky, mut touched) = (Vec::new(), Vec::new());
+        let (mut sky, mut touched) = (LaneSky::default(), Vec::new());
         let mut doubts = LossDoubts::default();
         for number in instants {
             let instant = SampleInstant {
@@ -160,17 +161,6 @@ impl Kernel {
     }
 }
 
-/// A satellite that some points of a tile see.
-pub(super) struct LaneSight {
-    satellite: u32,
-    /// A bit for each point that sees it.
-    seen: u32,
-    /// Unit vector to it.
-    unit: [Lanes<f64>; 3],
-    /// Weight of its observation; 0 where it is not seen.
-    weight: Lanes<f64>,
-}
-
 /// One instant.
 struct LossesAt<'a> {
     scene: &'a SampleContext,
@@ -180,7 +170,7 @@ struct LossesAt<'a> {
     /// The sets that each satellite is in, rising.
     of_satellite: &'a [Vec<u32>],
     work: &'a mut Workspace,
-    sky: &'a mut Vec<LaneSight>,
+    sky: &'a mut LaneSky,
     /// Sets and places in the sky of their satellites.
     touched: &'a mut Vec<(u32, u32)>,
     losses: &'a mut SampleLosses,
@@ -214,7 +204,10 @@ impl LossesAt<'_> {
     fn tile<W: Weighting>(&mut self, number: usize, group: &Group) {
         let tile = &self.scene.tiles.tiles[number];
         let fixed = self.fixed.tile(number);
-        let (sums, near_mask) = self.look::<W>(number, group);
+        let (sums, near_mask) = match tile.sky {
+            None => self.look::<W, false>(number, group),
+            Some(_) => self.look::<W, true>(number, group),
+        };
         let all = TileGeometry::new::<W>(&sums, &fixed);
         let doubts = self.doubts.samples.len();
         let first = self.losses.whole.len() as u32;
@@ -232,14 +225,18 @@ impl LossesAt<'_> {
         let begun = self.begin(number, first, sure);
         self.lose_sets(&all, &begun);
         if self.doubts.samples.len() > doubts {
-            let satellites = self.sky.iter().map(|one| one.satellite).collect();
+            let satellites = self.sky.seen().iter().map(|one| one.satellite).collect();
             self.doubts.tiles.push((number as u32, satellites));
         }
     }
 
     /// The satellites in view of a tile, their sums, and a bit for each point with one close to the mask.
     #[inline(always)]
-    fn look<W: Weighting>(&mut self, number: usize, group: &Group) -> (Sums<f64>, u32) {
+    fn look<W: Weighting, const UNDER_SKYLINES: bool>(
+        &mut self,
+        number: usize,
+        group: &Group,
+    ) -> (Sums<f64>, u32) {
         let tile = &self.scene.tiles.tiles[number];
         let mask = &self.scene.double;
         let sine = mask.sine();
@@ -249,33 +246,37 @@ impl LossesAt<'_> {
         self.sky.clear();
         for n in self.work.candidates(number, group).satellites() {
             let satellite = self.work.positions.at(n);
-            let mut one = LaneSight {
-                satellite: n as u32,
-                seen: 0,
-                unit: [Lanes([0.0; LANES]); 3],
-                weight: Lanes([0.0; LANES]),
-            };
+            let one = self.sky.next_to_fill();
             let (mut seen_bits, mut near_bits) = (Lanes([0_u32; LANES]), Lanes([0_u32; LANES]));
             let open = match &tile.sky {
-                Some(sky) => OpenSky::over(sky, tile, self.scene, satellite, slack),
-                None => OpenSky::EVERYWHERE,
+                Some(sky) if UNDER_SKYLINES => {
+                    OpenSky::over(sky, tile, self.scene, satellite, slack)
+                }
+                _ => OpenSky::EVERYWHERE,
             };
             for l in 0..LANES {
                 let (line, _, _) = tile.double.line(satellite, mask, l);
                 let above = line.sine >= sine + NEAR_MASK;
                 let possible = line.sine >= sine - NEAR_MASK;
-                let seen = above & (open.surely >> l & 1 != 0);
-                let near = possible & (!above | !seen & (open.perhaps >> l & 1 != 0));
+                let (seen, near) = if UNDER_SKYLINES {
+                    let seen = above & (open.surely >> l & 1 != 0);
+                    (
+                        seen,
+                        possible & (!above | !seen & (open.perhaps >> l & 1 != 0)),
+                    )
+                } else {
+                    (above, possible & !above)
+                };
                 seen_bits.0[l] = if seen { 1 << l } else { 0 };
                 near_bits.0[l] = if near { 1 << l } else { 0 };
                 one.set::<W>(l, &line, seen);
                 sums.add_line::<W>(&line, seen, seen, l);
             }
-            one.seen = joined(&seen_bits);
+            (one.satellite, one.seen) = (n as u32, joined(&seen_bits));
             let near = joined(&near_bits);
             all_near |= near;
             if one.seen | near != 0 {
-                self.sky.push(one);
+                self.sky.keep();
             }
         }
         (sums, all_near)
@@ -303,7 +304,7 @@ impl LossesAt<'_> {
     #[inline(always)]
     fn lose_sets(&mut self, all: &TileGeometry, begun: &BegunTile) {
         self.touched.clear();
-        for (place, one) in (0..).zip(self.sky.iter()) {
+        for (place, one) in (0..).zip(self.sky.seen()) {
             let sets = self.of_satellite[one.satellite as usize].iter();
             self.touched.extend(sets.map(|set| (*set, place)));
         }
@@ -319,7 +320,7 @@ impl LossesAt<'_> {
                     let mut left = all.clone();
                     // Not a closure, which would not be compiled for the instruction set.
                     for (_, place) in others {
-                        left.remove(&self.sky[*place as usize]);
+                        left.remove(self.sky.at(*place as usize));
                     }
                     self.lose(&left, last, together, begun);
                 }
@@ -337,18 +338,18 @@ impl LossesAt<'_> {
         together: &[(u32, u32)],
         begun: &BegunTile,
     ) {
-        let of = |(_, place): &(u32, u32)| &self.sky[*place as usize];
+        let of = |(_, place): &(u32, u32)| self.sky.at(*place as usize);
         let seen = together.iter().fold(0, |all, one| all | of(one).seen) & begun.sure;
         let set = together[0].0;
         let tallied = match self.losses.tallies.get_mut(set as usize) {
             Some(tally) => {
-                let squares = left.square_without(&self.sky[last], &self.limits);
+                let squares = left.square_without(self.sky.at(last), &self.limits);
                 tally.take(&squares, seen, begun, &self.limits)
             }
             None => 0,
         };
         if seen & !tallied != 0 {
-            let pdop = left.pdop_without(&self.sky[last], &self.limits);
+            let pdop = left.pdop_without(self.sky.at(last), &self.limits);
             self.keep(&pdop, together, seen & !tallied, begun);
         }
     }
@@ -356,7 +357,7 @@ impl LossesAt<'_> {
     /// Keeps the samples at some points of a tile.
     #[inline(always)]
     fn keep(&mut self, pdop: &Lanes<f64>, together: &[(u32, u32)], points: u32, begun: &BegunTile) {
-        let of = |(_, place): &(u32, u32)| &self.sky[*place as usize];
+        let of = |(_, place): &(u32, u32)| self.sky.at(*place as usize);
         let set = together[0].0;
         for l in lanes_of(points) {
             let missing = match together {
@@ -397,59 +398,6 @@ impl LossesAt<'_> {
     fn doubt(&mut self, place: u32, tile: usize, about: DoubtAbout) {
         let tile = tile as u32;
         self.doubts.samples.push(LossDoubt { place, tile, about });
-    }
-}
-
-/// A bit for each point of a tile whose skyline does not hide a satellite above the mask.
-struct OpenSky {
-    surely: u32,
-    /// The same, and where the plain path decides.
-    perhaps: u32,
-}
-
-impl OpenSky {
-    const EVERYWHERE: Self = Self {
-        surely: u32::MAX,
-        perhaps: u32::MAX,
-    };
-
-    #[inline(always)]
-    fn over(
-        sky: &TileSky,
-        tile: &Tile,
-        scene: &SampleContext,
-        satellite: [f64; 3],
-        slack: SightSlack,
-    ) -> Self {
-        let points = Skyward {
-            sites: &tile.double,
-            sky,
-            mask: &scene.double,
-            slack,
-        };
-        let decide = |lane: usize| sky.surely_sees(lane, satellite, scene.mask);
-        let (mut surely, mut perhaps) = (0, 0);
-        points.look(satellite, decide, |l, _, seen, possible| {
-            surely |= u32::from(seen) << l;
-            perhaps |= u32::from(possible) << l;
-        });
-        Self { surely, perhaps }
-    }
-}
-
-impl LaneSight {
-    #[inline(always)]
-    fn set<W: Weighting>(&mut self, l: usize, line: &SightLine<f64>, seen: bool) {
-        let unit = line.unit();
-        for (lanes, value) in self.unit.iter_mut().zip(unit) {
-            lanes.0[l] = value;
-        }
-        let weight = if W::BY_SINE {
-            line.sine * line.sine
-        } else {
-            1.0
-        };
-        self.weight.0[l] = if seen { weight } else { 0.0 };
     }
 }
 

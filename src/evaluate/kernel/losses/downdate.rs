@@ -3,7 +3,7 @@
 use super::super::lanes::{LANES, Lanes, Sums, Weighting};
 use super::super::normal::{FixedTile, NormalLanes, at};
 use super::super::sample::POSITION_STATES;
-use super::LaneSight;
+use super::sky::LaneSight;
 
 /// A geometry is good where the determinant of its normal matrix exceeds this share of its cubed trace (1/27 is the most
 /// that there can be): then no eigenvalue is below a sixtieth of the largest, and few digits are lost.
