@@ -61,7 +61,26 @@ fn without_each(bencher: Bencher, threads: usize) {
     bencher.bench_local(|| pool.install(run));
 }
 
-/// The same for the 13 planes.
+/// What a search asks for that bounds or minimises the maximum or the availability without any one satellite: the whole
+/// evaluation included.
+#[divan::bench(sample_count = 20, args = [1, 2])]
+fn worst_without_one(bencher: Bencher, threads: usize) {
+    let (evaluator, ephemeris) = study();
+    let mut setup = evaluator.setup().clone();
+    setup.metrics.asks_for_n1 = true;
+    let evaluator = Evaluator::new(setup).expect(SOUND);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = pool.build().expect("threads");
+    let run = || {
+        evaluator
+            .evaluate_ephemeris(black_box(&ephemeris))
+            .expect(SOUND)
+    };
+    pool.install(run);
+    bencher.bench_local(|| pool.install(run));
+}
+
+/// All metrics without each of the 13 planes.
 #[divan::bench(sample_count = 20)]
 fn without_each_plane(bencher: Bencher) {
     let (evaluator, ephemeris) = study();

@@ -6,6 +6,7 @@
 //! - [`sight`]: which satellites a point sees, by a tree of caps.
 //! - [`pass`]: PDOP of all samples, and of those that change without each set.
 //! - [`statistics`]: the metrics of each set, from those of the whole constellation and what changes.
+//! - [`worst`]: the few metrics of each set that need no list of what changes.
 
 mod by_point;
 mod expected;
@@ -14,6 +15,7 @@ mod one_lost;
 mod pass;
 mod sight;
 mod statistics;
+mod worst;
 
 pub use by_point::PointOneLost;
 pub use expected::{ExpectedError, ExpectedMetrics, NEGLECTED};

@@ -60,7 +60,7 @@ mod tiles;
 pub(super) use fixed::at_most_u16;
 pub use instructions::InstructionSet;
 pub(super) use losses::{
-    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, SampleLosses, WholeSample,
+    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, LossTally, SampleLosses, WholeSample,
 };
 pub(super) use memory::{dops_bytes, memory_bytes};
 pub(super) use metres::RangeNormal;

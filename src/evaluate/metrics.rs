@@ -24,6 +24,8 @@ pub struct MetricOptions {
     pub asks_for_hdop: bool,
     /// Whether the loss of each satellite is evaluated too, which takes many times as long.
     pub asks_for_n1: bool,
+    /// Whether the CVaR of each loss is evaluated with them, which takes more than twice as long.
+    pub asks_for_n1_tail: bool,
     /// The probability that a satellite is up, if the expected availability is computed too.
     pub expects_up: Option<f64>,
 }
@@ -37,6 +39,7 @@ impl Default for MetricOptions {
             availability_pdop: 6.0,
             asks_for_hdop: false,
             asks_for_n1: false,
+            asks_for_n1_tail: false,
             expects_up: None,
         }
     }

@@ -76,7 +76,9 @@ impl Metrics {
         }
         if let Some(of) = &self.n1 {
             add("n1_max_pdop".to_owned(), of.max_pdop);
-            add("n1_cvar_pdop".to_owned(), of.cvar_pdop);
+            if let Some(tail) = of.cvar_pdop {
+                add("n1_cvar_pdop".to_owned(), tail);
+            }
             add("n1_availability".to_owned(), Some(of.availability));
             add("n1_solved_fraction".to_owned(), Some(of.solved_fraction));
         }

@@ -400,6 +400,29 @@ mod tests {
         assert!((0.01..=0.1).contains(&velocity[3]), "{velocity:?}");
     }
 
+    /// However fast it is, a particle goes no further in one step than half way between the bounds.
+    #[test]
+    fn a_step_is_at_most_half_of_the_range() {
+        let problem = TestProblem::new(&[VariableKind::Real { lo: 10.0, hi: 14.0 }], 1, |_| {
+            (vec![0.0], 0.0)
+        });
+        for (from, velocity, to, kept) in [(10.5, 1e6, 12.5, 2.0), (13.5, -1e6, 11.5, -2.0)] {
+            let here = Individual {
+                genome: vec![from],
+                objectives: vec![0.0],
+                violation: 0.0,
+            };
+            let particle = Particle {
+                position: vec![from],
+                velocity: vec![velocity],
+                best: here.clone(),
+            };
+            let mut generator = Generator::new(1, 1);
+            let moved = particle.propagate(problem.space(), &here, &mut generator);
+            assert_eq!(moved, (vec![to], vec![kept]));
+        }
+    }
+
     /// Nothing lies between two choices: a particle has its own, that of its best or that of the leader.
     #[test]
     fn a_choice_is_taken_and_not_approached() {

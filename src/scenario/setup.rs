@@ -296,6 +296,7 @@ impl Scenario {
                 availability_pdop: self.objectives.availability_pdop,
                 asks_for_hdop: self.asks_for(Quantity::is_of_dops),
                 asks_for_n1: self.asks_for(Quantity::is_of_one_lost),
+                asks_for_n1_tail: self.asks_for(|goal| goal == Quantity::N1CvarPdop),
                 expects_up: self
                     .reliability
                     .satellite_availability()

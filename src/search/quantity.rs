@@ -355,7 +355,7 @@ impl Quantity {
             Self::P95Vdop => metrics.p95_vdop,
             Self::InformationPdop => metrics.information_pdop?.mean,
             Self::N1MaxPdop => metrics.n1?.max_pdop,
-            Self::N1CvarPdop => metrics.n1?.cvar_pdop,
+            Self::N1CvarPdop => metrics.n1?.cvar_pdop?,
             Self::N1Availability => Some(metrics.n1?.availability),
             Self::ExpectedAvailability => metrics.expected_availability,
             Self::Sigma3dM => metrics.sigma_3d_m?.map(|of| of.mean),

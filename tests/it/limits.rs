@@ -44,6 +44,19 @@ fn what_is_very_large_is_not_started() {
     }
 }
 
+/// What `--threads` takes is said: a whole number from 1.
+#[test]
+fn no_threads_are_refused() {
+    for given in ["0", "-1", "1.5", "many"] {
+        let command = format!("evaluate --design delta:55:4/2/1@925 --threads={given}");
+        let stderr = refused(&line(&command));
+        let told = format!(
+            "invalid value '{given}' for '--threads <N>': expected a whole number, at least 1 and at most 4 for each core"
+        );
+        assert!(stderr.contains(&told), "{stderr}");
+    }
+}
+
 /// The size is told when it takes a while, and `--allow-large` starts what is refused otherwise: here it
 /// gets as far as the place, which cannot be had.
 #[cfg(target_os = "linux")]

@@ -217,7 +217,7 @@ pub(super) fn losses(
         .as_ref()
         .context("this figure needs the scenario of the run, which cannot be set up")?;
     let k = usize::from(k);
-    let seed = view.run.scenario.as_ref().map_or(1, |of| of.optimizer.seed);
+    let seed = seed_of(view);
     let of = |name: &str, notation: &str, ephemeris: &Ephemeris| -> Result<NamedLosses> {
         let satellites = ephemeris.satellites();
         failures::require_one_left(name, satellites.len(), k)?;
@@ -253,20 +253,31 @@ pub(super) fn losses(
     Ok(all)
 }
 
-/// The map of the maximum PDOP without any one satellite: of the pick, or the first constellation.
-pub(super) fn map_of_one_lost(view: &View) -> Result<Plate> {
+/// The map of the maximum PDOP of the pick, or the first constellation: without any one satellite, each point by itself, or
+/// without the worst set of several.
+pub(super) fn map_of_losses(
+    losses: &NamedLosses,
+    draws: Option<u32>,
+    view: &View,
+) -> Result<Plate> {
     let evaluator = evaluator_of(view)?;
-    let (name, profile) = match &picked(None, view)? {
-        FirstShown::Member(one) => {
-            let ephemeris = one.in_service(evaluator.setup())?;
+    let ephemeris = match &picked(None, view)? {
+        FirstShown::Member(one) => one.in_service(evaluator.setup())?,
+        FirstShown::Constellation(one) => one.constellation.in_service(evaluator.setup())?,
+    };
+    let worst = losses.worst_first().first().copied();
+    let (name, measure, profile) = match worst.filter(|_| losses.k > 1) {
+        Some(worst) => {
+            let satellites = ephemeris.satellites().len();
+            let sets = FailureSets::new(satellites, losses.k, (draws, seed_of(view)));
+            let left = ephemeris.without(&sets.sets[worst]);
+            let name = format!("{} without {}", losses.name, losses.lost[worst].0);
+            (name, Measure::MaxPdop, Profile::new(evaluator, &left)?)
+        }
+        None => {
             let profile = Profile::new(evaluator, &ephemeris)?;
             let profile = profile.with_one_lost(evaluator, &ephemeris)?;
-            (one.name.clone(), profile)
-        }
-        FirstShown::Constellation(one) => {
-            let profile = Profile::new(evaluator, &one.ephemeris)?;
-            let profile = profile.with_one_lost(evaluator, &one.ephemeris)?;
-            (one.baseline.name.clone(), profile)
+            (losses.name.clone(), Measure::OneLostMaxPdop, profile)
         }
     };
     let named = NamedProfile {
@@ -274,11 +285,12 @@ pub(super) fn map_of_one_lost(view: &View) -> Result<Plate> {
         name,
         profile: &profile,
     };
-    Ok(figures::map(
-        &named,
-        Measure::OneLostMaxPdop,
-        &region_map(view),
-    )?)
+    Ok(figures::map(&named, measure, &region_map(view))?)
+}
+
+/// The seed of draws.
+fn seed_of(view: &View) -> u64 {
+    view.run.scenario.as_ref().map_or(1, |of| of.optimizer.seed)
 }
 
 /// The phases of the constellations, or of the pick of a search.

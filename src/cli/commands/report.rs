@@ -57,6 +57,8 @@ fn write(args: &ViewArgs, out: &Path, failing: Option<(u8, Option<u32>)>) -> Res
 /// What failures do: of the pick of a search and of the compared constellations.
 fn failure_section(view: &View, failing: (u8, Option<u32>)) -> Result<FailureSection> {
     let losses = plot::losses(None, failing, view)?;
-    let map = plot::map_of_one_lost(view)?;
-    Ok(FailureSection::new(&losses, Some(&map))?)
+    let map = losses
+        .first()
+        .map(|first| plot::map_of_losses(first, failing.1, view));
+    Ok(FailureSection::new(&losses, map.transpose()?.as_ref())?)
 }

@@ -1,6 +1,7 @@
 //! The worst without any one of the satellites, as a search optimises and bounds it.
 
 use crate::ephemeris::{Ephemeris, EphemerisError};
+use crate::evaluate::on_demand::{self, OnDemand};
 use crate::evaluate::{Evaluator, Metrics};
 use serde::{Deserialize, Serialize};
 
@@ -9,8 +10,13 @@ use serde::{Deserialize, Serialize};
 pub struct OneLost {
     /// Largest maximum PDOP of the solved samples.
     pub max_pdop: Option<f64>,
-    /// Largest CVaR of the PDOP of the solved samples.
-    pub cvar_pdop: Option<f64>,
+    /// Largest CVaR of the PDOP of the solved samples, where it is asked for.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "on_demand::given"
+    )]
+    pub cvar_pdop: OnDemand<f64>,
     /// Least availability.
     pub availability: f64,
     /// Least solved fraction.
@@ -18,16 +24,27 @@ pub struct OneLost {
 }
 
 impl OneLost {
-    /// The worst of each metric; a case without solved samples has no PDOP, nor has the worst.
-    fn of(cases: &[Metrics]) -> Self {
-        let largest = |of: fn(&Metrics) -> Option<f64>| {
-            let values: Option<Vec<f64>> = cases.iter().map(of).collect();
-            values?.into_iter().max_by(f64::total_cmp)
-        };
-        let least = |of: fn(&Metrics) -> f64| cases.iter().map(of).fold(1.0, f64::min);
+    /// One case.
+    fn of(metrics: &Metrics) -> Self {
         Self {
-            max_pdop: largest(|case| case.max_pdop),
-            cvar_pdop: largest(|case| case.cvar_pdop),
+            max_pdop: metrics.max_pdop,
+            cvar_pdop: Some(metrics.cvar_pdop),
+            availability: metrics.availability,
+            solved_fraction: metrics.solved_fraction,
+        }
+    }
+
+    /// The worst of each metric; a case without solved samples has no PDOP, nor has the worst.
+    fn worst(cases: &[Self]) -> Self {
+        fn largest(values: impl Iterator<Item = Option<f64>>) -> Option<f64> {
+            let values: Option<Vec<f64>> = values.collect();
+            values?.into_iter().max_by(f64::total_cmp)
+        }
+        let tails: Option<Vec<_>> = cases.iter().map(|case| case.cvar_pdop).collect();
+        let least = |of: fn(&Self) -> f64| cases.iter().map(of).fold(1.0, f64::min);
+        Self {
+            max_pdop: largest(cases.iter().map(|case| case.max_pdop)),
+            cvar_pdop: tails.map(|tails| largest(tails.into_iter())),
             availability: least(|case| case.availability),
             solved_fraction: least(|case| case.solved_fraction),
         }
@@ -43,13 +60,18 @@ impl Evaluator {
     ) -> Result<Metrics, EphemerisError> {
         let options = self.setup().metrics;
         let one_lost = || {
-            let singles = (0..ephemeris.satellites().len()).map(|place| vec![place]);
-            let cases = self.without_each(ephemeris, &singles.collect::<Vec<_>>())?;
-            Ok(OneLost::of(if cases.is_empty() {
-                std::slice::from_ref(&metrics)
+            let singles: Vec<Vec<usize>> = (0..ephemeris.satellites().len())
+                .map(|place| vec![place])
+                .collect();
+            let cases = if singles.is_empty() {
+                vec![OneLost::of(&metrics)]
+            } else if options.asks_for_n1_tail {
+                let cases = self.without_each(ephemeris, &singles)?;
+                cases.iter().map(OneLost::of).collect()
             } else {
-                &cases
-            }))
+                self.worst_without_each(ephemeris, &singles)?
+            };
+            Ok(OneLost::worst(&cases))
         };
         let expected = |up: f64| Ok(self.expected_of_any(ephemeris, up)?.availability);
         Ok(Metrics {
@@ -75,9 +97,16 @@ mod tests {
             ..no_metrics()
         };
         let (one, other) = (case(Some(4.0), 2.0, 0.9), case(Some(3.0), 2.5, 0.8));
-        let worst = OneLost::of(&[one, other]);
-        assert_eq!((worst.max_pdop, worst.cvar_pdop), (Some(4.0), Some(2.5)));
+        let worst_of = |cases: &[Metrics]| {
+            let cases: Vec<OneLost> = cases.iter().map(OneLost::of).collect();
+            OneLost::worst(&cases)
+        };
+        let worst = worst_of(&[one, other]);
+        assert_eq!(
+            (worst.max_pdop, worst.cvar_pdop),
+            (Some(4.0), Some(Some(2.5)))
+        );
         assert_eq!((worst.availability, worst.solved_fraction), (0.8, 1.0));
-        assert_eq!(OneLost::of(&[one, case(None, 1.0, 0.0)]).max_pdop, None);
+        assert_eq!(worst_of(&[one, case(None, 1.0, 0.0)]).max_pdop, None);
     }
 }

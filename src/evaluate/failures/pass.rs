@@ -1,6 +1,6 @@
 //! One pass over the samples: PDOP with all satellites, and without each of some sets.
 //!
-//! The lanes of the kernel do nearly all of it; what they leave open, skylines and LEO clocks of their own take the plain path.
+//! The lanes of the kernel do nearly all of it; what they leave open, and LEO clocks of their own, take the plain path.
 
 use super::sight::{Reach, SightTree};
 use crate::dop::ClockGroup;
@@ -8,7 +8,8 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use crate::evaluate::Evaluator;
 use crate::evaluate::fixed::{self, PlainGnssSample};
 use crate::evaluate::kernel::{
-    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, SampleLosses, WholeSample, at_most_u16,
+    ChangedSample, DoubtAbout, LossDoubt, LossDoubts, LossTally, SampleLosses, WholeSample,
+    at_most_u16,
 };
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -29,6 +30,8 @@ pub(super) struct Sets<'a> {
     /// The clock of each satellite.
     clocks: Vec<usize>,
     clock_count: usize,
+    /// Whether samples that stay solved are tallied where the lanes decide them, and not kept.
+    is_tallied: bool,
 }
 
 impl<'a> Sets<'a> {
@@ -55,6 +58,15 @@ impl<'a> Sets<'a> {
             of_satellite,
             clocks,
             clock_count,
+            is_tallied: false,
+        }
+    }
+
+    /// The same for the worst of each set only: samples that stay solved are tallied.
+    pub(super) fn tallied(self) -> Self {
+        Self {
+            is_tallied: true,
+            ..self
         }
     }
 }
@@ -62,6 +74,9 @@ impl<'a> Sets<'a> {
 impl Sets<'_> {
     /// About how many of so many samples change without a set: room to begin with.
     fn changes_of(&self, samples: usize) -> usize {
+        if self.is_tallied {
+            return 0;
+        }
         /// A little more than the share of the Earth that sees a satellite at 1000 km.
         const SHARE: f64 = 0.05;
         let members: usize = self.of_satellite.iter().map(Vec::len).sum();
@@ -99,8 +114,7 @@ pub(super) fn pass(
     tree: &SightTree,
     sets: &Sets<'_>,
 ) -> Result<Vec<SampleLosses>, EphemerisError> {
-    let kernel = evaluator.kernel_for(sets.ephemeris);
-    let lanes = kernel.filter(|kernel| kernel.loses());
+    let lanes = evaluator.kernel_for(sets.ephemeris);
     if lanes.is_none() {
         // Made before the threads ask for it.
         evaluator.fixed()?;
@@ -119,6 +133,10 @@ pub(super) fn pass(
             changed: (0..sets.count)
                 .map(|_| Vec::with_capacity(capacity))
                 .collect(),
+            tallies: match sets.is_tallied {
+                true => vec![LossTally::NOTHING; sets.count],
+                false => Vec::new(),
+            },
             largest: 0.0,
         };
         match lanes {

@@ -140,6 +140,41 @@ fn each_satellite_is_lost_as_if_evaluated_anew() {
     }
 }
 
+/// The maximum, the availability and what is solved, to the last bit as from the list of all samples that change: also where
+/// samples are left unsolved, and where weighted ones are no longer available.
+#[test]
+fn the_worst_is_that_of_all_samples() {
+    let (mut unsolved, mut unavailable) = (0, 0);
+    for (setup, design, satellites) in studies() {
+        let mut strict = setup.clone();
+        strict.metrics.availability_pdop = 2.0;
+        for setup in [setup, strict] {
+            let evaluator = Evaluator::new(setup.clone()).unwrap();
+            let whole = propagated(&setup, design);
+            let mut sets = each(satellites);
+            sets.push((0..satellites).collect());
+            sets.push((0..satellites / 2).collect());
+            sets.push(Vec::new());
+            let ours = evaluator.worst_without_each(&whole, &sets).unwrap();
+            let all = evaluator.without_each(&whole, &sets).unwrap();
+            let with_all = all[all.len() - 1];
+            for ((ours, all), set) in ours.iter().zip(&all).zip(&sets) {
+                let what = format!("{design} without {set:?}");
+                assert_eq!(ours.max_pdop, all.max_pdop, "{what}");
+                assert_eq!(ours.availability, all.availability, "{what}");
+                assert_eq!(ours.solved_fraction, all.solved_fraction, "{what}");
+                let is_solved = ours.solved_fraction == with_all.solved_fraction;
+                unsolved += usize::from(!is_solved);
+                unavailable += usize::from(is_solved && ours.availability < with_all.availability);
+            }
+        }
+    }
+    assert!(
+        unsolved > 100 && unavailable > 100,
+        "{unsolved} {unavailable}"
+    );
+}
+
 /// Planes, pairs, sets that overlap, all satellites and none.
 #[test]
 fn sets_are_lost_as_if_evaluated_anew() {

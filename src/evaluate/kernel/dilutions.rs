@@ -10,6 +10,7 @@ use super::super::{Setup, fixed, plain};
 use super::fixed::{Fixed, FixedSystem, add_group, weight_or_one};
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SineWeights, Sums, UnitWeights, Weighting};
+use super::normal::at;
 use super::order_statistics::{Counts, Found, Places, RankSearch};
 use super::propagation::Propagation;
 use super::sample::{SampleContext, SampleOutcome, UNSOLVED, Workspace};
@@ -348,7 +349,7 @@ impl CofactorLanes {
         }
         let mut covariance = [ZERO; 6];
         for l in 0..LANES {
-            let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| normal[element].0[l]);
+            let [xx, yy, zz, xy, xz, yz] = at(&normal, l);
             let minor_xx = yy * zz - yz * yz;
             let minor_xy = yz * xz - xy * zz;
             let minor_xz = xy * yz - yy * xz;
@@ -371,7 +372,7 @@ impl CofactorLanes {
     /// vᵀ Q v.
     #[inline(always)]
     fn form(&self, [x, y, z]: [f64; 3], l: usize) -> f64 {
-        let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| self.0[element].0[l]);
+        let [xx, yy, zz, xy, xz, yz] = at(&self.0, l);
         xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
     }
 }

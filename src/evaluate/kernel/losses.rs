@@ -8,8 +8,10 @@
 use super::Kernel;
 use super::fixed::{FixedSample, FixedTiles, SampleInstant, at_most_u16};
 use super::instructions::Work;
-use super::lanes::{LANES, Lanes, SightLine, SineWeights, Sums, UnitWeights, Weighting};
+use super::lanes::{LANES, Lanes, SineWeights, Sums, UnitWeights, Weighting};
 use super::losses::downdate::{LossLimits, TileGeometry};
+use super::losses::sky::{LaneSky, OpenSky};
+use super::losses::worst::BegunTile;
 use super::normal::FixedTile;
 use super::propagation::{PatternPropagator, Propagation};
 use super::sample::{SampleContext, Workspace};
@@ -19,6 +21,10 @@ use crate::ephemeris::{Ephemeris, EphemerisError};
 use std::ops::Range;
 
 mod downdate;
+mod sky;
+mod worst;
+
+pub(in crate::evaluate) use worst::LossTally;
 
 /// Distance of the sine of an elevation from that of the mask within which the plain path decides: a thousand times what
 /// the angles of the two paths differ by over ten days.
@@ -55,8 +61,10 @@ pub(in crate::evaluate) struct SampleLosses {
     pub(in crate::evaluate) first: u32,
     /// The samples with all satellites.
     pub(in crate::evaluate) whole: Vec<WholeSample>,
-    /// Of each set of satellites, the samples that change without it.
+    /// Of each set of satellites, the samples that change without it, but for those that are tallied.
     pub(in crate::evaluate) changed: Vec<Vec<ChangedSample>>,
+    /// Of each set, what the samples come to that stay solved without it; empty if all samples are kept.
+    pub(in crate::evaluate) tallies: Vec<LossTally>,
     /// The largest solved PDOP of these.
     pub(in crate::evaluate) largest: f64,
 }
@@ -99,11 +107,6 @@ pub(in crate::evaluate) enum DoubtAbout {
 }
 
 impl Kernel {
-    /// Whether the lanes can evaluate losses: without skylines.
-    pub(in crate::evaluate) fn loses(&self) -> bool {
-        self.scene.tiles.tiles.iter().all(|tile| tile.sky.is_none())
-    }
-
     /// The GNSS in service.
     pub(in crate::evaluate) fn systems(&self) -> &[Ephemeris] {
         &self.fixed.systems
@@ -122,7 +125,7 @@ impl Kernel {
         let propagation = Propagation::new(ephemeris);
         let mut work = Workspace::new(ephemeris.satellites().len());
         let mut scratch = FixedTiles::default();
-        let (mut sky, mut touched) = (Vec::new(), Vec::new());
+        let (mut sky, mut touched) = (LaneSky::default(), Vec::new());
         let mut doubts = LossDoubts::default();
         for number in instants {
             let instant = SampleInstant {
@@ -158,17 +161,6 @@ impl Kernel {
     }
 }
 
-/// A satellite that some points of a tile see.
-pub(super) struct LaneSight {
-    satellite: u32,
-    /// A bit for each point that sees it.
-    seen: u32,
-    /// Unit vector to it.
-    unit: [Lanes<f64>; 3],
-    /// Weight of its observation; 0 where it is not seen.
-    weight: Lanes<f64>,
-}
-
 /// One instant.
 struct LossesAt<'a> {
     scene: &'a SampleContext,
@@ -178,7 +170,7 @@ struct LossesAt<'a> {
     /// The sets that each satellite is in, rising.
     of_satellite: &'a [Vec<u32>],
     work: &'a mut Workspace,
-    sky: &'a mut Vec<LaneSight>,
+    sky: &'a mut LaneSky,
     /// Sets and places in the sky of their satellites.
     touched: &'a mut Vec<(u32, u32)>,
     losses: &'a mut SampleLosses,
@@ -212,7 +204,10 @@ impl LossesAt<'_> {
     fn tile<W: Weighting>(&mut self, number: usize, group: &Group) {
         let tile = &self.scene.tiles.tiles[number];
         let fixed = self.fixed.tile(number);
-        let (sums, near_mask) = self.look::<W>(number, group);
+        let (sums, near_mask) = match tile.sky {
+            None => self.look::<W, false>(number, group),
+            Some(_) => self.look::<W, true>(number, group),
+        };
         let all = TileGeometry::new::<W>(&sums, &fixed);
         let doubts = self.doubts.samples.len();
         let first = self.losses.whole.len() as u32;
@@ -227,45 +222,61 @@ impl LossesAt<'_> {
                 self.doubt(first + l as u32, number, DoubtAbout::Whole);
             }
         }
-        self.lose_sets(number, &all, first, sure);
+        let begun = self.begin(number, first, sure);
+        self.lose_sets(&all, &begun);
         if self.doubts.samples.len() > doubts {
-            let satellites = self.sky.iter().map(|one| one.satellite).collect();
+            let satellites = self.sky.seen().iter().map(|one| one.satellite).collect();
             self.doubts.tiles.push((number as u32, satellites));
         }
     }
 
     /// The satellites in view of a tile, their sums, and a bit for each point with one close to the mask.
     #[inline(always)]
-    fn look<W: Weighting>(&mut self, number: usize, group: &Group) -> (Sums<f64>, u32) {
-        let sites = &self.scene.tiles.tiles[number].double;
+    fn look<W: Weighting, const UNDER_SKYLINES: bool>(
+        &mut self,
+        number: usize,
+        group: &Group,
+    ) -> (Sums<f64>, u32) {
+        let tile = &self.scene.tiles.tiles[number];
         let mask = &self.scene.double;
         let sine = mask.sine();
+        let slack = self.scene.tiles.horizon.double_slack(&self.work.positions);
         let mut sums = Sums::<f64>::zero();
         let mut all_near = 0;
         self.sky.clear();
         for n in self.work.candidates(number, group).satellites() {
             let satellite = self.work.positions.at(n);
-            let mut one = LaneSight {
-                satellite: n as u32,
-                seen: 0,
-                unit: [Lanes([0.0; LANES]); 3],
-                weight: Lanes([0.0; LANES]),
-            };
+            let one = self.sky.next_to_fill();
             let (mut seen_bits, mut near_bits) = (Lanes([0_u32; LANES]), Lanes([0_u32; LANES]));
+            let open = match &tile.sky {
+                Some(sky) if UNDER_SKYLINES => {
+                    OpenSky::over(sky, tile, self.scene, satellite, slack)
+                }
+                _ => OpenSky::EVERYWHERE,
+            };
             for l in 0..LANES {
-                let (line, _, _) = sites.line(satellite, mask, l);
-                let seen = line.sine >= sine + NEAR_MASK;
+                let (line, _, _) = tile.double.line(satellite, mask, l);
+                let above = line.sine >= sine + NEAR_MASK;
                 let possible = line.sine >= sine - NEAR_MASK;
+                let (seen, near) = if UNDER_SKYLINES {
+                    let seen = above & (open.surely >> l & 1 != 0);
+                    (
+                        seen,
+                        possible & (!above | !seen & (open.perhaps >> l & 1 != 0)),
+                    )
+                } else {
+                    (above, possible & !above)
+                };
                 seen_bits.0[l] = if seen { 1 << l } else { 0 };
-                near_bits.0[l] = if possible & !seen { 1 << l } else { 0 };
+                near_bits.0[l] = if near { 1 << l } else { 0 };
                 one.set::<W>(l, &line, seen);
                 sums.add_line::<W>(&line, seen, seen, l);
             }
-            one.seen = joined(&seen_bits);
+            (one.satellite, one.seen) = (n as u32, joined(&seen_bits));
             let near = joined(&near_bits);
             all_near |= near;
             if one.seen | near != 0 {
-                self.sky.push(one);
+                self.sky.keep();
             }
         }
         (sums, all_near)
@@ -291,9 +302,9 @@ impl LossesAt<'_> {
 
     /// Takes each set out of the points that see a satellite of it.
     #[inline(always)]
-    fn lose_sets(&mut self, number: usize, all: &TileGeometry, first: u32, sure: u32) {
+    fn lose_sets(&mut self, all: &TileGeometry, begun: &BegunTile) {
         self.touched.clear();
-        for (place, one) in (0..).zip(self.sky.iter()) {
+        for (place, one) in (0..).zip(self.sky.seen()) {
             let sets = self.of_satellite[one.satellite as usize].iter();
             self.touched.extend(sets.map(|set| (*set, place)));
         }
@@ -302,50 +313,68 @@ impl LossesAt<'_> {
         }
         let touched = std::mem::take(self.touched);
         for together in touched.chunk_by(|a, b| a.0 == b.0) {
-            self.lose(number, all, together, first, sure);
+            let last = together[together.len() - 1].1 as usize;
+            match &together[..together.len() - 1] {
+                [] => self.lose(all, last, together, begun),
+                others => {
+                    let mut left = all.clone();
+                    // Not a closure, which would not be compiled for the instruction set.
+                    for (_, place) in others {
+                        left.remove(self.sky.at(*place as usize));
+                    }
+                    self.lose(&left, last, together, begun);
+                }
+            }
         }
         *self.touched = touched;
     }
 
+    /// Takes the last satellite of a set out of a geometry without the others.
     #[inline(always)]
     fn lose(
         &mut self,
-        number: usize,
-        all: &TileGeometry,
+        left: &TileGeometry,
+        last: usize,
         together: &[(u32, u32)],
-        first: u32,
-        sure: u32,
+        begun: &BegunTile,
     ) {
-        let of = |(_, place): &(u32, u32)| &self.sky[*place as usize];
-        let (last, others) = (together.len() - 1, &together[..together.len() - 1]);
-        let pdop = if others.is_empty() {
-            all.pdop_without(of(&together[last]), &self.limits)
-        } else {
-            let mut left = all.clone();
-            // Not a closure, which would not be compiled for the instruction set.
-            for one in others {
-                left.remove(of(one));
-            }
-            left.pdop_without(of(&together[last]), &self.limits)
-        };
-        let seen = together.iter().fold(0, |all, one| all | of(one).seen) & sure;
+        let of = |(_, place): &(u32, u32)| self.sky.at(*place as usize);
+        let seen = together.iter().fold(0, |all, one| all | of(one).seen) & begun.sure;
         let set = together[0].0;
-        for l in lanes_of(seen) {
-            let missing = match others {
-                [] => 1,
+        let tallied = match self.losses.tallies.get_mut(set as usize) {
+            Some(tally) => {
+                let squares = left.square_without(self.sky.at(last), &self.limits);
+                tally.take(&squares, seen, begun, &self.limits)
+            }
+            None => 0,
+        };
+        if seen & !tallied != 0 {
+            let pdop = left.pdop_without(self.sky.at(last), &self.limits);
+            self.keep(&pdop, together, seen & !tallied, begun);
+        }
+    }
+
+    /// Keeps the samples at some points of a tile.
+    #[inline(always)]
+    fn keep(&mut self, pdop: &Lanes<f64>, together: &[(u32, u32)], points: u32, begun: &BegunTile) {
+        let of = |(_, place): &(u32, u32)| self.sky.at(*place as usize);
+        let set = together[0].0;
+        for l in lanes_of(points) {
+            let missing = match together {
+                [_] => 1,
                 _ => together.iter().map(|one| of(one).seen >> l & 1).sum(),
             };
             let changed = &mut self.losses.changed[set as usize];
             if pdop.0[l].is_nan() {
                 let at = changed.len() as u32;
                 self.doubts.samples.push(LossDoubt {
-                    place: first + l as u32,
-                    tile: number as u32,
+                    place: begun.first + l as u32,
+                    tile: begun.number as u32,
                     about: DoubtAbout::Set { set, at },
                 });
             }
             changed.push(ChangedSample {
-                sample: self.losses.first + first + l as u32,
+                sample: self.losses.first + begun.first + l as u32,
                 missing,
                 pdop: pdop.0[l],
             });
@@ -353,26 +382,22 @@ impl LossesAt<'_> {
         }
     }
 
+    /// What the losses of a tile need to know of it with all satellites.
+    #[inline(always)]
+    fn begin(&self, number: usize, first: u32, sure: u32) -> BegunTile {
+        let weights = self.scene.tiles.tiles[number].weights.whole;
+        let mut begun = BegunTile::new(number, first, sure, weights);
+        if !self.losses.tallies.is_empty() {
+            let whole = &self.losses.whole[first as usize..];
+            begun.know(whole, &self.limits);
+        }
+        begun
+    }
+
     #[inline(always)]
     fn doubt(&mut self, place: u32, tile: usize, about: DoubtAbout) {
         let tile = tile as u32;
         self.doubts.samples.push(LossDoubt { place, tile, about });
-    }
-}
-
-impl LaneSight {
-    #[inline(always)]
-    fn set<W: Weighting>(&mut self, l: usize, line: &SightLine<f64>, seen: bool) {
-        let unit = line.unit();
-        for (lanes, value) in self.unit.iter_mut().zip(unit) {
-            lanes.0[l] = value;
-        }
-        let weight = if W::BY_SINE {
-            line.sine * line.sine
-        } else {
-            1.0
-        };
-        self.weight.0[l] = if seen { weight } else { 0.0 };
     }
 }
 

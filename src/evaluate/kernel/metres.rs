@@ -8,7 +8,7 @@ use super::Kernel;
 use super::fixed::FixedSystem;
 use super::instructions::Work;
 use super::lanes::{LANES, Lanes, MaskTerms, SightLine};
-use super::normal::clear_pivot;
+use super::normal::{at, clear_pivot};
 use super::propagation::Propagation;
 use super::sample::{POSITION_STATES, SampleContext, SampleOutcome, UNSOLVED, Workspace};
 use crate::dop::{Clocks, Factor, Symmetric3};
@@ -174,7 +174,8 @@ impl RangeLanes {
     fn add(&mut self, group: &RangeSums) {
         for l in 0..LANES {
             let (used, weight) = (group.used.0[l], group.weight.0[l]);
-            let [x, y, z] = [0, 1, 2].map(|axis: usize| group.sum[axis].0[l]);
+            let [x, y, z] = &group.sum;
+            let (x, y, z) = (x.0[l], y.0[l], z.0[l]);
             let scale = 1.0 / if used > 0 { weight } else { 1.0 };
             let of_clock = [x * x, y * y, z * z, x * y, x * z, y * z];
             for (n, of_clock) in of_clock.into_iter().enumerate() {
@@ -189,7 +190,7 @@ impl RangeLanes {
         if !is_solved {
             return RangeNormal::Unsolved;
         }
-        let [xx, yy, zz, xy, xz, yz] = self.normal.each_ref().map(|lanes| lanes.0[lane]);
+        let [xx, yy, zz, xy, xz, yz] = at(&self.normal, lane);
         let factor = Factor::new(&Symmetric3 {
             xx,
             yy,

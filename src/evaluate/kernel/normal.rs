@@ -69,15 +69,30 @@ impl FixedTile<'_> {
 /// The f32 nearest to each number.
 #[inline(always)]
 pub(super) fn nearest(values: &Lanes<f64>) -> Lanes<f32> {
-    Lanes(std::array::from_fn(|l| values.0[l] as f32))
+    let mut nearest = ZERO;
+    for l in 0..LANES {
+        nearest.0[l] = values.0[l] as f32;
+    }
+    nearest
 }
 
 /// The remainder after the nearest f32.
 #[inline(always)]
 pub(super) fn remainder(values: &Lanes<f64>) -> Lanes<f32> {
-    Lanes(std::array::from_fn(|l| {
-        (values.0[l] - f64::from(values.0[l] as f32)) as f32
-    }))
+    let mut remainder = ZERO;
+    for l in 0..LANES {
+        remainder.0[l] = (values.0[l] - f64::from(values.0[l] as f32)) as f32;
+    }
+    remainder
+}
+
+/// The six elements of a symmetric matrix at one point.
+#[inline(always)]
+pub(super) fn at<R: Copy>(matrix: &[Lanes<R>; 6], lane: usize) -> [R; 6] {
+    let [xx, yy, zz, xy, xz, yz] = matrix;
+    [
+        xx.0[lane], yy.0[lane], zz.0[lane], xy.0[lane], xz.0[lane], yz.0[lane],
+    ]
 }
 
 /// The normal matrix of the position at the points of a tile.
@@ -102,7 +117,7 @@ impl<R: Real> NormalLanes<R> {
     /// The matrix at one point: (x, x), (y, y), (z, z), (x, y), (x, z), (y, z).
     #[inline(always)]
     pub(super) fn at(&self, lane: usize) -> [R; 6] {
-        std::array::from_fn(|element| self.matrix[element].0[lane])
+        at(&self.matrix, lane)
     }
 
     /// The GNSS part and Σ w v vᵀ - (Σ w v)(Σ w v)ᵀ / Σ w of the design.
@@ -195,7 +210,7 @@ impl NormalLanes<f64> {
     pub(super) fn pdop(&self, clocks: u32) -> Lanes<f64> {
         let mut lanes = Lanes([f64::INFINITY; LANES]);
         for l in 0..LANES {
-            let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|element| self.matrix[element].0[l]);
+            let [xx, yy, zz, xy, xz, yz] = self.at(l);
             let factor = Factor::new(&Symmetric3 {
                 xx,
                 yy,

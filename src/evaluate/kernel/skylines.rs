@@ -43,9 +43,9 @@ const APART_RAD: f64 = 1e-11;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SightSlack {
     /// Of the sine of an elevation.
-    sine: f32,
+    pub(super) sine: f32,
     /// |e| + |n| below which the azimuth is not good enough, km.
-    least_level_km: f32,
+    pub(super) least_level_km: f32,
 }
 
 impl SightSlack {
@@ -184,7 +184,8 @@ impl TileSky {
     fn bin<R: Real>(&self, line: &SightLine<R>, slack: SightSlack, l: usize) -> (u32, bool) {
         // Adding this leaves a whole number in the last bits of the fraction, also of negative numbers.
         const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
-        let [dx, dy, dz] = line.to.map(R::single);
+        let [dx, dy, dz] = line.to;
+        let (dx, dy, dz) = (dx.single(), dy.single(), dz.single());
         let along =
             |axis: &[Lanes<f32>; 3]| dx * axis[0].0[l] + dy * axis[1].0[l] + dz * axis[2].0[l];
         let (east, north) = (along(&self.east), along(&self.north));
@@ -314,7 +315,11 @@ impl<R: Real> Sight<R> {
             self.settle(decide);
         }
         self.pass(|l, line, seen, possible| sums.add_line::<W>(line, seen, possible, l));
-        self.seen.0.map(|seen| seen as u8)
+        let mut lanes = UNSEEN;
+        for (lane, seen) in lanes.iter_mut().zip(&self.seen.0) {
+            *lane = *seen as u8;
+        }
+        lanes
     }
 }
 
@@ -328,14 +333,14 @@ pub(super) struct Skyward<'a, R> {
 }
 
 impl<R: Real> Skyward<'_, R> {
-    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible, unless it is visible nowhere.
-    /// `decide` decides for a lane.
+    /// Passes the line to a satellite to `add`, lane by lane, with whether it is visible and whether it may be, unless it is
+    /// visible nowhere. `decide` decides for a lane, where it can.
     #[inline(always)]
     pub(super) fn look(
         &self,
         satellite: [R; 3],
         decide: impl Fn(usize) -> Option<bool>,
-        mut add: impl FnMut(usize, &SightLine<R>, bool),
+        add: impl FnMut(usize, &SightLine<R>, bool, bool),
     ) {
         let mut sight = [Sight::nowhere()];
         self.look_at([satellite].into_iter(), &mut sight);
@@ -343,7 +348,7 @@ impl<R: Real> Skyward<'_, R> {
         if sight.among {
             sight.settle(decide);
         }
-        sight.pass(|l, line, seen, _| add(l, line, seen));
+        sight.pass(add);
     }
 
     /// Compares satellites with the skylines.

@@ -423,7 +423,7 @@ impl Tile {
             slack,
         };
         let decide = |lane: usize| Some(sky.sees(lane, satellite, mask));
-        points.look(satellite, decide, add);
+        points.look(satellite, decide, |l, line, seen, _| add(l, line, seen));
     }
 
     /// Largest distance of a point from the middle, km.
@@ -452,5 +452,64 @@ fn site_lanes<R: Copy>(
     SiteLanes {
         origin: [0, 1, 2].map(|axis| lanes(|site| site.local.origin_km.km(), from[axis], axis)),
         up: [0, 1, 2].map(|axis| lanes(|site| site.local.up, 0.0, axis)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RADIUS_KM: f64 = 6378.0;
+
+    /// Points whose verticals are tilted by up to an angle, under a mask of 0°.
+    fn horizon(tilt_rad: f64, widest_km: f64) -> Horizon {
+        Horizon {
+            farthest_km: RADIUS_KM,
+            least_mask_rad: -tilt_rad,
+            sin_most: tilt_rad.sin(),
+            cos_most: tilt_rad.cos(),
+            reach2: (RADIUS_KM * tilt_rad.cos()).powi(2),
+            widest_km,
+        }
+    }
+
+    fn between(nearest_km: f64, farthest_km: f64) -> Positions {
+        Positions {
+            nearest_km,
+            farthest_km,
+            ..Positions::new(1)
+        }
+    }
+
+    /// By the law of cosines a satellite at r that is t below the horizon of a point at g has the distance d with
+    /// r² = g² + d² - 2 g d sin t.
+    #[test]
+    fn validate_the_longest_line_of_sight() {
+        for (tilt_rad, radius_km) in [(0.0, 7300.0), (0.0034, 7300.0), (0.3, 42_164.0)] {
+            let longest_km = horizon(tilt_rad, 0.0).longest_km(&between(6500.0, radius_km));
+            let below_km = 2.0 * RADIUS_KM * longest_km * f64::sin(tilt_rad);
+            let radius2 = RADIUS_KM * RADIUS_KM + longest_km * longest_km - below_km;
+            // Twenty roundings.
+            let apart = (radius2.sqrt() / radius_km - 1.0).abs();
+            assert!(apart < 20.0 * f64::EPSILON, "{tilt_rad}: {apart:e}");
+        }
+    }
+
+    /// Bounds as wide as they must be and no wider: else samples would be decided again that need not be.
+    #[test]
+    fn the_slack_of_a_line_is_that_of_its_rounding() {
+        let (widest_km, epsilon) = (400.0, f64::from(f32::EPSILON));
+        let positions = between(RADIUS_KM + 800.0, RADIUS_KM + 900.0);
+        let horizon = horizon(0.0, widest_km);
+        // The shortest line is rotated most, the longest one is displaced most.
+        let rotation_rad = 1.5 * epsilon * (800.0 + widest_km) / 800.0;
+        let longest_km = (900.0 * (900.0 + 2.0 * RADIUS_KM)).sqrt();
+        let rounding_km = 1.5 * epsilon * (longest_km + widest_km);
+        let expected = SightSlack::new(rotation_rad, rounding_km, longest_km);
+        let slack = horizon.single_slack(&positions);
+        let are_close = |a: f32, b: f32| (a / b - 1.0).abs() < 4.0 * f32::EPSILON;
+        assert!(are_close(slack.sine, expected.sine), "{slack:?}");
+        let (level_km, expected_km) = (slack.least_level_km, expected.least_level_km);
+        assert!(are_close(level_km, expected_km), "{slack:?}");
     }
 }

@@ -21,6 +21,21 @@ pub struct NamedLosses {
     pub is_drawn: bool,
 }
 
+impl NamedLosses {
+    /// The places of the losses, the worst first: what leaves most samples unsolved, then what has the largest CVaR.
+    #[must_use]
+    pub fn worst_first(&self) -> Vec<usize> {
+        let cvar = |place: usize| self.lost[place].1.cvar_pdop.unwrap_or(f64::INFINITY);
+        let solved = |place: usize| self.lost[place].1.solved_fraction;
+        let mut places: Vec<usize> = (0..self.lost.len()).collect();
+        places.sort_by(|&a, &b| {
+            let by_solved = solved(a).total_cmp(&solved(b));
+            by_solved.then_with(|| cvar(b).total_cmp(&cvar(a)))
+        });
+        places
+    }
+}
+
 /// The distribution of the CVaR of PDOP over the satellites, each lost alone, or over sets of them, beside that of the whole
 /// constellation.
 ///

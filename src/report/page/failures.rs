@@ -5,7 +5,6 @@ use crate::report::figures::{NamedLosses, Plate, failures};
 use crate::report::shown;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use std::cmp::Ordering;
 use thiserror::Error;
 
 /// Most rows of the table.
@@ -32,6 +31,8 @@ pub struct FailureSection {
     /// The distribution and the map as images in base64.
     pub(super) distribution: String,
     pub(super) map: Option<String>,
+    /// What fails on the map.
+    pub(super) map_without: String,
     pub(super) rows: Vec<LossRow>,
     pub(super) left_out: usize,
 }
@@ -44,7 +45,8 @@ pub(super) struct LossRow {
 }
 
 impl FailureSection {
-    /// The losses of some constellations, the first with a table, and with the map of its worst case if there is one.
+    /// The losses of some constellations, the first with a table, and with a map if there is one: of its worst losses of one
+    /// satellite, each point by itself, or of its worst case of several.
     ///
     /// # Errors
     /// If a figure cannot be drawn.
@@ -53,16 +55,8 @@ impl FailureSection {
         let map = map.map(image).transpose()?;
         let first = losses.first();
         let lost = first.map_or(&[][..], |one| &one.lost);
-        let mut worst: Vec<_> = lost.iter().collect();
-        worst.sort_by(|(_, a), (_, b)| {
-            let unsolved = a.solved_fraction.total_cmp(&b.solved_fraction);
-            let cvar = |pdop: Option<f64>| pdop.unwrap_or(f64::INFINITY);
-            let by_cvar = cvar(b.cvar_pdop).total_cmp(&cvar(a.cvar_pdop));
-            match unsolved {
-                Ordering::Equal => by_cvar,
-                other => other,
-            }
-        });
+        let places = first.map_or_else(Vec::new, NamedLosses::worst_first);
+        let worst: Vec<_> = places.iter().map(|place| &lost[*place]).collect();
         let row = |(without, metrics): &&(String, crate::evaluate::Metrics)| {
             let of_all = |pdop: Option<f64>| pdop.filter(|_| metrics.solved_fraction >= 1.0);
             LossRow {
@@ -82,7 +76,12 @@ impl FailureSection {
             true => format!("{satellites}, {} draws", lost.len()),
             false => format!("{satellites}, all {} cases", lost.len()),
         };
+        let map_without = match worst.first() {
+            Some((names, _)) if k > 1 => format!("{names}, the worst of these cases"),
+            _ => "the worst one satellite".to_owned(),
+        };
         Ok(Self {
+            map_without,
             name: first.map(|one| one.name.clone()).unwrap_or_default(),
             cases,
             distribution,
@@ -126,7 +125,11 @@ mod tests {
             k: 1,
             is_drawn: false,
         };
-        let section = FailureSection::new(&[losses], None).unwrap();
+        let section = FailureSection::new(std::slice::from_ref(&losses), None).unwrap();
+        assert_eq!(section.map_without, "the worst one satellite");
+        let pairs = NamedLosses { k: 2, ..losses };
+        let of_pairs = FailureSection::new(&[pairs], None).unwrap();
+        assert_eq!(of_pairs.map_without, "S3, the worst of these cases");
         let names: Vec<&str> = section
             .rows
             .iter()

@@ -1,9 +1,9 @@
 //! The geometry of a tile, from which satellites are taken away.
 
 use super::super::lanes::{LANES, Lanes, Sums, Weighting};
-use super::super::normal::{FixedTile, NormalLanes};
+use super::super::normal::{FixedTile, NormalLanes, at};
 use super::super::sample::POSITION_STATES;
-use super::LaneSight;
+use super::sky::LaneSight;
 
 /// A geometry is good where the determinant of its normal matrix exceeds this share of its cubed trace (1/27 is the most
 /// that there can be): then no eigenvalue is below a sixtieth of the largest, and few digits are lost.
@@ -29,6 +29,12 @@ impl LossLimits {
             up_to: up_to * up_to,
             available: available * available,
         }
+    }
+
+    /// Whether a sample whose square the lanes decide is available.
+    #[inline(always)]
+    pub(super) fn is_available(&self, square: f64) -> bool {
+        square <= self.available
     }
 
     #[inline(always)]
@@ -110,7 +116,7 @@ impl TileGeometry {
             let (theirs, mean, count) = match fixed.shared {
                 Some(shared) => (
                     shared.weight::<f64>(l),
-                    [0, 1, 2].map(|axis| shared.mean::<f64>(axis, l)),
+                    [shared.mean(0, l), shared.mean(1, l), shared.mean(2, l)],
                     f64::from(shared.count.0[l]),
                 ),
                 None => (0.0, [0.0; 3], 0.0),
@@ -143,26 +149,40 @@ impl TileGeometry {
     pub(super) fn pdop_without(&self, one: &LaneSight, limits: &LossLimits) -> Lanes<f64> {
         let mut pdop = Lanes([0.0; LANES]);
         for l in 0..LANES {
-            let removal = self.removal(one, l);
-            let [x, y, z] = removal.along;
-            let rise = removal.gain * (x * x + y * y + z * z) / removal.left;
-            let rise = if removal.is_idle { 0.0 } else { rise };
-            let least = self.least_share.0[l];
-            let (left, whole) = if removal.is_idle {
-                (1.0, 1.0)
-            } else {
-                (removal.left, removal.rest)
-            };
-            let gone = if removal.is_idle { 0.0 } else { removal.used };
-            let enough = self.surplus.0[l] - gone >= f64::from(POSITION_STATES);
-            pdop.0[l] = verdict(
-                self.square.0[l] + rise,
-                left > least * whole,
-                enough,
-                limits,
-            );
+            let (square, is_good, enough) = self.without(one, l);
+            pdop.0[l] = verdict(square, is_good, enough, limits);
         }
         pdop
+    }
+
+    /// The square of that where the lanes decide and the sample is solved; elsewhere 0.
+    #[inline(always)]
+    pub(super) fn square_without(&self, one: &LaneSight, limits: &LossLimits) -> Lanes<f64> {
+        let mut squares = Lanes([0.0; LANES]);
+        for l in 0..LANES {
+            let (square, is_good, enough) = self.without(one, l);
+            let is_decided = is_good & enough & limits.decide(square);
+            squares.0[l] = if is_decided { square } else { 0.0 };
+        }
+        squares
+    }
+
+    /// The square of PDOP without a satellite, whether the geometry is still good, and whether there are enough satellites.
+    #[inline(always)]
+    fn without(&self, one: &LaneSight, l: usize) -> (f64, bool, bool) {
+        let removal = self.removal(one, l);
+        let [x, y, z] = removal.along;
+        let rise = removal.gain * (x * x + y * y + z * z) / removal.left;
+        let rise = if removal.is_idle { 0.0 } else { rise };
+        let least = self.least_share.0[l];
+        let (left, whole) = if removal.is_idle {
+            (1.0, 1.0)
+        } else {
+            (removal.left, removal.rest)
+        };
+        let gone = if removal.is_idle { 0.0 } else { removal.used };
+        let enough = self.surplus.0[l] - gone >= f64::from(POSITION_STATES);
+        (self.square.0[l] + rise, left > least * whole, enough)
     }
 
     /// Takes a satellite away.
@@ -208,9 +228,12 @@ impl TileGeometry {
 
     #[inline(always)]
     fn removal(&self, one: &LaneSight, l: usize) -> Removal {
-        let [xx, yy, zz, xy, xz, yz]: [f64; 6] = std::array::from_fn(|n| self.inverse[n].0[l]);
-        let delta: [f64; 3] = std::array::from_fn(|n| one.unit[n].0[l] - self.mean[n].0[l]);
-        let [x, y, z] = delta;
+        let [xx, yy, zz, xy, xz, yz] = at(&self.inverse, l);
+        let [unit, mean] = [&one.unit, &self.mean];
+        let x = unit[0].0[l] - mean[0].0[l];
+        let y = unit[1].0[l] - mean[1].0[l];
+        let z = unit[2].0[l] - mean[2].0[l];
+        let delta = [x, y, z];
         let along = [
             xx * x + xy * y + xz * z,
             xy * x + yy * y + yz * z,
