@@ -475,7 +475,10 @@ source = \"page 12\"
     let drawn = fs::read_to_string(place.join("two/deviations-mine.svg")).unwrap();
     assert!(drawn.contains("in view  (not-met)"), "{drawn}");
     let page = fs::read_to_string(place.join("two/report.html")).unwrap();
-    assert!(page.contains(&drawn) && page.contains("in view: not met, and not explained"));
+    // The page has one typeface for all, and the file its own.
+    let (open, rest) = drawn.split_once("\n<style>").unwrap();
+    let inline = open.to_owned() + rest.split_once("</style>").unwrap().1;
+    assert!(page.contains(&inline) && page.contains("in view: not met, and not explained"));
     assert!(!page.contains("<script"));
     // Explained, it is no failure; the same studies again are replaced, others are not.
     let explained = MINE.replace("source = \"page", "disagreement = \"why\"\nsource = \"page");

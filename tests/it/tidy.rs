@@ -218,7 +218,10 @@ fn validation_cases_are_listed_with_their_checksums() {
 /// Data of others that the program carries.
 #[test]
 fn built_in_data_are_listed_with_their_checksums() {
-    check_manifest("data", &["coastline", "countries", "earth-rotation"]);
+    check_manifest(
+        "data",
+        &["coastline", "countries", "earth-rotation", "typeface"],
+    );
 }
 
 /// Holds the files of folders against the manifest above them.
