@@ -69,6 +69,16 @@ fn is_over_points(measure: Measure) -> bool {
         )
 }
 
+/// The axis of a measure over the points at one instant.
+fn axis_over_points(measure: Measure) -> Axis {
+    let label = label_over_points(measure);
+    match measure {
+        Measure::Availability => Axis::share(label),
+        one if one.coverage_level().is_some() => Axis::share(label),
+        _ => Axis::new(label),
+    }
+}
+
 /// The label of a measure over the points at one instant.
 fn label_over_points(measure: Measure) -> String {
     if let Some(least) = measure.coverage_level() {
@@ -231,7 +241,7 @@ pub fn series(designs: &[NamedProfile<'_>], measure: Measure) -> Result<Plate, F
     let chart = PlaneChart {
         title: "Over time".to_owned(),
         x: Axis::new(format!("time since the epoch (h){note}")),
-        y: Axis::new(label_over_points(measure)),
+        y: axis_over_points(measure),
         measure: MeasureAxis::Y,
         layers,
     };

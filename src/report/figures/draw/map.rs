@@ -104,7 +104,11 @@ pub(super) fn draw(area: &Area<'_>, chart: &MapChart, sheet: Sheet) -> Drawn {
     };
     layout.draw_cells(area, chart, colour)?;
     layout.draw_graticule(area, chart, sheet)?;
-    let coasts = coastline::within(&chart.bounds);
+    let coasts = match chart.projection {
+        Projection::PlateCarree => coastline::within(&chart.bounds),
+        // Small islands would be specks.
+        Projection::EqualEarth => coastline::lines_within(&coastline::world(), &chart.bounds),
+    };
     layout.draw_lines(area, chart, &coasts, line(COAST, 0.5))?;
     let borders = coastline::lines_within(&chart.map.outlines, &chart.bounds);
     layout.draw_lines(area, chart, &borders, line(INK, 1.2))?;
