@@ -22,8 +22,8 @@ pub use super::Baseline;
 pub use super::labels::quantity_label;
 pub use budget::budget;
 pub use chart::{
-    Axis, Better, Chart, DeviationChart, DeviationRow, Layer, MapChart, MeasureAxis, PlaneChart,
-    Projection, RowChart, Spread, Style, TimelineChart,
+    Axis, AxisScale, Better, Chart, DeviationChart, DeviationRow, Layer, MapChart, MeasureAxis,
+    PlaneChart, Projection, RowChart, Style, TimelineChart,
 };
 pub use choice::AxisChoice;
 pub use curves::{NamedProfile, cdf, convergence, series};

@@ -34,7 +34,7 @@ impl Chart {
 
 /// How values are spread along an axis or over the colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Spread {
+pub enum AxisScale {
     /// Evenly.
     #[default]
     Linear,
@@ -48,7 +48,7 @@ pub struct Axis {
     /// What it shows, with its unit.
     pub label: String,
     /// How values are spread along it.
-    pub spread: Spread,
+    pub scale: AxisScale,
     /// Its ends; those of the data if there are none.
     pub range: Option<[f64; 2]>,
     /// Whether ticks are at whole numbers only.

@@ -1,6 +1,6 @@
 //! What a user asks of the axis of a measure.
 
-use super::{Axis, Chart, FigureError, MeasureAxis, Spread};
+use super::{Axis, AxisScale, Chart, FigureError, MeasureAxis};
 
 /// The axis of the measure, or the scale of its colours, as asked for.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -51,7 +51,7 @@ impl AxisChoice {
                     "a logarithmic axis needs values above 0, and this one begins at {from}; give another with --range"
                 )));
             }
-            axis.spread = Spread::Log;
+            axis.scale = AxisScale::Log;
         }
         if let Some(range) = self.range {
             axis.range = Some(range);
@@ -87,7 +87,7 @@ mod tests {
             let mut axis = Axis::default();
             choice
                 .set(&mut axis, values)
-                .map(|()| (axis.spread, axis.range))
+                .map(|()| (axis.scale, axis.range))
         };
         let percentile = AxisChoice {
             clip_percentile: Some(95.0),
@@ -98,7 +98,7 @@ mod tests {
             is_log: true,
             ..AxisChoice::default()
         };
-        assert_eq!(set(log, &values).unwrap(), (Spread::Log, None));
+        assert_eq!(set(log, &values).unwrap(), (AxisScale::Log, None));
         assert!(set(log, &[0.0, 1.0]).is_err());
         let from = AxisChoice {
             range: Some([0.1, 5.0]),

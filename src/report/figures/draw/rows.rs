@@ -6,7 +6,7 @@ use super::marks::{self, Mark};
 use super::ruler::Ruler;
 use super::sheet::{Sheet, line};
 use super::{Area, Drawn, GRID};
-use crate::report::figures::{Axis, RowChart, Spread};
+use crate::report::figures::{Axis, AxisScale, RowChart};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -52,7 +52,7 @@ fn ruler(chart: &RowChart, most_ticks: usize) -> Ruler {
     };
     let [low, high] = decades;
     let axis = Axis {
-        spread: Spread::Log,
+        scale: AxisScale::Log,
         range: Some([10_f64.powf(low), 10_f64.powf(high.max(low + 1.0))]),
         ..Axis::default()
     };

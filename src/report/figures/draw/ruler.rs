@@ -1,6 +1,6 @@
 //! The ends and the ticks of an axis.
 
-use crate::report::figures::{Axis, Spread};
+use crate::report::figures::{Axis, AxisScale};
 
 /// Share of an axis left free on either side of the data.
 const MARGIN: f64 = 0.04;
@@ -18,7 +18,7 @@ pub(super) struct Ruler {
     /// Places without a label.
     pub(super) minor: Vec<f64>,
     labels: Labels,
-    spread: Spread,
+    scale: AxisScale,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,9 +41,9 @@ impl Ruler {
         most_ticks: usize,
         is_tight: bool,
     ) -> Self {
-        let place = |value: f64| match axis.spread {
-            Spread::Linear => value,
-            Spread::Log => value.max(f64::MIN_POSITIVE).log10(),
+        let place = |value: f64| match axis.scale {
+            AxisScale::Linear => value,
+            AxisScale::Log => value.max(f64::MIN_POSITIVE).log10(),
         };
         let [low, high] = match axis.range {
             Some(range) => range.map(place),
@@ -53,9 +53,9 @@ impl Ruler {
             }
         };
         let (low, high) = widened(low, high);
-        match axis.spread {
-            Spread::Log => Self::log(low, high, most_ticks),
-            Spread::Linear => Self::linear(low, high, most_ticks, axis.is_whole),
+        match axis.scale {
+            AxisScale::Log => Self::log(low, high, most_ticks),
+            AxisScale::Linear => Self::linear(low, high, most_ticks, axis.is_whole),
         }
     }
 
@@ -78,7 +78,7 @@ impl Ruler {
             ticks: multiples(step, low, high),
             minor: Vec::new(),
             labels,
-            spread: Spread::Linear,
+            scale: AxisScale::Linear,
         }
     }
 
@@ -122,15 +122,15 @@ impl Ruler {
                 Vec::new()
             },
             labels,
-            spread: Spread::Log,
+            scale: AxisScale::Log,
         }
     }
 
     /// Where a value is.
     pub(super) fn place(&self, value: f64) -> f64 {
-        match self.spread {
-            Spread::Linear => value,
-            Spread::Log => value.max(f64::MIN_POSITIVE).log10(),
+        match self.scale {
+            AxisScale::Linear => value,
+            AxisScale::Log => value.max(f64::MIN_POSITIVE).log10(),
         }
     }
 
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn ticks_are_round_and_powers_of_ten_are_powers() {
         let log = Axis {
-            spread: Spread::Log,
+            scale: AxisScale::Log,
             ..Axis::default()
         };
         assert_eq!(
@@ -239,9 +239,9 @@ mod tests {
     #[test]
     fn degenerate_values_have_an_axis() {
         for values in [&[][..], &[0.0], &[7.0, 7.0], &[1e-300], &[-1e300, 1e300]] {
-            for spread in [Spread::Linear, Spread::Log] {
+            for scale in [AxisScale::Linear, AxisScale::Log] {
                 let axis = Axis {
-                    spread,
+                    scale,
                     ..Axis::default()
                 };
                 let ruler = Ruler::new(&axis, values.iter().copied(), 6, false);

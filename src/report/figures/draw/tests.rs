@@ -1,9 +1,10 @@
 use super::*;
 use crate::ground::{RegionMap, Tiling};
+use crate::keyword::Keyword;
 use crate::report::coastline::Bounds;
 use crate::report::figures::{
-    Axis, Better, DeviationChart, Layer, MapChart, MeasureAxis, PlaneChart, Projection, RowChart,
-    Spread, Style, TimelineChart,
+    Axis, AxisScale, Better, DeviationChart, Layer, MapChart, MeasureAxis, PlaneChart, Projection,
+    RowChart, Style, TimelineChart,
 };
 
 fn plane() -> Chart {
@@ -146,9 +147,9 @@ fn a_png_has_text_without_system_fonts() {
 /// One value, equal values, none and extreme ones, in every chart, on the least, the usual and the largest sheet.
 #[test]
 fn degenerate_charts_are_drawn() {
-    let one = |points: Vec<(f64, f64)>, spread| {
+    let one = |points: Vec<(f64, f64)>, scale| {
         let axis = Axis {
-            spread,
+            scale,
             ..Axis::default()
         };
         let styles = [
@@ -199,7 +200,7 @@ fn degenerate_charts_are_drawn() {
         vec![(0.0, 0.0); 2],
         vec![(-1e300, 1e-300), (1e300, 1e300)],
     ] {
-        charts.extend([Spread::Linear, Spread::Log].map(|spread| one(points.clone(), spread)));
+        charts.extend([AxisScale::Linear, AxisScale::Log].map(|scale| one(points.clone(), scale)));
     }
     for cells in [
         vec![(10.0, 50.0, None)],
